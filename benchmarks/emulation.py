@@ -1,0 +1,201 @@
+"""The emulator's speed, and its distance from logged runs of real controllers.
+
+    python benchmarks/emulation.py [--json] [--case 1000-moves]
+
+``1000-moves`` drives a seeded program of 1000 moves (joint, linear and circular legs of 200 to
+400 mm at 500 mm/s with zones of 10 to 50 mm) on the IRB 6640 at 4 ms. ``ms_per_move`` is CPU time
+of planning, stamping and sampling it over its moves; ``real_time_factor`` the robot's cycle time
+over that CPU time; ``derivative_cost_ratio`` the CPU time of duration, energy and both gradients
+over that of duration and energy alone. ``start-up`` runs a fresh interpreter whose compiled
+kernels are in numba's cache already.
+
+With FLYBY_LOGS naming a folder of logged runs (see `flyby.identification.logs`), there is a case
+for each run: distances of the log's samples from the emulated path of the TCP, and emulated over
+logged time in motion.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from report import Figure, cpu_seconds, main
+
+from flyby.core.motion.controller import Controller
+from flyby.core.motion.derivatives import Derivatives
+from flyby.core.program.move import Move, MoveC, MoveJ, MoveL
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.target import PoseTarget
+from flyby.core.program.zone import FINE, Radius
+from flyby.core.registry import find_robot, find_vendor
+from flyby.core.spatial.pose import Pose
+from flyby.core.spatial.rotation import matrix_from_rotation_vector
+from flyby.identification.comparison import compare
+from flyby.identification.logs import load_run
+
+MOVES = 1000
+SPEED = Speed(tcp=0.5, reorientation=np.radians(500), name="v500")
+# A box in front of the robot, tool down, in which it meets no singularity and no joint limit.
+CENTRE = np.array([1.5, 0.0, 1.0])
+HALF = np.array([0.3, 0.5, 0.3])
+TILT = 0.25  # rad from straight down
+SECONDS = """
+import time; begin = time.perf_counter()
+import flyby.core.motion.controller
+imported = time.perf_counter() - begin
+from pathlib import Path
+sys_path = __import__("sys").path; sys_path.insert(0, {folder!r})
+import emulation
+controller, program = emulation.controller(), emulation.program(20)
+begin = time.perf_counter(); controller.run(program)
+print(imported, time.perf_counter() - begin)
+"""
+
+
+def controller() -> Controller:
+    """The ABB controller of an IRB 6640."""
+    return Controller(find_vendor("abb"), find_robot("abb/irb6640-180-255"))
+
+
+def program(count: int, seed: int = 1) -> Program:
+    """A program of ``count`` moves after the one that leads to its first point."""
+    rng = np.random.default_rng(seed)
+    at = CENTRE
+    moves: list[Move] = [MoveJ(_target(rng, at), SPEED, FINE)]
+    kinds = rng.choice([MoveJ, MoveL, MoveC], size=count, p=[0.25, 0.5, 0.25])
+    for kind in kinds:
+        end = _next(rng, at)
+        radius = float(rng.choice([0.01, 0.02, 0.05]))
+        zone = Radius(radius, 1.5 * radius, 1.5 * radius, np.radians(150) * radius)
+        if kind is MoveC:
+            via = PoseTarget(_pose(rng, 0.5 * (at + end) + _aside(rng, end - at)))
+            moves.append(MoveC(_target(rng, end), SPEED, zone, via=via))
+        else:
+            moves.append(kind(_target(rng, end), SPEED, zone))
+        at = end
+    return Program(tuple(moves), f"seed {seed}")
+
+
+def _next(rng: np.random.Generator, at: np.ndarray) -> np.ndarray:
+    """A point of the box 200 to 400 mm away."""
+    while True:
+        end = CENTRE + HALF * rng.uniform(-1, 1, 3)
+        if 0.2 <= np.linalg.norm(end - at) <= 0.4:
+            return end
+
+
+def _aside(rng: np.random.Generator, leg: np.ndarray) -> np.ndarray:
+    """A step square to a leg, a fifth of its length."""
+    across = np.cross(leg, rng.normal(size=3))
+    return 0.2 * np.linalg.norm(leg) * across / np.linalg.norm(across)
+
+
+def _pose(rng: np.random.Generator, position: np.ndarray) -> Pose:
+    matrix = np.eye(4)
+    down = np.diag([-1.0, 1.0, -1.0])
+    matrix[:3, :3] = matrix_from_rotation_vector(TILT * rng.uniform(-1, 1, 3)) @ down
+    matrix[:3, 3] = position
+    return Pose.from_matrix(matrix)
+
+
+def _target(rng: np.random.Generator, position: np.ndarray) -> PoseTarget:
+    return PoseTarget(_pose(rng, position))
+
+
+def thousand_moves(case: str) -> Iterator[Figure]:
+    driver, moves = controller(), program(MOVES)
+    path = driver.plan(moves)
+    timing = driver.stamp(moves, path)
+
+    def values() -> tuple[float, float]:
+        plan = driver.plan(moves)
+        stamped = driver.stamp(moves, plan)
+        return stamped.duration, driver.energy(moves, stamped).value
+
+    def gradients() -> None:
+        plan = driver.plan(moves)
+        stamped = driver.stamp(moves, plan)
+        driver.energy(moves, stamped)
+        derivatives = Derivatives(driver, moves, stamped)
+        derivatives.duration()
+        derivatives.energy()
+
+    seconds = cpu_seconds(
+        {
+            "run": lambda: driver.run(moves),
+            "plan": lambda: driver.plan(moves),
+            "stamp": lambda: driver.stamp(moves, path),
+            "sample": lambda: driver.sample(moves, timing),
+            "values": values,
+            "gradients": gradients,
+        },
+        budget=0.0,
+    )
+    whole = seconds["run"]
+    yield Figure(case, "ms_per_move", 1e3 * whole / MOVES, "ms", "target", 0.5)
+    yield Figure(case, "real_time_factor", timing.duration / whole, "", "target", 1000.0)
+    ratio = seconds["gradients"] / seconds["values"]
+    yield Figure(case, "derivative_cost_ratio", ratio, "", "target", 5.0)
+    yield Figure(case, "cycle_time_s", timing.duration, "s")
+    for stage in ("plan", "stamp", "sample"):
+        yield Figure(case, f"{stage}_ms_per_move", 1e3 * seconds[stage] / MOVES, "ms")
+
+
+def start_up(case: str) -> Iterator[Figure]:
+    script = SECONDS.format(folder=str(Path(__file__).parent))
+    found = []
+    for _ in range(4):
+        begin = time.perf_counter()
+        done = subprocess.run(
+            [sys.executable, "-c", script], capture_output=True, text=True, check=True
+        )
+        found.append((*map(float, done.stdout.split()), time.perf_counter() - begin))
+    # The first process may have had to compile.
+    imported, first, whole = np.median(found[1:], axis=0)
+    yield Figure(case, "import_s", float(imported), "s")
+    yield Figure(case, "first_call_s", float(first), "s")
+    yield Figure(case, "process_s", float(whole), "s", "target", 3.0)
+
+
+def logged(path: Path) -> Iterator[Figure]:
+    run = load_run(path, find_robot)
+    robot = find_robot(run.robot)
+    driver = Controller(find_vendor(run.robot.split("/")[0]), robot)
+    emulated = driver.run(run.program).trajectory
+    found = compare(robot, run.program.moves[0].tool, run.t, run.q, emulated)
+    case = run.name
+    yield Figure(case, "path_max_mm", 1e3 * float(found.deviation.max()), "mm")
+    yield Figure(case, "path_p99_mm", 1e3 * float(np.percentile(found.deviation, 99)), "mm")
+    peer = "controller" if run.real else "virtual controller"
+    yield Figure(case, "cycle_time_ratio", found.cycle_time_ratio, "", peer, found.logged_moving)
+    yield Figure(case, "start_mm", 1e3 * found.start, "mm")
+    yield Figure(case, "end_mm", 1e3 * found.end, "mm")
+
+
+def logs() -> dict[str, Path]:
+    """The logged runs by name; none if FLYBY_LOGS is not set."""
+    folder = os.environ.get("FLYBY_LOGS")
+    if folder is None:
+        print("FLYBY_LOGS is not set: no logged runs to compare with", file=sys.stderr)
+        return {}
+    return {f"{p.parent.name}/{p.stem}": p for p in sorted(Path(folder).glob("*/*.json"))}
+
+
+def measure(case: str) -> Iterator[Figure]:
+    """Figures of one case."""
+    if case == "1000-moves":
+        return thousand_moves(case)
+    if case == "start-up":
+        return start_up(case)
+    return logged(RUNS[case])
+
+
+if __name__ == "__main__":
+    RUNS = logs()
+    main(__doc__ or "", measure, ["1000-moves", "start-up", *RUNS])

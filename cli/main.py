@@ -1,0 +1,64 @@
+"""The command ``flyby``."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from ..core.errors import FlybyError
+from .catalogue import robots, vendors
+from .console import fail
+from .emulate import emulate
+from .kinematics import fk, ik
+
+NUMBERS_MAY_BE_NEGATIVE = {"ignore_unknown_options": True}
+
+
+class Commands(TyperGroup):
+    """The commands; an error that a user can cause ends them with one message and status 1."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the chosen command."""
+        try:
+            return super().invoke(ctx)
+        except FlybyError as error:
+            fail(str(error))
+            raise typer.Exit(1) from None
+
+
+app = typer.Typer(
+    cls=Commands,
+    help="Emulates how industrial robot controllers drive a program.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+app.command()(emulate)
+app.command()(robots)
+app.command()(vendors)
+app.command(context_settings=NUMBERS_MAY_BE_NEGATIVE)(fk)
+app.command(context_settings=NUMBERS_MAY_BE_NEGATIVE)(ik)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"flyby {version('flyby')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    pass
+
+
+def main() -> None:
+    """Run the command line."""
+    app(prog_name="flyby")

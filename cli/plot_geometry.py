@@ -1,0 +1,90 @@
+"""What a plot of a path shows beside the driven one: programmed paths, waypoints, zones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.motion.controller import Run
+from ..core.motion.segments import ARC_SEGMENT, JOINT_SEGMENT
+from ..core.program.tool import WORLD
+from ..core.robot.chain_kernels import poses
+from ..core.robot.model import Robot
+from ..core.robot.work_chain import work_chain
+from .report import zone_reaches
+
+FloatArray = NDArray[np.float64]
+
+STEPS = 40
+"""Points of a curved segment."""
+STILL = 1e-6
+"""m by which a work object may move before it counts as moved."""
+
+
+@dataclass(frozen=True)
+class PathGeometry:
+    """All in m, in the frame of the trajectory's TCP.
+
+    Args:
+        nominal: for each segment that can be drawn the programmed path (P, 3).
+        waypoints: (M + 1, 3).
+        radius: (M + 1,), TCP radius of the zone round each waypoint; 0 at stops.
+    """
+
+    nominal: tuple[FloatArray, ...]
+    waypoints: FloatArray
+    radius: FloatArray
+
+
+def path_geometry(run: Run, robot: Robot) -> PathGeometry:
+    """The programmed path of a run; segments in work objects that move are left out."""
+    q = run.path.route.ends.q
+    reaches = zone_reaches(run)
+    starts = [_tcp(run, robot, k, q[k, :1])[0] for k in range(len(q))]
+    last = _tcp(run, robot, len(q) - 1, q[-1, 1:])
+    drawn = (_nominal(run, robot, k) for k in range(len(q)))
+    return PathGeometry(
+        tuple(points for points in drawn if points is not None),
+        np.array([*starts, last[0]]),
+        np.array([0.0, *(min(reach) for reach in reaches)]),
+    )
+
+
+def _tcp(run: Run, robot: Robot, segment: int, q: FloatArray) -> FloatArray:
+    """TCP (P, 3) m at configurations (P, N), with the tool of a segment."""
+    move = run.program.moves[run.path.route.moves[segment]]
+    frame = WORLD if move.tool.robot_held else move.work_object
+    _, position = poses(work_chain(robot, move.tool, frame), np.ascontiguousarray(q))
+    return np.asarray(position)
+
+
+def _nominal(run: Run, robot: Robot, segment: int) -> FloatArray | None:
+    """The programmed path (P, 3) of a segment; None if its work object moves."""
+    segments, route = run.path.segments, run.path.route
+    q = route.ends.q[segment]
+    share = np.linspace(0.0, 1.0, STEPS + 1)[:, None]
+    if route.ends.kind[segment] == JOINT_SEGMENT:
+        return _tcp(run, robot, segment, (1 - share) * q[0] + share * q[1])
+    control = segments.position[segment]
+    if route.ends.kind[segment] == ARC_SEGMENT:
+        angle = share * segments.angle[segment]
+        points = control[0] + np.cos(angle) * control[1] + np.sin(angle) * control[2]
+    else:
+        points = control[0] + share[[0, -1]] * control[1]
+    placed = [_placed(run, robot, segment, row, points) for row in q]
+    return placed[0] if np.abs(placed[0] - placed[1]).max() < STILL else None
+
+
+def _placed(
+    run: Run, robot: Robot, segment: int, q: FloatArray, points: FloatArray
+) -> FloatArray:
+    """Points of the work object in the trajectory's frame, with the robot at q (N,)."""
+    move = run.program.moves[run.path.route.moves[segment]]
+    frame = WORLD if move.tool.robot_held else move.work_object
+    row = np.ascontiguousarray(q[None])
+    R_there, p_there = poses(work_chain(robot, move.tool, frame), row)
+    R_here, p_here = poses(run.path.route.chains[segment], row)
+    turn = R_there[0] @ R_here[0].T
+    return np.asarray((points - p_here[0]) @ turn.T + p_there[0])

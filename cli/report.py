@@ -1,0 +1,235 @@
+"""What there is to tell about a run, move by move, as plain data in SI units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import Note, Span
+from ..core.motion.controller import Run
+from ..core.motion.limits import interval_samples
+from ..core.motion.zones import POSITION
+from ..core.motion.zones import STOP as STOP_CORNER
+from ..core.program.move import Move
+from ..core.program.target import JointTarget
+from ..core.program.zone import Fine, Radius
+from ..core.robot.chain_kernels import poses
+from ..core.robot.model import Robot
+from .binding import LimitShare, limit_shares
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class ZoneReport:
+    """The end of a move.
+
+    Args:
+        kind: class of the programmed zone, lower case (``fine``, ``radius``, …).
+        name: its name in the source; None if it has none.
+        radius: programmed TCP radius in m; None for other kinds of zone.
+        entry, exit: m, how far from the waypoint the TCP leaves and regains the programmed
+            path; 0 where it stops.
+    """
+
+    kind: str
+    name: str | None
+    radius: float | None
+    entry: float
+    exit: float
+
+    @property
+    def stops(self) -> bool:
+        """Whether the robot comes to rest."""
+        return self.entry == 0.0 or self.exit == 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class MoveReport:
+    """One move.
+
+    Args:
+        number: from 1.
+        kind: ``MoveJ``, ``MoveL`` or ``MoveC``.
+        target: name of the target; None if it has none.
+        position: the target in its work object, m; None for joint targets.
+        span: where the move stands in its source.
+        driven: False for moves that go nowhere or are left out; all below is then empty.
+        length: of the TCP's path in its work object, m.
+        begin: s, when the move's share of the path begins: at the waypoint before, or in the
+            middle of its zone.
+        duration: s of motion.
+        wait: s of standing still at its end.
+        top_speed: greatest TCP speed in the work object, m/s.
+        programmed_speed: of the TCP, m/s.
+        zone: its end.
+        limits: what holds the speed down, the longest first.
+    """
+
+    number: int
+    kind: str
+    target: str | None
+    position: tuple[float, float, float] | None
+    span: Span | None
+    driven: bool
+    length: float
+    begin: float
+    duration: float
+    wait: float
+    top_speed: float
+    programmed_speed: float | None
+    zone: ZoneReport
+    limits: tuple[LimitShare, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """A run.
+
+    Args:
+        program: its name.
+        robot: name of the robot.
+        cycle_time: s, from the first motion to rest after the last, waits included.
+        waiting: s of it spent in programmed waits.
+        length: of the TCP's path, m.
+        top_speed: of the TCP, m/s.
+        moves: one entry for each move of the program.
+        notes: what the user should know.
+    """
+
+    program: str
+    robot: str
+    cycle_time: float
+    waiting: float
+    length: float
+    top_speed: float
+    moves: tuple[MoveReport, ...]
+    notes: tuple[Note, ...]
+
+
+def make_report(run: Run, robot: Robot) -> Report:
+    """The report of a run."""
+    lengths, tops = _lengths_and_speeds(run)
+    zones = zone_reaches(run)
+    begins, durations = _begins(run), run.timing.segment_durations()
+    limits = limit_shares(run, robot.axis_names)
+    dwell = run.path.route.dwell
+    segment_of = {move: k for k, move in enumerate(run.path.route.moves)}
+    rows = []
+    for i, move in enumerate(run.program.moves):
+        k = segment_of.get(i)
+        driven = k is not None
+        rows.append(
+            MoveReport(
+                number=i + 1,
+                kind=type(move).__name__,
+                target=move.target.name,
+                position=_position(move),
+                span=None if move.origin is None else move.origin.statement,
+                driven=driven,
+                length=0.0 if k is None else float(lengths[k]),
+                begin=0.0 if k is None else float(begins[k]),
+                duration=0.0 if k is None else float(durations[k]),
+                wait=0.0 if k is None else float(dwell[k + 1]),
+                top_speed=0.0 if k is None else float(tops[k]),
+                programmed_speed=move.speed.tcp,
+                zone=_zone(move, (0.0, 0.0) if k is None else zones[k]),
+                limits=() if k is None else limits[k],
+            )
+        )
+    return Report(
+        program=run.program.name,
+        robot=robot.name,
+        cycle_time=run.duration,
+        waiting=float(dwell.sum()),
+        length=float(lengths.sum()),
+        top_speed=float(tops.max()),
+        moves=tuple(rows),
+        notes=_located(run),
+    )
+
+
+def _lengths_and_speeds(run: Run) -> tuple[FloatArray, FloatArray]:
+    """Length of the TCP's path (M,) m and its greatest speed (M,) m/s on each segment.
+
+    Lengths are the trapezoidal rule with its end correction: ∫f ≈ h (f₀ + f₁) / 2 + h² (f₀' −
+    f₁') / 12.
+    """
+    states, stamp, segment = run.path.states, run.timing.stamp, run.timing.interval_segments
+    left = interval_samples(run.path.pieces)
+    spacing = run.path.sigma[left + 1] - run.path.sigma[left]
+    velocity, acceleration = states.v[:, :3], states.a[:, :3]
+    rate = np.linalg.norm(velocity, axis=1)
+    moving = np.where(rate > 0.0, rate, 1.0)
+    change = np.sum(velocity * acceleration, axis=1) / moving
+    pieces = 0.5 * spacing * (rate[left] + rate[left + 1])
+    pieces += spacing**2 / 12 * (change[left] - change[left + 1])
+    speed = np.maximum(rate[left] * np.sqrt(stamp.x[:-1]), rate[left + 1] * np.sqrt(stamp.x[1:]))
+    count = len(run.path.route.moves)
+    lengths, tops = np.zeros(count), np.zeros(count)
+    np.add.at(lengths, segment, pieces)
+    np.maximum.at(tops, segment, speed)
+    return lengths, tops
+
+
+def _begins(run: Run) -> FloatArray:
+    """(M,) s, when each segment is entered."""
+    first = np.searchsorted(run.timing.interval_segments, np.arange(len(run.path.route.moves)))
+    return run.timing.begin[first]
+
+
+def zone_reaches(run: Run) -> list[tuple[float, float]]:
+    """How far, m, from the waypoint at its end each segment's zone begins and ends."""
+    layout = run.path.layout
+    found = []
+    for i, kind in enumerate(layout.corners.kind):
+        if kind == STOP_CORNER:
+            found.append((0.0, 0.0))
+            continue
+        before, after = layout.extent[i, POSITION]
+        at = layout.waypoint[i + 1]
+        entry = _distance(run, i, at - before, i)
+        found.append((entry, _distance(run, i + 1, at + after, i)))
+    return [*found, (0.0, 0.0)]
+
+
+def _distance(run: Run, segment: int, sigma: float, corner: int) -> float:
+    """m from the waypoint of a corner to the TCP at σ, in the work object of a segment."""
+    route = run.path.route
+    near = 1 if segment == corner else 0
+    piece = int(np.argmin(np.abs(run.path.pieces.edge - sigma)))
+    first = run.path.pieces.first_sample
+    # At a boundary two samples stand for one configuration; the last one ends the piece before.
+    sample = int(first[piece]) if piece < len(first) - 1 else int(first[piece]) - 1
+    rows = np.stack([route.ends.q[segment, near], run.path.q[sample]])
+    _, position = poses(route.chains[segment], np.ascontiguousarray(rows))
+    return float(np.linalg.norm(position[1] - position[0]))
+
+
+def _zone(move: Move, reach: tuple[float, float]) -> ZoneReport:
+    zone = move.zone
+    return ZoneReport(
+        kind=type(zone).__name__.lower(),
+        name=getattr(zone, "name", "fine" if isinstance(zone, Fine) else None),
+        radius=zone.tcp if isinstance(zone, Radius) else None,
+        entry=reach[0],
+        exit=reach[1],
+    )
+
+
+def _position(move: Move) -> tuple[float, float, float] | None:
+    return None if isinstance(move.target, JointTarget) else move.target.pose.position
+
+
+def _located(run: Run) -> tuple[Note, ...]:
+    """The notes, each with its place in the source where the program knows it."""
+    found = []
+    for note in run.notes:
+        span = note.span
+        if span is None and note.move is not None:
+            origin = run.program.moves[note.move].origin
+            span = None if origin is None else origin.statement
+        found.append(Note(note.message, note.move, span))
+    return tuple(dict.fromkeys(found))

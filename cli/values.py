@@ -1,0 +1,89 @@
+"""Numbers as a user types them: degrees and mm on the outside, rad and m inside."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from ..core.errors import InputError
+
+if TYPE_CHECKING:
+    from ..core.robot.model import Robot
+    from ..core.spatial.pose import Pose
+
+QUATERNION_SLACK = 1e-2
+"""By how much a typed quaternion's length may miss 1; it is normalised."""
+
+
+def numbers(text: str, name: str) -> tuple[float, ...]:
+    """Finite numbers separated by commas or blanks.
+
+    Raises:
+        InputError: naming ``name`` and what is no number.
+    """
+    values = []
+    for word in text.replace(",", " ").split():
+        try:
+            value = float(word)
+        except ValueError:
+            raise InputError(f"{name}: {word!r} is no number") from None
+        if not math.isfinite(value):
+            raise InputError(f"{name}: {word} is not finite")
+        values.append(value)
+    return tuple(values)
+
+
+def configuration(text: str, name: str, robot: Robot) -> tuple[float, ...]:
+    """All N values of a configuration in rad and m, from degrees and mm.
+
+    Raises:
+        InputError: not as many numbers as the robot has axes.
+    """
+    values = numbers(text, name)
+    if len(values) != robot.size:
+        raise InputError(
+            f"{name}: {robot.name} has {robot.size} axes ({', '.join(robot.axis_names)}); "
+            f"{len(values)} values were given"
+        )
+    return tuple(value * scale for value, (_, scale) in zip(values, axis_units(robot), strict=True))
+
+
+def axis_units(robot: Robot) -> list[tuple[str, float]]:
+    """The unit that each axis is shown in, and what it is in rad or m."""
+    from ..core.robot.joint import JointKind
+
+    joints = [*robot.joints, *(axis.joint for axis in robot.external_axes)]
+    turning = ("°", math.pi / 180)
+    return [turning if j.kind is JointKind.REVOLUTE else ("mm", 1e-3) for j in joints]
+
+
+def pose(text: str, name: str) -> Pose:
+    """A pose from x, y, z in mm and a quaternion w, x, y, z, or turns in degrees, or nothing.
+
+    The turns are rx, ry, rz about the fixed x, then y, then z axis: R = Rz Ry Rx.
+
+    Raises:
+        InputError: another number of values, or a quaternion far from unit length.
+    """
+    from ..core.spatial.pose import Pose
+
+    values = numbers(text, name)
+    if len(values) not in (3, 6, 7):
+        raise InputError(
+            f"{name}: a pose is x,y,z or x,y,z,rx,ry,rz or x,y,z,qw,qx,qy,qz "
+            f"(mm, degrees), not {len(values)} numbers"
+        )
+    x, y, z = (1e-3 * value for value in values[:3])
+    if len(values) == 7:
+        norm = math.hypot(*values[3:])
+        if abs(norm - 1.0) > QUATERNION_SLACK:
+            raise InputError(f"{name}: the quaternion must have length 1, not {norm:.6g}")
+        w, i, j, k = (value / norm for value in values[3:])
+        return Pose((x, y, z), (w, i, j, k))
+    turned = Pose((x, y, z))
+    for axis, angle in reversed(list(enumerate(values[3:]))):
+        half = 0.5 * math.radians(angle)
+        vector = [0.0, 0.0, 0.0]
+        vector[axis] = math.sin(half)
+        turned = turned @ Pose(quaternion=(math.cos(half), vector[0], vector[1], vector[2]))
+    return turned

@@ -1,0 +1,1 @@
+"""The cell: a robot with tools, frames, external axes and what stands around it."""

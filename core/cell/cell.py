@@ -1,0 +1,93 @@
+"""A cell as a value."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+
+from ..errors import Note, UnknownNameError
+from ..program.tool import FLANGE, WORLD, Tool, WorkObject
+from ..robot.model import Robot
+from .geometry import Geometry, Mesh
+
+
+@dataclass(frozen=True, slots=True)
+class Obstacle:
+    """A thing that stands in the cell.
+
+    Args:
+        name: unique in the cell.
+        geometry: its shape, placed in the world or in the frame of ``carried_by``.
+        carried_by: name of the external axis that moves it; None if it stands still.
+    """
+
+    name: str
+    geometry: Geometry
+    carried_by: str | None = None
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A robot with tools and frames among obstacles.
+
+    Args:
+        robot: standing where it stands, with the cell's external axes.
+        vendor: name of the robot's vendor.
+        clearance: distance in m that every part must keep from every other.
+        tools: by name; the bare flange (``tool0``) is always there.
+        frames: work objects by name; the world (``wobj0``) is always there.
+        tool_geometries: shapes of tools by the tool's name, in the flange's frame (in the world
+            for a stationary tool).
+        obstacles: what stands around.
+        allowed: pairs of names that may touch; printed in every report.
+        file: the file that the cell was read from.
+    """
+
+    robot: Robot
+    vendor: str
+    clearance: float = 0.0
+    tools: Mapping[str, Tool] = field(default_factory=dict)
+    frames: Mapping[str, WorkObject] = field(default_factory=dict)
+    tool_geometries: Mapping[str, Geometry] = field(default_factory=dict)
+    obstacles: tuple[Obstacle, ...] = ()
+    allowed: tuple[tuple[str, str], ...] = ()
+    file: Path | None = None
+
+    def __post_init__(self) -> None:
+        tools = {FLANGE.name: FLANGE, **self.tools}
+        frames = {WORLD.name: WORLD, **self.frames}
+        object.__setattr__(self, "tools", MappingProxyType(tools))
+        object.__setattr__(self, "frames", MappingProxyType(frames))
+        object.__setattr__(self, "tool_geometries", MappingProxyType({**self.tool_geometries}))
+
+    def tool(self, name: str) -> Tool:
+        """The tool ``name``.
+
+        Raises:
+            UnknownNameError: the cell has no such tool.
+        """
+        if name not in self.tools:
+            raise UnknownNameError("tool of the cell", name, self.tools)
+        return self.tools[name]
+
+    def frame(self, name: str) -> WorkObject:
+        """The work object ``name``.
+
+        Raises:
+            UnknownNameError: the cell has no such frame.
+        """
+        if name not in self.frames:
+            raise UnknownNameError("frame of the cell", name, self.frames)
+        return self.frames[name]
+
+    def check_meshes(self) -> tuple[Note, ...]:
+        """Read every mesh, and say what is odd about them.
+
+        Raises:
+            InputError: a mesh cannot be used.
+        """
+        geometries = (*self.tool_geometries.values(), *(o.geometry for o in self.obstacles))
+        meshes = [g.shape for g in geometries if isinstance(g.shape, Mesh)]
+        return tuple(note for mesh in meshes for note in mesh.notes)

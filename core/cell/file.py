@@ -1,0 +1,185 @@
+"""The cell file: TOML, every quantity with its unit in the key."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import InputError, UnknownNameError
+from ..pose_table import pose_at
+from ..program.tool import FLANGE, WORLD, Tool, WorkObject
+from ..robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
+from ..robot.model import Robot
+from ..tables import ANGLE, LENGTH, Table
+from .cell import Cell, Obstacle
+from .geometry import Geometry
+from .parts import read_geometry, read_load
+
+if TYPE_CHECKING:
+    from ..registry import Registry
+
+AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
+
+def load_cell(path: str | Path, registry: Registry) -> Cell:
+    """Read a cell file; see ``docs/cell.md`` for its keys.
+
+    Args:
+        path: the TOML file; meshes are named relative to it.
+        registry: where the robot's name is looked up.
+
+    Raises:
+        InputError: a file is missing or no TOML, a key is missing, unknown or of a wrong kind or
+            unit, a name stands for nothing; the message names file and key. Meshes are read
+            later: see `Cell.check_meshes`.
+    """
+    file = Table.read(path)
+    axes = [_external_axis(name, t) for name, t in file.named_tables("external_axis").items()]
+    robot = _robot(file, registry, tuple(axes))
+    tools, shapes = _tools(file)
+    tables = {axis.name for axis in axes if axis.role is ExternalRole.TABLE}
+    obstacles = _obstacles(file, tables)
+    frames = _frames(file, tables)
+    clearance = _clearance(file)
+    allow = file.table("allow")
+    file.finish()
+    known = {*tools, *(obstacle.name for obstacle in obstacles), "base", *robot.axis_names}
+    return Cell(
+        robot=robot,
+        vendor=file.text("robot").partition("/")[0],
+        clearance=clearance,
+        tools=tools,
+        frames=frames,
+        tool_geometries=shapes,
+        obstacles=obstacles,
+        allowed=_allowed(allow, known),
+        file=file.file,
+    )
+
+
+def _robot(file: Table, registry: Registry, axes: tuple[ExternalAxis, ...]) -> Robot:
+    try:
+        robot = registry.find_robot(file.text("robot"))
+    except UnknownNameError as error:
+        raise file.error("robot", str(error)) from None
+    base = pose_at(file, "base")
+    try:
+        return robot.with_base(base).with_external_axes(axes)
+    except InputError as error:
+        raise file.error("external_axis", str(error)) from None
+
+
+def _tools(file: Table) -> tuple[dict[str, Tool], dict[str, Geometry]]:
+    tools: dict[str, Tool] = {}
+    shapes: dict[str, Geometry] = {}
+    for name, table in file.named_tables("tool").items():
+        if name == FLANGE.name:
+            raise file.table("tool").error(name, "is the bare flange and cannot be redefined")
+        tools[name] = Tool(
+            name=name,
+            tcp=pose_at(table, "tcp"),
+            load=read_load(table),
+            robot_held=table.flag("robot_held", True),
+        )
+        shape = read_geometry(table, pose_at(table, "pose"))
+        if shape is not None:
+            shapes[name] = shape
+        table.finish()
+    return tools, shapes
+
+
+def _frames(file: Table, tables: Collection[str]) -> dict[str, WorkObject]:
+    frames: dict[str, WorkObject] = {}
+    for name, table in file.named_tables("frame").items():
+        if name == WORLD.name:
+            raise file.table("frame").error(name, "is the world and cannot be redefined")
+        frames[name] = WorkObject(
+            name=name,
+            user=pose_at(table, "pose"),
+            frame=pose_at(table, "object"),
+            robot_held=table.flag("robot_held", False),
+            moved_by=_carrier(table, "moved_by", tables),
+        )
+        table.finish()
+    return frames
+
+
+def _obstacles(file: Table, tables: Collection[str]) -> tuple[Obstacle, ...]:
+    obstacles: list[Obstacle] = []
+    for table in file.listed_tables("obstacle"):
+        name = table.text("name")
+        if name in (obstacle.name for obstacle in obstacles):
+            raise table.error("name", f"another obstacle is called {name!r} already")
+        geometry = read_geometry(table, pose_at(table, "pose"))
+        if geometry is None:
+            raise table.error("mesh", "is missing, and so are box_mm, sphere_mm and the like")
+        obstacles.append(Obstacle(name, geometry, _carrier(table, "carried_by", tables)))
+        table.finish()
+    return tuple(obstacles)
+
+
+def _carrier(table: Table, key: str, tables: Collection[str]) -> str | None:
+    return table.choice(key, tables) if table.has(key) else None
+
+
+def _external_axis(name: str, table: Table) -> ExternalAxis:
+    """``[external_axis.NAME]``; lengths for a prismatic axis, angles for a revolute one."""
+    kind = JointKind(table.choice("kind", list(JointKind)))
+    unit = LENGTH if kind is JointKind.PRISMATIC else ANGLE
+    lower, upper = table.quantities("range", unit, 2)
+    if lower >= upper:
+        raise table.error("range", f"must rise, not run from {lower:g} to {upper:g}")
+    joint = Joint(
+        name=name,
+        placement=pose_at(table, "pose"),
+        axis=AXES[table.choice("axis", AXES)],
+        lower=lower,
+        upper=upper,
+        velocity=_positive(table, "speed", _per(unit, "s")),
+        acceleration=_positive(table, "acceleration", _per(unit, "s2")),
+        kind=kind,
+    )
+    axis = ExternalAxis(
+        joint=joint,
+        role=ExternalRole(table.choice("role", list(ExternalRole))),
+        carried_by=table.text("carried_by") if table.has("carried_by") else None,
+    )
+    table.finish()
+    return axis
+
+
+def _per(units: Mapping[str, float], time: str) -> dict[str, float]:
+    return {f"{unit}_{time}": scale for unit, scale in units.items()}
+
+
+def _allowed(table: Table, known: Collection[str]) -> tuple[tuple[str, str], ...]:
+    """Pairs that may touch: tools, obstacles, joints (for the links behind them) and ``base``."""
+    pairs = table.value("pairs") if table.has("pairs") else []
+    table.finish()
+    if not isinstance(pairs, list):
+        raise table.error("pairs", f"must be a list of pairs of names, not {pairs!r}")
+    return tuple(_pair(table, pair, known) for pair in pairs)
+
+
+def _pair(table: Table, pair: object, known: Collection[str]) -> tuple[str, str]:
+    if not isinstance(pair, list) or len(pair) != 2 or not all(isinstance(n, str) for n in pair):
+        raise table.error("pairs", f"must be pairs of names, not {pair!r}")
+    for name in pair:
+        if name not in known:
+            raise table.error("pairs", str(UnknownNameError("part of the cell", name, known)))
+    return pair[0], pair[1]
+
+
+def _clearance(file: Table) -> float:
+    value = file.quantity("clearance", LENGTH, 0.0)
+    if value < 0:
+        raise file.error("clearance", "must be zero or more")
+    return value
+
+
+def _positive(table: Table, key: str, units: Mapping[str, float]) -> float:
+    value = table.quantity(key, units)
+    if value <= 0:
+        raise table.error(key, "must be above zero")
+    return value

@@ -1,0 +1,117 @@
+"""Meshes of tools and obstacles: read when they are asked for, and checked then."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError, Note
+from ..robot.shape import Shape
+from ..spatial.pose import IDENTITY, Pose
+
+FloatArray = NDArray[np.float64]
+
+MESH_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 25.4e-3}
+"""Metres in one unit of a mesh file."""
+PLAUSIBLE_EXTENT = (1e-3, 100.0)
+"""m; beyond, the unit is probably wrong."""
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A triangle mesh in a file.
+
+    Args:
+        file: the mesh file.
+        units: of the file's numbers, a key of `MESH_UNITS`.
+
+    Raises:
+        InputError: the unit is unknown.
+    """
+
+    file: Path
+    units: str
+
+    def __post_init__(self) -> None:
+        if self.units not in MESH_UNITS:
+            raise InputError(f"{self.file}: a mesh's units are one of {', '.join(MESH_UNITS)}")
+
+    @property
+    def vertices(self) -> FloatArray:
+        """Corner points (V, 3) m in the mesh's own frame.
+
+        Raises:
+            InputError: the file is no mesh, is empty or holds numbers that are not finite.
+        """
+        return self._content[0]
+
+    @property
+    def faces(self) -> NDArray[np.int64]:
+        """Triangles (F, 3) as indices of `vertices`; raises as `vertices`."""
+        return self._content[1]
+
+    @property
+    def notes(self) -> tuple[Note, ...]:
+        """What is odd about the mesh without making it unusable; raises as `vertices`."""
+        return self._content[2]
+
+    @cached_property
+    def _content(self) -> tuple[FloatArray, NDArray[np.int64], tuple[Note, ...]]:
+        mesh = _load(self.file)
+        vertices = np.array(mesh.vertices, dtype=float) * MESH_UNITS[self.units]
+        faces = np.array(mesh.faces, dtype=np.int64).reshape(-1, 3)
+        if len(faces) == 0:
+            raise InputError(f"{self.file}: the mesh has no triangles")
+        if not np.isfinite(vertices).all():
+            raise InputError(f"{self.file}: the mesh has corner points that are not finite numbers")
+        vertices.flags.writeable = False
+        faces.flags.writeable = False
+        return vertices, faces, tuple(self._oddities(bool(mesh.is_watertight), vertices))
+
+    def _oddities(self, watertight: bool, vertices: FloatArray) -> list[Note]:
+        notes = []
+        if not watertight:
+            notes.append(Note(f"{self.file}: the mesh is not watertight: its inside reads as free"))
+        extent = float(np.ptp(vertices, axis=0).max())
+        shortest, longest = PLAUSIBLE_EXTENT
+        if not shortest <= extent <= longest:
+            notes.append(
+                Note(f"{self.file}: in {self.units} it is {extent:.3g} m long; check its units")
+            )
+        return notes
+
+
+@dataclass(frozen=True, slots=True)
+class Geometry:
+    """A shape at its place.
+
+    Args:
+        shape: a mesh or a simple convex shape.
+        placement: the shape's frame in the frame of what it belongs to.
+    """
+
+    shape: Mesh | Shape
+    placement: Pose = IDENTITY
+
+
+def _load(file: Path) -> Any:
+    """The file's triangles as one `trimesh.Trimesh`, equal corner points merged.
+
+    trimesh drops points that are not finite when it cleans up, so it does not clean up here
+    before they are looked for.
+    """
+    import trimesh
+
+    try:
+        with np.errstate(all="ignore"):
+            mesh = trimesh.load_mesh(file, process=False)
+    except Exception as error:  # each format's parser raises its own kinds
+        raise InputError(f"{file}: cannot be read as a mesh: {error!r}") from error
+    if np.isfinite(mesh.vertices).all():
+        mesh.merge_vertices()
+    return mesh

@@ -1,0 +1,104 @@
+"""Every error that a user can cause, and the warnings that travel with a result.
+
+An error says what is wrong, where (file, line and column; move; joint) and what to do.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+
+class FlybyError(Exception):
+    """Base of every error that input from outside can cause."""
+
+
+class InputError(FlybyError):
+    """A value, file or option from outside cannot be used."""
+
+
+class UnknownNameError(InputError):
+    """A name that nothing answers to; the message offers the nearest known ones.
+
+    Args:
+        kind: what was looked up, e.g. ``"robot"``.
+        name: the name asked for.
+        known: the names that exist.
+    """
+
+    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+        known = sorted(known)
+        folded = {other.casefold(): other for other in known}
+        matches = difflib.get_close_matches(name.casefold(), folded, n=3, cutoff=0.4)
+        near = [folded[match] for match in matches]
+        if near:
+            offer = f"did you mean {' or '.join(repr(n) for n in near)}?"
+        elif known:
+            offer = f"known: {', '.join(known)}"
+        else:
+            offer = "none is known"
+        super().__init__(f"unknown {kind} {name!r}: {offer}")
+        self.kind = kind
+        self.name = name
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A stretch of a source file; lines and columns count from 1, offsets (characters) from 0."""
+
+    file: str
+    line: int
+    column: int
+    start: int
+    end: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+class SourceError(FlybyError):
+    """A program text cannot be read, understood or written; ``span`` says where."""
+
+    def __init__(self, message: str, span: Span | None = None) -> None:
+        super().__init__(f"{span}: {message}" if span is not None else message)
+        self.span = span
+
+
+class MotionError(FlybyError):
+    """A program that reads well but that the robot cannot drive.
+
+    Args:
+        message: what is wrong and what to do.
+        move: index of the move in ``Program.moves`` (from 0); messages count from 1.
+        span: where the move stands in its source, if known.
+    """
+
+    def __init__(self, message: str, move: int | None = None, span: Span | None = None) -> None:
+        where = "" if span is None else f"{span}: "
+        if move is not None:
+            where += f"move {move + 1}: "
+        super().__init__(where + message)
+        self.move = move
+        self.span = span
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """Something a user should know that is no error: a zone cut short, a statement stepped over.
+
+    Args:
+        message: one sentence.
+        move: index of the move concerned, from 0.
+        span: where in the source.
+    """
+
+    message: str
+    move: int | None = None
+    span: Span | None = None
+
+    def __str__(self) -> str:
+        where = "" if self.span is None else f"{self.span}: "
+        if self.move is not None:
+            where += f"move {self.move + 1}: "
+        return where + self.message

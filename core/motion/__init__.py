@@ -1,0 +1,1 @@
+"""From a program to the path and the time-stamped trajectory that a controller would drive."""

@@ -1,0 +1,325 @@
+"""The emulator: drives a program as a vendor's controller would."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import MotionError, Note
+from ..program.move import Move
+from ..program.program import Program
+from ..program.target import JointTarget
+from ..robot.chain_kernels import poses
+from ..robot.inertia import Inertia
+from ..robot.model import Robot
+from ..spatial.rotation import quaternion_from_matrix
+from ..vendor import Vendor
+from .energy import Energy, energy
+from .limits import PathLimits, SegmentLimits, path_limits
+from .model import MotionModel
+from .path import Path, build_path
+from .pieces import Sampling
+from .route import RouteFinder
+from .smoothing import moving_average, window_for_jerk
+from .stamping import StampingError, stamp
+from .timing import Timing
+from .trajectory import Trajectory, sample_times
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+_SKIPS = 10_000
+_DURATION_ROUNDS = 60
+_DURATION_MET = 1e-6
+_LIMIT_SLACK = 1e-6
+"""rad or m by which a path may pass a joint limit: rounding of programmed values."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """Everything that came of driving a program.
+
+    Args:
+        program: what was driven.
+        path: its geometry.
+        timing: its stamp, before any smoothing in time.
+        trajectory: what the joints are commanded, sampled at the controller's period.
+        notes: the program's own and all that was found on the way.
+    """
+
+    program: Program
+    path: Path
+    timing: Timing
+    trajectory: Trajectory
+    notes: tuple[Note, ...]
+
+    @property
+    def duration(self) -> float:
+        """Cycle time in s: from the first motion to rest after the last, waits included."""
+        return self.trajectory.duration
+
+
+class Controller:
+    """Emulates one vendor's controller for one robot.
+
+    Args:
+        vendor: whose configurations and rules apply.
+        robot: the robot, with its external axes.
+        model: the motion model; None for the vendor's own.
+        sampling: how densely paths are sampled.
+    """
+
+    def __init__(
+        self,
+        vendor: Vendor,
+        robot: Robot,
+        model: MotionModel | None = None,
+        sampling: Sampling | None = None,
+    ) -> None:
+        self.robot = robot
+        self.model = vendor.motion() if model is None else model
+        self.sampling = Sampling() if sampling is None else sampling
+        self._routes = RouteFinder(robot, vendor.label)
+
+    def run(
+        self, program: Program, start: JointTarget | None = None, period: float | None = None
+    ) -> Run:
+        """Plan, stamp and sample a program.
+
+        Args:
+            program: what to drive.
+            start: where the robot stands; None for the program's own start, else its first target.
+            period: s between samples; None for the controller's own.
+
+        Raises:
+            MotionError: the program cannot be driven; the message names the move.
+        """
+        path = self.plan(program, start)
+        timing = self.stamp(program, path)
+        notes = (*program.notes, *path.notes, *self._duration_notes(program, timing))
+        return Run(program, path, timing, self.sample(program, timing, period), notes)
+
+    def plan(self, program: Program, start: JointTarget | None = None) -> Path:
+        """The geometry of a program's path.
+
+        Raises:
+            MotionError: the program cannot be driven; the message names the move.
+        """
+        skipped: list[int] = []
+        notes: list[Note] = []
+        for _ in range(_SKIPS):
+            route = self._routes.find(program, start, skipped)
+            if not route.moves:
+                raise MotionError(
+                    "the program goes nowhere: every move ends where the robot stands"
+                )
+            try:
+                path = build_path(route, self.model, self.sampling)
+            except MotionError as error:
+                raise _located(error, program) from error
+            overlapping = path.corners.overlapping
+            if overlapping is None:
+                self._check_limits(program, path)
+                return replace(path, notes=(*notes, *path.notes))
+            move = route.moves[overlapping]
+            skipped.append(move)
+            notes.append(Note("overlapping blends: this waypoint is left out", move))
+        raise MotionError("the blends of this program overlap beyond remedy")
+
+    def stamp(self, program: Program, path: Path) -> Timing:
+        """When the robot is where on a path.
+
+        Raises:
+            MotionError: the limits do not let it move.
+        """
+        moves = self._moves(program, path)
+        limits = SegmentLimits.of(
+            self.robot, self.model, [move.speed for move in moves], path.route.ends.kind
+        )
+        timed = [k for k, move in enumerate(moves) if move.speed.duration is not None]
+        timing = _timing(path, limits)
+        if not timed:
+            return timing
+        wanted = np.array([moves[k].speed.duration for k in timed], dtype=float)
+        return _hold_durations(timing, timed, wanted)
+
+    def sample(self, program: Program, timing: Timing, period: float | None = None) -> Trajectory:
+        """The commanded motion, smoothed in time where the vendor does, every ``period`` s."""
+        period = self.model.period if period is None else period
+        window = self._window()
+        t = sample_times(0.0, timing.duration + window, period)
+        if window == 0.0:
+            q, dq, ddq, sigma = timing.states_at(t)
+        else:
+            dense = np.unique(np.concatenate([_dense(timing), timing.begin, timing.end]))
+            q, dq, _, _ = timing.states_at(dense)
+            q, dq, ddq = moving_average(dense, q, dq, window, t)
+            sigma = timing.states_at(np.clip(t - 0.5 * window, 0.0, timing.duration))[3]
+        path = timing.path
+        last = len(path.route.moves) - 1
+        segment = np.clip(np.searchsorted(path.layout.waypoint, sigma, "right") - 1, 0, last)
+        position, quaternion = self._tcp(self._moves(program, path), segment, q)
+        moves = np.array(path.route.moves, dtype=np.int64)
+        return Trajectory(t, q, dq, ddq, position, quaternion, sigma, moves[segment])
+
+    def energy(self, program: Program, timing: Timing) -> Energy:
+        """The squared-torque energy of a stamped path, before smoothing; see `energy`.
+
+        Raises:
+            InputError: the robot's inertias are not known.
+        """
+        return energy(self.robot, timing, self.loads(program, timing.path))
+
+    def loads(self, program: Program, path: Path) -> list[Inertia | None]:
+        """What the flange carries on each segment: tool and payload."""
+        known: dict[object, Inertia | None] = {}
+        found = []
+        for move in self._moves(program, path):
+            key = move.tool, move.load
+            if key not in known:
+                known[key] = _carried(move)
+            found.append(known[key])
+        return found
+
+    def _moves(self, program: Program, path: Path) -> list[Move]:
+        return [program.moves[i] for i in path.route.moves]
+
+    def _window(self) -> float:
+        jerk = self.model.jerk
+        return max(self.model.smoothing, 0.0 if jerk is None else window_for_jerk(jerk))
+
+    def _tcp(
+        self, moves: Sequence[Move], segment: IntArray, q: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """TCP in the world; of a stationary tool, in the work object."""
+        position, rotation = np.empty((len(q), 3)), np.empty((len(q), 3, 3))
+        chains = [self._routes.world_chain(move.tool, move.work_object) for move in moves]
+        index = {id(chain): chain for chain in chains}
+        owner = np.array([id(chain) for chain in chains])[segment]
+        for key, chain in index.items():
+            rows = np.flatnonzero(owner == key)
+            rotation[rows], position[rows] = poses(chain, np.ascontiguousarray(q[rows]))
+        return position, quaternion_from_matrix(rotation)
+
+    def _check_limits(self, program: Program, path: Path) -> None:
+        """Refuse a path that passes a joint limit."""
+        limits = self.robot.limits
+        beyond = np.maximum(limits.lower - path.q, path.q - limits.upper)
+        if beyond.max() <= _LIMIT_SLACK:
+            return
+        sample, axis = np.unravel_index(np.argmax(beyond), beyond.shape)
+        move = int(path.sample_moves()[sample])
+        bound = limits.lower if path.q[sample, axis] < limits.lower[axis] else limits.upper
+        name, excess = self.robot.axis_names[axis], beyond[sample, axis]
+        raise _located(
+            MotionError(
+                f"joint {name} would pass its limit of {bound[axis]:.4f} by {excess:.4f} (rad or "
+                "m); choose another configuration or move the target",
+                move,
+            ),
+            program,
+        )
+
+    def _duration_notes(self, program: Program, timing: Timing) -> list[Note]:
+        notes = []
+        moves = self._moves(program, timing.path)
+        for k, spent in enumerate(timing.segment_durations()):
+            wanted = moves[k].speed.duration
+            if wanted is not None and abs(spent - wanted) > 1e-3 * wanted:
+                notes.append(
+                    Note(
+                        f"programmed to take {wanted:g} s, but the robot needs {spent:.4g} s",
+                        timing.path.route.moves[k],
+                    )
+                )
+        return notes
+
+
+def _located(error: MotionError, program: Program) -> MotionError:
+    """The same error with the move's place in the source."""
+    if error.move is None or error.span is not None:
+        return error
+    origin = program.moves[error.move].origin
+    if origin is None:
+        return error
+    return MotionError(str(error), None, origin.statement)
+
+
+def _carried(move: Move) -> Inertia | None:
+    """The tool's load and the payload as one body in the flange's frame."""
+    bodies = []
+    if move.tool.robot_held and move.tool.load is not None:
+        bodies.append(Inertia.of_load(move.tool.load))
+    if move.load is not None:
+        frame = move.tool.tcp if move.tool.robot_held else move.work_object.pose
+        bodies.append(Inertia.of_load(move.load, frame))
+    if not bodies:
+        return None
+    total = bodies[0]
+    for body in bodies[1:]:
+        total = total + body
+    return total
+
+
+def _timing(path: Path, limits: SegmentLimits) -> Timing:
+    made: PathLimits = path_limits(path.states, path.pieces, path.sigma, limits)
+    try:
+        found = stamp(made.rows)
+    except StampingError as error:
+        knot = min(error.knot, len(made.rows.spacing) - 1)
+        piece = int(np.searchsorted(path.pieces.first_interval, knot, "right")) - 1
+        move = path.route.moves[int(path.pieces.segment[piece])]
+        raise MotionError(str(error), move) from error
+    return Timing.of(path, limits, made, found)
+
+
+def _hold_durations(timing: Timing, timed: list[int], wanted: FloatArray) -> Timing:
+    """Slow segments down until they take the time that was programmed.
+
+    Velocities of the segment are scaled in common; a time too short for the robot stays unmet.
+    """
+    factor = np.ones(len(timed))
+    limits = _finite(timing, timed)
+    current = _timing(timing.path, limits)
+    for _ in range(_DURATION_ROUNDS):
+        spent = current.segment_durations()[timed]
+        slow = spent < wanted * (1 - _DURATION_MET)
+        fast = (spent > wanted * (1 + _DURATION_MET)) & (factor < 1.0)
+        if not (slow | fast).any():
+            break
+        factor = np.where(slow | fast, np.minimum(1.0, factor * spent / wanted), factor)
+        scaled = limits
+        for segment, share in zip(timed, factor, strict=True):
+            scaled = scaled.with_velocities_scaled([segment], float(share))
+        current = _timing(timing.path, scaled)
+    return current
+
+
+def _finite(timing: Timing, timed: list[int]) -> SegmentLimits:
+    """Limits in which each timed segment may go just as fast as it does without its time."""
+    velocity = timing.limits.velocity.copy()
+    path, stamped = timing.path, timing.stamp
+    rate = np.sqrt(np.maximum(stamped.x[:-1], stamped.x[1:]))
+    top = np.zeros(len(path.route.moves))
+    np.maximum.at(top, timing.interval_segments, rate)
+    sample_segment = path.pieces.segment[path.pieces.sample_pieces()]
+    speeds = np.concatenate(
+        [
+            np.abs(path.states.dq),
+            np.linalg.norm(path.states.v[:, :3], axis=1)[:, None],
+            np.linalg.norm(path.states.v[:, 3:], axis=1)[:, None],
+        ],
+        axis=1,
+    )
+    for k in timed:
+        reached = speeds[sample_segment == k].max(axis=0) * top[k]
+        velocity[k] = np.minimum(velocity[k], np.maximum(reached, 1e-12))
+    return replace(timing.limits, velocity=velocity)
+
+
+def _dense(timing: Timing) -> FloatArray:
+    """Times fine enough that cubics in time between them stand for the stamped motion."""
+    return sample_times(0.0, timing.duration, 0.002)

@@ -1,0 +1,347 @@
+"""Exact derivatives of a driven program with respect to its own numbers.
+
+Reverse mode by hand: stamp → rows and ceilings → samples → inverse kinematics → curves → zones →
+waypoints → targets. Active limits, clipped zones, branches and sample counts are held, so that at
+a tie between two of them the derivative is one-sided.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..program.program import Program
+from ..program.target import JointTarget, PoseTarget
+from ..robot.chain_kernels import jacobians
+from .controller import Controller
+from .energy import pull_energy
+from .limits import SpeedGradient, interval_samples, pull_path_limits
+from .path import Path, RouteGradient, pull_path
+from .stamping_adjoint import stamp_adjoint
+from .tcp_samples import States
+from .timing import Timing
+from .zones import ZoneGradient
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class BlendDerivative:
+    """Derivative with respect to the coefficients of a blend's α and β, in their order.
+
+    α's coefficients count as free; a change that keeps α(1) = 1 sums to zero.
+    """
+
+    alpha: FloatArray
+    beta: FloatArray
+
+
+@dataclass(frozen=True)
+class ProgramGradient:
+    """Derivative of one number with respect to a program's continuous parameters.
+
+    Rows belong to the P moves of the program; what a move does not have is zero.
+
+    Args:
+        start: (N,), the configuration before the first move.
+        position: (P, 3) per m, pose targets, in their work object.
+        turn: (P, 3) per rad, small turns of pose targets about the axes of their work object.
+        joints: (P, N) per rad or m, joint targets; external axes of all targets.
+        via: (P, 3) per m, auxiliary points of arcs.
+        zone: (P,) per m, TCP radius of zones (per 1 of a `ContourFraction`).
+        zone_reorientation, zone_external: (P,) per m, the other radii.
+        zone_angle: (P,) per rad.
+        speed: the numbers of `Speed`, (P,) each.
+        tcp_blend, joint_blend, orientation_blend: the vendor's blend laws.
+    """
+
+    start: FloatArray
+    position: FloatArray
+    turn: FloatArray
+    joints: FloatArray
+    via: FloatArray
+    zone: FloatArray
+    zone_reorientation: FloatArray
+    zone_external: FloatArray
+    zone_angle: FloatArray
+    speed: SpeedGradient
+    tcp_blend: BlendDerivative
+    joint_blend: BlendDerivative
+    orientation_blend: BlendDerivative
+
+
+@dataclass
+class _Seeds:
+    """Gradient of the wanted number with respect to the stamped path's samples."""
+
+    states: States
+    sigma: FloatArray
+    x: FloatArray
+    t: FloatArray
+    spacing: FloatArray = field(repr=False)
+
+
+class Derivatives:
+    """Derivatives of one driven program.
+
+    Args:
+        controller: that drove it.
+        program: what was driven.
+        timing: its stamp, from ``controller.stamp``.
+
+    Raises:
+        InputError: a move has a fixed duration, whose derivative is not available.
+    """
+
+    def __init__(self, controller: Controller, program: Program, timing: Timing) -> None:
+        for i in timing.path.route.moves:
+            if program.moves[i].speed.duration is not None:
+                raise InputError(
+                    f"move {i + 1} has a fixed duration; derivatives of such programs are not "
+                    "available: give it a speed"
+                )
+        self._controller = controller
+        self._program = program
+        self._timing = timing
+        self._path: Path = timing.path
+
+    def duration(self) -> ProgramGradient:
+        """Derivative of the cycle time, s."""
+        seeds = self._seeds()
+        seeds.t[-1] = 1.0
+        return self._pull(seeds)
+
+    def energy(self) -> ProgramGradient:
+        """Derivative of the squared-torque energy, N² m² s; see `energy.energy`."""
+        seeds = self._seeds()
+        made = self._controller.energy(self._program, self._timing)
+        seeds.x[:], seeds.t[:], seeds.spacing[:] = pull_energy(
+            self._controller.robot, self._timing, made, seeds.states
+        )
+        return self._pull(seeds)
+
+    def configuration(self, sample: int, weights: FloatArray) -> ProgramGradient:
+        """Derivative of weights · q at a sample of the path, which keeps its share of its piece.
+
+        Args:
+            sample: index in ``path.q``.
+            weights: (N,); a unit vector for one joint.
+        """
+        seeds = self._seeds()
+        seeds.states.q[sample] = weights
+        return self._pull(seeds)
+
+    def configuration_at(self, t: float, weights: FloatArray) -> ProgramGradient:
+        """Derivative of weights · q at time t (s), before any smoothing in time."""
+        seeds = self._seeds()
+        self._seed_time(t, np.asarray(weights, dtype=float), seeds)
+        return self._pull(seeds)
+
+    def _seeds(self) -> _Seeds:
+        stamp = self._timing.stamp
+        size = self._path.q.shape[1]
+        return _Seeds(
+            States.zeros(len(self._path.sigma), size),
+            np.zeros(len(self._path.sigma)),
+            np.zeros(len(stamp.x)),
+            np.zeros(len(stamp.t)),
+            np.zeros(len(stamp.limits.spacing)),
+        )
+
+    def _seed_time(self, t: float, w: FloatArray, seeds: _Seeds) -> None:
+        """Reverse of the quintic in `Timing.states_at`."""
+        timing, path = self._timing, self._path
+        k = max(int(np.searchsorted(timing.begin, t, side="right")) - 1, 0)
+        s = int(interval_samples(path.pieces)[k])
+        length = float(path.sigma[s + 1] - path.sigma[s])
+        x0, x1 = timing.stamp.x[k], timing.stamp.x[k + 1]
+        tau = float(np.clip(t - timing.begin[k], 0.0, timing.end[k] - timing.begin[k]))
+        u, rate = (x1 - x0) / (2 * length), np.sqrt(x0)
+        z = tau * (rate + 0.5 * u * tau) / length
+        basis, slope = _quintic(z)
+        factors = np.array([1.0, length, length**2, 1.0, length, length**2])
+        powers = np.array([0, 1, 2, 0, 1, 2])
+        states = path.states
+        values = [states.q[s], states.dq[s], states.ddq[s]]
+        values += [states.q[s + 1], states.dq[s + 1], states.ddq[s + 1]]
+        bars = seeds.states
+        for i, bar in enumerate((bars.q, bars.dq, bars.ddq)):
+            bar[s] += basis[i] * factors[i] * w
+            bar[s + 1] += basis[3 + i] * factors[i] * w
+        along = np.array([float(value @ w) for value in values])
+        length_bar = float(np.sum(basis * factors * powers * along)) / length
+        z_bar = float(np.sum(slope * factors * along))
+        moving = 0.0 < tau < timing.end[k] - timing.begin[k]
+        if moving:
+            step_bar = z_bar / length
+            length_bar -= z_bar * z / length + step_bar * 0.5 * tau**2 * u / length
+            seeds.t[k] -= step_bar * (rate + u * tau)
+            if rate > 0:
+                seeds.x[k] += step_bar * tau * 0.5 / rate
+            seeds.x[k] -= step_bar * tau**2 / (4 * length)
+            seeds.x[k + 1] += step_bar * tau**2 / (4 * length)
+        seeds.spacing[k] += length_bar
+
+    def _pull(self, seeds: _Seeds) -> ProgramGradient:
+        timing, path = self._timing, self._path
+        speeds = SpeedGradient.zeros(len(path.route.moves))
+        bar = stamp_adjoint(timing.stamp, seeds.x, seeds.t)
+        bar.spacing[:] += seeds.spacing
+        pull_path_limits(
+            path.states,
+            path.pieces,
+            timing.limits,
+            timing.path_limits,
+            bar,
+            seeds.states,
+            seeds.sigma,
+            speeds,
+        )
+        return self._gather(pull_path(path, seeds.states, seeds.sigma), speeds)
+
+    def _gather(self, route_bar: RouteGradient, speeds: SpeedGradient) -> ProgramGradient:
+        """From segments and waypoints to the moves of the program."""
+        path, model = self._path, self._path.model
+        count, size = len(self._program.moves), path.q.shape[1]
+        moves = np.array(path.route.moves)
+        owners = np.array(path.route.zone_moves, dtype=np.int64)
+        zone = ZoneGradient.zeros(count)
+        for name in ZoneGradient.__dataclass_fields__:
+            np.add.at(getattr(zone, name), owners, getattr(route_bar.zones, name))
+        by_move = SpeedGradient.zeros(count)
+        for name in SpeedGradient.__dataclass_fields__:
+            np.add.at(getattr(by_move, name), moves, getattr(speeds, name))
+        via = np.zeros((count, 3))
+        np.add.at(via, moves, route_bar.ends.via)
+        position, turn, joints = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros((count, size))
+        start = self._pull_targets(route_bar, position, turn, joints)
+        return ProgramGradient(
+            start,
+            position,
+            turn,
+            joints,
+            via,
+            zone.tcp,
+            zone.reorientation,
+            zone.external,
+            zone.angle,
+            by_move,
+            BlendDerivative(*route_bar.tcp.alpha_beta(model.tcp)),
+            BlendDerivative(*route_bar.joint.alpha_beta(model.joint)),
+            BlendDerivative(*route_bar.orientation.alpha_beta(model.orientation)),
+        )
+
+    def _pull_targets(
+        self, bar: RouteGradient, position: FloatArray, turn: FloatArray, joints: FloatArray
+    ) -> FloatArray:
+        """From the segments' ends, last waypoint first, to the targets; returns the start's."""
+        route = self._path.route
+        twist = np.concatenate([bar.ends.position, bar.ends.turn], axis=-1)
+        J = self._end_jacobians()
+        inherited = np.zeros(joints.shape[1])
+        for k in range(len(route.moves) - 1, -1, -1):
+            q_bar = bar.ends.q[k, 1] + inherited
+            q_bar[route.prescribed] += bar.ends.prescribed[k, 1]
+            pose_bar = twist[k, 1].copy()
+            if k + 1 < len(route.moves):
+                self._leave(k + 1, bar, twist, J, q_bar, pose_bar, route.chains[k])
+            move = self._program.moves[route.moves[k]]
+            inherited = self._arrive(
+                move.target, route.moves[k], q_bar, pose_bar, J[k, 1], position, turn, joints
+            )
+        q_bar = bar.ends.q[0, 0] + inherited + J[0, 0].T @ twist[0, 0]
+        q_bar[route.prescribed] += bar.ends.prescribed[0, 0]
+        return np.asarray(q_bar)
+
+    def _leave(
+        self,
+        k: int,
+        bar: RouteGradient,
+        twist: FloatArray,
+        J: FloatArray,
+        q_bar: FloatArray,
+        pose_bar: FloatArray,
+        before: object,
+    ) -> None:
+        """Add what the segment after a waypoint, k, says of its start."""
+        q_bar += bar.ends.q[k, 0]
+        q_bar[self._path.route.prescribed] += bar.ends.prescribed[k, 0]
+        if self._path.route.chains[k] is before:
+            pose_bar += twist[k, 0]
+        else:
+            q_bar += J[k, 0].T @ twist[k, 0]
+
+    def _arrive(
+        self,
+        target: PoseTarget | JointTarget,
+        index: int,
+        q_bar: FloatArray,
+        pose_bar: FloatArray,
+        J: FloatArray,
+        position: FloatArray,
+        turn: FloatArray,
+        joints: FloatArray,
+    ) -> FloatArray:
+        """Give a waypoint's gradient to its target; returns what the waypoint before gets.
+
+        Axes that a target does not name keep the value that they had there.
+        """
+        route = self._path.route
+        arm = self._controller.robot.arm_size
+        named = arm + len(target.external)
+        passed = np.zeros_like(q_bar)
+        if isinstance(target, JointTarget):
+            q_bar = q_bar + J.T @ pose_bar
+            joints[index, :named] += q_bar[:named]
+        else:
+            w = np.linalg.solve(J[:, route.solved].T, q_bar[route.solved])
+            pose_bar = pose_bar + w
+            held = q_bar.copy()
+            held[route.prescribed] -= J[:, route.prescribed].T @ w
+            position[index] += pose_bar[:3]
+            turn[index] += pose_bar[3:]
+            joints[index, arm:named] += held[arm:named]
+            q_bar = held
+            redundant = route.prescribed[route.prescribed < arm]
+            passed[redundant] = q_bar[redundant]
+        passed[named:] = q_bar[named:]
+        return passed
+
+    def _end_jacobians(self) -> FloatArray:
+        """(M, 2, 6, N), at start and end of every segment, in its own chain."""
+        route = self._path.route
+        q = route.ends.q
+        J = np.empty((*q.shape[:2], 6, q.shape[2]))
+        for rows in _same(route.chains):
+            flat = np.ascontiguousarray(q[rows].reshape(-1, q.shape[2]))
+            J[rows] = jacobians(route.chains[rows[0]], flat).reshape(len(rows), 2, 6, -1)
+        return J
+
+
+def _same(chains: Sequence[object]) -> list[list[int]]:
+    """Indices grouped by identity."""
+    groups: dict[int, list[int]] = {}
+    for i, chain in enumerate(chains):
+        groups.setdefault(id(chain), []).append(i)
+    return list(groups.values())
+
+
+def _quintic(z: float) -> tuple[FloatArray, FloatArray]:
+    """Quintic Hermite basis for value, slope, bend at 0 and at 1, and its derivative."""
+    powers = np.array([1, z, z**2, z**3, z**4, z**5])
+    rates = np.array([0, 1, 2 * z, 3 * z**2, 4 * z**3, 5 * z**4])
+    table = np.array(
+        [
+            [1, 0, 0, -10, 15, -6],
+            [0, 1, 0, -6, 8, -3],
+            [0, 0, 0.5, -1.5, 1.5, -0.5],
+            [0, 0, 0, 10, -15, 6],
+            [0, 0, 0, -4, 7, -3],
+            [0, 0, 0, 0.5, -1, 0.5],
+        ]
+    )
+    return table @ powers, table @ rates

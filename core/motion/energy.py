@@ -1,0 +1,124 @@
+"""The papers' energy: squared joint torques over time, with its gradient.
+
+E = Σ ∫ τⱼ² dt, by the trapezium rule on the stamped samples from both sides of every knot
+("Towards Energy Optimization using Trajectory Smoothing", equations 8 and 9).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..robot.inertia import Inertia
+from ..robot.model import Robot
+from .limits import interval_samples
+from .tcp_samples import States
+from .timing import Timing
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Energy:
+    """The energy of a stamped path and what its reverse needs.
+
+    Args:
+        value: N² m² s.
+        torque: (K, 2, N) N m at both ends of every interval.
+        motion: q, q̇ and q̈ there, (K, 2, N) each.
+        loads: per interval, the load carried.
+    """
+
+    value: float
+    torque: FloatArray
+    motion: tuple[FloatArray, FloatArray, FloatArray]
+    loads: tuple[Inertia | None, ...]
+
+
+def energy(robot: Robot, timing: Timing, loads: Sequence[Inertia | None]) -> Energy:
+    """The energy of a stamped path; waits, at rest, count nothing.
+
+    Args:
+        robot: with the inertias of its links.
+        timing: the stamped path.
+        loads: (M,), what the flange carries on each segment.
+
+    Raises:
+        InputError: inertias are not known.
+    """
+    motion = _motion(timing)
+    segment = timing.interval_segments
+    torque = np.empty_like(motion[0])
+    for load, rows in _by_load(loads, segment):
+        q, dq, ddq = (part[rows] for part in motion)
+        torque[rows] = robot.inverse_dynamics(q, dq, ddq, load)
+    if not np.isfinite(torque).all():
+        axis = robot.axis_names[int(np.argwhere(~np.isfinite(torque))[0, 2])]
+        raise InputError(f"the energy needs the inertia of axis {axis}, which is not known")
+    steps = timing.end - timing.begin
+    value = 0.5 * float(np.sum(steps * np.sum(torque**2, axis=(1, 2))))
+    return Energy(value, torque, motion, tuple(loads))
+
+
+def _by_load(
+    loads: Sequence[Inertia | None], segment: NDArray[np.int64]
+) -> list[tuple[Inertia | None, NDArray[np.int64]]]:
+    """Intervals grouped by the load they are driven with."""
+    kinds = dict.fromkeys(loads)
+    return [
+        (load, np.flatnonzero(np.array([other == load for other in loads])[segment]))
+        for load in kinds
+    ]
+
+
+def _motion(timing: Timing) -> tuple[FloatArray, FloatArray, FloatArray]:
+    states = timing.path.states
+    left = interval_samples(timing.path.pieces)
+    ends = np.stack([left, left + 1], -1)
+    x = np.stack([timing.stamp.x[:-1], timing.stamp.x[1:]], -1)[..., None]
+    u = timing.stamp.u[:, None, None]
+    dq, ddq = states.dq[ends], states.ddq[ends]
+    return states.q[ends], dq * np.sqrt(x), dq * u + ddq * x
+
+
+def pull_energy(
+    robot: Robot, timing: Timing, made: Energy, states_bar: States
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Gradient of the energy: adds to the states', returns those of x (K + 1,), t (K + 1,) and
+    the intervals' spacing (K,)."""
+    path, stamp = timing.path, timing.stamp
+    left = interval_samples(path.pieces)
+    ends = np.stack([left, left + 1], -1)
+    steps = timing.end - timing.begin
+    torque_bar = steps[:, None, None] * made.torque
+    bars = tuple(np.empty_like(made.torque) for _ in range(3))
+    for load, rows in _by_load(made.loads, timing.interval_segments):
+        q, dq, ddq = (part[rows] for part in made.motion)
+        parts = robot.inverse_dynamics_derivatives(q, dq, ddq, load)
+        for bar, part in zip(bars, parts, strict=True):
+            bar[rows] = np.einsum("keij,kei->kej", part, torque_bar[rows])
+    q_bar, rate_bar, rise_bar = bars
+    x = np.stack([stamp.x[:-1], stamp.x[1:]], -1)[..., None]
+    u = stamp.u[:, None, None]
+    root = np.sqrt(x)
+    rates, bends = path.states.dq[ends], path.states.ddq[ends]
+    np.add.at(states_bar.q, ends, q_bar)
+    np.add.at(states_bar.dq, ends, root * rate_bar + u * rise_bar)
+    np.add.at(states_bar.ddq, ends, x * rise_bar)
+    by_x = np.sum(bends * rise_bar, axis=2)
+    safe = np.where(root > 0, root, 1.0)
+    by_x += np.sum(np.where(root > 0, 0.5 / safe, 0.0) * rates * rate_bar, axis=2)
+    by_u = np.sum(rates * rise_bar, axis=(1, 2))
+    spacing = stamp.limits.spacing
+    x_bar = np.zeros(len(stamp.x))
+    x_bar[:-1] += by_x[:, 0] - by_u / (2 * spacing)
+    x_bar[1:] += by_x[:, 1] + by_u / (2 * spacing)
+    by_step = 0.5 * np.sum(made.torque**2, axis=(1, 2))
+    t_bar = np.zeros(len(stamp.t))
+    t_bar[1:] += by_step
+    t_bar[:-1] -= by_step
+    return x_bar, t_bar, -by_u * stamp.u / spacing

@@ -1,0 +1,372 @@
+"""What bounds the speed along a path: robot, program and motion model as rows and ceilings.
+
+Velocities bound x = σ̇² at the knots: joints |q'| √x ≤ v, TCP |p'| √x ≤ v_tcp, tool |ω| √x ≤ v_ori.
+Accelerations are rows on u = σ̈ and x: joints q' u + q'' x, and along the path the change of the
+TCP's speed |p'| u + (p' · p'' / |p'|) x and of the tool's rate of turn likewise.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from ..program.speed import Speed
+from ..robot.joint import JointKind
+from ..robot.model import Robot
+from . import stamping, stamping_adjoint
+from .model import MotionModel
+from .pieces import Pieces
+from .segments import JOINT_SEGMENT
+from .tcp_samples import States
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+_STILL = 1e-9
+"""Rates (m or rad per σ) below which the TCP or the tool does not move."""
+
+
+@dataclass
+class SpeedGradient:
+    """Gradient with respect to the numbers of each segment's speed, (M,) each."""
+
+    tcp: FloatArray
+    reorientation: FloatArray
+    external_linear: FloatArray
+    external_angular: FloatArray
+    joint: FloatArray
+    joint_fraction: FloatArray
+    tcp_acceleration: FloatArray
+    reorientation_acceleration: FloatArray
+    joint_acceleration: FloatArray
+    joint_acceleration_fraction: FloatArray
+
+    @classmethod
+    def zeros(cls, count: int) -> SpeedGradient:
+        """A gradient to add to."""
+        return cls(*(np.zeros(count) for _ in cls.__dataclass_fields__))
+
+
+@dataclass(frozen=True)
+class SegmentLimits:
+    """The limits of each segment.
+
+    Args:
+        velocity: (M, N + 2), of the joints, the TCP (m/s) and the tool (rad/s); may be inf.
+        acceleration: (M, N + 2), likewise.
+        velocity_source, acceleration_source: (M, N + 2), name of the speed's number behind each
+            and its derivative; used in reverse.
+    """
+
+    velocity: FloatArray
+    acceleration: FloatArray
+    velocity_source: tuple[tuple[tuple[str, float] | None, ...], ...]
+    acceleration_source: tuple[tuple[tuple[str, float] | None, ...], ...]
+
+    @classmethod
+    def of(
+        cls, robot: Robot, model: MotionModel, speeds: Sequence[Speed], kinds: IntArray
+    ) -> SegmentLimits:
+        """The limits of segments driven at these speeds."""
+        made = [
+            _limits(robot, model, speed, int(k)) for speed, k in zip(speeds, kinds, strict=True)
+        ]
+        return cls(
+            np.array([[value for value, _ in velocity] for velocity, _ in made]),
+            np.array([[value for value, _ in acceleration] for _, acceleration in made]),
+            tuple(tuple(source for _, source in velocity) for velocity, _ in made),
+            tuple(tuple(source for _, source in acceleration) for _, acceleration in made),
+        )
+
+    def with_velocities_scaled(self, segments: Sequence[int], factor: float) -> SegmentLimits:
+        """The same with all velocities of some segments multiplied."""
+        velocity = self.velocity.copy()
+        velocity[list(segments)] *= factor
+        return replace(self, velocity=velocity)
+
+    def pull(
+        self, velocity_bar: FloatArray, acceleration_bar: FloatArray, out: SpeedGradient
+    ) -> None:
+        """Reverse of `of` with respect to the speeds."""
+        for bars, sources in (
+            (velocity_bar, self.velocity_source),
+            (acceleration_bar, self.acceleration_source),
+        ):
+            for k, j in zip(*np.nonzero(bars), strict=True):
+                source = sources[k][j]
+                if source is not None:
+                    getattr(out, source[0])[k] += bars[k, j] * source[1]
+
+
+_Limit = tuple[float, tuple[str, float] | None]
+
+
+def _least(*limits: _Limit) -> _Limit:
+    return min(limits, key=lambda limit: limit[0])
+
+
+def _given(value: float | None, name: str) -> _Limit:
+    return (math.inf, None) if value is None else (value, (name, 1.0))
+
+
+def _limits(
+    robot: Robot, model: MotionModel, speed: Speed, kind: int
+) -> tuple[list[_Limit], list[_Limit]]:
+    """Velocity and acceleration limits (N + 2) of one segment with their sources."""
+    velocity: list[_Limit] = []
+    acceleration: list[_Limit] = []
+    joints = [*robot.joints, *(axis.joint for axis in robot.external_axes)]
+    for index, joint in enumerate(joints):
+        own = speed.joint_fraction * joint.velocity
+        limits: list[_Limit] = [(own, ("joint_fraction", joint.velocity))]
+        if index < robot.arm_size:
+            if kind == JOINT_SEGMENT and speed.duration is None:
+                limits.append(_given(speed.joint, "joint"))
+        elif joint.kind is JointKind.PRISMATIC:
+            limits.append(_given(speed.external_linear, "external_linear"))
+        else:
+            limits.append(_given(speed.external_angular, "external_angular"))
+        velocity.append(_least(*limits))
+        own = speed.joint_acceleration_fraction * joint.acceleration
+        limits = [(own, ("joint_acceleration_fraction", joint.acceleration))]
+        if kind == JOINT_SEGMENT:
+            limits.append(_given(speed.joint_acceleration, "joint_acceleration"))
+        acceleration.append(_least(*limits))
+    # A programmed duration takes the place of the speeds (RAPID \\T, URScript t).
+    timed = speed.duration is not None
+    velocity.append(_given(None if timed else speed.tcp, "tcp"))
+    velocity.append(_given(None if timed else speed.reorientation, "reorientation"))
+    if kind == JOINT_SEGMENT:
+        return velocity, [*acceleration, (math.inf, None), (math.inf, None)]
+    tcp = _given(speed.tcp_acceleration, "tcp_acceleration")
+    if speed.tcp_acceleration is None and model.tcp_acceleration is not None:
+        tcp = (model.tcp_acceleration, None)
+    turn = _given(speed.reorientation_acceleration, "reorientation_acceleration")
+    if speed.reorientation_acceleration is None and model.reorientation_acceleration is not None:
+        turn = (model.reorientation_acceleration, None)
+    return velocity, [*acceleration, tcp, turn]
+
+
+@njit(cache=True, error_model="numpy")
+def _rates(states: States, k: int, axes: int, rate: FloatArray, bend: FloatArray) -> None:
+    """Write a and b (N + 2) of the rows at sample k."""
+    for j in range(axes):
+        rate[j], bend[j] = states.dq[k, j], states.ddq[k, j]
+    for part in range(2):
+        square = mixed = 0.0
+        for i in range(3 * part, 3 * part + 3):
+            square += states.v[k, i] * states.v[k, i]
+            mixed += states.v[k, i] * states.a[k, i]
+        size = math.sqrt(square)
+        if size > _STILL:
+            rate[axes + part], bend[axes + part] = size, mixed / size
+        else:
+            rate[axes + part] = bend[axes + part] = 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def _fill(
+    states: States,
+    first_sample: IntArray,
+    first_interval: IntArray,
+    segment: IntArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    a: FloatArray,
+    b: FloatArray,
+    bound: FloatArray,
+    ceiling: FloatArray,
+    binding: IntArray,
+) -> None:
+    """Write rows (K, 2, N + 2), bounds and ceilings (K + 1,) with what binds them."""
+    axes = states.q.shape[1]
+    rate, bend = np.empty(axes + 2), np.empty(axes + 2)
+    for p in range(segment.size):
+        s = segment[p]
+        count = first_interval[p + 1] - first_interval[p]
+        for i in range(count + 1):
+            k = first_sample[p] + i
+            knot = first_interval[p] + i
+            _rates(states, k, axes, rate, bend)
+            for j in range(axes + 2):
+                if rate[j] != 0.0:
+                    x = (velocity[s, j] / rate[j]) ** 2
+                    if x < ceiling[knot]:
+                        ceiling[knot] = x
+                        binding[knot, 0], binding[knot, 1], binding[knot, 2] = k, j, s
+            for end in range(2):
+                interval = knot - end
+                if interval < first_interval[p] or interval >= first_interval[p + 1]:
+                    continue
+                for j in range(axes + 2):
+                    limited = acceleration[s, j] < np.inf
+                    a[interval, end, j] = rate[j] if limited else 0.0
+                    b[interval, end, j] = bend[j] if limited else 0.0
+                    bound[interval, end, j] = acceleration[s, j]
+
+
+@dataclass(frozen=True)
+class PathLimits:
+    """The limits along a sampled path, with what their reverse needs.
+
+    Args:
+        rows: for `stamping.stamp`.
+        binding: (K + 1, 3), at each knot the sample, the row and the segment whose velocity
+            limit is the ceiling; -1 at stops.
+    """
+
+    rows: stamping.Limits
+    binding: IntArray
+
+
+def path_limits(
+    states: States, pieces: Pieces, sigma: FloatArray, limits: SegmentLimits
+) -> PathLimits:
+    """Rows and ceilings for stamping a path.
+
+    Args:
+        states: (S,) samples.
+        pieces: the path's pieces.
+        sigma: (S,).
+        limits: of the segments.
+    """
+    first_sample, first_interval = pieces.first_sample, pieces.first_interval
+    count, rows = int(first_interval[-1]), states.q.shape[1] + 2
+    a, b, bound = (np.zeros((count, 2, rows)) for _ in range(3))
+    ceiling = np.full(count + 1, np.inf)
+    binding = np.full((count + 1, 3), -1, dtype=np.int64)
+    _fill(
+        states,
+        first_sample,
+        first_interval,
+        pieces.segment,
+        limits.velocity,
+        limits.acceleration,
+        a,
+        b,
+        bound,
+        ceiling,
+        binding,
+    )
+    stops = first_interval[pieces.stop]
+    ceiling[stops] = 0.0
+    binding[stops] = -1
+    left = interval_samples(pieces)
+    spacing = sigma[left + 1] - sigma[left]
+    return PathLimits(stamping.Limits(spacing, a, b, -bound, bound, ceiling), binding)
+
+
+def interval_samples(pieces: Pieces) -> IntArray:
+    """(K,), index of the sample at the left end of each interval."""
+    piece = np.repeat(np.arange(len(pieces.segment)), pieces.intervals)
+    return np.arange(len(piece)) + piece
+
+
+@njit(cache=True, error_model="numpy")
+def _pull_rates(
+    states: States, k: int, axes: int, rate_bar: FloatArray, bend_bar: FloatArray, out: States
+) -> None:
+    """Reverse of `_rates`."""
+    for j in range(axes):
+        out.dq[k, j] += rate_bar[j]
+        out.ddq[k, j] += bend_bar[j]
+    for part in range(2):
+        square = mixed = 0.0
+        for i in range(3 * part, 3 * part + 3):
+            square += states.v[k, i] * states.v[k, i]
+            mixed += states.v[k, i] * states.a[k, i]
+        size = math.sqrt(square)
+        if size <= _STILL:
+            continue
+        by_rate, by_bend = rate_bar[axes + part] / size, bend_bar[axes + part] / size
+        by_rate -= by_bend * mixed / square
+        for i in range(3 * part, 3 * part + 3):
+            out.v[k, i] += by_rate * states.v[k, i] + by_bend * states.a[k, i]
+            out.a[k, i] += by_bend * states.v[k, i]
+
+
+@njit(cache=True, error_model="numpy")
+def _pull_fill(
+    states: States,
+    first_sample: IntArray,
+    first_interval: IntArray,
+    segment: IntArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    binding: IntArray,
+    a_bar: FloatArray,
+    b_bar: FloatArray,
+    bound_bar: FloatArray,
+    ceiling_bar: FloatArray,
+    states_bar: States,
+    velocity_bar: FloatArray,
+    acceleration_bar: FloatArray,
+) -> None:
+    """Reverse of `_fill`."""
+    axes = states.q.shape[1]
+    rate, bend = np.empty(axes + 2), np.empty(axes + 2)
+    rate_bar, bend_bar = np.empty(axes + 2), np.empty(axes + 2)
+    for p in range(segment.size):
+        s = segment[p]
+        count = first_interval[p + 1] - first_interval[p]
+        for i in range(count + 1):
+            k = first_sample[p] + i
+            knot = first_interval[p] + i
+            rate_bar[:] = 0.0
+            bend_bar[:] = 0.0
+            if binding[knot, 0] == k and ceiling_bar[knot] != 0.0:
+                j = binding[knot, 1]
+                _rates(states, k, axes, rate, bend)
+                x = (velocity[s, j] / rate[j]) ** 2
+                rate_bar[j] -= 2 * x / rate[j] * ceiling_bar[knot]
+                velocity_bar[s, j] += 2 * x / velocity[s, j] * ceiling_bar[knot]
+            for end in range(2):
+                interval = knot - end
+                if interval < first_interval[p] or interval >= first_interval[p + 1]:
+                    continue
+                for j in range(axes + 2):
+                    if acceleration[s, j] < np.inf:
+                        rate_bar[j] += a_bar[interval, end, j]
+                        bend_bar[j] += b_bar[interval, end, j]
+                        acceleration_bar[s, j] += bound_bar[interval, end, j]
+            _pull_rates(states, k, axes, rate_bar, bend_bar, states_bar)
+
+
+def pull_path_limits(
+    states: States,
+    pieces: Pieces,
+    limits: SegmentLimits,
+    made: PathLimits,
+    bar: stamping_adjoint.StampGradient,
+    states_bar: States,
+    sigma_bar: FloatArray,
+    speeds_bar: SpeedGradient,
+) -> None:
+    """Reverse of `path_limits`; adds to the gradients of states, σ and speeds."""
+    velocity_bar = np.zeros_like(limits.velocity)
+    acceleration_bar = np.zeros_like(limits.acceleration)
+    _pull_fill(
+        states,
+        pieces.first_sample,
+        pieces.first_interval,
+        pieces.segment,
+        limits.velocity,
+        limits.acceleration,
+        made.binding,
+        bar.a,
+        bar.b,
+        bar.upper - bar.lower,
+        bar.ceiling,
+        states_bar,
+        velocity_bar,
+        acceleration_bar,
+    )
+    left = interval_samples(pieces)
+    np.add.at(sigma_bar, left, -bar.spacing)
+    np.add.at(sigma_bar, left + 1, bar.spacing)
+    limits.pull(velocity_bar, acceleration_bar, speeds_bar)

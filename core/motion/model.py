@@ -1,0 +1,189 @@
+"""What is known of how one vendor's controller drives: blends, zone rules, timing.
+
+Read from a TOML file in which every figure states where it comes from.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+from ..errors import InputError, UnknownNameError
+from .blend import PARABOLA, Blend
+
+
+class Overlap(StrEnum):
+    """What happens where the zones of neighbouring waypoints would overlap."""
+
+    HALF = "half"
+    """No zone reaches further than half way to a neighbour (ABB, KUKA)."""
+    SHRINK = "shrink"
+    """Both zones shrink in proportion until they touch (UR, motion version 2)."""
+    SKIP = "skip"
+    """The later waypoint is left out (UR, motion version 1)."""
+
+
+class OrientationZone(StrEnum):
+    """Where the tool begins to turn towards the next target."""
+
+    OWN = "own"
+    """In a zone of its own, not smaller than the TCP's (ABB ``pzone_ori``)."""
+    TCP = "tcp"
+    """In the TCP's zone."""
+
+
+class Space(StrEnum):
+    """The space a corner between a joint move and a TCP move is blended in."""
+
+    JOINT = "joint"
+    TCP = "tcp"
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a figure comes from.
+
+    Args:
+        status: ``published``, ``fitted`` or ``assumed``.
+        source: the document, or the command and runs of a fit.
+        details: further entries of the file (residuals, runs).
+    """
+
+    status: str
+    source: str = ""
+    details: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class MotionModel:
+    """How a controller drives.
+
+    Args:
+        period: interpolation period of the controller, s.
+        tcp, joint, orientation: the blend laws of TCP positions, joints and orientations.
+        overlap: what neighbouring zones do to each other.
+        neighbour_fraction: share of the way to a neighbour that a zone may reach (`Overlap.HALF`).
+        orientation_zone: see `OrientationZone`.
+        mixed_space: see `Space`.
+        stops_at_pure_reorientation: no zone between a TCP move and a mere reorientation.
+        tcp_acceleration: m/s² along the path where the program states none; None for no limit.
+        reorientation_acceleration: rad/s², likewise.
+        smoothing: length in s of the moving average over the commanded joints.
+        jerk: joint jerk limit as a multiple of each joint's acceleration limit per second, held
+            by lengthening the moving average; None for no limit.
+        provenance: of every figure, by its dotted key.
+    """
+
+    period: float = 0.004
+    tcp: Blend = PARABOLA
+    joint: Blend = PARABOLA
+    orientation: Blend = PARABOLA
+    overlap: Overlap = Overlap.HALF
+    neighbour_fraction: float = 0.5
+    orientation_zone: OrientationZone = OrientationZone.TCP
+    mixed_space: Space = Space.JOINT
+    stops_at_pure_reorientation: bool = False
+    tcp_acceleration: float | None = None
+    reorientation_acceleration: float | None = None
+    smoothing: float = 0.0
+    jerk: float | None = None
+    provenance: Mapping[str, Provenance] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not self.period > 0:
+            raise InputError(f"the controller's period must be above zero, not {self.period}")
+        if not 0 < self.neighbour_fraction <= 0.5:
+            raise InputError(
+                f"zone.neighbour_fraction lies in (0, 0.5], not {self.neighbour_fraction}: "
+                "beyond a half, neighbouring zones would overlap"
+            )
+        if self.smoothing < 0 or (self.jerk is not None and self.jerk <= 0):
+            raise InputError("time.smoothing_s must be zero or more, time.jerk above zero")
+
+
+def load_motion_model(path: Path) -> MotionModel:
+    """Read a motion model.
+
+    Raises:
+        InputError: the file is missing or no TOML, a key is unknown, a value has the wrong type
+            or range; the message names file and key.
+    """
+    try:
+        data = tomllib.loads(path.read_text("utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise InputError(f"{path}: not a readable motion model: {error}") from error
+    try:
+        return _model(data)
+    except (InputError, TypeError, ValueError) as error:
+        raise InputError(f"{path}: {error}") from error
+
+
+def _model(data: dict[str, Any]) -> MotionModel:
+    blend, zone, time, limit = (data.pop(k, {}) for k in ("blend", "zone", "time", "limit"))
+    provenance = {
+        key: Provenance(entry.pop("status"), entry.pop("source", ""), entry)
+        for key, entry in data.pop("provenance", {}).items()
+    }
+    values: dict[str, Any] = {"provenance": provenance}
+    _take(data, values, "", {"period_s": ("period", float)})
+    _take(
+        blend,
+        values,
+        "blend.",
+        {name: (name, lambda entry: Blend(**_tuples(entry))) for name in ("tcp", "joint")}
+        | {"orientation": ("orientation", lambda entry: Blend(**_tuples(entry)))},
+    )
+    _take(
+        zone,
+        values,
+        "zone.",
+        {
+            "overlap": ("overlap", Overlap),
+            "neighbour_fraction": ("neighbour_fraction", float),
+            "orientation": ("orientation_zone", OrientationZone),
+            "mixed_space": ("mixed_space", Space),
+            "stops_at_pure_reorientation": ("stops_at_pure_reorientation", bool),
+        },
+    )
+    _take(
+        time,
+        values,
+        "time.",
+        {
+            "smoothing_s": ("smoothing", float),
+            "jerk": ("jerk", lambda v: None if v == "none" else float(v)),
+        },
+    )
+    _take(
+        limit,
+        values,
+        "limit.",
+        {
+            "tcp_acceleration": ("tcp_acceleration", float),
+            "reorientation_acceleration": ("reorientation_acceleration", float),
+        },
+    )
+    return MotionModel(**values)
+
+
+def _take(
+    table: dict[str, Any], values: dict[str, Any], prefix: str, keys: Mapping[str, Any]
+) -> None:
+    for key, entry in table.items():
+        if key not in keys:
+            raise UnknownNameError(
+                "key of a motion model", prefix + key, (prefix + k for k in keys)
+            )
+        name, convert = keys[key]
+        try:
+            values[name] = convert(entry)
+        except (InputError, TypeError, ValueError) as error:
+            raise InputError(f"{prefix}{key}: {error}") from error
+
+
+def _tuples(entry: Mapping[str, Any]) -> dict[str, Any]:
+    return {k: tuple(map(float, v)) if isinstance(v, list) else v for k, v in entry.items()}

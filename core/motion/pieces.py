@@ -1,0 +1,241 @@
+"""A path cut into pieces on which every channel is one curve, and where it is sampled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .layout import Layout, LayoutGradient
+from .segments import JOINT_SEGMENT
+from .zones import JOINT_CORNER, POSITION, PRESCRIBED, STOP, TCP_CORNER, TURNING
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+_MERGED = 1e-9
+"""Boundaries nearer than this share of a segment are one."""
+_WAYPOINT = -1
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """How densely a path is sampled; pieces get at least ``least`` intervals.
+
+    Args:
+        step: m of TCP path between samples of TCP-space pieces.
+        turn: rad of tool rotation, likewise.
+        joint: rad of joint motion between samples of joint-space pieces.
+        blend: intervals on each half of a zone, at least.
+        least, most: bounds on the number of even intervals of a piece.
+        halvings: how often the interval next to a stop, or to a change of programmed speed, is
+            halved towards it: slow robots reach their speed within a fraction of a millimetre.
+    """
+
+    step: float = 0.02
+    turn: float = 0.08
+    joint: float = 0.06
+    blend: int = 8
+    least: int = 4
+    most: int = 200
+    halvings: int = 9
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """P pieces.
+
+    Args:
+        edge: (P + 1,), σ of the boundaries.
+        source: (P + 1, 3), what each boundary is: waypoint index, then channel and side of a
+            zone's edge (`_WAYPOINT` and 0 for the waypoint itself).
+        segment: (P,), the segment whose speed and load apply.
+        joint_space: (P,) bool.
+        curve: (P, 3), index of each channel's curve (the joints' curve in the first column of
+            joint-space pieces).
+        intervals: (P,).
+        even: (P,), intervals before those at graded ends were halved.
+        graded: (P, 2) bool, whether the samples crowd towards the beginning and the end.
+        halvings: see `Sampling`.
+        stop: (P + 1,) bool, boundaries at which the robot comes to rest.
+    """
+
+    edge: FloatArray
+    source: IntArray
+    segment: IntArray
+    joint_space: NDArray[np.bool_]
+    curve: IntArray
+    intervals: IntArray
+    even: IntArray
+    graded: NDArray[np.bool_]
+    halvings: int
+    stop: NDArray[np.bool_]
+
+    @property
+    def first_sample(self) -> IntArray:
+        """(P + 1,), index of each piece's first sample; samples stand at both ends of a piece."""
+        return np.concatenate([[0], np.cumsum(self.intervals + 1)])
+
+    @property
+    def first_interval(self) -> IntArray:
+        """(P + 1,), index of each piece's first interval."""
+        return np.concatenate([[0], np.cumsum(self.intervals)])
+
+    def sample_pieces(self) -> IntArray:
+        """(S,), the piece of every sample."""
+        return np.repeat(np.arange(len(self.segment)), self.intervals + 1)
+
+    def sample_shares(self) -> FloatArray:
+        """(S,), how far along its piece every sample stands, from 0 to 1."""
+        return np.concatenate(
+            [
+                _shares(int(even), bool(first), bool(last), self.halvings)
+                for even, (first, last) in zip(self.even, self.graded, strict=True)
+            ]
+        )
+
+    def sigma(self) -> FloatArray:
+        """(S,), σ of every sample."""
+        piece, share = self.sample_pieces(), self.sample_shares()
+        return (1.0 - share) * self.edge[piece] + share * self.edge[piece + 1]
+
+    def pull_sigma(self, sigma_bar: FloatArray, bar: LayoutGradient) -> None:
+        """Reverse of `sigma`: add to the layout's gradient."""
+        piece, share = self.sample_pieces(), self.sample_shares()
+        edge_bar = np.zeros(len(self.edge))
+        np.add.at(edge_bar, piece, (1.0 - share) * sigma_bar)
+        np.add.at(edge_bar, piece + 1, share * sigma_bar)
+        waypoint, channel, side = self.source.T
+        np.add.at(bar.waypoint, waypoint, edge_bar)
+        zone = channel != _WAYPOINT
+        sign = np.where(side == 0, -1.0, 1.0)
+        index = waypoint[zone] - 1, channel[zone], side[zone]
+        np.add.at(bar.extent, index, (sign * edge_bar)[zone])
+
+
+@cache
+def _shares(even: int, first: bool, last: bool, halvings: int) -> FloatArray:
+    """Samples of one piece from 0 to 1."""
+    shares = np.linspace(0.0, 1.0, even + 1)
+    crowd = 0.5 ** np.arange(halvings, 0, -1) / even
+    begin = crowd if first else crowd[:0]
+    end = 1.0 - crowd[::-1] if last else crowd[:0]
+    return np.concatenate([shares[:1], begin, shares[1:-1], end, shares[-1:]])
+
+
+def cut(layout: Layout, paces: NDArray[np.bool_], sampling: Sampling) -> Pieces:
+    """The pieces of a path.
+
+    Args:
+        layout: the path's geometry on σ.
+        paces: (M + 1,), waypoints at which the programmed speed changes.
+        sampling: how densely to sample.
+    """
+    edge, source = _boundaries(layout)
+    middle = 0.5 * (edge[1:] + edge[:-1])
+    last = len(layout.segments.scale) - 1
+    segment = np.clip(np.searchsorted(layout.waypoint, middle) - 1, 0, last)
+    curve, corner, inside = _curves(layout, middle, segment)
+    kind = np.concatenate([layout.corners.kind, [STOP]])[corner]
+    joint_corner = inside[:, POSITION] & (kind == JOINT_CORNER)
+    joint_space = (layout.segments.ends.kind[segment] == JOINT_SEGMENT) | joint_corner
+    even = _intervals(layout, sampling, np.diff(edge), segment, inside[:, POSITION])
+    at_waypoint = source[:, 1] == _WAYPOINT
+    inner = np.clip(source[:, 0] - 1, 0, max(last - 1, 0))
+    ends = (source[:, 0] == 0) | (source[:, 0] == last + 1)
+    stop = ends.copy()
+    if last > 0:
+        stop |= at_waypoint & (layout.corners.kind[inner] == STOP)
+    crowded = stop | (at_waypoint & paces[source[:, 0]])
+    graded = np.stack([crowded[:-1], crowded[1:]], -1)
+    intervals = even + sampling.halvings * graded.sum(1)
+    return Pieces(
+        edge,
+        source,
+        segment,
+        joint_space,
+        curve,
+        intervals,
+        even,
+        graded,
+        sampling.halvings,
+        stop,
+    )
+
+
+def _boundaries(layout: Layout) -> tuple[FloatArray, IntArray]:
+    """σ and source of all boundaries, in order and without doubles."""
+    count = len(layout.waypoint)
+    values = [layout.waypoint]
+    sources = [np.stack([np.arange(count), np.full(count, _WAYPOINT), np.zeros(count, int)], -1)]
+    channels = [POSITION, TURNING]
+    if layout.segments.delta_prescribed.shape[1] > 0:
+        channels.append(PRESCRIBED)
+    for channel in channels:
+        live = layout.corners.kind == TCP_CORNER
+        if channel == POSITION:
+            live = layout.corners.kind != STOP
+        index = np.flatnonzero(live)
+        for side, sign in ((0, -1.0), (1, 1.0)):
+            values.append(layout.waypoint[index + 1] + sign * layout.extent[index, channel, side])
+            one = np.ones(len(index), dtype=np.int64)
+            sources.append(np.stack([index + 1, channel * one, side * one], -1))
+    sigma, source = np.concatenate(values), np.concatenate(sources)
+    # Waypoints first among equals, then position edges: the sort is stable.
+    order = np.argsort(sigma, kind="stable")
+    sigma, source = sigma[order], source[order]
+    tolerance = _MERGED * layout.segments.scale.min()
+    keep = np.concatenate([[True], np.diff(sigma) > tolerance])
+    # A waypoint is never merged away: it replaces the boundary it would merge into.
+    kept = np.cumsum(keep) - 1
+    for i in np.flatnonzero(~keep & (source[:, 1] == _WAYPOINT)):
+        first = np.flatnonzero(kept == kept[i])[0]
+        sigma[first], source[first] = sigma[i], source[i]
+    return sigma[keep], source[keep].astype(np.int64)
+
+
+def _curves(
+    layout: Layout, middle: FloatArray, segment: IntArray
+) -> tuple[IntArray, IntArray, NDArray[np.bool_]]:
+    """Curve index (P, 3) of each channel, corner (P,) it may belong to, and whether (P, 3)."""
+    count = len(layout.segments.scale)
+    curve = np.repeat(segment[:, None], 3, axis=1)
+    inside = np.zeros((len(middle), 3), dtype=bool)
+    corner = np.full(len(middle), count - 1)
+    for channel in (POSITION, TURNING, PRESCRIBED):
+        before = np.concatenate([layout.extent[:, channel, 0], [0.0]])[segment]
+        after = np.concatenate([[0.0], layout.extent[:, channel, 1]])[segment]
+        entering = middle > layout.waypoint[segment + 1] - before
+        leaving = middle < layout.waypoint[segment] + after
+        curve[entering, channel] = count + segment[entering]
+        curve[leaving, channel] = count + segment[leaving] - 1
+        inside[:, channel] = entering | leaving
+        if channel == POSITION:
+            corner[entering] = segment[entering]
+            corner[leaving] = segment[leaving] - 1
+    return curve.astype(np.int64), corner, inside
+
+
+def _intervals(
+    layout: Layout,
+    sampling: Sampling,
+    span: FloatArray,
+    segment: IntArray,
+    blend: NDArray[np.bool_],
+) -> IntArray:
+    """How many intervals each piece gets."""
+    s = layout.segments
+    share = span / s.scale[segment]
+    turn = np.linalg.norm(s.turn_a, axis=1) + np.linalg.norm(s.turn_b, axis=1)
+    swept = np.where(s.angle > 0, s.angle, 0.0)
+    wanted = np.maximum.reduce(
+        [
+            share * s.length[segment] / sampling.step,
+            share * np.maximum(turn, swept)[segment] / sampling.turn,
+            share * np.linalg.norm(s.delta_q, axis=1)[segment] / sampling.joint,
+            np.where(blend, float(sampling.blend), float(sampling.least)),
+        ]
+    )
+    return np.asarray(np.minimum(np.ceil(wanted - 1e-9), sampling.most).astype(np.int64))

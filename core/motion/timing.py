@@ -1,0 +1,137 @@
+"""A stamped path: when the robot is where, waits included."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from .limits import PathLimits, SegmentLimits, interval_samples
+from .path import Path
+from .stamping import Stamp
+from .tcp_samples import States
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Timing:
+    """The stamp of a path.
+
+    Args:
+        path: the geometry.
+        limits: of the segments.
+        path_limits: what was stamped.
+        stamp: x = σ̇² and times without waits.
+        begin: (K,) s, when each interval is entered, waits included.
+        end: (K,) s, when it is left.
+        duration: s, of everything.
+    """
+
+    path: Path
+    limits: SegmentLimits
+    path_limits: PathLimits
+    stamp: Stamp
+    begin: FloatArray
+    end: FloatArray
+    duration: float
+
+    @classmethod
+    def of(cls, path: Path, limits: SegmentLimits, path_limits: PathLimits, stamp: Stamp) -> Timing:
+        """The timing of a stamp on a path."""
+        pieces = path.pieces
+        waypoint_edge = np.flatnonzero(pieces.source[:, 1] < 0)
+        first = pieces.first_interval
+        wait = np.zeros(first[-1] + 1)
+        wait[first[waypoint_edge]] = path.route.dwell[pieces.source[waypoint_edge, 0]]
+        # A wait at a knot comes before the interval that leaves it.
+        delay = np.cumsum(wait)
+        begin, end = stamp.t[:-1] + delay[:-1], stamp.t[1:] + delay[:-1]
+        return cls(path, limits, path_limits, stamp, begin, end, float(stamp.t[-1] + delay[-1]))
+
+    @property
+    def interval_segments(self) -> IntArray:
+        """(K,), the segment of each interval."""
+        pieces = self.path.pieces
+        return np.repeat(pieces.segment, pieces.intervals)
+
+    def segment_durations(self) -> FloatArray:
+        """(M,) s, time spent on each segment between its waypoints, waits left out."""
+        spent = np.zeros(len(self.path.route.moves))
+        np.add.at(spent, self.interval_segments, self.end - self.begin)
+        return spent
+
+    def states_at(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Configuration, velocity and acceleration (T, N) and σ (T,) at times t (T,) in s.
+
+        Between samples the path is the quintic in σ that meets both samples' derivatives.
+        """
+        size = self.path.q.shape[1]
+        q, dq, ddq = (np.empty((len(t), size)) for _ in range(3))
+        sigma = np.empty(len(t))
+        interval = np.clip(np.searchsorted(self.begin, t, side="right") - 1, 0, None)
+        _drive(
+            np.ascontiguousarray(t),
+            interval,
+            self.begin,
+            self.end,
+            interval_samples(self.path.pieces),
+            self.path.sigma,
+            self.stamp.x,
+            self.path.states,
+            q,
+            dq,
+            ddq,
+            sigma,
+        )
+        return q, dq, ddq, sigma
+
+
+@njit(cache=True, error_model="numpy")
+def _drive(
+    t: FloatArray,
+    interval: IntArray,
+    begin: FloatArray,
+    end: FloatArray,
+    left: IntArray,
+    sigma: FloatArray,
+    x: FloatArray,
+    states: States,
+    q: FloatArray,
+    dq: FloatArray,
+    ddq: FloatArray,
+    at: FloatArray,
+) -> None:
+    for i in range(t.size):
+        k = interval[i]
+        s = left[k]
+        length = sigma[s + 1] - sigma[s]
+        u = (x[k + 1] - x[k]) / (2 * length)
+        tau = min(max(t[i] - begin[k], 0.0), end[k] - begin[k])
+        rate = np.sqrt(x[k]) + u * tau
+        # From the nearer end, so that arrival at a stop is exact.
+        if 2 * tau <= end[k] - begin[k]:
+            step = tau * (np.sqrt(x[k]) + 0.5 * u * tau)
+        else:
+            left_over = end[k] - begin[k] - tau
+            step = length - left_over * (np.sqrt(x[k + 1]) - 0.5 * u * left_over)
+        z = min(max(step / length, 0.0), 1.0)
+        moving = begin[k] <= t[i] <= end[k]
+        at[i] = sigma[s] + z * length
+        for j in range(q.shape[1]):
+            p0, v0, a0 = states.q[s, j], length * states.dq[s, j], length**2 * states.ddq[s, j]
+            p1, v1 = states.q[s + 1, j], length * states.dq[s + 1, j]
+            a1 = length**2 * states.ddq[s + 1, j]
+            d = p1 - p0
+            c3 = 10 * d - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1
+            c4 = -15 * d + 8 * v0 + 7 * v1 + 1.5 * a0 - a1
+            c5 = 6 * d - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1
+            q[i, j] = p0 + z * (v0 + z * (0.5 * a0 + z * (c3 + z * (c4 + z * c5))))
+            slope = v0 + z * (a0 + z * (3 * c3 + z * (4 * c4 + z * 5 * c5)))
+            bend = a0 + z * (6 * c3 + z * (12 * c4 + z * 20 * c5))
+            slope, bend = slope / length, bend / length**2
+            dq[i, j] = slope * rate if moving else 0.0
+            ddq[i, j] = bend * rate * rate + slope * u if moving else 0.0

@@ -1,0 +1,431 @@
+"""How far each zone reaches along the segments on either side of its waypoint.
+
+A reach is a fraction of its segment, seen from the waypoint. It comes with its derivatives with
+respect to what it was made from, so that the reverse pass need not decide again which rule of
+the vendor was active.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from ..errors import MotionError, Note
+from ..program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction, Zone
+from ..robot.chain import Chain
+from ..robot.chain_kernels import jacobian, pose
+from .model import MotionModel, OrientationZone, Overlap
+from .segments import ARC_SEGMENT, JOINT_SEGMENT, EndsGradient, Segments, SegmentsGradient
+
+FloatArray = NDArray[np.float64]
+
+STOP, TCP_CORNER, JOINT_CORNER = 0, 1, 2
+POSITION, TURNING, PRESCRIBED = 0, 1, 2
+_STILL = 1e-7
+"""m of TCP path below which a move counts as pure reorientation."""
+_NOTHING = 1e-9
+"""A reach below is no zone."""
+
+Part = tuple[str, int, float | FloatArray]
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """A number and its sparse derivatives: (name of a quantity, its index, derivative)."""
+
+    value: float
+    parts: tuple[Part, ...] = ()
+
+    def __mul__(self, other: Reach) -> Reach:
+        parts = [(n, i, p * other.value) for n, i, p in self.parts]
+        parts += [(n, i, p * self.value) for n, i, p in other.parts]
+        return Reach(self.value * other.value, tuple(parts))
+
+    def __add__(self, other: Reach) -> Reach:
+        return Reach(self.value + other.value, self.parts + other.parts)
+
+    def inverse(self) -> Reach:
+        """1 / self."""
+        slope = -1.0 / self.value**2
+        return Reach(1.0 / self.value, tuple((n, i, p * slope) for n, i, p in self.parts))
+
+
+def _least(*reaches: Reach) -> Reach:
+    return min(reaches, key=lambda reach: reach.value)
+
+
+@dataclass
+class Corners:
+    """The zones at the M − 1 inner waypoints of M segments.
+
+    Args:
+        kind: (M − 1,) `STOP`, `TCP_CORNER` or `JOINT_CORNER`.
+        reach: (M − 1, 3, 2) of position, turning and prescribed axes; into the segment before
+            and the one after the waypoint.
+        sources: the same with derivatives.
+        overlapping: index of the first waypoint whose zone overlaps the one before it under
+            `Overlap.SKIP`; None if there is none.
+        notes: zones cut short and refused.
+    """
+
+    kind: NDArray[np.int64]
+    reach: FloatArray
+    sources: list[tuple[tuple[Reach, Reach], ...]]
+    overlapping: int | None = None
+    notes: list[Note] = field(default_factory=list)
+
+
+@dataclass
+class ZoneGradient:
+    """Gradient with respect to the radii and shares of the zones, by corner."""
+
+    tcp: FloatArray
+    reorientation: FloatArray
+    external: FloatArray
+    angle: FloatArray
+
+    @classmethod
+    def zeros(cls, count: int) -> ZoneGradient:
+        """A gradient to add to."""
+        return cls(*(np.zeros(count) for _ in range(4)))
+
+
+@njit(cache=True, error_model="numpy")
+def first_exit(
+    chain: Chain, q_wp: FloatArray, q_other: FloatArray, radius: float, limit: float
+) -> float:
+    """The smallest share of a joint line at which the TCP is ``radius`` from where it began.
+
+    A bound on the TCP's speed makes each step of the search safe, so that no exit is missed; a
+    bracketed secant then finds it to rounding.
+
+    Args:
+        chain: the kinematics.
+        q_wp, q_other: (N,), the waypoint and the line's other end.
+        radius: m.
+        limit: share at which the search ends.
+
+    Returns:
+        The share, or -1 if the TCP stays inside up to ``limit``.
+    """
+    size = q_wp.size
+    R, p0, p, q = np.empty((3, 3)), np.empty(3), np.empty(3), np.empty(size)
+    pose(chain, q_wp, R, p0)
+    arm, fastest = 0.0, 0.0
+    # No joint carries the TCP further than the chain's links and slides are long together.
+    for i in range(3):
+        arm += chain.end_translation[i] ** 2
+    arm = math.sqrt(arm)
+    for k in range(chain.joint.size - 1, -1, -1):
+        j = chain.joint[k]
+        change = abs(q_other[j] - q_wp[j])
+        if chain.prismatic[k]:
+            arm += max(abs(q_wp[j]), abs(q_other[j]))
+            fastest += change
+        else:
+            fastest += change * arm
+        square = 0.0
+        for i in range(3):
+            square += chain.translation[k, i] ** 2
+        arm += math.sqrt(square)
+    if fastest == 0.0:
+        return -1.0
+    low, share, gap = 0.0, 0.0, radius
+    while gap > 0.0:
+        if share >= limit:
+            return -1.0
+        low = share
+        share = min(limit, share + max(gap / fastest, 1e-4))
+        gap = radius - _distance(chain, q_wp, q_other, share, q, R, p, p0)
+        if share >= limit and gap > 0.0:
+            return -1.0
+    high = share
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        gap = radius - _distance(chain, q_wp, q_other, middle, q, R, p, p0)
+        if gap > 0.0:
+            low = middle
+        else:
+            high = middle
+        if high - low < 1e-15:
+            break
+    return 0.5 * (low + high)
+
+
+@njit(cache=True, error_model="numpy")
+def _distance(
+    chain: Chain,
+    q_wp: FloatArray,
+    q_other: FloatArray,
+    share: float,
+    q: FloatArray,
+    R: FloatArray,
+    p: FloatArray,
+    p0: FloatArray,
+) -> float:
+    for j in range(q.size):
+        q[j] = (1 - share) * q_wp[j] + share * q_other[j]
+    pose(chain, q, R, p)
+    square = 0.0
+    for i in range(3):
+        square += (p[i] - p0[i]) ** 2
+    return math.sqrt(square)
+
+
+class ZonePlanner:
+    """Applies a vendor's zone rules to the corners of a path.
+
+    Args:
+        segments: the M segments.
+        chains: the chain of each segment.
+        model: the vendor's rules.
+        moves: index in the program of the move of each segment, for messages.
+    """
+
+    def __init__(
+        self,
+        segments: Segments,
+        chains: Sequence[Chain],
+        model: MotionModel,
+        moves: Sequence[int],
+    ) -> None:
+        self._segments = segments
+        self._chains = chains
+        self._model = model
+        self._moves = moves
+        self._notes: list[Note] = []
+
+    def corners(self, zones: Sequence[Zone]) -> Corners:
+        """The corners at the inner waypoints.
+
+        Args:
+            zones: M − 1 zones; `Fine` where the robot stops for whatever reason.
+
+        Raises:
+            MotionError: a kind of zone that cannot be emulated, naming the move.
+        """
+        self._notes = []
+        wanted = [self._reaches(i, zone) for i, zone in enumerate(zones)]
+        overlapping = None
+        if self._model.overlap is Overlap.SHRINK:
+            wanted = self._shrunk(wanted)
+        elif self._model.overlap is Overlap.SKIP:
+            overlapping = self._overlapping(wanted)
+        kind = np.zeros(len(zones), dtype=np.int64)
+        reach = np.zeros((len(zones), 3, 2))
+        for i, pairs in enumerate(wanted):
+            reach[i] = [[pair[0].value, pair[1].value] for pair in pairs]
+            if reach[i, POSITION].min() > _NOTHING:
+                kind[i] = self._kind(i)
+        return Corners(kind, reach, wanted, overlapping, self._notes)
+
+    def _kind(self, i: int) -> int:
+        kinds = self._segments.ends.kind[i : i + 2]
+        same_chain = self._chains[i] is self._chains[i + 1]
+        return TCP_CORNER if same_chain and (kinds != JOINT_SEGMENT).all() else JOINT_CORNER
+
+    def _reaches(self, i: int, zone: Zone) -> tuple[tuple[Reach, Reach], ...]:
+        """Reaches of position, turning and prescribed axes before the rules on overlap."""
+        if isinstance(zone, Fine) or self._stops(i):
+            return ((Reach(0.0), Reach(0.0)),) * 3
+        if isinstance(zone, SpeedFraction):
+            raise MotionError(
+                "a zone by speed (C_VEL) needs timing before geometry, which is not emulated; "
+                "use a distance (C_DIS)",
+                self._moves[i],
+            )
+        if isinstance(zone, ContourFraction):
+            half = self._model.neighbour_fraction
+            share = Reach(zone.fraction * half, (("tcp", i, half),))
+            return ((share, share),) * 3
+        if isinstance(zone, Angle):
+            pair = (self._by_angle(i, zone.angle, i), self._by_angle(i + 1, zone.angle, i))
+            return (pair,) * 3
+        tcp = self._by_radius(i, zone, zone.tcp, "tcp")
+        if self._model.orientation_zone is OrientationZone.TCP or self._kind(i) == JOINT_CORNER:
+            return (tcp,) * 3
+        turning = self._by_radius(i, zone, max(zone.reorientation, zone.tcp), "reorientation")
+        external = self._by_radius(i, zone, max(zone.external, zone.tcp), "external")
+        return (
+            tcp,
+            turning if zone.reorientation > zone.tcp else tcp,
+            external if zone.external > zone.tcp else tcp,
+        )
+
+    def _stops(self, i: int) -> bool:
+        """Whether the vendor makes no zone between a TCP move and a pure reorientation."""
+        if not self._model.stops_at_pure_reorientation:
+            return False
+        kinds = self._segments.ends.kind[i : i + 2]
+        lengths = self._segments.length[i : i + 2]
+        if (kinds == JOINT_SEGMENT).any() or (lengths < _STILL).sum() != 1:
+            return False
+        self._note(i, "no zone between a move of the TCP and a pure reorientation: it stops here")
+        return True
+
+    def _note(self, i: int, message: str) -> None:
+        self._notes.append(Note(message, self._moves[i]))
+
+    def _by_angle(self, segment: int, angle: float, corner: int) -> Reach:
+        """Reach of a zone given as an angle (rad) of the tool's turn."""
+        limit = Reach(self._model.neighbour_fraction)
+        turn = float(np.linalg.norm(self._segments.turn_b[segment]))
+        if self._segments.ends.kind[segment] == JOINT_SEGMENT:
+            raise MotionError(
+                "a zone by orientation next to a joint move is not emulated; use a distance",
+                self._moves[corner],
+            )
+        if turn <= angle * 1e-12 or turn == 0.0:
+            return limit
+        slope = -angle / turn**2
+        unit = self._segments.turn_b[segment] / turn
+        parts: tuple[Part, ...] = (
+            ("angle", corner, 1.0 / turn),
+            ("turn_b", segment, slope * unit),
+        )
+        return _least(Reach(angle / turn, parts), limit)
+
+    def _by_radius(self, i: int, zone: Radius, radius: float, name: str) -> tuple[Reach, Reach]:
+        """Reaches of a sphere of ``radius`` m round waypoint i, the same on both sides."""
+        size = Reach(radius, ((name, i, 1.0),))
+        if self._model.overlap is Overlap.HALF:
+            for segment in (i, i + 1):
+                half = self._half(segment)
+                if half is not None and half.value < size.value * (1 - 1e-9):
+                    size = half
+            if name == "tcp" and size.value < radius * (1 - 1e-9):
+                self._note(
+                    i,
+                    f"zone of {1e3 * radius:g} mm cut to {1e3 * size.value:.4g} mm: it may reach "
+                    "no further than half way to a neighbouring point",
+                )
+        return self._exit(i, i, size, zone), self._exit(i + 1, i, size, zone)
+
+    def _half(self, segment: int) -> Reach | None:
+        """TCP distance of the point half way from a waypoint, None where it does not bound."""
+        s, share = self._segments, self._model.neighbour_fraction
+        kind = s.ends.kind[segment]
+        if kind == JOINT_SEGMENT or s.length[segment] < _STILL:
+            return None
+        length = float(s.length[segment])
+        if kind != ARC_SEGMENT:
+            return Reach(share * length, (("length", segment, share),))
+        swept = float(s.angle[segment])
+        r = length / swept
+        sine, cosine = math.sin(0.5 * share * swept), math.cos(0.5 * share * swept)
+        parts: tuple[Part, ...] = (
+            ("length", segment, 2 * sine / swept),
+            ("arc", segment, -2 * r * sine / swept + share * r * cosine),
+        )
+        return Reach(2 * r * sine, parts)
+
+    def _exit(self, segment: int, corner: int, size: Reach, zone: Radius) -> Reach:
+        """Share of a segment inside the sphere round the waypoint of ``corner``."""
+        s = self._segments
+        limit = Reach(
+            self._model.neighbour_fraction if self._model.overlap is Overlap.HALF else 1.0
+        )
+        if s.ends.kind[segment] == JOINT_SEGMENT:
+            return self._joint_exit(segment, corner, size, limit)
+        length = float(s.length[segment])
+        if length < _STILL:
+            return self._by_angle(segment, zone.angle, corner)
+        if s.ends.kind[segment] != ARC_SEGMENT:
+            share = size * Reach(length, (("length", segment, 1.0),)).inverse()
+            return _least(share, limit)
+        swept = float(s.angle[segment])
+        r = length / swept
+        if size.value >= 2 * r:
+            return limit
+        half = math.asin(0.5 * size.value / r)
+        slope = 1.0 / (swept * r * math.cos(half))
+        parts: list[Part] = [(n, k, p * slope) for n, k, p in size.parts]
+        parts.append(("length", segment, -slope * size.value / length))
+        parts.append(("arc", segment, slope * size.value / swept - 2 * half / swept**2))
+        return _least(Reach(2 * half / swept, tuple(parts)), limit)
+
+    def _joint_exit(self, segment: int, corner: int, size: Reach, limit: Reach) -> Reach:
+        """First exit from the sphere on a joint line; derivatives by the implicit function."""
+        chain = self._chains[segment]
+        near, far = (1, 0) if segment == corner else (0, 1)
+        q_wp, q_other = self._segments.ends.q[segment, near], self._segments.ends.q[segment, far]
+        share = first_exit(chain, q_wp, q_other, size.value, limit.value)
+        if share < 0.0:
+            return limit
+        q = (1 - share) * q_wp + share * q_other
+        R, p, J = np.empty((3, 3)), np.empty(3), np.empty((6, q.size))
+        p_wp, J_wp = np.empty(3), np.empty((6, q.size))
+        jacobian(chain, q_wp, R, p_wp, J_wp)
+        jacobian(chain, q, R, p, J)
+        outward = (p - p_wp) / size.value
+        pull, pull_wp = outward @ J[:3], outward @ J_wp[:3]
+        speed = float(pull @ (q_other - q_wp))
+        if speed <= 0.0:
+            return Reach(share)
+        parts: list[Part] = [(n, k, g / speed) for n, k, g in size.parts]
+        parts.append((f"q{near}", segment, -((1 - share) * pull - pull_wp) / speed))
+        parts.append((f"q{far}", segment, -share * pull / speed))
+        return Reach(share, tuple(parts))
+
+    def _shrunk(
+        self, wanted: list[tuple[tuple[Reach, Reach], ...]]
+    ) -> list[tuple[tuple[Reach, Reach], ...]]:
+        """Both zones on a segment shrink in proportion until they touch."""
+        factors = [Reach(1.0) for _ in wanted]
+        for segment in range(1, len(wanted)):
+            total = wanted[segment - 1][POSITION][1] + wanted[segment][POSITION][0]
+            if total.value > 1.0:
+                factor = total.inverse()
+                factors[segment - 1] = _least(factors[segment - 1], factor)
+                factors[segment] = _least(factors[segment], factor)
+        for i, factor in enumerate(factors):
+            if factor.value < 1.0:
+                self._note(i, f"overlapping blend shrunk to {100 * factor.value:.4g} %")
+        return [
+            tuple((before * f, after * f) for before, after in pairs)
+            for pairs, f in zip(wanted, factors, strict=True)
+        ]
+
+    def _overlapping(self, wanted: list[tuple[tuple[Reach, Reach], ...]]) -> int | None:
+        for segment in range(len(wanted) + 1):
+            before = wanted[segment - 1][POSITION][1].value if segment > 0 else 0.0
+            after = wanted[segment][POSITION][0].value if segment < len(wanted) else 0.0
+            if before + after > 1.0 + 1e-9 or (segment == len(wanted) and before >= 1.0):
+                return min(segment, len(wanted) - 1)
+        return None
+
+
+def pull_corners(
+    corners: Corners,
+    reach_bar: FloatArray,
+    segments_bar: SegmentsGradient,
+    ends_bar: EndsGradient,
+    zones_bar: ZoneGradient,
+) -> None:
+    """Reverse of `ZonePlanner.corners`: carry the gradient (M − 1, 3, 2) of the reaches back."""
+    targets: dict[str, FloatArray] = {
+        "length": segments_bar.length,
+        "angle": zones_bar.angle,
+        "arc": segments_bar.angle,
+        "turn_b": segments_bar.turn_b,
+        "q0": ends_bar.q[:, 0],
+        "q1": ends_bar.q[:, 1],
+        "tcp": zones_bar.tcp,
+        "reorientation": zones_bar.reorientation,
+        "external": zones_bar.external,
+    }
+    for i, pairs in enumerate(corners.sources):
+        if corners.kind[i] == STOP:
+            continue
+        for channel, pair in enumerate(pairs):
+            for side, reach in enumerate(pair):
+                bar = reach_bar[i, channel, side]
+                if bar == 0.0:
+                    continue
+                for name, index, part in reach.parts:
+                    targets[name][index] += bar * part

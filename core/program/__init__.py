@@ -1,0 +1,1 @@
+"""Robot programs as immutable values in SI units: targets, speeds, zones, moves."""

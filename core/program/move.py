@@ -1,0 +1,100 @@
+"""The statements of a program: moves, waits, and what is kept as it stands."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from ..errors import InputError, Span
+from .origin import MoveOrigin
+from .speed import Speed
+from .target import PoseTarget, Target
+from .tool import FLANGE, WORLD, Load, Tool, WorkObject
+from .zone import FINE, Zone
+
+
+class ArcOrientation(StrEnum):
+    """How the tool turns along an arc."""
+
+    FOLLOWS_ARC = "follows_arc"
+    """Turned at a constant rate relative to the arc's tangent (RAPID, KRL ``#PATH``)."""
+    FIXED_FRAME = "fixed_frame"
+    """Interpolated from start to end in the work object (URScript mode 0, KRL ``#BASE``)."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Motion:
+    """What every move has.
+
+    Args:
+        target: where it goes.
+        speed: how fast.
+        zone: how near it must come to the target before the next move may begin.
+        tool: the tool whose centre point is programmed.
+        work_object: the frame of the target.
+        load: payload carried during the move, in the tool's frame.
+        origin: where in the source the numbers stand; not part of the value.
+    """
+
+    target: Target
+    speed: Speed
+    zone: Zone = FINE
+    tool: Tool = FLANGE
+    work_object: WorkObject = WORLD
+    load: Load | None = None
+    origin: MoveOrigin | None = field(default=None, compare=False, repr=False, kw_only=True)
+
+
+@dataclass(frozen=True, slots=True)
+class MoveJ(_Motion):
+    """All joints linear in one parameter (``MoveJ``, ``MoveAbsJ``, ``PTP``, ``movej``)."""
+
+
+@dataclass(frozen=True, slots=True)
+class MoveL(_Motion):
+    """The TCP on a line, orientation on the shortest great arc (``MoveL``, ``LIN``, ``movel``)."""
+
+
+@dataclass(frozen=True, slots=True)
+class MoveC(_Motion):
+    """The TCP on the arc from the point before through ``via`` to the target.
+
+    Args:
+        via: the auxiliary point; its orientation does not matter.
+        orientation: how the tool turns along the arc.
+    """
+
+    via: PoseTarget = field(kw_only=True)
+    orientation: ArcOrientation = field(default=ArcOrientation.FOLLOWS_ARC, kw_only=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """The robot stands still for ``duration`` s; in a chain of moves it makes the point a stop."""
+
+    duration: float
+    span: Span | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.duration) and self.duration >= 0):
+            raise InputError(f"a wait lasts zero seconds or more, not {self.duration}")
+
+
+@dataclass(frozen=True, slots=True)
+class Opaque:
+    """A statement that is kept in place and not interpreted (I/O, messages, process calls).
+
+    Args:
+        text: the statement as it stands in the source.
+        stops: whether the controller must come to rest before it (it ends the look-ahead).
+        span: where in the source.
+    """
+
+    text: str
+    stops: bool = False
+    span: Span | None = field(default=None, compare=False)
+
+
+Move = MoveJ | MoveL | MoveC
+Statement = Move | Wait | Opaque

@@ -1,0 +1,91 @@
+"""How near a move must come to its waypoint before the next one may begin."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..errors import InputError
+
+
+def _check(owner: str, **values: float) -> None:
+    for name, value in values.items():
+        if not (math.isfinite(value) and value >= 0):
+            raise InputError(f"{owner}.{name} must be zero or more, not {value}")
+
+
+@dataclass(frozen=True, slots=True)
+class Fine:
+    """A stop point: the robot comes to rest at the waypoint."""
+
+
+@dataclass(frozen=True, slots=True)
+class Radius:
+    """A sphere of TCP distance round the waypoint (ABB zonedata, KUKA C_DIS, UR blend radius).
+
+    Args:
+        tcp: radius in m inside which the TCP may leave the programmed path.
+        reorientation: TCP distance in m at which reorientation may begin; at least ``tcp``.
+        external: TCP distance in m at which external axes may begin; at least ``tcp``.
+        angle: angle in rad that takes the place of distances in pure reorientation.
+        external_linear: m, for moves of linear external axes alone.
+        external_angular: rad, for moves of rotating external axes alone.
+        name: a vendor's predefined or declared name (``z10``), kept for the writer.
+    """
+
+    tcp: float
+    reorientation: float = 0.0
+    external: float = 0.0
+    angle: float = 0.0
+    external_linear: float = 0.0
+    external_angular: float = 0.0
+    name: str | None = None
+
+    def __post_init__(self) -> None:
+        _check(
+            "Radius",
+            tcp=self.tcp,
+            reorientation=self.reorientation,
+            external=self.external,
+            angle=self.angle,
+            external_linear=self.external_linear,
+            external_angular=self.external_angular,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class ContourFraction:
+    """KRL ``C_PTP``: a share of the half contour of a joint move; 1 begins at its middle."""
+
+    fraction: float
+
+    def __post_init__(self) -> None:
+        _check("ContourFraction", fraction=self.fraction)
+        if self.fraction > 1:
+            raise InputError(f"ContourFraction.fraction is at most 1, not {self.fraction}")
+
+
+@dataclass(frozen=True, slots=True)
+class Angle:
+    """KRL ``C_ORI``: blending may begin when the orientation is this near (rad) to the target's."""
+
+    angle: float
+
+    def __post_init__(self) -> None:
+        _check("Angle", angle=self.angle)
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedFraction:
+    """KRL ``C_VEL``: blending begins when braking has come down to this share of the speed."""
+
+    fraction: float
+
+    def __post_init__(self) -> None:
+        _check("SpeedFraction", fraction=self.fraction)
+        if self.fraction > 1:
+            raise InputError(f"SpeedFraction.fraction is at most 1, not {self.fraction}")
+
+
+Zone = Fine | Radius | ContourFraction | Angle | SpeedFraction
+FINE = Fine()

@@ -1,0 +1,194 @@
+"""How vendors are found: entry points of the group ``flyby``, each loaded on its own.
+
+pluggy's own loader stops at the first plugin that fails; here a broken plugin is listed with
+its distribution and its exception, and hides no other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import pluggy
+
+from . import hookspec
+from .errors import InputError, UnknownNameError
+from .vendor import Vendor
+
+if TYPE_CHECKING:
+    from .robot.model import Robot
+
+OWN_DISTRIBUTION = "flyby"
+
+
+@dataclass(frozen=True, slots=True)
+class BrokenPlugin:
+    """A plugin that could not be taken in.
+
+    Args:
+        plugin: name of its entry point.
+        distribution: the installed distribution that it belongs to.
+        error: what it raised.
+    """
+
+    plugin: str
+    distribution: str
+    error: BaseException
+
+    def __str__(self) -> str:
+        kind = type(self.error).__name__
+        return f"plugin {self.plugin!r} of {self.distribution} is broken: {kind}: {self.error}"
+
+
+class _Register:
+    """The register of one plugin: vendors count once the plugin has finished without error."""
+
+    def __init__(self, taken: Iterable[str]) -> None:
+        self._taken = set(taken)
+        self.vendors: dict[str, Vendor] = {}
+
+    def add(self, vendor: Vendor) -> None:
+        """See `hookspec.VendorRegister.add`."""
+        if not isinstance(vendor, Vendor):
+            raise InputError(f"register.add takes a Vendor, not {vendor!r}")
+        if vendor.name in self._taken or vendor.name in self.vendors:
+            raise InputError(f"a vendor called {vendor.name!r} is registered already")
+        self.vendors[vendor.name] = vendor
+
+
+@dataclass(frozen=True)
+class Registry:
+    """The vendors at hand.
+
+    Args:
+        vendors: by name.
+        broken: plugins that could not be taken in.
+    """
+
+    vendors: Mapping[str, Vendor]
+    broken: tuple[BrokenPlugin, ...] = ()
+
+    @classmethod
+    def discover(cls, entry_points: Iterable[metadata.EntryPoint] | None = None) -> Registry:
+        """Load every plugin of ``entry_points``, by default all that are installed."""
+        if entry_points is None:
+            entry_points = metadata.entry_points(group=hookspec.GROUP)
+        vendors: dict[str, Vendor] = {}
+        broken: list[BrokenPlugin] = []
+        for entry_point in sorted(entry_points, key=_order):
+            try:
+                vendors |= _vendors_of(entry_point.load(), entry_point.name, vendors)
+            except (Exception, SystemExit) as error:
+                plugin = BrokenPlugin(entry_point.name, _distribution(entry_point), error)
+                broken.append(plugin)
+        return cls(MappingProxyType(vendors), tuple(broken))
+
+    def find_vendor(self, name: str) -> Vendor:
+        """The vendor ``name``.
+
+        Raises:
+            UnknownNameError: there is none; says so if its plugin is broken.
+        """
+        if name not in self.vendors:
+            self._unknown("vendor", name, name, self.vendors)
+        return self.vendors[name]
+
+    def find_robot(self, name: str) -> Robot:
+        """The robot of a name like ``abb/irb6640-180-255``.
+
+        Raises:
+            UnknownNameError: there is none; says so if its vendor's plugin is broken.
+        """
+        vendor, _, robot = name.partition("/")
+        if vendor not in self.vendors or robot not in self.vendors[vendor].robots:
+            self._unknown("robot", name, vendor, self.robot_names)
+        return self.vendors[vendor].robot(robot)
+
+    @property
+    def robot_names(self) -> tuple[str, ...]:
+        """Every robot as ``vendor/robot``, sorted."""
+        return tuple(
+            sorted(f"{v.name}/{robot}" for v in self.vendors.values() for robot in v.robots)
+        )
+
+    def reader_of(self, path: str | Path) -> Vendor:
+        """The vendor whose reader takes the file, by its suffix.
+
+        Raises:
+            InputError: no vendor's reader, or more than one, takes such files.
+        """
+        suffix = Path(path).suffix.lower()
+        found = [v for v in self.vendors.values() if suffix in v.suffixes]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            names = " and ".join(v.name for v in found)
+            raise InputError(f"{path}: {names} both read {suffix!r} files; name the vendor")
+        known = ", ".join(
+            f"{' '.join(v.suffixes)} ({v.name})" for v in self.vendors.values() if v.suffixes
+        )
+        raise InputError(f"{path}: no vendor reads {suffix!r} files; known: {known or 'none'}")
+
+    def _unknown(self, kind: str, name: str, vendor: str, known: Iterable[str]) -> None:
+        error = UnknownNameError(kind, name, known)
+        broken = [str(plugin) for plugin in self.broken if plugin.plugin == vendor]
+        error.args = ("; ".join((str(error), *broken)),)
+        raise error
+
+
+@cache
+def installed() -> Registry:
+    """The registry of all installed plugins, built at the first call."""
+    return Registry.discover()
+
+
+def vendors() -> tuple[Vendor, ...]:
+    """All installed vendors, by name."""
+    found = installed().vendors
+    return tuple(found[name] for name in sorted(found))
+
+
+def find_vendor(name: str) -> Vendor:
+    """`Registry.find_vendor` among all that is installed."""
+    return installed().find_vendor(name)
+
+
+def find_robot(name: str) -> Robot:
+    """`Registry.find_robot` among all that is installed."""
+    return installed().find_robot(name)
+
+
+def _vendors_of(plugin: object, name: str, taken: Iterable[str]) -> dict[str, Vendor]:
+    """The vendors of one plugin; its manager dies with this call.
+
+    Raises:
+        pluggy.PluginValidationError: a hook of the plugin has no specification, or another
+            signature.
+        InputError: the plugin implements no hook, or registers no sound vendor.
+    """
+    manager = pluggy.PluginManager(hookspec.GROUP)
+    manager.add_hookspecs(hookspec)
+    manager.register(plugin, name)
+    manager.check_pending()
+    if not manager.get_hookcallers(plugin):
+        raise InputError("it implements no flyby_register_vendors; is @hookimpl missing?")
+    register = _Register(taken)
+    manager.hook.flyby_register_vendors(register=register)
+    if not register.vendors:
+        raise InputError("its flyby_register_vendors adds no vendor")
+    return register.vendors
+
+
+def _order(entry_point: metadata.EntryPoint) -> tuple[bool, str, str]:
+    """The project's own first, so that no stranger takes a shipped name by its spelling."""
+    owner = _distribution(entry_point)
+    return owner != OWN_DISTRIBUTION, owner, entry_point.name
+
+
+def _distribution(entry_point: metadata.EntryPoint) -> str:
+    return entry_point.dist.name if entry_point.dist is not None else "an unnamed distribution"

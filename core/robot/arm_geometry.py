@@ -1,0 +1,154 @@
+"""Six-axis arms that have closed-form inverse kinematics, recognised by their axes.
+
+Both families turn about axis 1, then in the plane that axes 2 and 3 are normal to. Everything is
+written in the arm's own frame: origin on axis 1, z along axis 1, y along axis 2 at zero, x = y × z.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .chain import Chain
+
+FloatArray = NDArray[np.float64]
+
+EXACT = 1e-9
+"""rad and m by which axes may miss their ideal place for the closed form to be exact."""
+NEAR = 2e-2
+"""rad and m up to which the closed form is a good start for Newton's method (calibrated arms)."""
+
+
+class Family(StrEnum):
+    """Which closed form applies."""
+
+    SPHERICAL_WRIST = "spherical wrist"
+    """Axes 4, 5 and 6 meet in a point (ABB, KUKA and most others)."""
+    PARALLEL_AXES = "parallel axes"
+    """Axes 2, 3 and 4 are parallel (Universal Robots)."""
+
+
+class ArmGeometry(NamedTuple):
+    """Numbers of both families, in the arm's frame at zero.
+
+    Args:
+        frame: (3, 3), rows are the arm's axes x, y, z in the base's frame.
+        origin: (3,) m, a point of axis 1 in the base's frame.
+        zero: (3, 3), the base's arm frame seen from the flange at zero: R₀ᵀ frameᵀ.
+        centre: (3,) m, the wrist's centre in the flange's frame.
+        lateral: m, y of the wrist's centre.
+        shoulder, elbow, wrist: (2,) m, x and z of axis 2, axis 3, and the wrist's centre
+            (spherical wrist) or axis 4 (parallel axes).
+        signs: (6,), 1 or -1 where a joint turns against the arm's axis (joints 3 and 4).
+        axes: (3, 3), directions of axes 4, 5, 6.
+        centre_to_fourth: (3,) m, from the wrist's centre to axis 4 (parallel axes).
+    """
+
+    frame: FloatArray
+    origin: FloatArray
+    zero: FloatArray
+    centre: FloatArray
+    lateral: float
+    shoulder: FloatArray
+    elbow: FloatArray
+    wrist: FloatArray
+    signs: FloatArray
+    axes: FloatArray
+    centre_to_fourth: FloatArray
+
+
+class Recognised(NamedTuple):
+    """An arm's family, its numbers, and how far (rad, m) its axes miss the ideal."""
+
+    family: Family
+    geometry: ArmGeometry
+    error: float
+
+
+class _Lines(NamedTuple):
+    """Axes at zero in the base's frame: directions and points (6, 3); flange R (3, 3), p (3,)."""
+
+    directions: FloatArray
+    points: FloatArray
+    R: FloatArray
+    p: FloatArray
+
+
+def recognise(chain: Chain) -> Recognised | None:
+    """The closed form that fits an arm's chain (base to flange) within `NEAR`, None if none."""
+    if chain.joint.size != 6 or chain.prismatic.any():
+        return None
+    lines = _lines(chain)
+    for family in Family:
+        geometry, error = _geometry(lines, family)
+        if error < NEAR:
+            return Recognised(family, geometry, error)
+    return None
+
+
+def _lines(chain: Chain) -> _Lines:
+    R, p = np.eye(3), np.zeros(3)
+    directions, points = [], []
+    for k in range(chain.joint.size):
+        p = p + R @ chain.translation[k]
+        R = R @ chain.rotation[k]
+        directions.append(R @ chain.axis[k] * chain.sign[k])
+        points.append(p)
+    p = p + R @ chain.end_translation
+    return _Lines(np.array(directions), np.array(points), R @ chain.end_rotation, p)
+
+
+def _geometry(lines: _Lines, family: Family) -> tuple[ArmGeometry, float]:
+    z = lines.directions
+    up = z[0]
+    side = z[1] - up * (up @ z[1])
+    side = side / max(float(np.linalg.norm(side)), 1e-12)
+    frame = np.array([np.cross(side, up), side, up])
+    origin = lines.points[0]
+    points = (lines.points - origin) @ frame.T
+    axes = z @ frame.T
+    parallel = [2] if family is Family.SPHERICAL_WRIST else [2, 3]
+    misses = [abs(up @ z[1])]
+    misses += [float(np.linalg.norm(np.cross(side, z[k]))) for k in parallel]
+    misses += [abs(float(z[3] @ z[4])), abs(float(z[4] @ z[5]))]
+    pair = [3, 4, 5] if family is Family.SPHERICAL_WRIST else [4, 5]
+    centre, apart = _meeting_point(points[pair], axes[pair])
+    misses.append(apart)
+    signs = np.ones(6)
+    for k in parallel:
+        signs[k] = np.sign(side @ z[k]) or 1.0
+    fourth = points[3]
+    plane = [0, 2]
+    geometry = ArmGeometry(
+        frame=frame,
+        origin=origin.copy(),
+        zero=lines.R.T @ frame.T,
+        centre=lines.R.T @ (origin + frame.T @ centre - lines.p),
+        lateral=float(centre[1]),
+        shoulder=points[1][plane],
+        elbow=points[2][plane],
+        wrist=(centre if family is Family.SPHERICAL_WRIST else fourth)[plane],
+        signs=signs,
+        axes=np.ascontiguousarray(axes[3:]),
+        centre_to_fourth=fourth - centre,
+    )
+    arms = (geometry.elbow - geometry.shoulder, geometry.wrist - geometry.elbow)
+    if min(float(np.linalg.norm(arm)) for arm in arms) < 1e-3:
+        misses.append(1.0)  # an arm without length leaves a joint undetermined
+    return geometry, max(misses)
+
+
+def _meeting_point(points: FloatArray, directions: FloatArray) -> tuple[FloatArray, float]:
+    """The point nearest to lines in space, and its largest distance from one of them."""
+    projectors = [np.eye(3) - np.outer(d, d) for d in directions]
+    normal = sum(projectors, np.zeros((3, 3)))
+    right = sum((P @ at for P, at in zip(projectors, points, strict=True)), np.zeros(3))
+    # Parallel lines leave the point free along them: the least-squares answer is one of them.
+    centre = np.linalg.lstsq(normal, right, rcond=None)[0]
+    misses = [
+        float(np.linalg.norm(P @ (centre - at))) for P, at in zip(projectors, points, strict=True)
+    ]
+    return centre, max(misses)

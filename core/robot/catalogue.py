@@ -1,0 +1,261 @@
+"""Robots from catalogue files (TOML).
+
+Units stand at the end of each key: ``_mm`` or ``_m``, ``_deg`` or ``_rad``, ``_deg_s``, ``_rad_s2``
+and so on, ``_kg``, ``_kgm2``, ``_nm`` (torque N m, force N); linear joints use lengths instead of
+angles.
+
+    name = "abb/irb6640-180-255"
+    payload_kg = 180                     # optional
+
+    [origin]                             # what each group of numbers rests on
+    geometry = "published: …"
+    range = "published: …"
+    velocity = "published: …"
+    acceleration = "identified: …"
+    effort = "unknown"                   # needed if a joint gives effort_nm
+    inertia = "unknown"                  # needed if there are links
+    shape = "assumed: …"                 # needed if there are shapes
+
+An origin starts with one of published, identified, measured, computed, assumed, unknown.
+
+    [[joint]]                            # from base to flange
+    name = "J2"
+    kind = "revolute"                    # or "prismatic"; revolute if left out
+    xyz_mm = [320, 0, 780]               # the joint's frame in the frame of the joint before, at
+    rpy_deg = [0, 0, 0]                  # zero; see below for other forms; zero if left out
+    axis = [0, 1, 0]                     # in the joint's own frame, right-hand rule
+    lower_deg = -65
+    upper_deg = 85
+    velocity_deg_s = 90
+    acceleration_rad_s2 = 4.98           # or none, and at the top of the file:
+    effort_nm = 1000                     # optional
+
+    [assumed]
+    acceleration_time_s = 0.25           # joints without acceleration: top speed in this time
+
+    [flange]                             # in the frame behind the last joint
+    xyz_mm = [200, 0, 0]
+    rpy_deg = [0, 90, 0]
+
+An orientation is ``quat_wxyz``, ``rpy_deg``, ``abc_deg`` or ``rotvec_rad`` (`core.pose_table`);
+only one of them, none for no turn.
+
+Instead of placements and axes, the geometry may be given in standard Denavit–Hartenberg form, one
+row a joint and the last one to the flange: T = Rz(q + theta) Tz(d) Tx(a) Rx(alpha).
+
+    dh = [{ d_mm = 162.5, a_mm = 0, alpha_deg = 90 }, …]
+
+    [[link]]                             # none, or one behind each joint, in their order
+    mass_kg = 3.761
+    centre_mm = [0, -25.61, 1.93]        # in the frame behind the joint, parallel to the joint's
+    inertia_kgm2 = [ixx, iyy, izz, ixy, ixz, iyz]   # about the centre of mass
+
+With ``dh``, bodies and shapes of link k are in Denavit–Hartenberg frame k, as usually published.
+
+    [[shape]]
+    link = 1                             # 0 the base, k behind joint k
+    kind = "capsule"                     # sphere, capsule, cylinder (both with ends), box
+    radius_mm = 150
+    from_mm = [0, 0, 0]                  # capsule and cylinder: ends of the middle line
+    to_mm = [0, 0, 1075]
+    # sphere: radius_mm, centre_mm; box: size_mm, xyz_mm and an orientation
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError
+from ..pose_table import pose_at, read_pose
+from ..spatial.pose import IDENTITY, Pose
+from ..spatial.rotation import matrix_from_rotation_vector
+from ..tables import ANGLE, LENGTH, Table
+from .chain import FloatArray
+from .inertia import Inertia
+from .joint import Joint, JointKind
+from .model import Robot
+from .shape import Box, Capsule, Cylinder, LinkShape, Shape, Sphere
+
+TRUST = ("published", "identified", "measured", "computed", "assumed", "unknown")
+"""The words that an origin starts with."""
+UNITS = {JointKind.REVOLUTE: ANGLE, JointKind.PRISMATIC: LENGTH}
+
+
+def load_robot(path: str | Path) -> Robot:
+    """The robot of a catalogue file.
+
+    Raises:
+        InputError: the file cannot be read, or a key is missing, unknown or wrong; the message
+            names file and key.
+    """
+    table = Table.read(path)
+    try:
+        robot = _robot(table)
+    except InputError as error:
+        if str(error).startswith(str(table.file)):
+            raise
+        raise InputError(f"{table.file}: {error}") from None
+    table.finish()
+    return robot
+
+
+def _robot(table: Table) -> Robot:
+    rows = table.listed_tables("joint")
+    if not rows:
+        raise table.error("joint", "is missing; give one [[joint]] for each joint")
+    if table.has("dh"):
+        frames = _dh_frames(table, len(rows))
+        placements, flange = [IDENTITY, *frames[:-1]], frames[-1]
+    else:
+        frames = [IDENTITY] * len(rows)
+        placements, flange = [read_pose(row) for row in rows], pose_at(table, "flange")
+    assumed = table.table("assumed")
+    seconds = assumed.number("acceleration_time_s") if assumed.data else None
+    assumed.finish()
+    joints = tuple(
+        _joint(row, placement, table.has("dh"), seconds)
+        for row, placement in zip(rows, placements, strict=True)
+    )
+    links = tuple(
+        _inertia(row).placed(frame)
+        for row, frame in zip(_link_rows(table, len(rows)), frames, strict=False)
+    )
+    shapes = tuple(_link_shape(row, [IDENTITY, *frames]) for row in table.listed_tables("shape"))
+    needed = ["geometry", "range", "velocity", "acceleration"]
+    needed += ["effort"] if any(joint.effort for joint in joints) else []
+    needed += ["inertia"] if links else []
+    needed += ["shape"] if shapes else []
+    return Robot(
+        name=table.text("name"),
+        joints=joints,
+        flange=flange,
+        links=links,
+        shapes=shapes,
+        payload=table.number("payload_kg") if table.has("payload_kg") else None,
+        origins=_origins(table.table("origin"), needed),
+    )
+
+
+def _origins(table: Table, needed: list[str]) -> Mapping[str, str]:
+    origins = {}
+    for group in (*needed, *(key for key in table.data if key not in needed)):
+        origin = table.text(group)
+        if origin.split(":")[0] not in TRUST:
+            raise table.error(group, f"must start with one of {', '.join(TRUST)}, not {origin!r}")
+        origins[group] = origin
+    return origins
+
+
+def _joint(row: Table, placement: Pose, dh: bool, acceleration_time: float | None) -> Joint:
+    kind = JointKind(row.choice("kind", list(JointKind), JointKind.REVOLUTE))
+    units = UNITS[kind]
+    if dh and kind is JointKind.PRISMATIC:
+        raise row.error("kind", "joints of a dh table are revolute; give placements and axes")
+    speeds = {f"{unit}_s": factor for unit, factor in units.items()}
+    rises = {f"{unit}_s2": factor for unit, factor in units.items()}
+    velocity = _rate(row, "velocity", speeds)
+    acceleration = _rate(row, "acceleration", rises)
+    if velocity is None:
+        raise row.error(f"velocity_{next(iter(speeds))}", "is missing")
+    if acceleration is None:
+        if acceleration_time is None:
+            raise row.error(
+                f"acceleration_{next(iter(rises))}",
+                "is missing; give it, or [assumed] acceleration_time_s for all joints",
+            )
+        acceleration = velocity / acceleration_time
+    x, y, z = (0.0, 0.0, 1.0) if dh else row.numbers("axis", 3)
+    joint = Joint(
+        name=row.text("name"),
+        placement=placement,
+        axis=(x, y, z),
+        lower=row.quantity("lower", units),
+        upper=row.quantity("upper", units),
+        velocity=velocity,
+        acceleration=acceleration,
+        effort=row.number("effort_nm") if row.has("effort_nm") else None,
+        kind=kind,
+    )
+    row.finish()
+    return joint
+
+
+def _rate(row: Table, key: str, units: Mapping[str, float]) -> float | None:
+    """A speed or acceleration in SI, by whichever of its unit keys is given."""
+    given = [unit for unit in units if row.has(f"{key}_{unit}")]
+    if len(given) > 1:
+        raise row.error(f"{key}_{given[1]}", f"is given by {key}_{given[0]} already")
+    return row.number(f"{key}_{given[0]}") * units[given[0]] if given else None
+
+
+def _dh_frames(table: Table, count: int) -> list[Pose]:
+    """The fixed parts Rz(theta) Tz(d) Tx(a) Rx(alpha) of each row."""
+    rows = table.listed_tables("dh")
+    if len(rows) != count:
+        raise table.error("dh", f"has {len(rows)} rows for {count} joints")
+    frames = []
+    for row in rows:
+        about_z, about_x = np.eye(4), np.eye(4)
+        theta, alpha = row.quantity("theta", ANGLE, 0.0), row.quantity("alpha", ANGLE)
+        about_z[:3, :3] = matrix_from_rotation_vector(np.array([0.0, 0.0, theta]))
+        about_z[2, 3] = row.quantity("d", LENGTH)
+        about_x[:3, :3] = matrix_from_rotation_vector(np.array([alpha, 0.0, 0.0]))
+        about_x[0, 3] = row.quantity("a", LENGTH)
+        row.finish()
+        frames.append(Pose.from_matrix(about_z @ about_x))
+    return frames
+
+
+def _link_rows(table: Table, count: int) -> tuple[Table, ...]:
+    rows = table.listed_tables("link")
+    if rows and len(rows) != count:
+        raise table.error("link", f"there are {len(rows)} links for {count} joints")
+    return rows
+
+
+def _inertia(row: Table) -> Inertia:
+    xx, yy, zz, xy, xz, yz = row.numbers("inertia_kgm2", 6)
+    x, y, z = row.quantities("centre", LENGTH, 3)
+    body = Inertia(row.number("mass_kg"), (x, y, z), ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
+    row.finish()
+    return body
+
+
+def _link_shape(row: Table, frames: list[Pose]) -> LinkShape:
+    """A shape, moved from the frame it is given in to the frame behind its joint."""
+    link = row.number("link")
+    if link not in range(len(frames)):
+        raise row.error("link", f"must be a whole number from 0 to {len(frames) - 1}")
+    shape, placement = _shape(row)
+    row.finish()
+    return LinkShape(int(link), shape, frames[int(link)] @ placement)
+
+
+def _shape(row: Table) -> tuple[Shape, Pose]:
+    kind = row.choice("kind", ("sphere", "capsule", "cylinder", "box"))
+    if kind == "box":
+        x, y, z = row.quantities("size", LENGTH, 3)
+        return Box((x, y, z)), read_pose(row)
+    radius = row.quantity("radius", LENGTH)
+    if kind == "sphere":
+        x, y, z = row.quantities("centre", LENGTH, 3)
+        return Sphere(radius), Pose((x, y, z))
+    start = np.array(row.quantities("from", LENGTH, 3))
+    end = np.array(row.quantities("to", LENGTH, 3))
+    length = float(np.linalg.norm(end - start))
+    solid = Capsule(radius, length) if kind == "capsule" else Cylinder(radius, length)
+    return solid, _along(start, end)
+
+
+def _along(start: FloatArray, end: FloatArray) -> Pose:
+    """The frame midway between two points with z from the first to the second."""
+    z = (end - start) / np.linalg.norm(end - start)
+    x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
+    x /= np.linalg.norm(x)
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.stack([x, np.cross(z, x), z], axis=1)
+    matrix[:3, 3] = 0.5 * (start + end)
+    return Pose.from_matrix(matrix)

@@ -1,0 +1,120 @@
+"""Inverse dynamics of a tree of joints, by Pinocchio."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from ..spatial.pose import Pose, Vector3
+from .inertia import Inertia
+from .joint import Joint, JointKind
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class TreeNode:
+    """A joint and the body behind it.
+
+    Args:
+        joint: the joint.
+        parent: number of the node it stands on, -1 for the world.
+        step: a further placement between the parent's frame and the joint's own placement.
+        index: of the joint's value in the configuration.
+        body: in the frame behind the joint; None if not known.
+    """
+
+    joint: Joint
+    parent: int
+    step: Pose
+    index: int
+    body: Inertia | None
+
+
+@dataclass(frozen=True, slots=True)
+class Tree:
+    """Joints, each after its parent, under gravity (m/s², in the world)."""
+
+    name: str
+    nodes: tuple[TreeNode, ...]
+    gravity: Vector3
+
+
+class Dynamics:
+    """Equations of motion τ = M(q) q̈ + h(q, q̇) of a tree over N values.
+
+    Friction and motor inertia are not part of them. The torque of an axis whose own body is not
+    known is NaN; its motion still acts on what it carries.
+    """
+
+    def __init__(self, tree: Tree) -> None:
+        self._model = _pinocchio_model(tree)
+        self._data = self._model.createData()
+        self._pool = pin.ModelPool(self._model, 1)
+        # Pinocchio's order of values is that of the nodes.
+        self._order = np.array([node.index for node in tree.nodes])
+        self._unknown = [node.index for node in tree.nodes if node.body is None]
+
+    @staticmethod
+    def of(tree: Tree) -> Dynamics:
+        """The dynamics of a tree, built once for equal trees."""
+        return _cached(tree)
+
+    def torques(self, q: FloatArray, dq: FloatArray, ddq: FloatArray) -> FloatArray:
+        """Torques (M, N) N m of M motions."""
+        columns = [np.ascontiguousarray(x[:, self._order]).T for x in (q, dq, ddq)]
+        torques = np.empty_like(q)
+        if len(q):
+            torques[:, self._order] = pin.rneaInParallel(1, self._pool, *columns).T
+        torques[:, self._unknown] = np.nan
+        return torques
+
+    def torque_derivatives(
+        self, q: FloatArray, dq: FloatArray, ddq: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """∂τ/∂q, ∂τ/∂q̇ and ∂τ/∂q̈, each (M, N, N)."""
+        count, size = q.shape
+        parts = np.empty((3, count, size, size))
+        rows = zip(*(np.ascontiguousarray(x[:, self._order]) for x in (q, dq, ddq)), strict=True)
+        for m, (at, rate, rise) in enumerate(rows):
+            derivatives = pin.computeRNEADerivatives(self._model, self._data, at, rate, rise)
+            parts[0, m], parts[1, m], parts[2, m] = derivatives[:3]
+        back = np.argsort(self._order)
+        parts = parts[:, :, back][:, :, :, back]
+        parts[:, :, self._unknown] = np.nan
+        return parts[0], parts[1], parts[2]
+
+
+@lru_cache(maxsize=64)
+def _cached(tree: Tree) -> Dynamics:
+    return Dynamics(tree)
+
+
+def _pinocchio_model(tree: Tree) -> Any:
+    model = pin.Model()
+    model.name = tree.name
+    model.gravity.linear = np.array(tree.gravity)
+    ids: list[int] = []
+    for node in tree.nodes:
+        matrix = node.step.matrix() @ node.joint.placement.matrix()
+        parent = 0 if node.parent < 0 else ids[node.parent]
+        identity = model.addJoint(
+            parent, _joint_model(node.joint), pin.SE3(matrix), node.joint.name
+        )
+        body = node.body or Inertia(0.0)
+        inertia = pin.Inertia(body.mass, np.array(body.centre), np.array(body.tensor))
+        model.appendBodyToJoint(identity, inertia, pin.SE3.Identity())
+        ids.append(identity)
+    return model
+
+
+def _joint_model(joint: Joint) -> Any:
+    axis = np.array(joint.axis) / np.linalg.norm(joint.axis)
+    if joint.kind is JointKind.PRISMATIC:
+        return pin.JointModelPrismaticUnaligned(axis)
+    return pin.JointModelRevoluteUnaligned(axis)

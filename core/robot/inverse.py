@@ -1,0 +1,235 @@
+"""Inverse kinematics of an arm: all branches, by the closed form that fits or numerically."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import MotionError
+from .arm_geometry import EXACT, Family, Recognised
+from .chain import Chain
+from .closed_form import SLACK
+from .joint import Joint, JointKind
+from .numerical import solve_numerically
+from .spherical_wrist import solve_spherical_wrist
+from .tracking import track
+from .ur_geometry import solve_parallel_axes
+
+FloatArray = NDArray[np.float64]
+FULL_TURN = 2 * math.pi
+LIMIT_SLACK = 1e-9
+"""rad or m by which a solution may miss a limit; it is set onto the limit."""
+UNSURE = 1e-6
+"""m out of reach that rounding near two singularities may feign: Newton's method decides."""
+SINGULAR = 1e-6
+"""m (shoulder) or sine (elbow, wrist) below which a solution counts as singular."""
+SAME = 1e-6
+"""rad or m within which two solutions are one."""
+SOLVERS = {
+    Family.SPHERICAL_WRIST: solve_spherical_wrist,
+    Family.PARALLEL_AXES: solve_parallel_axes,
+}
+
+
+class UnreachableError(MotionError):
+    """A pose that the arm cannot take.
+
+    Args:
+        message: by how much it is missed, and what to do.
+        distance: m by which the wrist is out of reach; 0 if only limits are in the way.
+    """
+
+    def __init__(self, message: str, distance: float = 0.0) -> None:
+        super().__init__(message)
+        self.distance = distance
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """Which of the up to eight solutions of a six-axis arm.
+
+    Args:
+        shoulder: whether the wrist's centre lies behind axis 1, that is, on the side of -x when
+            axis 2 points along y and axis 1 along z.
+        elbow: whether the forearm (from axis 3 to the wrist's centre, or to axis 4 if that is
+            parallel) turns against axis 2 from the upper arm's direction.
+        wrist: whether axis 6 is turned against axis 5 from axis 4 (axis 2 if axes 2, 3 and 4
+            are parallel), the shorter way.
+    """
+
+    shoulder: bool
+    elbow: bool
+    wrist: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solution:
+    """A configuration of the arm.
+
+    Args:
+        q: (n,) rad or m, within the limits; of equivalent turns the one nearest to zero.
+        branch: None if it was found numerically.
+        singular: which of ``"shoulder"``, ``"elbow"``, ``"wrist"`` are singular. There other
+            solutions lie infinitely near; q is one of them.
+    """
+
+    q: FloatArray
+    branch: Branch | None
+    singular: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A solution before limits are looked at; a ``doubtful`` one may equal another."""
+
+    q: FloatArray
+    branch: Branch | None
+    singular: frozenset[str]
+    doubtful: bool
+
+
+def solve(
+    chain: Chain, joints: Sequence[Joint], known: Recognised | None, R: FloatArray, p: FloatArray
+) -> tuple[Solution, ...]:
+    """All solutions within limits for a flange pose in the base's frame.
+
+    Args:
+        chain: from the base to the flange, over the n joints.
+        joints: the arm's joints.
+        known: the closed form that fits the chain; None to search numerically, where not every
+            solution need be found, and of an arm with more than six joints only samples can be.
+        R, p: (3, 3), (3,) m, the pose.
+
+    Raises:
+        UnreachableError: there is none.
+    """
+    if known is None:
+        candidates, least = _searched(chain, joints, R, p)
+    else:
+        candidates, least = _closed_form(chain, known, R, p)
+    if not candidates:
+        raise UnreachableError(_out_of_reach(known, least), least)
+    settled, inside = _settled(joints, np.array([candidate.q for candidate in candidates]))
+    solutions: list[Solution] = []
+    for candidate, q, fits in zip(candidates, settled, inside, strict=True):
+        if not fits or (candidate.doubtful and any(_same(candidate, q, s) for s in solutions)):
+            continue
+        solutions.append(Solution(q, candidate.branch, candidate.singular))
+    if not solutions:
+        raise UnreachableError(_beyond_limits(joints, candidates))
+    return tuple(solutions)
+
+
+def _closed_form(
+    chain: Chain, known: Recognised, R: FloatArray, p: FloatArray
+) -> tuple[list[Candidate], float]:
+    q, measures = np.empty((8, 6)), np.empty((8, 4))
+    least = float(SOLVERS[known.family](known.geometry, R, p, q, measures))
+    candidates = []
+    for number, bits in enumerate(product((False, True), repeat=3)):
+        *sizes, missing = measures[number]
+        if missing > max(UNSURE, known.error):
+            continue
+        ideal = known.error <= EXACT and missing <= SLACK
+        if not ideal and not track(chain, q[number], R, p, np.arange(6), q[number])[0]:
+            continue
+        names = zip(("shoulder", "elbow", "wrist"), sizes, strict=True)
+        singular = frozenset(name for name, size in names if abs(size) < SINGULAR)
+        doubtful = bool(singular) or not ideal
+        candidates.append(Candidate(q[number], Branch(*bits), singular, doubtful))
+    return candidates, least
+
+
+def _searched(
+    chain: Chain, joints: Sequence[Joint], R: FloatArray, p: FloatArray
+) -> tuple[list[Candidate], float]:
+    lower = np.array([joint.lower for joint in joints])
+    upper = np.array([joint.upper for joint in joints])
+    found, least = solve_numerically(chain, lower, upper, R, p)
+    return [Candidate(q, None, frozenset(), True) for q in found], least
+
+
+def _same(candidate: Candidate, q: FloatArray, other: Solution) -> bool:
+    """Whether a solution is there already, or lies in the same family of a singular wrist."""
+    if "wrist" in candidate.singular and "wrist" in other.singular:
+        return bool(np.abs(q[:3] - other.q[:3]).max() < SAME)
+    apart = np.abs(q - other.q)
+    return bool(np.minimum(apart, np.abs(FULL_TURN - apart)).max() < SAME)
+
+
+def _turns(joint: Joint, value: float) -> list[float]:
+    """Equivalent values of a joint within its limits."""
+    if joint.kind is JointKind.PRISMATIC:
+        steps = [value]
+    else:
+        first = math.ceil((joint.lower - LIMIT_SLACK - value) / FULL_TURN)
+        last = math.floor((joint.upper + LIMIT_SLACK - value) / FULL_TURN)
+        steps = [value + k * FULL_TURN for k in range(first, last + 1)]
+    inside = [x for x in steps if joint.lower - LIMIT_SLACK <= x <= joint.upper + LIMIT_SLACK]
+    return [min(max(x, joint.lower), joint.upper) for x in inside]
+
+
+def _settled(joints: Sequence[Joint], q: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Configurations (C, n) turned into the limits, nearest to zero, and which of them fit (C,)."""
+    lower = np.array([joint.lower for joint in joints])
+    upper = np.array([joint.upper for joint in joints])
+    revolute = np.array([joint.kind is JointKind.REVOLUTE for joint in joints])
+    first = np.ceil((lower - LIMIT_SLACK - q) / FULL_TURN)
+    last = np.floor((upper + LIMIT_SLACK - q) / FULL_TURN)
+    nearest = np.clip(np.round(-q / FULL_TURN), first, last)
+    turned = np.where(revolute, q + FULL_TURN * nearest, q)
+    inside = (turned >= lower - LIMIT_SLACK) & (turned <= upper + LIMIT_SLACK)
+    fits: NDArray[np.bool_] = np.all(inside, axis=1)
+    return np.clip(turned, lower, upper), fits
+
+
+def equivalent_turns(joints: Sequence[Joint], q: FloatArray) -> FloatArray:
+    """All configurations (T, n) within limits that differ from q by full turns, nearest first."""
+    turns = [_turns(joint, float(x)) for joint, x in zip(joints, q, strict=True)]
+    rows = np.array(list(product(*turns)), dtype=float).reshape(-1, len(joints))
+    order = np.argsort(np.abs(rows - q).sum(axis=1), kind="stable")
+    return np.asarray(rows[order])
+
+
+def _out_of_reach(known: Recognised | None, least: float) -> str:
+    if known is None:
+        return (
+            f"no configuration was found for the pose; the nearest misses it by {least:.3g} (m, "
+            "rad): move the target into the arm's reach, or give it as joint values"
+        )
+    return (
+        f"the pose is out of reach: the wrist misses it by {least:.4g} m; "
+        "move the target, the base or the tool"
+    )
+
+
+def _beyond_limits(joints: Sequence[Joint], candidates: list[Candidate]) -> str:
+    """A sentence on the solution that breaks its worst limit by least."""
+    worst = [_worst(joints, candidate.q) for candidate in candidates]
+    excess, joint, value = min(worst, key=lambda found: found[0])
+    if joint.kind is JointKind.REVOLUTE:
+        unit, scale = "°", 180 / math.pi
+    else:
+        unit, scale = " m", 1.0
+    return (
+        f"every solution breaks a joint limit; the nearest needs {joint.name} at "
+        f"{value * scale:.4g}{unit}, {excess * scale:.4g}{unit} beyond its range of "
+        f"{joint.lower * scale:.4g}{unit} to {joint.upper * scale:.4g}{unit}"
+    )
+
+
+def _worst(joints: Sequence[Joint], q: FloatArray) -> tuple[float, Joint, float]:
+    """How far the worst joint is beyond its limits at the nearest turn, which, and its value."""
+    found = []
+    for joint, value in zip(joints, map(float, q), strict=True):
+        shifts = (-2, -1, 0, 1, 2) if joint.kind is JointKind.REVOLUTE else (0,)
+        turned = [value + k * FULL_TURN for k in shifts]
+        excess = [max(joint.lower - x, x - joint.upper, 0.0) for x in turned]
+        nearest = int(np.argmin(excess))
+        found.append((excess[nearest], joint, turned[nearest]))
+    return max(found, key=lambda entry: entry[0])

@@ -1,0 +1,317 @@
+"""A robot: one immutable description from which kinematics, limits and dynamics are derived."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError, UnknownNameError
+from ..spatial.pose import IDENTITY, Pose, Vector3
+from .arm_geometry import Recognised, recognise
+from .assembly import Stage, assemble
+from .chain import Chain
+from .chain_derivatives import hessians, jacobian_rates
+from .chain_kernels import jacobians, poses
+from .dynamics import Dynamics, Tree, TreeNode
+from .inertia import Inertia
+from .inverse import Solution, equivalent_turns, solve
+from .joint import ExternalAxis, ExternalRole, Joint, Limits
+from .shape import LinkShape
+
+FloatArray = NDArray[np.float64]
+STANDARD_GRAVITY: Vector3 = (0.0, 0.0, -9.80665)
+"""m/s² (3rd General Conference on Weights and Measures, 1901)."""
+
+
+@dataclass(frozen=True)
+class Robot:
+    """An arm with its external axes.
+
+    A configuration holds N values: the arm's n joints from base to flange, then the external
+    axes. All methods work over leading axes: ``q`` is (..., N).
+
+    Args:
+        name: ``vendor/model``.
+        joints: the arm's joints; each placement is in the frame behind the joint before, the
+            first one in the base's frame.
+        base: the base's frame in the world, or in the frame behind the track that carries it.
+        flange: the flange's frame in the frame behind the last joint.
+        links: the bodies behind each joint, in that joint's frame; empty if not known.
+        external_axes: tracks and tables.
+        shapes: the links' shapes.
+        payload: rated payload, kg; None if not known.
+        gravity: m/s², in the world.
+        origins: what each group of numbers rests on, e.g. ``"velocity": "published: …"``.
+
+    Raises:
+        InputError: two axes share a name, the links are not one a joint, a shape belongs to no
+            link, or an external axis stands on one that does not exist.
+    """
+
+    name: str
+    joints: tuple[Joint, ...]
+    base: Pose = IDENTITY
+    flange: Pose = IDENTITY
+    links: tuple[Inertia, ...] = ()
+    external_axes: tuple[ExternalAxis, ...] = ()
+    shapes: tuple[LinkShape, ...] = ()
+    payload: float | None = None
+    gravity: Vector3 = STANDARD_GRAVITY
+    origins: Mapping[str, str] = field(default_factory=dict, hash=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "origins", MappingProxyType(dict(self.origins)))
+        if not self.joints:
+            raise InputError(f"robot {self.name} has no joint")
+        names = self.axis_names
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise InputError(f"robot {self.name}: several axes are called {twice[0]!r}")
+        if self.links and len(self.links) != self.arm_size:
+            raise InputError(
+                f"robot {self.name} has {self.arm_size} joints but inertias of "
+                f"{len(self.links)} links; give one behind each joint, or none"
+            )
+        for shape in self.shapes:
+            if not 0 <= shape.link <= self.arm_size:
+                raise InputError(f"robot {self.name}: a shape belongs to link {shape.link}")
+        for axis in self.external_axes:
+            self.frame_stages(axis.name)
+        self._carrying_track()
+
+    @property
+    def arm_size(self) -> int:
+        """n, the number of the arm's own joints."""
+        return len(self.joints)
+
+    @property
+    def size(self) -> int:
+        """N, the number of values of a configuration."""
+        return len(self.joints) + len(self.external_axes)
+
+    @property
+    def axis_names(self) -> tuple[str, ...]:
+        """Names of all N axes."""
+        return (
+            *(joint.name for joint in self.joints),
+            *(axis.name for axis in self.external_axes),
+        )
+
+    @cached_property
+    def limits(self) -> Limits:
+        """Limits of all N values."""
+        return Limits.of([*self.joints, *(axis.joint for axis in self.external_axes)])
+
+    def external_axis(self, name: str) -> ExternalAxis:
+        """The external axis of that name.
+
+        Raises:
+            UnknownNameError: there is none.
+        """
+        for axis in self.external_axes:
+            if axis.name == name:
+                return axis
+        known = [axis.name for axis in self.external_axes]
+        raise UnknownNameError(f"external axis of {self.name}", name, known)
+
+    def with_base(self, base: Pose) -> Robot:
+        """The same robot standing elsewhere."""
+        return replace(self, base=base)
+
+    def with_external_axes(self, axes: Sequence[ExternalAxis]) -> Robot:
+        """The same arm with these external axes instead of those it had."""
+        return replace(self, external_axes=tuple(axes))
+
+    def with_gravity(self, gravity: Vector3) -> Robot:
+        """The same robot under another gravity, m/s² in the world."""
+        return replace(self, gravity=gravity)
+
+    # Chains
+
+    def frame_stages(self, axis: str | None) -> list[Stage]:
+        """The stages from the world to the frame behind an external axis (None: the world)."""
+        stages: list[Stage] = []
+        names = [known.name for known in self.external_axes]
+        seen: list[str] = []
+        while axis is not None:
+            if axis in seen:
+                raise InputError(f"external axes carry each other in a ring: {seen}")
+            seen.append(axis)
+            carrier = self.external_axis(axis)
+            stages.insert(0, (carrier.joint, self.arm_size + names.index(axis)))
+            axis = carrier.carried_by
+        return stages
+
+    def _carrying_track(self) -> str | None:
+        """The track that the base stands on."""
+        tracks = [axis for axis in self.external_axes if axis.role is ExternalRole.TRACK]
+        below = {axis.carried_by for axis in tracks}
+        carrying = [axis.name for axis in tracks if axis.name not in below]
+        if len(carrying) > 1:
+            raise InputError(
+                f"robot {self.name} stands on several tracks: {', '.join(carrying)}; "
+                "say with carried_by which one stands on which"
+            )
+        return carrying[0] if carrying else None
+
+    def base_stages(self) -> list[Stage]:
+        """The stages from the world to the base's frame."""
+        return [*self.frame_stages(self._carrying_track()), self.base]
+
+    def flange_stages(self) -> list[Stage]:
+        """The stages from the world to the flange."""
+        arm: list[Stage] = [(joint, index) for index, joint in enumerate(self.joints)]
+        return [*self.base_stages(), *arm, self.flange]
+
+    @cached_property
+    def chain(self) -> Chain:
+        """The chain from the world to the flange."""
+        return assemble(self.flange_stages())
+
+    @cached_property
+    def base_chain(self) -> Chain:
+        """The chain from the world to the base's frame."""
+        return assemble(self.base_stages())
+
+    @cached_property
+    def arm_chain(self) -> Chain:
+        """The chain from the base's frame to the flange, over the arm's n values."""
+        return assemble([*((joint, k) for k, joint in enumerate(self.joints)), self.flange])
+
+    # Kinematics
+
+    def _rows(self, *arrays: ArrayLike) -> tuple[tuple[int, ...], list[FloatArray]]:
+        """The leading shape, and the arrays (..., N) as contiguous (M, N)."""
+        given = np.broadcast_arrays(*(np.asarray(array, dtype=float) for array in arrays))
+        shape = given[0].shape
+        if not shape or shape[-1] != self.size:
+            raise InputError(
+                f"robot {self.name} has {self.size} axes ({', '.join(self.axis_names)}); "
+                f"an array of shape {shape} does not fit"
+            )
+        return shape[:-1], [np.ascontiguousarray(a.reshape(-1, self.size)) for a in given]
+
+    def forward(self, q: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """The flange in the world: rotations (..., 3, 3) and positions (..., 3) m."""
+        lead, (rows,) = self._rows(q)
+        R, p = poses(self.chain, rows)
+        return R.reshape(*lead, 3, 3), p.reshape(*lead, 3)
+
+    def flange_pose(self, q: ArrayLike) -> Pose:
+        """The flange in the world for one configuration (N,)."""
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = self.forward(q)
+        return Pose.from_matrix(matrix)
+
+    def jacobian(self, q: ArrayLike) -> FloatArray:
+        """Jacobians (..., 6, N) of the flange's linear, then angular velocity, world axes."""
+        lead, (rows,) = self._rows(q)
+        return np.asarray(jacobians(self.chain, rows)).reshape(*lead, 6, self.size)
+
+    def hessian(self, q: ArrayLike) -> FloatArray:
+        """Derivatives ∂J[:, j]/∂q[k] of the Jacobian, (..., 6, N, N) with j before k."""
+        lead, (rows,) = self._rows(q)
+        return np.asarray(hessians(self.chain, rows)).reshape(*lead, 6, self.size, self.size)
+
+    def jacobian_derivative(self, q: ArrayLike, dq: ArrayLike) -> FloatArray:
+        """Rates dJ/dt (..., 6, N) of the Jacobian for velocities dq (..., N)."""
+        lead, (rows, rates) = self._rows(q, dq)
+        return np.asarray(jacobian_rates(self.chain, rows, rates)).reshape(*lead, 6, self.size)
+
+    @cached_property
+    def recognised(self) -> Recognised | None:
+        """The closed form of inverse kinematics that fits the arm, None if none does."""
+        return recognise(self.arm_chain)
+
+    def inverse(
+        self, pose: Pose | FloatArray, external: Sequence[float] = ()
+    ) -> tuple[Solution, ...]:
+        """All configurations of the arm within limits that bring the flange to a pose.
+
+        Args:
+            pose: of the flange in the world, as a pose or a matrix (4, 4).
+            external: values of all external axes.
+
+        Raises:
+            UnreachableError: there is none; it says by how much.
+        """
+        if len(external) != len(self.external_axes):
+            raise InputError(
+                f"robot {self.name} has {len(self.external_axes)} external axes; "
+                f"{len(external)} values were given"
+            )
+        matrix = pose.matrix() if isinstance(pose, Pose) else np.asarray(pose, dtype=float)
+        base_R, base_p = poses(self.base_chain, np.array([[0.0] * self.arm_size + list(external)]))
+        R = base_R[0].T @ matrix[:3, :3]
+        p = base_R[0].T @ (matrix[:3, 3] - base_p[0])
+        return solve(self.arm_chain, self.joints, self.recognised, R, p)
+
+    def turns(self, q: ArrayLike) -> FloatArray:
+        """Arm configurations (T, n) within limits, whole turns away from q (n,), nearest first."""
+        return equivalent_turns(self.joints, np.asarray(q, dtype=float))
+
+    # Dynamics
+
+    def dynamics(self, load: Inertia | None = None) -> Dynamics:
+        """The equations of motion with a load in the flange's frame.
+
+        Raises:
+            InputError: the links' inertias are not known.
+        """
+        if not self.links:
+            raise InputError(
+                f"the dynamics of {self.name} need the inertias of its links, which are not known; "
+                "add them to its description ([[link]] in a catalogue file, <inertial> in URDF)"
+            )
+        return Dynamics.of(self._tree(load or Inertia(0.0)))
+
+    def _tree(self, load: Inertia) -> Tree:
+        """All axes as a tree of joints with a body behind each."""
+        nodes: list[TreeNode] = []
+        places: dict[str | None, int] = {None: -1}
+
+        def plant(axis: ExternalAxis) -> None:
+            if axis.name in places:
+                return
+            if axis.carried_by is not None:
+                plant(self.external_axis(axis.carried_by))
+            index = self.axis_names.index(axis.name)
+            parent = places[axis.carried_by]
+            nodes.append(TreeNode(axis.joint, parent, IDENTITY, index, axis.inertia))
+            places[axis.name] = len(nodes) - 1
+
+        for axis in self.external_axes:
+            plant(axis)
+        parent, step = places[self._carrying_track()], self.base
+        for index, (joint, body) in enumerate(zip(self.joints, self.links, strict=True)):
+            if index == self.arm_size - 1:
+                body = body + load.placed(self.flange)
+            nodes.append(TreeNode(joint, parent, step, index, body))
+            parent, step = len(nodes) - 1, IDENTITY
+        return Tree(self.name, tuple(nodes), self.gravity)
+
+    def inverse_dynamics(
+        self, q: ArrayLike, dq: ArrayLike, ddq: ArrayLike, load: Inertia | None = None
+    ) -> FloatArray:
+        """Torques (..., N) N m (N if prismatic) of a motion; see `Dynamics.torques`.
+
+        Args:
+            q, dq, ddq: (..., N).
+            load: carried by the flange, in the flange's frame; see `carried_inertia`.
+        """
+        lead, rows = self._rows(q, dq, ddq)
+        return self.dynamics(load).torques(*rows).reshape(*lead, self.size)
+
+    def inverse_dynamics_derivatives(
+        self, q: ArrayLike, dq: ArrayLike, ddq: ArrayLike, load: Inertia | None = None
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """∂τ/∂q, ∂τ/∂q̇ and ∂τ/∂q̈, each (..., N, N) with τ before the variable."""
+        lead, rows = self._rows(q, dq, ddq)
+        parts = self.dynamics(load).torque_derivatives(*rows)
+        a, b, c = (part.reshape(*lead, self.size, self.size) for part in parts)
+        return a, b, c

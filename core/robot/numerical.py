@@ -1,0 +1,84 @@
+"""Numerical inverse kinematics from many starts, for arms without a closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from .chain import Chain
+from .chain_kernels import jacobian
+from .tracking import least_step, pose_error, track
+
+FloatArray = NDArray[np.float64]
+
+STARTS = 96
+LEVENBERG_ITERATIONS = 60
+CLOSE = 1e-3
+"""m and rad of pose error at which Newton's method takes over."""
+
+
+@njit(cache=True, error_model="numpy")
+def approach(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray) -> float:
+    """Move q (n,) towards a pose by Levenberg's method; the error left (m, rad) is returned."""
+    size = q.size
+    joints = np.arange(size)
+    J = np.empty((6, size))
+    here_R, here_p = np.empty((3, 3)), np.empty(3)
+    error, step = np.empty(6), np.empty(size)
+    jacobian(chain, q, here_R, here_p, J)
+    left = pose_error(R, p, here_R, here_p, error)
+    damping = 0.3
+    trial = np.empty(size)
+    for _ in range(LEVENBERG_ITERATIONS):
+        if left < CLOSE or damping > 1e3:
+            break
+        least_step(J, joints, error, damping, step)
+        trial[:] = q + step
+        jacobian(chain, trial, here_R, here_p, J)
+        found = pose_error(R, p, here_R, here_p, error)
+        if found < left:
+            q[:] = trial
+            left = found
+            damping = max(1e-4, 0.4 * damping)
+        else:
+            damping *= 3.0
+            jacobian(chain, q, here_R, here_p, J)
+            pose_error(R, p, here_R, here_p, error)
+    return float(left)
+
+
+def starts(lower: FloatArray, upper: FloatArray) -> FloatArray:
+    """Starts (S, n) spread evenly over the joints' ranges, the first in their middle.
+
+    The additive recurrence of M. Roberts, "The unreasonable effectiveness of quasirandom
+    sequences", 2018: the generalised golden ratio in n dimensions.
+    """
+    size = lower.size
+    ratio = 2.0
+    for _ in range(60):
+        ratio = (1.0 + ratio) ** (1.0 / (size + 1))
+    fractions = (0.5 + np.outer(np.arange(STARTS), ratio ** -np.arange(1.0, size + 1))) % 1.0
+    spread: FloatArray = lower + fractions * (upper - lower)
+    return spread
+
+
+def solve_numerically(
+    chain: Chain, lower: FloatArray, upper: FloatArray, R: FloatArray, p: FloatArray
+) -> tuple[list[FloatArray], float]:
+    """Configurations (n,) found for a flange pose, and the smallest pose error left.
+
+    Not every solution need be among them, and equal ones may come several times. Angles are not
+    brought into the limits.
+    """
+    found: list[FloatArray] = []
+    least = np.inf
+    joints = np.arange(lower.size)
+    for start in starts(lower, upper):
+        left = approach(chain, start, R, p)
+        least = min(least, left)
+        if left < 10 * CLOSE:
+            q = np.empty_like(start)
+            if track(chain, start, R, p, joints, q)[0]:
+                found.append(q)
+    return found, least

@@ -1,0 +1,237 @@
+"""Robots from URDF files, read by yourdfpy.
+
+What URDF cannot say is assumed, and the robot's origins say so: accelerations always; ranges of
+continuous joints; velocities and efforts that are missing or zero.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import InputError, UnknownNameError
+from ..spatial.pose import IDENTITY, Pose
+from .inertia import Inertia
+from .joint import Joint, JointKind
+from .model import Robot
+
+ACCELERATION_TIME = 0.25
+"""s in which a joint is assumed to reach its top speed."""
+CONTINUOUS_RANGE = 2 * math.pi
+"""rad either way that a continuous joint is assumed to turn."""
+KINDS = {
+    "revolute": JointKind.REVOLUTE,
+    "continuous": JointKind.REVOLUTE,
+    "prismatic": JointKind.PRISMATIC,
+}
+
+
+def load_urdf(path: str | Path, base: str | None = None, tip: str | None = None) -> Robot:
+    """The serial arm between two links of a URDF file.
+
+    Fixed joints on the way are merged into placements, bodies fixed to the arm into its links.
+    Meshes are not read.
+
+    Args:
+        path: the file.
+        base: name of the base's link; None for the root.
+        tip: name of the flange's link; None for the only leaf.
+
+    Raises:
+        InputError: the file is no URDF; the arm branches or depends on other joints; a joint's
+            kind or velocity cannot be used.
+        UnknownNameError: there is no link of that name.
+    """
+    reader = _Reader(Path(path), _parse(Path(path)))
+    return reader.robot(base or reader.root(), tip)
+
+
+def _parse(path: Path) -> Any:
+    import yourdfpy
+
+    if not path.is_file():
+        raise InputError(f"{path}: there is no such file")
+    try:
+        urdf = yourdfpy.URDF.load(
+            str(path), build_scene_graph=False, load_meshes=False, mesh_dir=str(path.parent)
+        )
+    except Exception as error:  # the parser raises whatever its XML library does
+        raise InputError(f"{path}: is not a URDF file: {error}") from error
+    return urdf.robot
+
+
+@dataclass
+class _Reader:
+    """One parsed file."""
+
+    path: Path
+    model: Any
+
+    def error(self, message: str) -> InputError:
+        return InputError(f"{self.path}: {message}")
+
+    @property
+    def links(self) -> dict[str, Any]:
+        return {link.name: link for link in self.model.links}
+
+    def root(self) -> str:
+        children = {joint.child for joint in self.model.joints}
+        roots = [name for name in self.links if name not in children]
+        if len(roots) != 1:
+            raise self.error(f"has {len(roots)} root links ({', '.join(roots)}); name the base")
+        return roots[0]
+
+    def robot(self, base: str, tip: str | None) -> Robot:
+        for name in (base, tip):
+            if name is not None and name not in self.links:
+                raise UnknownNameError(f"link in {self.path}", name, self.links)
+        way = self.way(base, tip or self.leaf(base))
+        assumed: dict[str, list[str]] = {"range": [], "velocity": [], "effort": []}
+        joints, bodies, pending = [], [], IDENTITY
+        for element in way:
+            placement = pending @ _pose(element.origin)
+            if element.type == "fixed":
+                pending = placement
+                continue
+            joints.append(self.joint(element, placement, assumed))
+            bodies.append(self.body(element.child, way))
+            pending = IDENTITY
+        if not joints:
+            raise self.error("there is no moving joint between base and tip")
+        known = [body for body in bodies if body is not None]
+        return Robot(
+            name=self.model.name or self.path.stem,
+            joints=tuple(joints),
+            flange=pending,
+            links=tuple(known) if len(known) == len(joints) else (),
+            origins=self.origins(assumed, len(known) == len(joints)),
+        )
+
+    def leaf(self, base: str) -> str:
+        """The only leaf below ``base``; leaves hanging on fixed joints count as well."""
+        leaves, stack = [], [base]
+        while stack:
+            name = stack.pop()
+            children = [joint.child for joint in self.model.joints if joint.parent == name]
+            stack += children
+            if not children:
+                leaves.append(name)
+        if len(leaves) != 1:
+            raise self.error(f"ends in several links ({', '.join(sorted(leaves))}); name the tip")
+        return leaves[0]
+
+    def way(self, base: str, tip: str) -> list[Any]:
+        """The joints from base to tip."""
+        above = {joint.child: joint for joint in self.model.joints}
+        way: list[Any] = []
+        name = tip
+        while name != base:
+            if name not in above:
+                raise self.error(f"link {tip!r} does not hang on {base!r}")
+            way.insert(0, above[name])
+            name = above[name].parent
+        return way
+
+    def joint(self, element: Any, placement: Pose, assumed: dict[str, list[str]]) -> Joint:
+        name = element.name
+        if element.mimic is not None:
+            raise self.error(
+                f"joint {name!r} mimics {element.mimic.joint!r}; "
+                "only arms whose joints move independently can be used"
+            )
+        if element.type not in KINDS:
+            raise self.error(f"joint {name!r} is {element.type}; known: {', '.join(KINDS)}, fixed")
+        kind, limit = KINDS[element.type], element.limit
+        axis = np.array([1.0, 0.0, 0.0] if element.axis is None else element.axis, dtype=float)
+        if not np.linalg.norm(axis) > 0.0:
+            raise self.error(f"joint {name!r} has no axis")
+        x, y, z = (float(v) for v in axis / np.linalg.norm(axis))
+        lower, upper = -CONTINUOUS_RANGE, CONTINUOUS_RANGE
+        if element.type == "continuous":
+            assumed["range"].append(name)
+        elif limit is None or limit.lower is None or limit.upper is None:
+            raise self.error(f"joint {name!r} needs <limit lower= upper= velocity=>")
+        else:
+            lower, upper = float(limit.lower), float(limit.upper)
+        velocity = limit.velocity if limit is not None else None
+        if not velocity:
+            if kind is JointKind.PRISMATIC:
+                raise self.error(f"joint {name!r} needs <limit velocity=>")
+            velocity = math.pi
+            assumed["velocity"].append(name)
+        effort = limit.effort if limit is not None else None
+        if not effort:
+            assumed["effort"].append(name)
+        return Joint(
+            name=name,
+            placement=placement,
+            axis=(x, y, z),
+            lower=lower,
+            upper=upper,
+            velocity=float(velocity),
+            acceleration=float(velocity) / ACCELERATION_TIME,
+            effort=float(effort) if effort else None,
+            kind=kind,
+        )
+
+    def body(self, link: str, way: list[Any]) -> Inertia | None:
+        """The link's body with all that is fixed to it; None if there is no inertial at all."""
+        bodies: list[Inertia] = []
+        stack = [(link, IDENTITY)]
+        while stack:
+            name, placement = stack.pop()
+            inertial = self.links[name].inertial
+            if inertial is not None:
+                bodies.append(_inertia(inertial).placed(placement))
+            for joint in self.model.joints:
+                if joint.parent != name:
+                    continue
+                if joint.type == "fixed":
+                    stack.append((joint.child, placement @ _pose(joint.origin)))
+                elif joint not in way:
+                    raise self.error(
+                        f"the arm branches at link {name!r}: joint {joint.name!r} moves too; "
+                        "only serial arms can be used, so remove it or make it fixed"
+                    )
+        if not bodies:
+            return None
+        total = bodies[0]
+        for body in bodies[1:]:
+            total = total + body
+        return total
+
+    def origins(self, assumed: dict[str, list[str]], inertias: bool) -> dict[str, str]:
+        file = f"published: {self.path.name}"
+        rules = {
+            "range": f"assumed: ±{math.degrees(CONTINUOUS_RANGE):.0f}° for continuous joints",
+            "velocity": "assumed: 180 °/s where not given",
+            "effort": "unknown: not given",
+        }
+        origins = {
+            "geometry": file,
+            "acceleration": f"assumed: maximum speed in {ACCELERATION_TIME} s",
+        }
+        for group, rule in rules.items():
+            names = assumed[group]
+            origins[group] = f"{rule} ({', '.join(names)}); else {file}" if names else file
+        if inertias:
+            origins["inertia"] = file
+        return origins
+
+
+def _pose(origin: Any) -> Pose:
+    return IDENTITY if origin is None else Pose.from_matrix(np.asarray(origin, dtype=float))
+
+
+def _inertia(inertial: Any) -> Inertia:
+    tensor = np.zeros((3, 3)) if inertial.inertia is None else np.asarray(inertial.inertia)
+    a, b, c = (tuple(float(v) for v in row) for row in tensor)
+    body = Inertia(
+        float(inertial.mass or 0.0),
+        tensor=((a[0], a[1], a[2]), (b[0], b[1], b[2]), (c[0], c[1], c[2])),
+    )
+    return body.placed(_pose(inertial.origin))

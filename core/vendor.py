@@ -1,0 +1,266 @@
+"""What a vendor supplies: robots, a motion model, labels of configurations, its language."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Protocol, TypeVar, runtime_checkable
+
+from .errors import InputError, UnknownNameError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from .motion.model import MotionModel
+    from .program.program import Program
+    from .program.target import Configuration
+    from .robot.model import Robot
+
+NAME = re.compile(r"[a-z0-9][a-z0-9_.-]*")
+LANGUAGE_PARTS = ("reader", "writer", "patcher", "recorder")
+
+Part = TypeVar("Part")
+Sources = Mapping[str, str]
+"""Texts of a program's source files by file name."""
+
+
+@runtime_checkable
+class Reader(Protocol):
+    """Reads the vendor's source; errors are `SourceError` with file, line and column."""
+
+    def read(self, text: str, file: str, entry: str, robot: Robot | None) -> Program:
+        """The program that the routine ``entry`` of ``text`` drives.
+
+        Args:
+            text: the source.
+            file: its name, for messages.
+            entry: the routine.
+            robot: whose external axes the program moves; None if it moves none.
+        """
+        ...
+
+    def read_file(self, path: Path, entry: str, robot: Robot | None) -> Program:
+        """The same of a file, and of the files that belong to it."""
+        ...
+
+
+@runtime_checkable
+class Writer(Protocol):
+    """Writes the vendor's source."""
+
+    def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
+        """Source files that the robot's controller would load, by file name.
+
+        Args:
+            program: what to say.
+            robot: for its external axes.
+            options: of the language, by name; unknown ones are refused.
+
+        Raises:
+            FlybyError: the language cannot say what the program holds.
+        """
+        ...
+
+
+@runtime_checkable
+class Patcher(Protocol):
+    """Changes targets, zones and speeds in the user's own files and no other byte."""
+
+    def patch(self, program: Program, sources: Sources) -> Sources:
+        """``sources``, from which ``program`` was read, with the numbers that ``program`` has."""
+        ...
+
+
+@runtime_checkable
+class Recorder(Protocol):
+    """Writes source that drives a program and logs itself."""
+
+    def record(self, program: Program, robot: Robot, period: float) -> Sources:
+        """Source files by file name; joint values are logged every ``period`` s."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Vendor:
+    """One vendor. What takes time is a callable, called when it is needed, and cached.
+
+    Args:
+        name: lower case, the first part of its robots' names (``abb`` in ``abb/irb1200-5-090``).
+        robots: each robot's name and what loads it.
+        motion: loads the motion model: the parameters of blending and stamping.
+        label: the configuration label of joint values (N,) rad of a robot, None where the vendor
+            labels none.
+        reader, writer, patcher, recorder: of the vendor's language; None if there is none.
+        suffixes: of the files that the reader takes, with the dot, in lower case.
+        emulation_only: robots that the vendor's language does not drive, with the reason.
+
+    Raises:
+        InputError: a part is missing, or of a wrong kind.
+    """
+
+    name: str
+    robots: Mapping[str, Callable[[], Robot]]
+    motion: Callable[[], MotionModel]
+    label: Callable[[Robot, NDArray[np.float64]], Configuration | None]
+    reader: Reader | None = None
+    writer: Writer | None = None
+    patcher: Patcher | None = None
+    recorder: Recorder | None = None
+    suffixes: tuple[str, ...] = ()
+    emulation_only: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        _check_name("a vendor", self.name)
+        _check_parts(self)
+        object.__setattr__(self, "robots", MappingProxyType({**self.robots}))
+        object.__setattr__(self, "emulation_only", MappingProxyType({**self.emulation_only}))
+        object.__setattr__(self, "motion", cache(self.motion))
+
+    def robot(self, name: str) -> Robot:
+        """The robot ``name``, with or without the vendor's own name before it.
+
+        Raises:
+            UnknownNameError: the vendor has no such robot.
+        """
+        own = name.removeprefix(f"{self.name}/")
+        if own not in self.robots:
+            raise UnknownNameError(f"robot of {self.name}", own, self.robots)
+        return self.robots[own]()
+
+    def read(
+        self, text: str, file: str, entry: str = "main", robot: Robot | None = None
+    ) -> Program:
+        """The program in a source text; see `Reader.read`.
+
+        Raises:
+            InputError: the vendor has no reader.
+        """
+        return self._part(self.reader, "reader").read(text, file, entry, robot)
+
+    def read_file(
+        self, path: str | Path, entry: str = "main", robot: Robot | None = None
+    ) -> Program:
+        """The program in a source file; see `Reader.read_file`.
+
+        Raises:
+            InputError: the vendor has no reader.
+        """
+        return self._part(self.reader, "reader").read_file(Path(path), entry, robot)
+
+    def write(
+        self, program: Program, robot: Robot, options: Mapping[str, str] | None = None
+    ) -> Sources:
+        """The program as source files for ``robot``; see `Writer.write`.
+
+        Raises:
+            InputError: the vendor has no writer, or its language does not drive the robot.
+        """
+        self._check_language(robot)
+        return self._part(self.writer, "writer").write(program, robot, options or {})
+
+    def patch(self, program: Program, sources: Sources) -> Sources:
+        """``sources`` with the program's numbers; see `Patcher.patch`.
+
+        Raises:
+            InputError: the vendor has no patcher.
+        """
+        return self._part(self.patcher, "patcher").patch(program, sources)
+
+    def record(self, program: Program, robot: Robot, period: float) -> Sources:
+        """Source that drives ``robot`` and logs itself; see `Recorder.record`.
+
+        Raises:
+            InputError: the vendor has no recorder, or its language does not drive the robot.
+        """
+        self._check_language(robot)
+        return self._part(self.recorder, "recorder").record(program, robot, period)
+
+    def _check_language(self, robot: Robot) -> None:
+        reason = self.emulation_only.get(robot.name.removeprefix(f"{self.name}/"))
+        if reason is not None:
+            raise InputError(
+                f"no program can be written for {robot.name}: {reason}; it can be emulated only"
+            )
+
+    def _part(self, part: Part | None, name: str) -> Part:
+        if part is None:
+            have = [p for p in LANGUAGE_PARTS if getattr(self, p) is not None]
+            raise InputError(
+                f"{self.name} has no {name}: it supplies "
+                f"{', '.join(('robots', 'a motion model', 'labels', *have))}"
+                + ("" if name != "reader" else "; build the program in Python instead")
+            )
+        return part
+
+
+def lazy_robots(files: Iterable[Path]) -> dict[str, Callable[[], Robot]]:
+    """A catalogue of robot files: each is read when its robot is asked for, and only once.
+
+    Args:
+        files: TOML files (`core.robot.catalogue`); a robot is called as its file, without suffix.
+    """
+    return {path.stem: _once(path) for path in sorted(files)}
+
+
+def lazy_motion(path: Path) -> Callable[[], MotionModel]:
+    """The motion model of a TOML file, read when it is asked for."""
+
+    def load() -> MotionModel:
+        from .motion.model import load_motion_model
+
+        return load_motion_model(path)
+
+    return load
+
+
+def _once(path: Path) -> Callable[[], Robot]:
+    @cache
+    def load() -> Robot:
+        from .robot.catalogue import load_robot
+
+        return load_robot(path)
+
+    return load
+
+
+def _check_name(owner: str, name: str) -> None:
+    if not (isinstance(name, str) and NAME.fullmatch(name)):
+        raise InputError(
+            f"{owner} is called by lower-case letters, digits, '.', '_' and '-', not {name!r}"
+        )
+
+
+def _check_parts(vendor: Vendor) -> None:
+    if not isinstance(vendor.robots, Mapping) or not vendor.robots:
+        raise InputError(f"vendor {vendor.name!r}: 'robots' maps at least one name to a loader")
+    for name, load in vendor.robots.items():
+        _check_name(f"vendor {vendor.name!r}: a robot", name)
+        if not callable(load):
+            raise InputError(f"vendor {vendor.name!r}: robot {name!r} needs a loader, not {load!r}")
+    for part in ("motion", "label"):
+        if not callable(getattr(vendor, part)):
+            raise InputError(f"vendor {vendor.name!r}: {part!r} is missing, or cannot be called")
+    kinds = (Reader, Writer, Patcher, Recorder)
+    for part, kind in zip(LANGUAGE_PARTS, kinds, strict=True):
+        value = getattr(vendor, part)
+        if value is not None and not isinstance(value, kind):
+            raise InputError(f"vendor {vendor.name!r}: {part!r} is no {kind.__name__}: {value!r}")
+    _check_suffixes(vendor)
+    for name in vendor.emulation_only:
+        if name not in vendor.robots:
+            raise UnknownNameError(f"emulation-only robot of {vendor.name}", name, vendor.robots)
+
+
+def _check_suffixes(vendor: Vendor) -> None:
+    wrong = [s for s in vendor.suffixes if not s.startswith(".") or s != s.lower()]
+    if wrong or isinstance(vendor.suffixes, str):
+        raise InputError(
+            f"vendor {vendor.name!r}: 'suffixes' is a tuple like ('.mod',), not {vendor.suffixes!r}"
+        )
+    if (vendor.reader is None) != (not vendor.suffixes):
+        raise InputError(f"vendor {vendor.name!r}: a reader and its 'suffixes' come together")

@@ -1,0 +1,1 @@
+"""Logged runs of real controllers, and what is learnt from them."""

@@ -1,0 +1,229 @@
+"""Reads logged runs: a JSON file with the exact program and a CSV file with joint samples.
+
+The CSV has a header, ``t`` in s and ``q1 … qn`` in rad; the JSON names robot, tool, start and
+moves in SI units (``target_pose`` as ``xyz_m`` with ``quat_wxyz`` or ``rotvec``, or
+``target_joints_rad``; ``zone.radius_m`` or ``rule_radius_m``; speeds in ``speed`` or, for
+URScript, ``params``).
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import InputError
+from ..core.program.move import Move, MoveC, MoveJ, MoveL
+from ..core.program.program import Program
+from ..core.program.speed import Speed
+from ..core.program.target import JointTarget, PoseTarget
+from ..core.program.tool import FLANGE, Tool
+from ..core.program.zone import FINE, Radius, Zone
+from ..core.robot.model import Robot
+from ..core.spatial.pose import Pose
+from ..core.spatial.rotation import matrix_from_rotation_vector, quaternion_from_matrix
+
+FloatArray = NDArray[np.float64]
+
+_ROBOTS = {
+    "irb 6640-180/2.55": "abb/irb6640-180-255",
+    "kr 3 r540": "kuka/kr3-r540",
+    "ur10e": "ur/ur10e",
+    "ur3 (cb3)": "ur/ur3",
+}
+_MOVED_MM = 1.0
+"""Distance beyond which a record's last target is not where the run ended."""
+_JOINT_MOVES = {"MoveJ", "MoveAbsJ", "PTP"}
+_LINEAR_MOVES = {"MoveL", "LIN"}
+_ARC_MOVES = {"MoveC", "CIRC"}
+
+
+@dataclass(frozen=True, eq=False)
+class LoggedRun:
+    """One run.
+
+    Args:
+        name: of the file.
+        robot: name in the catalogues.
+        real: whether a robot moved, not a virtual controller.
+        program: what it was told.
+        t: (T,) s, increasing.
+        q: (T, n) rad.
+        note: what the record says of its own uncertainties.
+    """
+
+    name: str
+    robot: str
+    real: bool
+    program: Program
+    t: FloatArray
+    q: FloatArray
+    note: str
+
+
+def load_run(path: Path, robots: Callable[[str], Robot]) -> LoggedRun:
+    """Read a run from its JSON file; the CSV is the one that it names, beside it.
+
+    Where the record gives a target's position alone, its orientation is that of the logged
+    sample nearest to it; where it says that the last target was moved before the run, the log's
+    last sample takes its place.
+
+    Args:
+        path: the JSON file.
+        robots: finds a robot by its catalogue name.
+
+    Raises:
+        InputError: naming file and, where there is one, the line or move.
+    """
+    try:
+        data = json.loads(path.read_text("utf-8"))
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
+        raise InputError(f"{path}: not a readable run: {error}") from error
+    try:
+        log = path.parent / data["log"]["file"]
+        robot = _robot(str(data["robot"]))
+        real = bool(data.get("real", False))
+        t, q = load_samples(log)
+        data = _completed(data, robots(robot), q)
+        moves = tuple(_move(entry, data) for entry in data["moves"])
+        start = JointTarget(tuple(map(float, data["start_joints_rad"])))
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(f"{path}: not a run: missing or misshapen {error}") from error
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+    program = Program(moves, path.stem, start)
+    return LoggedRun(path.stem, robot, real, program, t, q, str(data.get("note", "")))
+
+
+def load_samples(path: Path) -> tuple[FloatArray, FloatArray]:
+    """Times (T,) s and joints (T, n) rad of a log; samples whose time does not increase are left
+    out.
+
+    Raises:
+        InputError: naming file and line.
+    """
+    try:
+        rows = list(csv.reader(path.read_text("utf-8").splitlines()))
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: not a readable log: {error}") from error
+    header = rows[0] if rows else []
+    joints = [i for i, name in enumerate(header) if name[:1] == "q" and name[1:].isdigit()]
+    if "t" not in header or not joints:
+        raise InputError(f"{path}:1: a log needs columns t, q1, q2, …")
+    columns = [header.index("t"), *joints]
+    data = np.empty((len(rows) - 1, len(columns)))
+    for line, row in enumerate(rows[1:], start=2):
+        try:
+            data[line - 2] = [float(row[i]) for i in columns]
+        except (ValueError, IndexError) as error:
+            raise InputError(f"{path}:{line}: a number is missing or broken") from error
+    if not np.isfinite(data).all():
+        line = int(np.argwhere(~np.isfinite(data))[0, 0]) + 2
+        raise InputError(f"{path}:{line}: a number is not finite")
+    if len(data) < 2:
+        raise InputError(f"{path}: a log needs at least two samples")
+    latest = np.maximum.accumulate(data[:, 0])
+    keep = np.concatenate([[True], data[1:, 0] > latest[:-1]])
+    return data[keep, 0], data[keep, 1:]
+
+
+def _completed(data: dict[str, Any], robot: Robot, q: FloatArray) -> dict[str, Any]:
+    """The record with orientations and the true last target filled in from the log."""
+    moves = [dict(entry) for entry in data["moves"]]
+    poses = [entry["target_pose"] for entry in moves if "target_pose" in entry]
+    moved = float(data.get("checks", {}).get("log_end_to_last_target_mm", 0.0)) > _MOVED_MM
+    if not moved and all("quat_wxyz" in pose or "rotvec" in pose for pose in poses):
+        return data
+    rotation, position = robot.forward(q)
+    tcp = _tool(data).tcp.matrix()
+    position = position + rotation @ tcp[:3, 3]
+    quaternion = quaternion_from_matrix(rotation @ tcp[:3, :3])
+    for entry in moves:
+        pose = entry.get("target_pose")
+        if pose is None or "quat_wxyz" in pose or "rotvec" in pose:
+            continue
+        nearest = np.argmin(np.linalg.norm(position - np.array(pose["xyz_m"]), axis=1))
+        entry["target_pose"] = {**pose, "quat_wxyz": quaternion[nearest].tolist()}
+    if moved:
+        end = {"xyz_m": position[-1].tolist(), "quat_wxyz": quaternion[-1].tolist()}
+        moves[-1]["target_pose"] = end
+    return {**data, "moves": moves}
+
+
+def _robot(name: str) -> str:
+    for known, catalogue in _ROBOTS.items():
+        if name.casefold().startswith(known):
+            return catalogue
+    raise InputError(f"no catalogue robot is known for {name!r}")
+
+
+def _pose(entry: Mapping[str, Any]) -> Pose:
+    x, y, z = map(float, entry["xyz_m"])
+    if "quat_wxyz" in entry:
+        quaternion = np.array(entry["quat_wxyz"], dtype=float)
+        quaternion /= np.linalg.norm(quaternion)
+    else:
+        quaternion = quaternion_from_matrix(matrix_from_rotation_vector(np.array(entry["rotvec"])))
+    w, i, j, k = map(float, quaternion)
+    return Pose((x, y, z), (w, i, j, k))
+
+
+def _tool(data: Mapping[str, Any]) -> Tool:
+    tool = data.get("tool")
+    return Tool("tool", _pose(tool)) if isinstance(tool, dict) else FLANGE
+
+
+def _zone(entry: Mapping[str, Any]) -> Zone:
+    if entry.get("fine", False):
+        return FINE
+    radius = float(entry.get("radius_m", entry.get("rule_radius_m", 0.0)))
+    if radius == 0.0:
+        return FINE
+    return Radius(
+        radius,
+        float(entry.get("pzone_ori_m", 0.0)),
+        float(entry.get("pzone_ori_m", 0.0)),
+        float(entry.get("zone_ori_rad", 0.0)),
+        name=entry.get("name"),
+    )
+
+
+def _speed(entry: Mapping[str, Any], joint: bool) -> Speed:
+    if "params" in entry:
+        params = entry["params"]
+        if "t" in params:
+            return Speed(duration=float(params["t"]))
+        if joint:
+            return Speed(joint=float(params["v"]), joint_acceleration=float(params["a"]))
+        return Speed(tcp=float(params["v"]), tcp_acceleration=float(params["a"]))
+    speed = entry.get("speed", {})
+    return Speed(
+        tcp=speed.get("tcp_mps"),
+        reorientation=speed.get("ori_radps"),
+        tcp_acceleration=None if joint else speed.get("acc_mps2"),
+        name=speed.get("name"),
+    )
+
+
+def _move(entry: Mapping[str, Any], data: Mapping[str, Any]) -> Move:
+    kind = str(entry["type"])
+    tool, zone = _tool(data), _zone(entry.get("zone", {"fine": True}))
+    if kind in _JOINT_MOVES:
+        speed = _speed(entry, True)
+        if "target_joints_rad" in entry:
+            target = JointTarget(tuple(map(float, entry["target_joints_rad"])))
+            return MoveJ(target, speed, zone, tool)
+        return MoveJ(PoseTarget(_pose(entry["target_pose"])), speed, zone, tool)
+    goal = PoseTarget(_pose(entry["target_pose"]))
+    speed = _speed(entry, False)
+    if kind in _LINEAR_MOVES:
+        return MoveL(goal, speed, zone, tool)
+    if kind in _ARC_MOVES:
+        return MoveC(goal, speed, zone, tool, via=PoseTarget(_pose(entry["via_pose"])))
+    raise InputError(f"move {entry.get('i', '?')} is of an unknown type {kind!r}")

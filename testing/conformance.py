@@ -1,0 +1,23 @@
+"""The conformance suite: what every vendor plugin must fulfil.
+
+An author subclasses it; pytest finds the inherited tests::
+
+    from flyby.testing.conformance import VendorConformance
+
+    class TestAcme(VendorConformance):
+        name = "acme"
+
+Each part of the suite is a class of its own in `flyby.testing.checks`. Checks of the emulated
+motion (the path leaves the programmed one inside zones only, limits hold between samples) belong
+in another such part, added to the bases below.
+"""
+
+from __future__ import annotations
+
+from .checks.catalogue import CatalogueChecks
+from .checks.language import LanguageChecks
+from .checks.motion_model import MotionModelChecks
+
+
+class VendorConformance(CatalogueChecks, MotionModelChecks, LanguageChecks):
+    """All checks; ``name`` is the vendor's."""

@@ -1,0 +1,136 @@
+"""URDF files, against Pinocchio's own URDF reader and by their errors."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from flyby.core.errors import InputError, UnknownNameError
+from flyby.core.robot.urdf import load_urdf
+
+LIMIT = '<limit lower="-2" upper="1.5" velocity="3" effort="40"/>'
+INERTIAL = """
+<inertial><origin xyz="0.1 0.02 -0.03" rpy="0.2 0.3 0.4"/><mass value="{mass}"/>
+<inertia ixx="0.3" iyy="0.4" izz="0.5" ixy="0.01" ixz="0.02" iyz="0.03"/></inertial>
+"""
+
+
+def joint(name, parent, child, kind="revolute", limit=LIMIT, more=""):
+    return (
+        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+        f'<origin xyz="0.1 0.2 0.3" rpy="0.4 -0.5 0.6"/><axis xyz="0 0.6 0.8"/>'
+        f"{limit}{more}</joint>"
+    )
+
+
+def robot(*joints, links="base a b tool plate", masses=True):
+    bodies = "".join(
+        f'<link name="{link}">{INERTIAL.format(mass=k + 1) if masses else ""}</link>'
+        for k, link in enumerate(links.split())
+    )
+    return f'<robot name="arm">{bodies}{"".join(joints)}</robot>'
+
+
+ARM = (
+    joint("fixed0", "base", "plate", "fixed", ""),
+    joint("j1", "plate", "a"),
+    joint("j2", "a", "b", "prismatic"),
+    joint("flange", "b", "tool", "fixed", ""),
+)
+
+
+@pytest.fixture
+def load(tmp_path):
+    def read(text, **options):
+        file = tmp_path / "arm.urdf"
+        file.write_text(text, "utf-8")
+        return load_urdf(file, **options)
+
+    return read
+
+
+def test_kinematics_and_dynamics_agree_with_pinocchios_reader(load) -> None:
+    text = robot(*ARM)
+    found = load(text)
+    model = pin.buildModelFromXML(text)
+    model.gravity.linear = np.array(found.gravity)
+    data = model.createData()
+    q, dq, ddq = np.random.default_rng(0).normal(size=(3, 2))
+    pin.framesForwardKinematics(model, data, q)
+    tool = data.oMf[model.getFrameId("tool")]
+    R, p = found.forward(q)
+    np.testing.assert_allclose(R, tool.rotation, atol=1e-12)
+    np.testing.assert_allclose(p, tool.translation, atol=1e-12)
+    torques = found.inverse_dynamics(q, dq, ddq)
+    np.testing.assert_allclose(torques, pin.rnea(model, data, q, dq, ddq), atol=1e-9)
+
+
+def test_limits_are_read_and_accelerations_assumed_aloud(load) -> None:
+    limits = load(robot(*ARM)).limits
+    np.testing.assert_allclose(limits.lower, -2)
+    np.testing.assert_allclose(limits.upper, 1.5)
+    np.testing.assert_allclose(limits.velocity, 3)
+    np.testing.assert_allclose(limits.effort, 40)
+    np.testing.assert_allclose(limits.acceleration, 12)
+    assert load(robot(*ARM)).origins["acceleration"] == "assumed: maximum speed in 0.25 s"
+
+
+def test_a_continuous_joint_without_limits_is_assumed_aloud(load) -> None:
+    found = load(robot(joint("j1", "base", "a", "continuous", ""), links="base a"))
+    (only,) = found.joints
+    assert (only.lower, only.upper, only.effort) == (-2 * math.pi, 2 * math.pi, None)
+    assert only.velocity == pytest.approx(math.pi)
+    assert "assumed" in found.origins["range"] and "j1" in found.origins["velocity"]
+
+
+def test_without_inertials_only_kinematics_is_left(load) -> None:
+    found = load(robot(*ARM, masses=False))
+    found.forward(np.zeros(2))
+    with pytest.raises(InputError, match="need the inertias"):
+        found.inverse_dynamics(np.zeros(2), np.zeros(2), np.zeros(2))
+
+
+def test_base_and_tip_cut_the_arm(load) -> None:
+    links = "base a b tool plate finger"
+    branching = robot(*ARM, joint("left", "tool", "finger", "fixed", ""), links=links)
+    assert load(branching, tip="tool").flange != load(branching, tip="b").flange
+    assert len(load(branching, base="a", tip="finger").joints) == 1
+    with pytest.raises(UnknownNameError, match="'tol': did you mean 'tool'"):
+        load(branching, tip="tol")
+    with pytest.raises(InputError, match="'plate' does not hang on 'tool'"):
+        load(branching, base="tool", tip="plate")
+
+
+@pytest.mark.parametrize(
+    ("extra", "links", "message"),
+    [
+        (joint("k", "a", "c"), "base a b tool plate c", "ends in several links"),
+        (joint("k", "x", "y"), "base a b tool plate x y", "2 root links"),
+        (joint("k", "tool", "c", "floating", ""), "base a b tool plate c", "'k' is floating"),
+        (joint("k", "tool", "c", limit=""), "base a b tool plate c", "'k' needs <limit"),
+        (
+            joint("k", "tool", "c", more='<mimic joint="j1"/>'),
+            "base a b tool plate c",
+            "'k' mimics 'j1'",
+        ),
+    ],
+)
+def test_what_is_no_serial_arm_is_refused(load, extra, links, message) -> None:
+    with pytest.raises(InputError, match=rf"arm\.urdf: .*{message}"):
+        load(robot(*ARM, extra, links=links))
+
+
+def test_a_moving_branch_is_named_even_if_the_tip_is_chosen(load) -> None:
+    text = robot(*ARM, joint("k", "a", "c"), links="base a b tool plate c")
+    with pytest.raises(InputError, match="branches at link 'a': joint 'k' moves too"):
+        load(text, tip="tool")
+
+
+def test_what_is_no_urdf_is_refused(load, tmp_path) -> None:
+    with pytest.raises(InputError, match=r"arm\.urdf: is not a URDF"):
+        load("<robot")
+    with pytest.raises(InputError, match="no such file"):
+        load_urdf(tmp_path / "missing.urdf")

@@ -1,0 +1,66 @@
+"""The strategies give what they promise."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import HealthCheck, find, given, settings
+from hypothesis import strategies as st
+
+from flyby.core.program.move import MoveC, MoveJ, MoveL
+from flyby.core.program.target import PoseTarget
+from flyby.core.program.zone import FINE
+from flyby.core.registry import find_robot, find_vendor
+from flyby.testing import strategies
+
+ROBOT = find_robot("abb/irb1600-6-145")
+CALM = settings(
+    max_examples=40,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
+)
+
+
+@CALM
+@given(st.floats(0.0, 0.4), st.data())
+def test_configurations_keep_away_from_limits(margin: float, data: st.DataObject) -> None:
+    q = data.draw(strategies.configurations(ROBOT, margin))
+    limits = ROBOT.limits
+    gap = margin * (limits.upper - limits.lower) - 1e-12
+    assert q.shape == (6,)
+    assert (q >= limits.lower + gap).all() and (q <= limits.upper - gap).all()
+
+
+@CALM
+@given(strategies.reachable_poses(ROBOT))
+def test_reachable_poses_can_be_reached(pose: object) -> None:
+    assert ROBOT.inverse(pose)  # type: ignore[arg-type]
+
+
+@CALM
+@given(strategies.programs(ROBOT, find_vendor("abb").label, max_moves=4))
+def test_programs_begin_with_a_stop_and_reach_all_targets(program: object) -> None:
+    moves = program.moves  # type: ignore[attr-defined]
+    assert isinstance(moves[0], MoveJ) and moves[0].zone == FINE
+    assert 2 <= len(moves) <= 5
+    for move in moves:
+        assert isinstance(move.target, PoseTarget) == isinstance(move, MoveL | MoveC)
+        if isinstance(move.target, PoseTarget):
+            assert move.target.configuration is not None
+            assert ROBOT.inverse(move.target.pose)
+
+
+def test_programs_hold_every_kind_of_move() -> None:
+    for kind in (MoveJ, MoveL, MoveC):
+        quiet = settings(max_examples=500, database=None, suppress_health_check=list(HealthCheck))
+        find(
+            strategies.programs(ROBOT),
+            lambda program, kind=kind: isinstance(program.moves[-1], kind),
+            settings=settings(quiet, phases=[p for p in quiet.phases if p.name != "shrink"]),
+        )
+
+
+@CALM
+@given(strategies.radii())
+def test_zones_turn_no_later_than_they_leave(zone: object) -> None:
+    assert zone.reorientation >= zone.tcp > 0  # type: ignore[attr-defined]
+    assert np.isfinite(zone.angle)  # type: ignore[attr-defined]

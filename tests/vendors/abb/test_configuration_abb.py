@@ -1,0 +1,112 @@
+"""confdata: quadrants, cfx, and what happens on their edges."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flyby.core.errors import InputError
+from flyby.core.program.target import Configuration
+from flyby.core.registry import find_vendor
+from flyby.core.robot.model import Robot
+from flyby.vendors.abb.configuration import AbbConfiguration, label
+from flyby.vendors.ur.configuration import UrConfiguration
+
+ABB = find_vendor("abb")
+IRB6640 = ABB.robot("irb6640-180-255")
+
+degrees = st.floats(-350, 350)
+
+
+def label_of(robot: Robot, *q: float) -> AbbConfiguration:
+    found = label(robot, np.radians(q))
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize(
+    ("angle", "quadrant"),
+    [(45, 0), (135, 1), (225, 2), (315, 3), (-45, -1), (-135, -2), (-225, -3), (-315, -4)],
+)
+def test_quadrants_count_both_ways_from_zero(angle: float, quadrant: int) -> None:
+    assert label_of(IRB6640, 10, 0, 0, angle, 30, 10) == AbbConfiguration(0, quadrant, 0, 0)
+    assert label_of(IRB6640, 10, 0, 0, 10, 30, angle) == AbbConfiguration(0, 0, quadrant, 0)
+
+
+@pytest.mark.parametrize(
+    ("q", "cfx"),
+    [
+        ((10, 0, 0, 10, 30, 10), 0),
+        ((10, 0, 0, 10, -30, 10), 1),
+        # The forearm folded back over the lower arm, which leans forward.
+        ((10, 80, -150, 10, 30, 10), 2),
+        ((10, 80, -150, 10, -30, 10), 3),
+        # The lower arm leans back so far that the wrist comes to lie behind axis 1.
+        ((10, -64, -40, 10, 30, 10), 4),
+        ((10, -64, -40, 10, -30, 10), 5),
+        ((10, -60, -90, 10, 30, 10), 6),
+        ((10, -60, -90, 10, -30, 10), 7),
+    ],
+)
+def test_cfx_numbers_the_eight_postures(q: tuple[float, ...], cfx: int) -> None:
+    assert label_of(IRB6640, *q).cfx == cfx
+
+
+@pytest.mark.parametrize("name", ABB.robots)
+@settings(deadline=None)  # the first example compiles
+@given(data=st.data())
+def test_solutions_of_one_pose_have_different_labels(name: str, data: st.DataObject) -> None:
+    robot = ABB.robot(name)
+    limits = robot.limits
+    q = np.array(
+        [data.draw(st.floats(a, b)) for a, b in zip(limits.lower, limits.upper, strict=True)]
+    )
+    solutions = robot.inverse(robot.flange_pose(q))
+    if any(solution.singular for solution in solutions):
+        return
+    labels = [label(robot, solution.q) for solution in solutions]
+    decided = [found for found in labels if found is not None and not found.undecided]
+    assert len({found.cfx for found in decided}) == len(decided)
+
+
+@given(q=st.tuples(*[degrees] * 6))
+def test_a_label_matches_itself(q: tuple[float, ...]) -> None:
+    found = label_of(IRB6640, *q)
+    assert found.mismatch(found) == 0
+    assert isinstance(found, Configuration)
+    assert found.exact
+
+
+@given(st.integers(-3, 3), st.floats(-0.05, 0.05))
+def test_at_a_quadrant_edge_both_neighbours_match(quarter: int, off: float) -> None:
+    """Five written digits of a quaternion move an axis by up to 0.01 degrees."""
+    found = label_of(IRB6640, 10, 0, 0, 90 * quarter + off, 30, 10)
+    below, above = (AbbConfiguration(0, cf4, 0, 0) for cf4 in (quarter - 1, quarter))
+    assert below.mismatch(found) == above.mismatch(found) == 0
+    assert AbbConfiguration(0, quarter + 1, 0, 0).mismatch(found) == 1
+    assert AbbConfiguration(0, quarter - 2, 0, 0).mismatch(found) == 1
+
+
+@given(st.integers(-3, 3), st.floats(0.1, 89.9))
+def test_inside_a_quadrant_only_that_one_matches(quarter: int, inside: float) -> None:
+    found = label_of(IRB6640, 10, 0, 0, 90 * quarter + inside, 30, 10)
+    matching = [k for k in range(-6, 7) if AbbConfiguration(0, k, 0, 0).mismatch(found) == 0]
+    assert matching == [quarter]
+
+
+def test_an_undecided_axis_5_fits_either_sign() -> None:
+    found = label_of(IRB6640, 10, 0, 0, 10, 0, 10)
+    assert [AbbConfiguration(0, 0, 0, k).mismatch(found) for k in range(8)] == [
+        *(0, 0, 1, 1, 1, 1, 2, 2)
+    ]
+
+
+def test_an_arm_without_a_spherical_wrist_has_no_label() -> None:
+    assert label(find_vendor("ur").robot("ur5e"), np.zeros(6)) is None
+
+
+def test_what_cannot_be_compared_or_is_no_cfx_is_refused() -> None:
+    with pytest.raises(InputError, match="cannot be compared"):
+        AbbConfiguration(0, 0, 0, 0).mismatch(UrConfiguration((0.0,)))
+    with pytest.raises(InputError, match="from 0 to 7"):
+        AbbConfiguration(0, 0, 0, 8)

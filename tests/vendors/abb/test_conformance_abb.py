@@ -1,0 +1,5 @@
+from flyby.testing.conformance import VendorConformance
+
+
+class TestAbbConformance(VendorConformance):
+    name = "abb"

@@ -1,0 +1,5 @@
+from flyby.testing.conformance import VendorConformance
+
+
+class TestKukaConformance(VendorConformance):
+    name = "kuka"

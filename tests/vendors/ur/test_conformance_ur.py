@@ -1,0 +1,5 @@
+from flyby.testing.conformance import VendorConformance
+
+
+class TestUrConformance(VendorConformance):
+    name = "ur"

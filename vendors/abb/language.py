@@ -1,0 +1,71 @@
+"""RAPID as the core asks for it: reads and writes for a robot. Imports are late: they take time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+from ...core.errors import InputError, UnknownNameError
+
+if TYPE_CHECKING:
+    from ...core.program.program import Program
+    from ...core.robot.model import Robot
+    from ...core.vendor import Sources
+    from .rapid.options import RapidOptions
+
+SUFFIXES = (".mod", ".modx", ".prg")
+Choice = TypeVar("Choice", bound=StrEnum)
+
+
+class Rapid:
+    """Reader and writer. Writing takes the options ``zones`` and ``opaque`` (`RapidOptions`)."""
+
+    def read(self, text: str, file: str, entry: str, robot: Robot | None) -> Program:
+        """See `flyby.core.vendor.Reader.read`."""
+        from .rapid.reader import read
+
+        return read(text, file, entry, external_axes=_axis_kinds(robot))
+
+    def read_file(self, path: Path, entry: str, robot: Robot | None) -> Program:
+        """See `flyby.core.vendor.Reader.read_file`."""
+        from .rapid.reader import read_file
+
+        return read_file(path, entry, external_axes=_axis_kinds(robot))
+
+    def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
+        """See `flyby.core.vendor.Writer.write`."""
+        from .rapid.writer import RapidWriter
+
+        return RapidWriter(_options(robot, options)).write(program)
+
+
+def _axis_kinds(robot: Robot | None) -> tuple[str, ...] | None:
+    """How RAPID counts the external axes, eax_a first; None without a robot to ask."""
+    from ...core.robot.joint import JointKind
+
+    if robot is None:
+        return None
+    linear = JointKind.PRISMATIC
+    return tuple("linear" if a.joint.kind is linear else "rotating" for a in robot.external_axes)
+
+
+def _options(robot: Robot, options: Mapping[str, str]) -> RapidOptions:
+    from .rapid.options import OpaqueStyle, RapidOptions, ZoneStyle
+
+    for key in options:
+        if key not in ("zones", "opaque"):
+            raise UnknownNameError("option of the RAPID writer", key, ("zones", "opaque"))
+    return RapidOptions(
+        zones=_choice("zones", options.get("zones", ZoneStyle.OWN), ZoneStyle),
+        opaque=_choice("opaque", options.get("opaque", OpaqueStyle.KEEP), OpaqueStyle),
+        external_axes=_axis_kinds(robot) or (),
+    )
+
+
+def _choice(key: str, value: str, kind: type[Choice]) -> Choice:
+    try:
+        return kind(value)
+    except ValueError:
+        raise InputError(f"option {key}: one of {', '.join(kind)}, not {value!r}") from None

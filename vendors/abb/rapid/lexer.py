@@ -1,0 +1,137 @@
+"""Text → tokens.
+
+One compiled pattern finds every token; blanks, ends of line and comments are part of the pattern
+in front of it. Written by hand rather than with a parser generator because source files hold
+hundreds of thousands of numbers: see `parser` for the measurement.
+
+Sources: "RAPID Reference Manual", basic elements: identifiers, numbers (decimal; 0x, 0o, 0b),
+strings (``""`` for a quote, ``\\xx`` for a character code, ``\\\\`` for a backslash), ``!``
+comments; upper and lower case are the same.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from .source import SourceText
+
+
+def words(text: str) -> frozenset[str]:
+    """The words of a text, for tables of names."""
+    return frozenset(text.split())
+
+
+KEYWORDS = words(
+    """alias and backward case connect const default div do else elseif endfor endfunc endif
+    endmodule endproc endrecord endtest endtrap endwhile error exit false for from func goto if
+    inout local mod module not or pers proc raise record retry return step task test then to trap
+    true trynext undo var while with xor"""
+)
+"""Reserved words (the attributes of a module are not: they may be used as names)."""
+
+END = "end of file"
+NAME, NUMBER, STRING = "name", "number", "string"
+
+_TOKEN = re.compile(
+    r"""
+    (?: [\s\ufeff\x1a]++ | ![^\r\n]*+ )*+
+    (?: (?P<name> [^\W\d_]\w*+ )
+      | (?P<number> 0[xX][0-9a-fA-F]++ | 0[oO][0-7]++ | 0[bB][01]++
+                  | (?: [0-9]++ (?: \.[0-9]*+ )? | \.[0-9]++ ) (?: [eE][+-]?[0-9]++ )? )
+      | (?P<string> " (?: [^"\r\n]++ | "" )*+ " )
+      | (?P<symbol> := | <> | <= | >= | [-+*/=<>()\[\]{},;:.\\?|%] )
+      | (?P<end> \Z )
+    )""",
+    re.VERBOSE,
+)
+_HEADER = re.compile(r"[\s\ufeff]*%%%.*?%%%", re.DOTALL)
+_ESCAPE = re.compile(r'""|\\\\|\\([0-9a-fA-F]{2})')
+
+
+@dataclass(frozen=True, slots=True)
+class Tokens:
+    """The tokens of a text, as parallel lists that end with an `END`.
+
+    Args:
+        source: the text.
+        kinds: `NAME`, `NUMBER`, `STRING`, `END`, or the symbol or lower-case keyword itself.
+        starts, ends: offsets.
+    """
+
+    source: SourceText
+    kinds: list[str]
+    starts: list[int]
+    ends: list[int]
+
+
+def tokenize(source: SourceText) -> Tokens:
+    """All tokens of a text.
+
+    Raises:
+        SourceError: a character that no token begins with, or a string without an end.
+    """
+    text = source.text
+    kinds: list[str] = []
+    starts: list[int] = []
+    ends: list[int] = []
+    header = _HEADER.match(text)
+    position = header.end() if header else 0
+    match = _TOKEN.match
+    while True:
+        found = match(text, position)
+        if found is None:
+            raise _stray(source, position)
+        kind = found.lastgroup or ""
+        start, position = found.span(kind)
+        if kind == "symbol":
+            kind = text[start:position]
+        elif kind == "name":
+            word = text[start:position].lower()
+            if word in KEYWORDS:
+                kind = word
+        kinds.append(kind)
+        starts.append(start)
+        ends.append(position)
+        if kind == "end":
+            kinds[-1] = END
+            return Tokens(source, kinds, starts, ends)
+
+
+def number_value(literal: str) -> float:
+    """The value of a number's text."""
+    if literal[:1] == "0" and literal[1:2] in tuple("xXoObB"):
+        try:
+            return float(int(literal, 0))
+        except OverflowError:
+            return float("inf")
+    return float(literal)
+
+
+def string_value(literal: str) -> str:
+    """The value of a string's text, quotes included."""
+
+    def unescape(found: re.Match[str]) -> str:
+        if found[1] is not None:
+            return chr(int(found[1], 16))
+        return found[0][0]
+
+    return _ESCAPE.sub(unescape, literal[1:-1])
+
+
+_BLANK = re.compile(r"(?:[\s\ufeff\x1a]++|![^\r\n]*+)*+")
+
+
+def _stray(source: SourceText, position: int) -> Exception:
+    blank = _BLANK.match(source.text, position)
+    start = blank.end() if blank else position
+    character = source.text[start]
+    if character == '"':
+        return source.error("this string has no closing quote on its line", start)
+    if character == "\0" or not character.isprintable():
+        return source.error(
+            f"character {ord(character):#04x} does not belong in a RAPID text: the file is "
+            "binary or damaged",
+            start,
+        )
+    return source.error(f"{character!r} does not belong here", start)

@@ -1,0 +1,185 @@
+"""RAPID's record types as the core's values, and back: the one place where their units change.
+
+A record is a nested tuple of numbers, booleans and strings, in RAPID's own shape, order and
+units (mm, degrees, kilograms): ``[[x,y,z],[q1,q2,q3,q4]]`` is ``((x, y, z), (q1, q2, q3, q4))``.
+The reader turns records into values, the writer values into records, and `predefined` keeps the
+controller's own data in the same form.
+
+Shapes and units: "RAPID Reference Manual", data types pose, orient, loaddata, speeddata, tooldata,
+wobjdata and zonedata.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from ....core.errors import InputError
+from ....core.program.speed import Speed
+from ....core.program.tool import Load, Tool, WorkObject
+from ....core.program.zone import FINE, Fine, Radius, Zone
+from ....core.spatial.pose import Pose, Quaternion, Vector3
+from .numbers import settled
+
+Record = tuple[Any, ...]
+"""Numbers, booleans, strings and further records."""
+
+MM = 1e-3
+
+UNUSED_AXIS = 9e9
+"""Value of an external axis that a target does not position (``9E9``)."""
+
+VMAX: Record = (10000.0, 500.0, 5000.0, 1000.0)
+"""``vmax``. Its v_tcp belongs to the robot; this stand-in is the one of rpiRobotics
+abb_motion_program_exec, beyond the TCP speed of any robot in the catalogue."""
+
+LOAD0: Record = (0.001, (0.0, 0.0, 0.001), (1.0, 0.0, 0.0, 0.0), 0.0, 0.0, 0.0)
+"""``load0``: the least load that the controller accepts; the core says None."""
+
+
+def metres(point: Sequence[float]) -> Vector3:
+    """A ``pos`` (mm) in m."""
+    x, y, z = point
+    return (x * MM, y * MM, z * MM)
+
+
+def millimetres(point: Sequence[float]) -> Record:
+    """A position in m as ``pos`` (mm)."""
+    return tuple(v / MM for v in point)
+
+
+def unit_quaternion(orient: Sequence[float]) -> Quaternion:
+    """The quaternion w, x, y, z of an ``orient``, scaled to unit length if it needs to be.
+
+    Programs carry five to seven digits. What is of unit length within 1e-6 stays as it stands, so
+    that a program that is read and written keeps its digits.
+
+    Raises:
+        InputError: the length is off by more than 1 %: that is a typing error, no rounding.
+    """
+    w, x, y, z = orient
+    norm = math.sqrt(w * w + x * x + y * y + z * z)
+    if not abs(norm - 1.0) <= 0.01:
+        raise InputError(
+            f"a quaternion has length 1, but [{w:g},{x:g},{y:g},{z:g}] has {norm:.4g}; correct it"
+        )
+    if abs(norm - 1.0) <= 1e-6:
+        return (w, x, y, z)
+    return (w / norm, x / norm, y / norm, z / norm)
+
+
+def pose_value(record: Record) -> Pose:
+    """``[trans, rot]``."""
+    trans, rot = record
+    return Pose(metres(trans), unit_quaternion(rot))
+
+
+def pose_record(pose: Pose) -> Record:
+    """``[trans, rot]``."""
+    return (millimetres(pose.position), settled(pose.quaternion))
+
+
+def speed_value(record: Record, name: str | None = None) -> Speed:
+    """``[v_tcp, v_ori, v_leax, v_reax]`` in mm/s, deg/s, mm/s, deg/s."""
+    tcp, reorientation, linear, angular = record
+    return Speed(
+        tcp=tcp * MM,
+        reorientation=math.radians(reorientation),
+        external_linear=linear * MM,
+        external_angular=math.radians(angular),
+        name=name,
+    )
+
+
+def zone_value(record: Record, name: str | None = None) -> Zone:
+    """``[finep, pzone_tcp, pzone_ori, pzone_eax, zone_ori, zone_leax, zone_reax]``.
+
+    The numbers are mm, mm, mm, deg, mm, deg; they mean nothing if ``finep`` is TRUE.
+    """
+    finep, tcp, reorientation, external, angle, linear, angular = record
+    if finep:
+        return FINE
+    return Radius(
+        tcp=tcp * MM,
+        reorientation=reorientation * MM,
+        external=external * MM,
+        angle=math.radians(angle),
+        external_linear=linear * MM,
+        external_angular=math.radians(angular),
+        name=name,
+    )
+
+
+def speed_record(speed: Speed) -> Record:
+    """As `speed_value` takes it; what is left to the robot gets a predefined value.
+
+    Those of ``vmax`` are beyond what robots reach.
+    """
+    limits = (speed.tcp, speed.reorientation, speed.external_linear, speed.external_angular)
+    units = (1 / MM, math.degrees(1), 1 / MM, math.degrees(1))
+    return tuple(
+        free if limit is None else limit * unit
+        for limit, unit, free in zip(limits, units, VMAX, strict=True)
+    )
+
+
+def zone_record(zone: Fine | Radius) -> Record:
+    """As `zone_value` takes it; the zones beside the TCP's are made at least as large as that.
+
+    The controller does the same (zonedata, pzone_ori and pzone_eax).
+    """
+    if isinstance(zone, Fine):
+        return (True, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return (
+        False,
+        zone.tcp / MM,
+        max(zone.tcp, zone.reorientation) / MM,
+        max(zone.tcp, zone.external) / MM,
+        math.degrees(zone.angle),
+        zone.external_linear / MM,
+        math.degrees(zone.external_angular),
+    )
+
+
+def load_value(record: Record, name: str | None = None) -> Load | None:
+    """``[mass, cog, aom, ix, iy, iz]`` in kg, mm, kg m²; None for ``load0``, carrying nothing."""
+    if record == LOAD0:
+        return None
+    mass, cog, aom, ix, iy, iz = record
+    return Load(mass, metres(cog), (ix, iy, iz), unit_quaternion(aom), name)
+
+
+def load_record(load: Load | None) -> Record:
+    """As `load_value` takes it."""
+    if load is None:
+        return LOAD0
+    return (load.mass, millimetres(load.centre), settled(load.axes), *load.inertia)
+
+
+def tool_value(record: Record, name: str) -> Tool:
+    """``[robhold, tframe, tload]``."""
+    robhold, tframe, tload = record
+    return Tool(name, pose_value(tframe), load_value(tload), robhold)
+
+
+def tool_record(tool: Tool) -> Record:
+    """As `tool_value` takes it."""
+    return (tool.robot_held, pose_record(tool.tcp), load_record(tool.load))
+
+
+def work_object_value(record: Record, name: str) -> WorkObject:
+    """``[robhold, ufprog, ufmec, uframe, oframe]``.
+
+    ``ufmec`` names the unit that moves the user frame; it counts only where ``ufprog`` is FALSE.
+    """
+    robhold, ufprog, ufmec, uframe, oframe = record
+    moved_by = None if ufprog else ufmec
+    return WorkObject(name, pose_value(uframe), pose_value(oframe), robhold, moved_by)
+
+
+def work_object_record(work_object: WorkObject) -> Record:
+    """As `work_object_value` takes it."""
+    moved_by = work_object.moved_by
+    frames = (pose_record(work_object.user), pose_record(work_object.frame))
+    return (work_object.robot_held, moved_by is None, moved_by or "", *frames)

@@ -1,0 +1,134 @@
+"""Moves and motion settings as instructions: one rule of syntax a function.
+
+Section names are those of the "RAPID Reference Manual", instructions.
+"""
+
+from __future__ import annotations
+
+from ....core.errors import InputError
+from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from ....core.program.target import JointTarget, PoseTarget
+from ....core.program.tool import WORLD
+from .numbers import number
+from .operands import Operand, Operands
+
+Line = tuple[Operand, ...]
+"""Text, and data whose names are not given yet."""
+
+LEAST_ACCELERATION = 0.2
+"""``AccSet`` takes less as this much."""
+
+
+def move_line(move: Move, operands: Operands) -> Line:
+    """The move instruction.
+
+    Raises:
+        InputError: RAPID cannot say it.
+    """
+    if move.tool.robot_held == move.work_object.robot_held:
+        raise InputError(
+            f"one of tool {move.tool.name} and work object {move.work_object.name} is held by the "
+            "robot and the other stands still; here both are alike"
+        )
+    if isinstance(move.target, JointTarget):
+        return (*_absolute(move, move.target, operands), *_tail(move, operands))
+    return (*_cartesian(move, move.target, operands), *_tail(move, operands))
+
+
+def _absolute(move: Move, target: JointTarget, operands: Operands) -> Line:
+    """``MoveAbsJ ToJointPos`` (MoveAbsJ)."""
+    if not isinstance(move, MoveJ):
+        raise InputError(
+            f"RAPID's {type(move).__name__} takes a robtarget, not joint values: give it the pose"
+        )
+    return ("MoveAbsJ ", operands.jointtarget(target))
+
+
+def _cartesian(move: Move, target: PoseTarget, operands: Operands) -> Line:
+    """``MoveJ ToPoint``, ``MoveL ToPoint``, ``MoveC CirPoint, ToPoint``."""
+    if isinstance(move, MoveC):
+        return ("MoveC ", operands.robtarget(move.via), ",", operands.robtarget(target))
+    return (f"{type(move).__name__} ", operands.robtarget(target))
+
+
+def _tail(move: Move, operands: Operands) -> Line:
+    r"""``, Speed [\T], Zone, Tool [\WObj];`` (all four)."""
+    duration = move.speed.duration
+    frame: Line = ("\\WObj:=", operands.work_object(move.work_object))
+    return (
+        *(",", operands.speed(move.speed)),
+        "" if duration is None else f"\\T:={number(duration)}",
+        *(",", operands.zone(move.zone)),
+        *(",", operands.tool(move.tool)),
+        *(() if move.work_object == WORLD else frame),
+        ";",
+    )
+
+
+class Settings:
+    """What holds until it is changed, with the values that a program starts with."""
+
+    def __init__(self) -> None:
+        self._held: dict[str, Line] = {
+            "ConfJ": ("ConfJ \\On;",),
+            "ConfL": ("ConfL \\On;",),
+            "AccSet": ("AccSet 100,100;",),
+            "PathAccLim": ("PathAccLim FALSE,FALSE;",),
+            "GripLoad": ("GripLoad ", "load0", ";"),
+            "CirPathMode": ("CirPathMode \\PathFrame;",),
+        }
+
+    def changes(self, move: Move, operands: Operands) -> list[Line]:
+        """The instructions that must stand before a move."""
+        lines = (_monitoring(move), _singularity(move), _circle(move), _acceleration(move))
+        wanted = [
+            *(line for line in lines if line),
+            _path_acceleration(move),
+            ("GripLoad ", operands.load(move.load), ";"),
+        ]
+        changed = []
+        for line in wanted:
+            instruction = str(line[0]).split()[0]
+            if self._held.get(instruction) != line:
+                self._held[instruction] = line
+                changed.append(line)
+        return changed
+
+
+def _monitoring(move: Move) -> Line:
+    r"""``ConfJ``, ``ConfL`` ``\On|\Off``: off where the target names no configuration."""
+    if not isinstance(move.target, PoseTarget):
+        return ()
+    instruction = "ConfJ" if isinstance(move, MoveJ) else "ConfL"
+    return (f"{instruction} \\{'Off' if move.target.configuration is None else 'On'};",)
+
+
+def _singularity(move: Move) -> Line:
+    r"""``SingArea \Off``: TCP moves keep to the programmed orientation."""
+    return ("SingArea \\Off;",) if isinstance(move, MoveL | MoveC) else ()
+
+
+def _circle(move: Move) -> Line:
+    """``CirPathMode``: how the tool turns along arcs."""
+    if not isinstance(move, MoveC):
+        return ()
+    follows = move.orientation is ArcOrientation.FOLLOWS_ARC
+    return (f"CirPathMode \\{'PathFrame' if follows else 'ObjectFrame'};",)
+
+
+def _acceleration(move: Move) -> Line:
+    """``AccSet Acc, Ramp`` in percent."""
+    share = move.speed.joint_acceleration_fraction
+    if share < LEAST_ACCELERATION:
+        raise InputError(
+            f"AccSet goes down to {LEAST_ACCELERATION:.0%} of the acceleration, not {share:.1%}"
+        )
+    return (f"AccSet {number(100 * share)},100;",)
+
+
+def _path_acceleration(move: Move) -> Line:
+    r"""``PathAccLim AccLim [\AccMax], DecelLim [\DecelMax]`` in m/s²."""
+    limit = move.speed.tcp_acceleration
+    if limit is None:
+        return ("PathAccLim FALSE,FALSE;",)
+    return (f"PathAccLim TRUE\\AccMax:={number(limit)},TRUE\\DecelMax:={number(limit)};",)

@@ -1,0 +1,190 @@
+"""Motion settings: what holds for all moves until it is changed.
+
+"RAPID Reference Manual", instructions ConfJ, ConfL, SingArea, AccSet, VelSet, PathAccLim,
+WorldAccLim, CirPathMode, GripLoad, PDispSet. What would change the motion in a way that this
+reader has no words for is refused by name, as soon as it is set to anything but its default.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from ....core.errors import SourceError
+from ....core.program.move import ArcOrientation
+from ....core.program.tool import Load
+from ....core.spatial.pose import Pose
+from .arguments import Bound, bind
+from .scope import Scope
+from .syntax import Invoke
+from .types import BOOL, POSE
+
+if TYPE_CHECKING:
+    from .interpreter import Interpreter
+
+LEAST_ACCELERATION = 20.0
+"""Percent: ``AccSet`` takes less as this much."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Motion settings, with the values that they have at the start of a program.
+
+    Args:
+        check_joint, check_linear: whether joint and TCP moves obey a target's configuration.
+        singularity: ``off``, ``wrist`` or ``lockaxis4``.
+        acceleration: share of the robot's own, in (0, 1].
+        tcp_acceleration: limit, m/s².
+        override: factor on programmed speeds.
+        greatest_tcp: limit on the TCP's speed, mm/s.
+        load: carried by the gripper.
+        displacement: program displacement, in the object frame.
+        arc: how the tool turns on an arc; a mode's name if it has no equivalent.
+    """
+
+    check_joint: bool = True
+    check_linear: bool = True
+    singularity: str = "off"
+    acceleration: float = 1.0
+    tcp_acceleration: float | None = None
+    override: float = 1.0
+    greatest_tcp: float | None = None
+    load: Load | None = None
+    displacement: Pose | None = None
+    arc: ArcOrientation | str = ArcOrientation.FOLLOWS_ARC
+
+
+def _one_switch(bound: Bound, default: str) -> str:
+    if len(bound.options) > 1:
+        raise SourceError(f"{bound.text} takes one switch", bound.span)
+    return next(iter(bound.options), default)
+
+
+def _conf_joint(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    switch = _one_switch(bind(invoke, (), ("on", "off")), "on")
+    run.settings = replace(run.settings, check_joint=switch == "on")
+
+
+def _conf_linear(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    switch = _one_switch(bind(invoke, (), ("on", "off")), "on")
+    run.settings = replace(run.settings, check_linear=switch == "on")
+
+
+def _sing_area(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    switch = _one_switch(bind(invoke, (), ("wrist", "lockaxis4", "off")), "off")
+    run.settings = replace(run.settings, singularity=switch)
+
+
+def _acc_set(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    bound = bind(invoke, ("Acc", "Ramp"), ("finepointramp",))
+    acceleration = _percent(run, bound, 0, scope)
+    ramps = [bound.number(run, 1, scope)]
+    if "finepointramp" in bound.options:
+        ramps.append(run.number(bound.option("finepointramp"), scope, "AccSet \\FinePointRamp"))
+    if min(ramps) < 100:
+        raise SourceError(
+            f"AccSet with a ramp of {min(ramps):g} % limits the jerk, which is not emulated: set "
+            "the ramp to 100 (the acceleration may stay lower)",
+            invoke.span,
+        )
+    share = max(acceleration, LEAST_ACCELERATION) / 100
+    run.settings = replace(run.settings, acceleration=share)
+
+
+def _vel_set(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    bound = bind(invoke, ("Override", "Max"), ())
+    override = _percent(run, bound, 0, scope)
+    greatest = bound.number(run, 1, scope)
+    if greatest <= 0:
+        raise SourceError(f"VelSet: the greatest speed is above zero, not {greatest:g}", bound.span)
+    run.settings = replace(run.settings, override=override / 100, greatest_tcp=greatest)
+
+
+def _percent(run: Interpreter, bound: Bound, index: int, scope: Scope) -> float:
+    value = bound.number(run, index, scope)
+    if not 0 < value <= 100:
+        raise SourceError(f"{bound.text}: a percentage is in (0, 100], not {value:g}", bound.span)
+    return value
+
+
+def _path_acc_lim(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    bound = bind(invoke, ("AccLim", "DecelLim"), ("accmax", "decelmax"))
+    limits = []
+    for index, option in enumerate(("accmax", "decelmax")):
+        on = run.evaluator.known(bound.value(index), scope, BOOL, "PathAccLim")
+        if on:
+            limits.append(run.number(bound.option(option), scope, f"PathAccLim \\{option}"))
+    if limits and min(limits) <= 0:
+        raise SourceError("PathAccLim: a limit is above zero", bound.span)
+    if len(limits) == 1 or (limits and limits[0] != limits[1]):
+        run.note_once(
+            "pathacclim",
+            "PathAccLim limits acceleration and deceleration differently: the smaller limit is "
+            "taken for both",
+            bound.span,
+        )
+    run.settings = replace(run.settings, tcp_acceleration=min(limits, default=None))
+
+
+def _cir_path_mode(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    modes = ("pathframe", "objectframe", "cirpointori", "wrist45", "wrist46", "wrist56")
+    switch = _one_switch(bind(invoke, (), modes), "pathframe")
+    known = {
+        "pathframe": ArcOrientation.FOLLOWS_ARC,
+        "objectframe": ArcOrientation.FIXED_FRAME,
+    }
+    run.settings = replace(run.settings, arc=known.get(switch, switch))
+
+
+def _grip_load(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    bound = bind(invoke, ("Load",), ())
+    run.settings = replace(run.settings, load=run.convert.load(bound.value(0), scope))
+
+
+def _pdisp_set(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    bound = bind(invoke, ("DispFrame",), ())
+    frame = run.evaluator.known(bound.value(0), scope, POSE, "PDispSet")
+    run.settings = replace(run.settings, displacement=run.convert.pose(frame, bound.span))
+
+
+def _pdisp_off(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    bind(invoke, (), ())
+    run.settings = replace(run.settings, displacement=None)
+
+
+def _only_off(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    """Settings that may be switched off, which they are at the start."""
+    if [a.option for a in invoke.arguments] != ["off"]:
+        raise SourceError(
+            f"{invoke.text} other than \\Off changes the motion and is not emulated: take it out",
+            invoke.span,
+        )
+
+
+def _speed_refresh(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    bound = bind(invoke, ("Override",), ())
+    if bound.number(run, 0, scope) != 100:
+        raise SourceError(
+            "SpeedRefresh changes the speed while the robot moves and is not emulated: take it "
+            "out, or scale with VelSet before the move",
+            invoke.span,
+        )
+
+
+Handler = Callable[["Interpreter", Invoke, Scope], None]
+
+SETTINGS: dict[str, Handler] = {
+    "confj": _conf_joint,
+    "confl": _conf_linear,
+    "singarea": _sing_area,
+    "accset": _acc_set,
+    "velset": _vel_set,
+    "pathacclim": _path_acc_lim,
+    "cirpathmode": _cir_path_mode,
+    "gripload": _grip_load,
+    "pdispset": _pdisp_set,
+    "pdispoff": _pdisp_off,
+    "worldacclim": _only_off,
+    "speedrefresh": _speed_refresh,
+}

@@ -1,0 +1,79 @@
+"""Source files as text, and places in them."""
+
+from __future__ import annotations
+
+import codecs
+from bisect import bisect_right
+
+from ....core.errors import SourceError, Span
+
+UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+
+
+def decode(source: str | bytes, file: str) -> tuple[str, str]:
+    """The text of a source file, and the codec that turns the text back into the same bytes.
+
+    Files come as UTF-8, with or without a byte-order mark, and as Windows code page 1252, which
+    RobotStudio and older controllers write; in a few others (comments in GBK, say) every byte is
+    kept as one Latin-1 character, which changes nothing outside comments and strings.
+
+    Raises:
+        SourceError: the bytes are UTF-16.
+    """
+    if isinstance(source, str):
+        return source, "utf-8"
+    if source.startswith(UTF16):
+        raise SourceError(
+            "the file is UTF-16, which controllers do not read; save it as UTF-8",
+            Span(file, 1, 1, 0, 0),
+        )
+    if source.startswith(codecs.BOM_UTF8):
+        candidates = ["utf-8-sig", "latin-1"]
+    else:
+        candidates = ["utf-8", "cp1252", "latin-1"]
+    for codec in candidates[:-1]:
+        try:
+            return source.decode(codec), codec
+        except UnicodeDecodeError:
+            continue
+    return source.decode("latin-1"), "latin-1"
+
+
+class SourceText:
+    """A text that knows the line and column of every offset; ends of line are LF, CR LF or CR.
+
+    Args:
+        text: the whole file.
+        file: its name, for messages.
+    """
+
+    def __init__(self, text: str, file: str) -> None:
+        self.text = text
+        self.file = file
+        self._lines = _line_starts(text)
+        self._row = 0
+
+    def span(self, start: int, end: int) -> Span:
+        """The stretch of characters from ``start`` to before ``end``."""
+        lines, row = self._lines, self._row
+        if not (lines[row] <= start and (row + 1 == len(lines) or start < lines[row + 1])):
+            row = self._row = bisect_right(lines, start) - 1  # places asked for are often near
+        return Span(self.file, row + 1, start - lines[row] + 1, start, end)
+
+    def error(self, message: str, start: int, end: int | None = None) -> SourceError:
+        """An error at ``start``, to be raised."""
+        return SourceError(message, self.span(start, start if end is None else end))
+
+
+def _line_starts(text: str) -> list[int]:
+    starts = [0]
+    if "\r" not in text:
+        position = text.find("\n")
+        while position >= 0:
+            starts.append(position + 1)
+            position = text.find("\n", position + 1)
+        return starts
+    for position, character in enumerate(text):
+        if character == "\n" or (character == "\r" and text[position + 1 : position + 2] != "\n"):
+            starts.append(position + 1)
+    return starts

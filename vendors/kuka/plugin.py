@@ -1,0 +1,39 @@
+"""KUKA: KR arms, and the LBR iiwa's kinematics."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...core.hookspec import VendorRegister, hookimpl
+from ...core.vendor import Vendor, lazy_motion, lazy_robots
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ...core.program.target import Configuration
+    from ...core.robot.model import Robot
+
+DATA = Path(__file__).parent / "data"
+SUNRISE = "the LBR iiwa is programmed in Java (KUKA Sunrise), not in KRL"
+
+
+def _label(robot: Robot, q: NDArray[np.float64]) -> Configuration | None:
+    from .configuration import label
+
+    return label(robot, q)
+
+
+@hookimpl
+def flyby_register_vendors(register: VendorRegister) -> None:
+    """Hand over KUKA. There is no reader or writer of KRL yet."""
+    register.add(
+        Vendor(
+            name="kuka",
+            robots=lazy_robots(DATA.glob("robots/*.toml")),
+            motion=lazy_motion(DATA / "motion.toml"),
+            label=_label,
+            emulation_only={"iiwa7-r800": SUNRISE, "iiwa14-r820": SUNRISE},
+        )
+    )

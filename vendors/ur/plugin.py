@@ -1,0 +1,37 @@
+"""Universal Robots: CB3 and e-Series arms."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...core.hookspec import VendorRegister, hookimpl
+from ...core.vendor import Vendor, lazy_motion, lazy_robots
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from ...core.program.target import Configuration
+    from ...core.robot.model import Robot
+
+DATA = Path(__file__).parent / "data"
+
+
+def _label(robot: Robot, q: NDArray[np.float64]) -> Configuration | None:
+    from .configuration import label
+
+    return label(robot, q)
+
+
+@hookimpl
+def flyby_register_vendors(register: VendorRegister) -> None:
+    """Hand over Universal Robots. There is no reader or writer of URScript yet."""
+    register.add(
+        Vendor(
+            name="ur",
+            robots=lazy_robots(DATA.glob("robots/*.toml")),
+            motion=lazy_motion(DATA / "motion.toml"),
+            label=_label,
+        )
+    )
