@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from ..core.robot.model import Robot
     from ..core.vendor import Vendor
 
+LEAST_PERIOD = 1e-5
+"""s. A cycle of a minute then makes six million samples."""
 PLOT_FORMATS = (".png", ".pdf", ".svg")
 
 
@@ -74,8 +76,8 @@ def emulate(
     inputs = [program] if cell is None else [program, cell]
     _check_plot(plot)
     check_outputs(files.by_option(), inputs, replace_existing=force)
-    if period is not None and not 0 < period < float("inf"):
-        raise InputError(f"--period must be above zero, not {period}")
+    if period is not None and not LEAST_PERIOD <= period < float("inf"):
+        raise InputError(f"--period must be at least {LEAST_PERIOD:g} s, not {period}")
     with progress("reading the program") as say:
         vendor, arm = _robot(robot, cell)
         check_language(vendor, program)

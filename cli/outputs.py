@@ -31,8 +31,8 @@ def check_outputs(
         if real in taken:
             raise InputError(f"{option} {path}: would overwrite {taken[real]}; choose another name")
         taken[real] = f"the file of {option}"
-        if path.is_dir():
-            raise InputError(f"{option} {path}: is a folder; name a file in it")
+        if path.exists() and not path.is_file():
+            raise InputError(f"{option} {path}: is no regular file; name another")
         if not path.parent.is_dir():
             raise InputError(f"{option} {path}: there is no folder {path.parent}")
         if path.exists() and not replace_existing:

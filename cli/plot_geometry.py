@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,9 +78,7 @@ def _nominal(run: Run, robot: Robot, segment: int) -> FloatArray | None:
     return placed[0] if np.abs(placed[0] - placed[1]).max() < STILL else None
 
 
-def _placed(
-    run: Run, robot: Robot, segment: int, q: FloatArray, points: FloatArray
-) -> FloatArray:
+def _placed(run: Run, robot: Robot, segment: int, q: FloatArray, points: FloatArray) -> FloatArray:
     """Points of the work object in the trajectory's frame, with the robot at q (N,)."""
     move = run.program.moves[run.path.route.moves[segment]]
     frame = WORLD if move.tool.robot_held else move.work_object
@@ -88,3 +87,21 @@ def _placed(
     R_here, p_here = poses(run.path.route.chains[segment], row)
     turn = R_there[0] @ R_here[0].T
     return np.asarray((points - p_here[0]) @ turn.T + p_there[0])
+
+
+def tcp_speed(run: Run) -> FloatArray:
+    """Speed (T,) m/s of the TCP at the trajectory's samples, in the trajectory's frame.
+
+    It is zero at both ends. Where the tool changes without a motion, the TCP jumps; such steps
+    are no speed.
+    """
+    trajectory = run.trajectory
+    if len(trajectory.t) < 3:
+        return np.zeros(len(trajectory.t))
+    step = np.linalg.norm(np.diff(trajectory.position, axis=0), axis=1)
+    tools = [run.program.moves[i].tool for i in trajectory.move]
+    kept = np.array([a == b for a, b in pairwise(tools)])
+    rate = np.where(kept, step, 0.0) / np.diff(trajectory.t)
+    middle = 0.5 * (trajectory.t[1:] + trajectory.t[:-1])
+    times = np.concatenate([trajectory.t[:1], middle, trajectory.t[-1:]])
+    return np.asarray(np.interp(trajectory.t, times, np.concatenate([[0.0], rate, [0.0]])))

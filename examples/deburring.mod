@@ -37,7 +37,7 @@ MODULE Deburring
   CONST bool bMeasure:=FALSE;
   CONST num nHoles:=4;
   CONST num hAir:=120;
-  CONST num hPick:=180;
+  CONST num hPick:=190;
   VAR num nPass:=0;
 
   ! ---- stations ---------------------------------------------
@@ -113,7 +113,7 @@ MODULE Deburring
     Reset doGrip;
     MoveAbsJ jConv,vmax,z100,tGripper;
     MoveJ Offs(pPick,0,0,hPick),v1500,z40,tGripper\WObj:=wobjConv;
-    MoveL Offs(pPick,0,0,60),v500,z20,tGripper\WObj:=wobjConv;
+    MoveL Offs(pPick,0,0,60),v500,z15,tGripper\WObj:=wobjConv;
     MoveL pPick,v80,fine,tGripper\WObj:=wobjConv;
     Set doGrip;
     WaitTime 0.35;
@@ -245,13 +245,13 @@ MODULE Deburring
     MoveL Offs(pPlace,0,0,60),v100,z15,tGripper\WObj:=wobjFix;
     MoveL Offs(pPlace,0,0,hAir+140),vCarry,z60,tGripper\WObj:=wobjFix;
     MoveJ Offs(pPick,0,250,hPick),vCarry,z30,tGripper\WObj:=wobjConv;
-    MoveL Offs(pPick,0,250,60),v500,z20,tGripper\WObj:=wobjConv;
+    MoveL Offs(pPick,0,250,60),v500,z15,tGripper\WObj:=wobjConv;
     MoveL Offs(pPick,0,250,0),v80,fine,tGripper\WObj:=wobjConv;
     Reset doGrip;
     WaitTime 0.35;
     GripLoad load0;
     AccSet 100,100;
-    MoveL Offs(pPick,0,250,60),v200,z20,tGripper\WObj:=wobjConv;
+    MoveL Offs(pPick,0,250,60),v200,z15,tGripper\WObj:=wobjConv;
     MoveL Offs(pPick,0,250,hPick),v1000,z30,tGripper\WObj:=wobjConv;
   ENDPROC
 

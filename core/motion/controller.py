@@ -99,7 +99,12 @@ class Controller:
         """
         path = self.plan(program, start)
         timing = self.stamp(program, path)
-        notes = (*program.notes, *path.notes, *self._duration_notes(program, timing))
+        notes = (
+            *program.notes,
+            *path.notes,
+            *self._duration_notes(program, timing),
+            *self._jerk_notes(program),
+        )
         return Run(program, path, timing, self.sample(program, timing, period), notes)
 
     def plan(self, program: Program, start: JointTarget | None = None) -> Path:
@@ -149,7 +154,7 @@ class Controller:
     def sample(self, program: Program, timing: Timing, period: float | None = None) -> Trajectory:
         """The commanded motion, smoothed in time where the vendor does, every ``period`` s."""
         period = self.model.period if period is None else period
-        window = self._window()
+        window = self._window(program)
         t = sample_times(0.0, timing.duration + window, period)
         if window == 0.0:
             q, dq, ddq, sigma = timing.states_at(t)
@@ -187,9 +192,12 @@ class Controller:
     def _moves(self, program: Program, path: Path) -> list[Move]:
         return [program.moves[i] for i in path.route.moves]
 
-    def _window(self) -> float:
-        jerk = self.model.jerk
-        return max(self.model.smoothing, 0.0 if jerk is None else window_for_jerk(jerk))
+    def _window(self, program: Program) -> float:
+        """Length in s of the moving average: the vendor's own, or what the gentlest move needs."""
+        if self.model.jerk is None:
+            return self.model.smoothing
+        gentlest = min(move.speed.jerk_fraction for move in program.moves)
+        return max(self.model.smoothing, window_for_jerk(self.model.jerk * gentlest))
 
     def _tcp(
         self, moves: Sequence[Move], segment: IntArray, q: FloatArray
@@ -222,6 +230,20 @@ class Controller:
             ),
             program,
         )
+
+    def _jerk_notes(self, program: Program) -> list[Note]:
+        if self.model.jerk is not None:
+            return []
+        for index, move in enumerate(program.moves):
+            if move.speed.jerk_fraction < 1.0:
+                return [
+                    Note(
+                        "a reduced jerk (AccSet ramp) is programmed from here on; this motion model "
+                        "states no jerk, so it is emulated without",
+                        index,
+                    )
+                ]
+        return []
 
     def _duration_notes(self, program: Program, timing: Timing) -> list[Note]:
         notes = []

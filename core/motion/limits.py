@@ -73,9 +73,11 @@ class SegmentLimits:
         cls, robot: Robot, model: MotionModel, speeds: Sequence[Speed], kinds: IntArray
     ) -> SegmentLimits:
         """The limits of segments driven at these speeds."""
-        made = [
-            _limits(robot, model, speed, int(k)) for speed, k in zip(speeds, kinds, strict=True)
-        ]
+        known: dict[tuple[Speed, int], tuple[list[_Limit], list[_Limit]]] = {}
+        for key in zip(speeds, map(int, kinds), strict=True):
+            if key not in known:
+                known[key] = _limits(robot, model, *key)
+        made = [known[key] for key in zip(speeds, map(int, kinds), strict=True)]
         return cls(
             np.array([[value for value, _ in velocity] for velocity, _ in made]),
             np.array([[value for value, _ in acceleration] for _, acceleration in made]),

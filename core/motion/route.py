@@ -297,6 +297,8 @@ class RouteFinder:
         tool, work_object = move.tool, move.work_object
         if work_object.robot_held:
             return tool.tcp @ target.inverse() @ work_object.pose.inverse()
+        if work_object.moved_by is None:
+            return work_object.pose @ target @ tool.tcp.inverse()
         stages = self._robot.frame_stages(work_object.moved_by)
         carrier = np.eye(4)
         pose(assemble([*stages, work_object.pose]), q, carrier[:3, :3], carrier[:3, 3])

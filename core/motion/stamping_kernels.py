@@ -110,7 +110,7 @@ def half_plane(
     end = 1 if i >= a.shape[2] else 0
     r = i - end * a.shape[2]
     c = a[k, end, r] * w
-    p, q = (-c, b[k, end, r] + c) if end else (b[k, end, r] - c * 1.01, c)
+    p, q = (-c, b[k, end, r] + c) if end else (b[k, end, r] - c, c)
     if code & 1:
         return p, q, upper[k, end, r]
     return -p, -q, -lower[k, end, r]
@@ -171,7 +171,7 @@ def _fill_polygon(
     for r in range(a.shape[2]):
         for end in range(2):
             c = a[k, end, r] * w
-            p, q = (-c, b[k, end, r] + c) if end else (b[k, end, r] - c * 1.01, c)
+            p, q = (-c, b[k, end, r] + c) if end else (b[k, end, r] - c, c)
             code = 2 * (end * a.shape[2] + r)
             planes[code, 0], planes[code, 1], planes[code, 2] = -p, -q, -lower[k, end, r]
             planes[code + 1, 0], planes[code + 1, 1], planes[code + 1, 2] = p, q, upper[k, end, r]

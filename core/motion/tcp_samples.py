@@ -31,6 +31,10 @@ IntArray = NDArray[np.int64]
 _ITERATIONS = 30
 _CONVERGED = 1e-9
 _LONGEST_STEP = 0.3
+_CORRECTION = 0.1
+"""rad or m by which Newton's method may correct a guess that still counts as the same branch."""
+_FINEST = 4096
+"""Into how many parts the way between two samples may be cut."""
 SINGULAR = 1e-8
 """Ratio of pivots of the Jacobian below which a sample counts as singular."""
 
@@ -131,6 +135,110 @@ def approach(
     return best, conditioning
 
 
+class _Scratch(NamedTuple):
+    """Arrays that the kernels reuse from sample to sample."""
+
+    basis: FloatArray
+    value: FloatArray
+    turns: FloatArray
+    carried: FloatArray
+    turning: FloatArray
+    goal_R: FloatArray
+    J: FloatArray
+    square: FloatArray
+    order: IntArray
+    bias_v: FloatArray
+    bias_a: FloatArray
+    rhs: FloatArray
+    zero: FloatArray
+
+
+@njit(cache=True, error_model="numpy")
+def _scratch(size: int, prescribed: int) -> _Scratch:
+    return _Scratch(
+        np.empty((6, 4)),
+        np.empty((3, 3)),
+        np.empty((3, 6)),
+        np.empty((3, prescribed)),
+        np.empty((3, 3, 3)),
+        np.empty((3, 3)),
+        np.empty((6, size)),
+        np.empty((6, 6)),
+        np.empty(6, dtype=np.int64),
+        np.empty(6),
+        np.empty(6),
+        np.empty(6),
+        np.zeros(size),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _state(
+    chain: Chain,
+    solved: IntArray,
+    prescribed: IntArray,
+    curves: TcpCurves,
+    samples: Samples,
+    k: int,
+    sigma: float,
+    states: States,
+    row: int,
+    work: _Scratch,
+) -> tuple[float, float]:
+    """Write the state at ``sigma`` on the curves of sample k into ``row``, whose q is a guess.
+
+    Returns:
+        What Newton's method says (see `approach`).
+    """
+    evaluate(curves.position, samples.position[k], sigma, work.basis, work.value)
+    evaluate(curves.turning, samples.turning[k], sigma, work.basis, work.turns)
+    evaluate(curves.prescribed, samples.prescribed[k], sigma, work.basis, work.carried)
+    reference = curves.reference[samples.turning[k]]
+    omega, alpha = orientation(reference, work.turns, work.turning, work.goal_R)
+    q, dq, ddq = states.q[row], states.dq[row], states.ddq[row]
+    for j in range(prescribed.size):
+        q[prescribed[j]] = work.carried[0, j]
+    error, pivots = approach(
+        chain, solved, work.goal_R, work.value[0], q, work.J, work.square, work.order
+    )
+    if not (error < _CONVERGED and pivots >= SINGULAR):
+        return error, pivots
+    v, a = states.v[row], states.a[row]
+    for i in range(3):
+        v[i], v[3 + i] = work.value[1, i], omega[i]
+        a[i], a[3 + i] = work.value[2, i], alpha[i]
+    _rates(work.J, work.square, work.order, solved, prescribed, work.carried[1], v, dq, work.rhs)
+    motion(chain, q, dq, work.zero, work.bias_v, work.bias_a)
+    for i in range(6):
+        work.bias_a[i] = a[i] - work.bias_a[i]
+    _rates(
+        work.J,
+        work.square,
+        work.order,
+        solved,
+        prescribed,
+        work.carried[2],
+        work.bias_a,
+        ddq,
+        work.rhs,
+    )
+    return error, pivots
+
+
+@njit(cache=True, error_model="numpy")
+def _predict(states: States, row: int, step: float, guess: FloatArray) -> None:
+    """Write the Taylor guess of second order, ``step`` beyond a row."""
+    for j in range(guess.size):
+        rate = states.dq[row, j] + 0.5 * step * states.ddq[row, j]
+        guess[j] = states.q[row, j] + step * rate
+
+
+@njit(cache=True, error_model="numpy")
+def _copy_row(source: States, i: int, target: States, j: int) -> None:
+    target.q[j], target.dq[j], target.ddq[j] = source.q[i], source.dq[i], source.ddq[i]
+    target.v[j], target.a[j] = source.v[i], source.a[i]
+
+
 @njit(cache=True, error_model="numpy")
 def sample_tcp(
     chain: Chain,
@@ -144,6 +252,9 @@ def sample_tcp(
 ) -> tuple[int, float]:
     """Write the states of samples that follow each other along σ.
 
+    Between two samples the step is halved until Newton's method only corrects the guess, so
+    that no other branch of inverse kinematics is taken for the same one.
+
     Args:
         chain: the kinematics.
         solved, prescribed: indices of the axes (6,) and (m,).
@@ -156,42 +267,55 @@ def sample_tcp(
     Returns:
         (-1, 0), or the index of the sample that cannot be reached and the pose error left there.
     """
-    basis, value = np.empty((6, 4)), np.empty((3, 3))
-    turns, carried = np.empty((3, 6)), np.empty((3, prescribed.size))
-    scratch, goal_R = np.empty((3, 3, 3)), np.empty((3, 3))
     size = seed.size
-    J, square, order = np.empty((6, size)), np.empty((6, 6)), np.empty(6, dtype=np.int64)
-    bias_v, bias_a, rhs = np.empty(6), np.empty(6), np.empty(6)
-    zero = np.zeros(size)
+    work = _scratch(size, prescribed.size)
+    # Row 0 is where the walk stands, row 1 its next step.
+    walk = States(
+        np.empty((2, size)),
+        np.empty((2, size)),
+        np.empty((2, size)),
+        np.empty((2, 6)),
+        np.empty((2, 6)),
+    )
+    guess = np.empty(size)
     for k in range(samples.sigma.size):
-        sigma = samples.sigma[k]
-        evaluate(curves.position, samples.position[k], sigma, basis, value)
-        evaluate(curves.turning, samples.turning[k], sigma, basis, turns)
-        evaluate(curves.prescribed, samples.prescribed[k], sigma, basis, carried)
-        reference = curves.reference[samples.turning[k]]
-        omega, alpha = orientation(reference, turns, scratch, goal_R)
-        q, dq, ddq = states.q[k], states.dq[k], states.ddq[k]
-        step = sigma - samples.sigma[k - 1] if k > 0 else 0.0
-        for j in range(size):
-            if k == 0:
-                q[j] = seed[j]
-            else:
-                rate = states.dq[k - 1, j] + 0.5 * step * states.ddq[k - 1, j]
-                q[j] = states.q[k - 1, j] + step * rate
-        for j in range(prescribed.size):
-            q[prescribed[j]] = carried[0, j]
-        error, pivots = approach(chain, solved, goal_R, value[0], q, J, square, order)
+        goal = samples.sigma[k]
+        if k == 0:
+            states.q[0] = seed
+            error, pivots = _state(
+                chain, solved, prescribed, curves, samples, k, goal, states, 0, work
+            )
+            conditioning[0] = pivots
+            if not (error < _CONVERGED and pivots >= SINGULAR):
+                return 0, error
+            continue
+        _copy_row(states, k - 1, walk, 0)
+        at, whole = samples.sigma[k - 1], goal - samples.sigma[k - 1]
+        step = whole
+        while True:
+            last = abs(goal - at - step) <= 1e-12 * abs(whole)
+            aim = goal if last else at + step
+            _predict(walk, 0, aim - at, guess)
+            walk.q[1] = guess
+            error, pivots = _state(
+                chain, solved, prescribed, curves, samples, k, aim, walk, 1, work
+            )
+            correction = 0.0
+            for j in range(6):
+                correction = max(correction, abs(walk.q[1, solved[j]] - guess[solved[j]]))
+            if error < _CONVERGED and pivots >= SINGULAR and correction <= _CORRECTION:
+                if last:
+                    break
+                _copy_row(walk, 1, walk, 0)
+                at = aim
+                step = goal - at if abs(2 * step) >= abs(goal - at) else 2 * step
+                continue
+            step *= 0.5
+            if abs(step) <= abs(whole) / _FINEST:
+                conditioning[k] = pivots
+                return k, error
         conditioning[k] = pivots
-        if not (error < _CONVERGED and pivots >= SINGULAR):
-            return k, error
-        for i in range(3):
-            states.v[k, i], states.v[k, 3 + i] = value[1, i], omega[i]
-            states.a[k, i], states.a[k, 3 + i] = value[2, i], alpha[i]
-        _rates(J, square, order, solved, prescribed, carried[1], states.v[k], dq, rhs)
-        motion(chain, q, dq, zero, bias_v, bias_a)
-        for i in range(6):
-            bias_a[i] = states.a[k, i] - bias_a[i]
-        _rates(J, square, order, solved, prescribed, carried[2], bias_a, ddq, rhs)
+        _copy_row(walk, 1, states, k)
     return -1, 0.0
 
 

@@ -18,7 +18,7 @@ from ..robot.vectors import Vector, add, cross, dot, load, scale, turn
 
 FloatArray = NDArray[np.float64]
 
-_TERMS = 14
+_TERMS = 11
 _SERIES = np.array(
     [(-1.0) ** i / (2.0 ** (2 * i + 1) * math.factorial(2 * i + 1)) for i in range(_TERMS)]
 )
@@ -142,6 +142,16 @@ def _transposed(R: FloatArray, v: Vector) -> Vector:
 
 
 @njit(cache=True, error_model="numpy")
+def _still(vectors: FloatArray) -> bool:
+    """Whether A and its derivatives are zero, as on all segments but arcs."""
+    for i in range(3):
+        for j in range(3):
+            if vectors[i, j] != 0.0:
+                return False
+    return True
+
+
+@njit(cache=True, error_model="numpy")
 def orientation(
     reference: FloatArray, vectors: FloatArray, scratch: FloatArray, R: FloatArray
 ) -> tuple[Vector, Vector]:
@@ -154,6 +164,16 @@ def orientation(
         R: (3, 3), written.
     """
     R1, R2, product = scratch[0], scratch[1], scratch[2]
+    if _still(vectors):
+        omega2, alpha2 = exponential(vectors[:, 3:], R2)
+        for i in range(3):
+            for j in range(3):
+                R[i, j] = (
+                    reference[i, 0] * R2[0, j]
+                    + reference[i, 1] * R2[1, j]
+                    + reference[i, 2] * R2[2, j]
+                )
+        return _matrix(reference, omega2), _matrix(reference, alpha2)
     omega1, alpha1 = exponential(vectors[:, :3], R1)
     omega2, alpha2 = exponential(vectors[:, 3:], R2)
     y = _matrix(R1, omega2)

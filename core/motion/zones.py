@@ -19,7 +19,7 @@ from ..errors import MotionError, Note
 from ..program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction, Zone
 from ..robot.chain import Chain
 from ..robot.chain_kernels import jacobian, pose
-from .model import MotionModel, OrientationZone, Overlap
+from .model import MotionModel, OrientationZone, Overlap, Space
 from .segments import ARC_SEGMENT, JOINT_SEGMENT, EndsGradient, Segments, SegmentsGradient
 
 FloatArray = NDArray[np.float64]
@@ -227,6 +227,13 @@ class ZonePlanner:
     def _kind(self, i: int) -> int:
         kinds = self._segments.ends.kind[i : i + 2]
         same_chain = self._chains[i] is self._chains[i + 1]
+        mixed = same_chain and (kinds == JOINT_SEGMENT).sum() == 1
+        if mixed and self._model.mixed_space is Space.TCP:
+            raise MotionError(
+                "a corner between a joint move and a move of the TCP, blended in TCP space, is not "
+                'emulated; set zone.mixed_space = "joint" in the motion model',
+                self._moves[i],
+            )
         return TCP_CORNER if same_chain and (kinds != JOINT_SEGMENT).all() else JOINT_CORNER
 
     def _reaches(self, i: int, zone: Zone) -> tuple[tuple[Reach, Reach], ...]:
@@ -249,13 +256,12 @@ class ZonePlanner:
         tcp = self._by_radius(i, zone, zone.tcp, "tcp")
         if self._model.orientation_zone is OrientationZone.TCP or self._kind(i) == JOINT_CORNER:
             return (tcp,) * 3
-        turning = self._by_radius(i, zone, max(zone.reorientation, zone.tcp), "reorientation")
-        external = self._by_radius(i, zone, max(zone.external, zone.tcp), "external")
-        return (
-            tcp,
-            turning if zone.reorientation > zone.tcp else tcp,
-            external if zone.external > zone.tcp else tcp,
-        )
+        turning = external = tcp
+        if zone.reorientation > zone.tcp:
+            turning = self._by_radius(i, zone, zone.reorientation, "reorientation")
+        if zone.external > zone.tcp and self._segments.delta_prescribed.shape[1] > 0:
+            external = self._by_radius(i, zone, zone.external, "external")
+        return tcp, turning, external
 
     def _stops(self, i: int) -> bool:
         """Whether the vendor makes no zone between a TCP move and a pure reorientation."""

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
@@ -24,26 +27,38 @@ def matrix_from_quaternion(quaternion: FloatArray) -> FloatArray:
 def quaternion_from_matrix(matrix: FloatArray) -> FloatArray:
     """Unit quaternions (..., 4), w >= 0, of rotation matrices (..., 3, 3).
 
-    All four forms of the conversion are computed and the best conditioned one is kept
-    (Shepperd, J. Guidance and Control 1, 1978), so that half turns lose no digits.
+    Of the four forms of the conversion the best conditioned one is taken (Shepperd, J. Guidance
+    and Control 1, 1978), so that half turns lose no digits.
     """
-    m = np.asarray(matrix, dtype=float)
-    m00, m01, m02 = m[..., 0, 0], m[..., 0, 1], m[..., 0, 2]
-    m10, m11, m12 = m[..., 1, 0], m[..., 1, 1], m[..., 1, 2]
-    m20, m21, m22 = m[..., 2, 0], m[..., 2, 1], m[..., 2, 2]
-    candidates = np.stack(
-        [
-            np.stack([1 + m00 + m11 + m22, m21 - m12, m02 - m20, m10 - m01], -1),
-            np.stack([m21 - m12, 1 + m00 - m11 - m22, m01 + m10, m02 + m20], -1),
-            np.stack([m02 - m20, m01 + m10, 1 - m00 + m11 - m22, m12 + m21], -1),
-            np.stack([m10 - m01, m02 + m20, m12 + m21, 1 - m00 - m11 + m22], -1),
-        ],
-        -2,
-    )
-    best = np.argmax(np.einsum("...ii->...i", candidates), axis=-1)
-    quaternion = np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :]
-    quaternion = quaternion / np.linalg.norm(quaternion, axis=-1, keepdims=True)
-    return np.asarray(np.where(quaternion[..., :1] < 0, -quaternion, quaternion))
+    m = np.ascontiguousarray(matrix, dtype=float)
+    quaternion = np.empty((m.size // 9, 4))
+    _quaternions(m.reshape(-1, 3, 3), quaternion)
+    return quaternion.reshape(*m.shape[:-2], 4)
+
+
+@njit(cache=True, error_model="numpy")
+def _quaternions(matrices: FloatArray, quaternions: FloatArray) -> None:
+    for k in range(len(matrices)):
+        m, q = matrices[k], quaternions[k]
+        trace = m[0, 0] + m[1, 1] + m[2, 2]
+        i = 0
+        for axis in range(1, 3):
+            if m[axis, axis] > m[i, i]:
+                i = axis
+        if trace >= m[i, i]:
+            q[0] = 1 + trace
+            q[1], q[2], q[3] = m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]
+        else:
+            j, n = (i + 1) % 3, (i + 2) % 3
+            q[0] = m[n, j] - m[j, n]
+            q[1 + i] = 1 + 2 * m[i, i] - trace
+            q[1 + j], q[1 + n] = m[j, i] + m[i, j], m[n, i] + m[i, n]
+        square = 0.0
+        for axis in range(4):
+            square += q[axis] ** 2
+        scale = math.copysign(1.0 / math.sqrt(square), q[0])
+        for axis in range(4):
+            q[axis] *= scale
 
 
 def rotation_vector(matrix: FloatArray) -> FloatArray:

@@ -146,6 +146,8 @@ def test_velocity_settings():
 
 def test_acceleration_settings():
     assert move("AccSet 40,100;\nMoveL p,v100,z10,tool0;").speed.joint_acceleration_fraction == 0.4
+    assert move("AccSet 50,30;\nMoveL p,v100,z10,tool0;").speed.jerk_fraction == 0.3
+    assert move("AccSet 50,5;\nMoveL p,v100,z10,tool0;").speed.jerk_fraction == 0.1
     assert move("AccSet 5,100;\nMoveL p,v100,z10,tool0;").speed.joint_acceleration_fraction == 0.2
     limited = program("PathAccLim TRUE\\AccMax:=4,TRUE\\DecelMax:=3;\nMoveL p,v100,z10,tool0;")
     assert limited.moves[0].speed.tcp_acceleration == 3
@@ -178,8 +180,7 @@ def test_program_displacement():
 @pytest.mark.parametrize(
     ("body", "words"),
     [
-        ("AccSet 50,50;", "ramp to 100"),
-        ("AccSet 100,100\\FinePointRamp:=50;", "ramp"),
+        ("AccSet 50,0;", "ramp"),
         ("AccSet 120,100;", "percentage"),
         ("VelSet 0,100;", "percentage"),
         ("WorldAccLim\\On:=3;", "WorldAccLim"),

@@ -165,6 +165,7 @@ class Converter:
                 external_angular=math.radians(angular) if angular != 0 else None,
                 tcp_acceleration=settings.tcp_acceleration,
                 joint_acceleration_fraction=settings.acceleration,
+                jerk_fraction=settings.ramp,
                 duration=None if duration is None else duration / settings.override,
                 name=None if changed else name,
             ),

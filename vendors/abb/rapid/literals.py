@@ -20,7 +20,6 @@ from ....core.program.speed import Speed
 from ....core.program.tool import Load, Tool, WorkObject
 from ....core.program.zone import FINE, Fine, Radius, Zone
 from ....core.spatial.pose import Pose, Quaternion, Vector3
-from .numbers import settled
 
 Record = tuple[Any, ...]
 """Numbers, booleans, strings and further records."""
@@ -77,7 +76,7 @@ def pose_value(record: Record) -> Pose:
 
 def pose_record(pose: Pose) -> Record:
     """``[trans, rot]``."""
-    return (millimetres(pose.position), settled(pose.quaternion))
+    return (millimetres(pose.position), pose.quaternion)
 
 
 def speed_value(record: Record, name: str | None = None) -> Speed:
@@ -154,7 +153,7 @@ def load_record(load: Load | None) -> Record:
     """As `load_value` takes it."""
     if load is None:
         return LOAD0
-    return (load.mass, millimetres(load.centre), settled(load.axes), *load.inertia)
+    return (load.mass, millimetres(load.centre), load.axes, *load.inertia)
 
 
 def tool_value(record: Record, name: str) -> Tool:

@@ -5,6 +5,8 @@ Section names are those of the "RAPID Reference Manual", instructions.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ....core.errors import InputError
 from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from ....core.program.target import JointTarget, PoseTarget
@@ -15,8 +17,8 @@ from .operands import Operand, Operands
 Line = tuple[Operand, ...]
 """Text, and data whose names are not given yet."""
 
-LEAST_ACCELERATION = 0.2
-"""``AccSet`` takes less as this much."""
+LEAST_SHARES = (0.2, 0.1)
+"""``AccSet`` takes a smaller acceleration or ramp as this much."""
 
 
 def move_line(move: Move, operands: Operands) -> Line:
@@ -47,7 +49,9 @@ def _absolute(move: Move, target: JointTarget, operands: Operands) -> Line:
 def _cartesian(move: Move, target: PoseTarget, operands: Operands) -> Line:
     """``MoveJ ToPoint``, ``MoveL ToPoint``, ``MoveC CirPoint, ToPoint``."""
     if isinstance(move, MoveC):
-        return ("MoveC ", operands.robtarget(move.via), ",", operands.robtarget(target))
+        # Under ConfL \Off the configuration of neither point is looked at.
+        via = move.via if target.configuration else replace(move.via, configuration=None)
+        return ("MoveC ", operands.robtarget(via), ",", operands.robtarget(target))
     return (f"{type(move).__name__} ", operands.robtarget(target))
 
 
@@ -69,13 +73,13 @@ class Settings:
     """What holds until it is changed, with the values that a program starts with."""
 
     def __init__(self) -> None:
-        self._held: dict[str, Line] = {
-            "ConfJ": ("ConfJ \\On;",),
-            "ConfL": ("ConfL \\On;",),
-            "AccSet": ("AccSet 100,100;",),
-            "PathAccLim": ("PathAccLim FALSE,FALSE;",),
-            "GripLoad": ("GripLoad ", "load0", ";"),
-            "CirPathMode": ("CirPathMode \\PathFrame;",),
+        self._held: dict[str, str] = {
+            "ConfJ": "ConfJ \\On;",
+            "ConfL": "ConfL \\On;",
+            "AccSet": "AccSet 100,100;",
+            "PathAccLim": "PathAccLim FALSE,FALSE;",
+            "GripLoad": "GripLoad load0;",
+            "CirPathMode": "CirPathMode \\PathFrame;",
         }
 
     def changes(self, move: Move, operands: Operands) -> list[Line]:
@@ -88,9 +92,11 @@ class Settings:
         ]
         changed = []
         for line in wanted:
-            instruction = str(line[0]).split()[0]
-            if self._held.get(instruction) != line:
-                self._held[instruction] = line
+            # A datum counts by its value: under another name it changes nothing.
+            value = "".join(part if isinstance(part, str) else part.text for part in line)
+            instruction = value.split()[0]
+            if self._held.get(instruction) != value:
+                self._held[instruction] = value
                 changed.append(line)
         return changed
 
@@ -118,12 +124,12 @@ def _circle(move: Move) -> Line:
 
 def _acceleration(move: Move) -> Line:
     """``AccSet Acc, Ramp`` in percent."""
-    share = move.speed.joint_acceleration_fraction
-    if share < LEAST_ACCELERATION:
-        raise InputError(
-            f"AccSet goes down to {LEAST_ACCELERATION:.0%} of the acceleration, not {share:.1%}"
-        )
-    return (f"AccSet {number(100 * share)},100;",)
+    shares = (move.speed.joint_acceleration_fraction, move.speed.jerk_fraction)
+    for share, least, what in zip(shares, LEAST_SHARES, ("acceleration", "jerk"), strict=True):
+        if share < least:
+            raise InputError(f"AccSet goes down to {least:.0%} of the {what}, not {share:.1%}")
+    acceleration, ramp = (number(100 * share) for share in shares)
+    return (f"AccSet {acceleration},{ramp};",)
 
 
 def _path_acceleration(move: Move) -> Line:

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 LEAST_ACCELERATION = 20.0
 """Percent: ``AccSet`` takes less as this much."""
+LEAST_RAMP = 10.0
+"""Percent, likewise for its ramp."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +37,7 @@ class Settings:
         check_joint, check_linear: whether joint and TCP moves obey a target's configuration.
         singularity: ``off``, ``wrist`` or ``lockaxis4``.
         acceleration: share of the robot's own, in (0, 1].
+        ramp: share of the robot's own jerk, in (0, 1].
         tcp_acceleration: limit, m/s².
         override: factor on programmed speeds.
         greatest_tcp: limit on the TCP's speed, mm/s.
@@ -47,6 +50,7 @@ class Settings:
     check_linear: bool = True
     singularity: str = "off"
     acceleration: float = 1.0
+    ramp: float = 1.0
     tcp_acceleration: float | None = None
     override: float = 1.0
     greatest_tcp: float | None = None
@@ -82,14 +86,17 @@ def _acc_set(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
     ramps = [bound.number(run, 1, scope)]
     if "finepointramp" in bound.options:
         ramps.append(run.number(bound.option("finepointramp"), scope, "AccSet \\FinePointRamp"))
-    if min(ramps) < 100:
-        raise SourceError(
-            f"AccSet with a ramp of {min(ramps):g} % limits the jerk, which is not emulated: set "
-            "the ramp to 100 (the acceleration may stay lower)",
-            invoke.span,
+    if not all(0 < ramp <= 100 for ramp in ramps):
+        raise SourceError(f"{bound.text}: a ramp is in (0, 100], not {min(ramps):g}", bound.span)
+    if len(set(ramps)) > 1:
+        run.note_once(
+            "finepointramp",
+            "AccSet ramps differently towards fine points: the smaller ramp is taken everywhere",
+            bound.span,
         )
     share = max(acceleration, LEAST_ACCELERATION) / 100
-    run.settings = replace(run.settings, acceleration=share)
+    ramp = max(min(ramps), LEAST_RAMP) / 100
+    run.settings = replace(run.settings, acceleration=share, ramp=ramp)
 
 
 def _vel_set(run: Interpreter, invoke: Invoke, scope: Scope) -> None:

@@ -1,0 +1,98 @@
+"""``flyby fk`` and ``flyby ik``."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from typer.testing import CliRunner, Result
+
+from flyby.cli.main import app
+from flyby.core.registry import find_robot
+
+ROBOT = "abb/irb6640-180-255"
+angles = st.floats(-1.0, 1.0)
+
+
+def run(*words: str) -> Result:
+    return CliRunner().invoke(app, list(words))
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.tuples(angles, angles, angles, angles, angles, angles))
+def test_ik_of_fk_finds_the_joints_again(shares: tuple[float, ...]) -> None:
+    limits = find_robot(ROBOT).limits
+    q = 0.5 * (limits.upper + limits.lower) + 0.45 * np.array(shares) * (
+        limits.upper - limits.lower
+    )
+    degrees = ",".join(f"{value:.9f}" for value in np.degrees(q))
+    pose = json.loads(run("fk", ROBOT, degrees, "--json").stdout)
+    numbers = [1e3 * value for value in pose["position_m"]] + pose["quaternion_wxyz"]
+    text = ",".join(f"{value:.12g}" for value in numbers)
+    found = json.loads(run("ik", ROBOT, text, "--json").stdout)["solutions"]
+    distances = [
+        np.abs(np.angle(np.exp(1j * (np.array(s["joints_rad"]) - q)))).max() for s in found
+    ]
+    singular = any(s["singular"] for s in found)
+    # Near a singularity the joints are not a smooth function of the pose.
+    assert min(distances) < (1e-3 if abs(np.sin(q[4])) < 1e-2 or singular else 1e-5)
+
+
+def test_fk_prints_mm_and_degrees() -> None:
+    result = run("fk", ROBOT, "0,0,0,0,0,0")
+    assert result.exit_code == 0
+    assert "position    1662.500, 0.000, 2055.000 mm" in result.stdout
+    assert "rx, ry, rz  0.0000°, 90.0000°, 0.0000°" in result.stdout
+    assert "cf1=0 cf4=0 cf6=0 cfx=0" in result.stdout
+
+
+def test_a_tool_moves_the_tcp_in_the_flange() -> None:
+    bare = json.loads(run("fk", ROBOT, "0,0,0,0,0,0", "--json").stdout)
+    held = json.loads(run("fk", ROBOT, "0,0,0,0,0,0", "--tool", "0,0,100", "--json").stdout)
+    assert np.subtract(held["position_m"], bare["position_m"]) == pytest.approx([0.1, 0, 0])
+
+
+def test_ik_takes_turns_for_the_orientation_and_the_tool_off() -> None:
+    turned = run("ik", ROBOT, "1500,100,800,180,0,180", "--tool", "0,0,100", "--json")
+    quaternion = run("ik", ROBOT, "1500,100,900,0,0,1,0", "--json")
+    a, b = (json.loads(result.stdout)["solutions"] for result in (turned, quaternion))
+    assert [s["configuration"] for s in a] == [s["configuration"] for s in b]
+    for one, other in zip(a, b, strict=True):
+        assert one["joints_rad"] == pytest.approx(other["joints_rad"], abs=1e-9)
+
+
+def test_ik_labels_every_solution() -> None:
+    result = run("ik", ROBOT, "1500,100,900,0,0,1,0")
+    assert result.exit_code == 0
+    assert "cf1=0 cf4=0 cf6=0 cfx=0" in result.stdout
+    assert "cfx=1" in result.stdout
+
+
+def test_joints_beyond_their_range_are_a_warning() -> None:
+    result = run("fk", ROBOT, "0,0,200,0,0,0")
+    assert result.exit_code == 0
+    assert "warning: J3 is outside its range" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("fk", ROBOT, "1,2,3"), "has 6 axes (J1, J2, J3, J4, J5, J6); 3 values were given"),
+        (("fk", ROBOT, "1,2,3,4,5,six"), "'six' is no number"),
+        (("fk", ROBOT, "1,2,3,4,5,nan"), "nan is not finite"),
+        (("ik", ROBOT, "1,2"), "a pose is x,y,z"),
+        (("ik", ROBOT, "1,2,3,1,1,0,0"), "must have length 1, not 1.41421"),
+        (("ik", ROBOT, "9000,0,0"), "out of reach"),
+        (("fk", "abb/irb6640-180-25", "0"), "did you mean 'abb/irb6640-180-255'"),
+    ],
+)
+def test_wrong_input_is_one_message(words: tuple[str, ...], message: str) -> None:
+    result = run(*words)
+    assert result.exit_code == 1
+    assert message in result.stderr
+    assert result.stderr.startswith("error: ")
+    assert result.stderr.count("\n") == 1
+    assert not result.stdout
