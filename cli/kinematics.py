@@ -11,6 +11,7 @@ import typer
 from . import values
 from .console import print_json, print_rich, print_table, warn
 from .installed import registry, vendor_of
+from .values import fixed
 
 if TYPE_CHECKING:
     from ..core.program.target import Configuration
@@ -51,10 +52,10 @@ def fk(
             }
         )
         return
-    x, y, z = (1e3 * value for value in tcp.position)
-    print_rich(f"position    {x:.3f}, {y:.3f}, {z:.3f} mm")
-    print_rich("quaternion  " + ", ".join(f"{value:.6f}" for value in tcp.quaternion))
-    print_rich("rx, ry, rz  " + ", ".join(f"{value:.4f}°" for value in _turns(tcp)))
+    position = ", ".join(fixed(1e3 * value, 3) for value in tcp.position)
+    print_rich(f"position    {position} mm")
+    print_rich("quaternion  " + ", ".join(fixed(value, 6) for value in tcp.quaternion))
+    print_rich("rx, ry, rz  " + ", ".join(f"{fixed(value, 4)}°" for value in _turns(tcp)))
     if _label_text(label):
         print_rich(f"configuration  {_label_text(label)}")
 
@@ -95,7 +96,7 @@ def ik(
         (*((head, "right") for head in heads), ("configuration", "left"), ("singular", "left")),
         [
             (
-                *(f"{v / scale:.3f}" for v, (_, scale) in zip(s.q, units, strict=True)),
+                *(fixed(v / scale, 3) for v, (_, scale) in zip(s.q, units, strict=True)),
                 _label_text(label),
                 ", ".join(sorted(s.singular)),
             )

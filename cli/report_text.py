@@ -7,6 +7,7 @@ from typing import Any
 from ..core.errors import Note
 from .console import print_rich, print_table, warn
 from .report import MoveReport, Report, ZoneReport
+from .values import fixed
 
 COLUMNS = (
     ("#", "right"),
@@ -64,7 +65,7 @@ def _target(move: MoveReport) -> str:
         return move.target
     if move.position is None:
         return "joint values"
-    return ", ".join(f"{1e3 * value:.1f}" for value in move.position)
+    return ", ".join(fixed(1e3 * value, 1) for value in move.position)
 
 
 def zone_text(zone: ZoneReport) -> str:

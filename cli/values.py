@@ -87,3 +87,8 @@ def pose(text: str, name: str) -> Pose:
         vector[axis] = math.sin(half)
         turned = turned @ Pose(quaternion=(math.cos(half), vector[0], vector[1], vector[2]))
     return turned
+
+
+def fixed(value: float, digits: int) -> str:
+    """A number with so many decimals, and no minus sign before nothing but zeros."""
+    return f"{round(value, digits) + 0.0:.{digits}f}"

@@ -238,8 +238,8 @@ class Controller:
             if move.speed.jerk_fraction < 1.0:
                 return [
                     Note(
-                        "a reduced jerk (AccSet ramp) is programmed from here on; this motion model "
-                        "states no jerk, so it is emulated without",
+                        "a reduced jerk (AccSet ramp) is programmed from here on; this motion "
+                        "model states no jerk, so it is emulated without",
                         index,
                     )
                 ]

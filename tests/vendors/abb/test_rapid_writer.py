@@ -210,7 +210,7 @@ def test_a_load_under_another_name_is_no_change() -> None:
     load = Load(2.0, (0.0, 0.0, 0.1))
     loads = (load, replace(load, name="loPart"), None)
     text = write(program(*(MoveJ(at(0, 0, 0), V500, load=one) for one in loads)), OPTIONS)
-    assert [s for s in body(text) if "Grip" in s] == ["GripLoad loPart;", "GripLoad load0;"]
+    assert [s for s in body(text) if "Grip" in s] == ["GripLoad load1;", "GripLoad load0;"]
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,8 @@ from ....core.errors import InputError
 from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import WORLD
+from .formatting import literal
+from .literals import load_record
 from .numbers import number
 from .operands import Operand, Operands
 
@@ -73,68 +75,69 @@ class Settings:
     """What holds until it is changed, with the values that a program starts with."""
 
     def __init__(self) -> None:
-        self._held: dict[str, str] = {
+        self._load = literal(load_record(None))
+        self._held = {
             "ConfJ": "ConfJ \\On;",
             "ConfL": "ConfL \\On;",
             "AccSet": "AccSet 100,100;",
             "PathAccLim": "PathAccLim FALSE,FALSE;",
-            "GripLoad": "GripLoad load0;",
             "CirPathMode": "CirPathMode \\PathFrame;",
         }
 
     def changes(self, move: Move, operands: Operands) -> list[Line]:
         """The instructions that must stand before a move."""
-        lines = (_monitoring(move), _singularity(move), _circle(move), _acceleration(move))
-        wanted = [
-            *(line for line in lines if line),
-            _path_acceleration(move),
-            ("GripLoad ", operands.load(move.load), ";"),
-        ]
-        changed = []
-        for line in wanted:
-            # A datum counts by its value: under another name it changes nothing.
-            value = "".join(part if isinstance(part, str) else part.text for part in line)
-            instruction = value.split()[0]
-            if self._held.get(instruction) != value:
-                self._held[instruction] = value
-                changed.append(line)
-        return changed
+        changed: list[Line] = []
+        for setting in (_monitoring, _singularity, _circle, _acceleration, _path_acceleration):
+            text = setting(move)
+            instruction = text.partition(" ")[0]
+            if text and self._held.get(instruction) != text:
+                self._held[instruction] = text
+                changed.append((text,))
+        return [*changed, *self._grip_load(move, operands)]
+
+    def _grip_load(self, move: Move, operands: Operands) -> list[Line]:
+        """``GripLoad Load``; under another name the same load changes nothing."""
+        load = literal(load_record(move.load))
+        if load == self._load:
+            return []
+        self._load = load
+        return [("GripLoad ", operands.load(move.load), ";")]
 
 
-def _monitoring(move: Move) -> Line:
+def _monitoring(move: Move) -> str:
     r"""``ConfJ``, ``ConfL`` ``\On|\Off``: off where the target names no configuration."""
     if not isinstance(move.target, PoseTarget):
-        return ()
+        return ""
     instruction = "ConfJ" if isinstance(move, MoveJ) else "ConfL"
-    return (f"{instruction} \\{'Off' if move.target.configuration is None else 'On'};",)
+    return f"{instruction} \\{'Off' if move.target.configuration is None else 'On'};"
 
 
-def _singularity(move: Move) -> Line:
+def _singularity(move: Move) -> str:
     r"""``SingArea \Off``: TCP moves keep to the programmed orientation."""
-    return ("SingArea \\Off;",) if isinstance(move, MoveL | MoveC) else ()
+    return "SingArea \\Off;" if isinstance(move, MoveL | MoveC) else ""
 
 
-def _circle(move: Move) -> Line:
+def _circle(move: Move) -> str:
     """``CirPathMode``: how the tool turns along arcs."""
     if not isinstance(move, MoveC):
-        return ()
+        return ""
     follows = move.orientation is ArcOrientation.FOLLOWS_ARC
-    return (f"CirPathMode \\{'PathFrame' if follows else 'ObjectFrame'};",)
+    return f"CirPathMode \\{'PathFrame' if follows else 'ObjectFrame'};"
 
 
-def _acceleration(move: Move) -> Line:
+def _acceleration(move: Move) -> str:
     """``AccSet Acc, Ramp`` in percent."""
     shares = (move.speed.joint_acceleration_fraction, move.speed.jerk_fraction)
     for share, least, what in zip(shares, LEAST_SHARES, ("acceleration", "jerk"), strict=True):
         if share < least:
             raise InputError(f"AccSet goes down to {least:.0%} of the {what}, not {share:.1%}")
     acceleration, ramp = (number(100 * share) for share in shares)
-    return (f"AccSet {acceleration},{ramp};",)
+    return f"AccSet {acceleration},{ramp};"
 
 
-def _path_acceleration(move: Move) -> Line:
+def _path_acceleration(move: Move) -> str:
     r"""``PathAccLim AccLim [\AccMax], DecelLim [\DecelMax]`` in m/s²."""
     limit = move.speed.tcp_acceleration
     if limit is None:
-        return ("PathAccLim FALSE,FALSE;",)
-    return (f"PathAccLim TRUE\\AccMax:={number(limit)},TRUE\\DecelMax:={number(limit)};",)
+        return "PathAccLim FALSE,FALSE;"
+    return f"PathAccLim TRUE\\AccMax:={number(limit)},TRUE\\DecelMax:={number(limit)};"

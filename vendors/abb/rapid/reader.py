@@ -11,8 +11,9 @@ course follows from the text itself. What is decided here, and where a controlle
 - Instructions that do not move the robot stay as opaque statements; ``WaitUntil``, ``WaitDI`` and
   their like are stops and taken as satisfied at once. Error handlers and traps do not run. An
   instruction that no table of `instructions` knows is refused, as it might move the robot.
-- ``AccSet`` scales the joints' accelerations and, by its ramp, the jerk. ``VelSet`` scales the programmed speeds and the times of
-  ``\\T``, not the joints' own limits. ``PathAccLim`` with two limits takes the smaller one.
+- ``AccSet`` scales the joints' accelerations and, by its ramp, the jerk. ``VelSet`` scales the
+  programmed speeds and the times of ``\\T``, not the joints' own limits. ``PathAccLim`` with two
+  limits takes the smaller one.
 - ``\\TLoad`` takes the place of the tool's own load and of the payload.
 - A robtarget's configuration counts unless ``ConfJ\\Off`` (joint moves) or ``ConfL\\Off`` holds.
 - External axes have no kind in RAPID: a target that uses one needs ``external_axes``.

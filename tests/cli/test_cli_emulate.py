@@ -1,0 +1,188 @@
+"""``flyby emulate``: what it prints, what it writes, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+import stat
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import Result
+
+from flyby.core.motion.trajectory import Trajectory
+from flyby.core.registry import find_vendor
+
+ROOT = Path(__file__).parents[2]
+ROBOT = "abb/irb6640-180-255"
+SQUARE = ROOT / "examples" / "square.mod"
+
+Flyby = Callable[..., Result]
+Small = Callable[..., Path]
+
+
+def test_the_table_has_a_line_for_every_move(flyby: Flyby) -> None:
+    result = flyby("emulate", SQUARE, "--robot", ROBOT)
+    assert result.exit_code == 0
+    rows = [line.split() for line in result.stdout.splitlines() if line.split()[1:2]]
+    moves = [row for row in rows if row[0].isdigit()]
+    program = find_vendor("abb").read_file(SQUARE)
+    assert [row[1] for row in moves] == [type(move).__name__ for move in program.moves]
+    assert "cycle time" in result.stdout
+    assert "no start is known" in result.stderr
+
+
+def test_json_is_all_that_stdout_holds(flyby: Flyby) -> None:
+    result = flyby("emulate", SQUARE, "--robot", ROBOT, "--json")
+    report = json.loads(result.stdout)
+    spent = sum(move["duration_s"] + move["wait_s"] for move in report["moves"])
+    assert report["cycle_time_s"] == pytest.approx(spent, abs=1e-6)
+    warning = report["warnings"][0]
+    assert (warning["file"], warning["line"], warning["move"]) == (str(SQUARE), 7, 1)
+
+
+def test_a_start_gives_the_first_move_something_to_do(flyby: Flyby) -> None:
+    words = ("emulate", SQUARE, "--robot", ROBOT, "--json")
+    report = json.loads(flyby(*words, "--start", "10,0,0,0,90,0").stdout)
+    assert report["moves"][0]["driven"]
+    assert report["moves"][0]["duration_s"] > 0
+    assert not report["warnings"]
+
+
+def test_all_files_are_written(flyby: Flyby, tmp_path: Path) -> None:
+    names = {"csv": "a.csv", "npz": "a.npz", "plot": "a.svg", "write": "a.mod"}
+    options = [word for key, name in names.items() for word in (f"--{key}", tmp_path / name)]
+    result = flyby("emulate", SQUARE, "--robot", ROBOT, "--period", "0.01", *options)
+    assert result.exit_code == 0, result.output
+    assert {path.name for path in tmp_path.iterdir()} == set(names.values())
+    assert all(f"wrote {tmp_path / name}" in result.stdout for name in names.values())
+    table, arrays = Trajectory.load_csv(tmp_path / "a.csv"), Trajectory.load_npz(tmp_path / "a.npz")
+    assert np.allclose(table.q, arrays.q, atol=1e-7)
+    assert np.allclose(np.diff(arrays.t)[:-1], 0.01)
+    assert (tmp_path / "a.svg").read_text("utf-8").startswith("<?xml")
+
+
+def test_files_have_the_usual_permissions(flyby: Flyby, tmp_path: Path) -> None:
+    usual = tmp_path / "usual"
+    usual.touch()
+    flyby("emulate", SQUARE, "--robot", ROBOT, "--csv", tmp_path / "a.csv")
+    modes = {stat.S_IMODE(path.stat().st_mode) for path in tmp_path.iterdir()}
+    assert len(modes) == 1
+
+
+def test_the_written_program_takes_as_long(flyby: Flyby, tmp_path: Path) -> None:
+    clean = tmp_path / "clean.mod"
+    words = ("--robot", ROBOT, "--json")
+    first = flyby("emulate", SQUARE, *words, "--write", clean)
+    second = flyby("emulate", clean, *words)
+    a, b = (json.loads(result.stdout)["cycle_time_s"] for result in (first, second))
+    assert a == pytest.approx(b, rel=1e-6)
+
+
+@pytest.mark.parametrize(("suffix", "magic"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
+def test_plots(flyby: Flyby, small: Small, tmp_path: Path, suffix: str, magic: bytes) -> None:
+    program = small(
+        "MoveL Offs(p1,100,0,0), v200, z10, tool0",
+        "MoveC Offs(p1,150,50,0), Offs(p1,100,100,0), v200, fine, tool0",
+        "WaitTime 0.5",
+        "MoveJ Offs(p1,0,100,0), v200, z10, tool0",
+    )
+    plot = tmp_path / f"plot.{suffix}"
+    result = flyby("emulate", program, "--robot", ROBOT, "--plot", plot)
+    assert result.exit_code == 0, result.output
+    assert plot.read_bytes().startswith(magic)
+
+
+def test_a_cell_brings_robot_and_base(flyby: Flyby, tmp_path: Path) -> None:
+    cell = tmp_path / "cell.toml"
+    cell.write_text(f'robot = "{ROBOT}"\nbase = {{ xyz_mm = [0, 0, 0] }}\nclearance_mm = 5\n')
+    by_cell = flyby("emulate", SQUARE, "--cell", cell, "--json")
+    by_name = flyby("emulate", SQUARE, "--robot", ROBOT, "--json")
+    assert by_cell.exit_code == 0, by_cell.output
+    assert json.loads(by_cell.stdout) == json.loads(by_name.stdout)
+    moved = cell.with_name("moved.toml")
+    moved.write_text(cell.read_text().replace("[0, 0, 0]", "[0, 0, 9000]"))
+    assert "cannot be reached" in flyby("emulate", SQUARE, "--cell", moved).stderr
+
+
+def test_an_unreachable_target_names_line_and_move(flyby: Flyby, small: Small) -> None:
+    program = small("MoveL Offs(p1,9000,0,0), v200, z10, tool0")
+    result = flyby("emulate", program, "--robot", ROBOT)
+    assert result.exit_code == 1
+    assert result.stderr.startswith(f"error: {program}:6:5: move 2: target cannot be reached")
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ((), "which robot?"),
+        (("--robot", "abb/irb664"), "did you mean"),
+        (("--robot", "kuka/kr3-r540"), "is a program for abb"),
+        (("--robot", ROBOT, "--start", "1,2"), "--start: abb/irb6640-180-255 has 6 axes"),
+        (("--robot", ROBOT, "--period", "0"), "--period must be at least 1e-05 s, not 0.0"),
+        (("--robot", ROBOT, "--period", "nan"), "--period must be at least"),
+        (("--robot", ROBOT, "--entry", "foo"), "foo"),
+        (("--robot", ROBOT, "--plot", "a.gif"), "must end in .png, .pdf, .svg"),
+        (("--robot", ROBOT, "--csv", "/nowhere/a.csv"), "there is no folder /nowhere"),
+        (("--robot", ROBOT, "--csv", ROOT), "is no regular file"),
+        (("--cell", "nowhere.toml"), "nowhere.toml"),
+    ],
+)
+def test_wrong_input_is_one_message(flyby: Flyby, words: tuple[str, ...], message: str) -> None:
+    result = flyby("emulate", SQUARE, *words)
+    assert result.exit_code == 1
+    assert message in result.stderr
+    assert result.stderr.startswith("error: ")
+    assert result.stderr.count("\n") == 1
+    assert not result.stdout
+
+
+@pytest.mark.parametrize("content", [None, b"", b"\x00\x01\xff" * 50, "schön".encode()])
+def test_files_that_hold_no_program(flyby: Flyby, tmp_path: Path, content: bytes | None) -> None:
+    path = tmp_path / "program.mod"
+    if content is not None:
+        path.write_bytes(content)
+    result = flyby("emulate", path, "--robot", ROBOT)
+    assert result.exit_code == 1
+    assert result.stderr.startswith(f"error: {path}")
+    assert result.stderr.count("\n") == 1
+
+
+def test_an_input_is_never_written_to(flyby: Flyby, small: Small, tmp_path: Path) -> None:
+    program = small("MoveL Offs(p1,100,0,0), v200, fine, tool0")
+    before = program.read_bytes()
+    link = tmp_path / "link.mod"
+    link.symlink_to(program)
+    for name in (program, link, tmp_path / "." / "small.mod"):
+        result = flyby("emulate", program, "--robot", ROBOT, "--write", name, "--force")
+        assert result.exit_code == 1
+        assert "would overwrite" in result.stderr
+    assert program.read_bytes() == before
+
+
+def test_two_outputs_need_two_names(flyby: Flyby, tmp_path: Path) -> None:
+    same = tmp_path / "a"
+    result = flyby("emulate", SQUARE, "--robot", ROBOT, "--csv", same, "--npz", same)
+    assert result.exit_code == 1
+    assert "would overwrite the file of --csv" in result.stderr
+    assert not same.exists()
+
+
+def test_existing_outputs_are_kept_without_force(flyby: Flyby, tmp_path: Path) -> None:
+    kept = tmp_path / "a.csv"
+    kept.write_text("mine")
+    words = ("emulate", SQUARE, "--robot", ROBOT, "--csv", kept)
+    assert "--force replaces it" in flyby(*words).stderr
+    assert kept.read_text() == "mine"
+    assert flyby(*words, "--force").exit_code == 0
+    assert kept.read_text().startswith("t,q1,")
+
+
+def test_nothing_is_written_when_the_program_cannot_be_driven(
+    flyby: Flyby, small: Small, tmp_path: Path
+) -> None:
+    program = small("MoveL Offs(p1,9000,0,0), v200, z10, tool0")
+    result = flyby("emulate", program, "--robot", ROBOT, "--csv", tmp_path / "a.csv")
+    assert result.exit_code == 1
+    assert list(tmp_path.iterdir()) == [program]

@@ -1,0 +1,153 @@
+"""The figures of a report, against other ways to find them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flyby.cli.plot_geometry import path_geometry, tcp_speed
+from flyby.cli.report import Report, make_report
+from flyby.core.motion.controller import Controller, Run
+from flyby.core.program.move import MoveC, MoveJ, MoveL
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.target import JointTarget, PoseTarget
+from flyby.core.program.zone import FINE, Radius
+from flyby.core.registry import find_robot, find_vendor
+from flyby.core.spatial.pose import Pose
+
+ROBOT = find_robot("abb/irb6640-180-255")
+CONTROLLER = Controller(find_vendor("abb"), ROBOT)
+HOME = JointTarget((0.0, 0.0, 0.0, 0.0, np.pi / 2, 0.0))
+Small = Callable[..., Path]
+
+
+def drive(path: Path) -> tuple[Run, Report]:
+    run = CONTROLLER.run(find_vendor("abb").read_file(path))
+    return run, make_report(run, ROBOT)
+
+
+def target(x: float, y: float, z: float = 0.9) -> PoseTarget:
+    return PoseTarget(Pose((x, y, z), (0.0, 0.0, 1.0, 0.0)))
+
+
+radii = st.sampled_from([0.001, 0.01, 0.03, 0.2])
+steps = st.tuples(st.floats(0.05, 0.2), st.floats(-0.15, 0.15), radii, st.sampled_from("JL"))
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.lists(steps, min_size=1, max_size=5), st.floats(0.05, 2.0))
+def test_the_figures_agree_with_the_trajectory(
+    legs: list[tuple[float, float, float, str]], speed: float
+) -> None:
+    x, y = 1.2, 0.0
+    moves: list[MoveJ | MoveL] = [MoveJ(target(x, y), Speed(tcp=1.0), FINE)]
+    for dx, dy, radius, kind in legs:
+        x, y = x + dx, y + dy
+        make = MoveJ if kind == "J" else MoveL
+        moves.append(make(target(x, y), Speed(tcp=speed), Radius(radius)))
+    run = CONTROLLER.run(Program(tuple(moves), start=HOME), period=0.001)
+    report = make_report(run, ROBOT)
+    trajectory = run.trajectory
+
+    spent = sum(move.duration + move.wait for move in report.moves)
+    assert spent == pytest.approx(report.cycle_time, abs=1e-9)
+    walked = np.linalg.norm(np.diff(trajectory.position, axis=0), axis=1)
+    assert report.length == pytest.approx(walked.sum(), rel=1e-3, abs=1e-5)
+    assert report.top_speed == pytest.approx(tcp_speed(run).max(), rel=0.05)
+    for move, row in zip(moves, report.moves, strict=True):
+        assert row.top_speed <= (move.speed.tcp or np.inf) * (1 + 1e-6)
+        assert sum(limit.share for limit in row.limits) == pytest.approx(1.0)
+        assert list(row.limits) == sorted(row.limits, key=lambda limit: -limit.share)
+        if isinstance(move.zone, Radius):
+            assert max(row.zone.entry, row.zone.exit) <= move.zone.tcp * (1 + 1e-6)
+    assert report.moves[-1].zone.stops
+    begins = [row.begin for row in report.moves]
+    assert begins == sorted(begins)
+
+
+def test_lengths_of_lines_and_arcs(small: Small) -> None:
+    run, report = drive(
+        small(
+            "MoveL Offs(p1,100,0,0), v200, fine, tool0",
+            "MoveC Offs(p1,150,50,0), Offs(p1,100,100,0), v200, fine, tool0",
+        )
+    )
+    assert [move.length for move in report.moves[1:]] == pytest.approx([0.1, 0.05 * np.pi])
+    assert [move.kind for move in report.moves] == ["MoveJ", "MoveL", "MoveC"]
+    assert not report.moves[0].driven
+    assert report.length == pytest.approx(0.1 + 0.05 * np.pi)
+    arc = path_geometry(run, ROBOT).nominal[1]
+    assert np.linalg.norm(arc - [1.4, 0.15, 0.9], axis=1) == pytest.approx(0.05)
+    assert isinstance(run.program.moves[2], MoveC)
+
+
+def test_a_cut_zone_is_reported_with_its_place(small: Small) -> None:
+    program = small(
+        "MoveL Offs(p1,100,0,0), v200, z50, tool0",
+        "MoveL Offs(p1,100,40,0), v200, z50, tool0",
+        "MoveL Offs(p1,300,40,0), v200, fine, tool0",
+    )
+    run, report = drive(program)
+    cut = report.moves[1].zone
+    assert (cut.name, cut.radius) == ("z50", 0.05)
+    assert (cut.entry, cut.exit) == pytest.approx((0.02, 0.02))
+    notes = [note for note in report.notes if "cut to 20 mm" in note.message]
+    assert [(note.move, note.span and note.span.line) for note in notes] == [(1, 6), (2, 7)]
+    assert path_geometry(run, ROBOT).radius == pytest.approx([0, 0.02, 0.02, 0])
+
+
+def test_a_wait_makes_a_zone_a_stop(small: Small) -> None:
+    _, report = drive(
+        small(
+            "MoveL Offs(p1,100,0,0), v200, z50, tool0",
+            "WaitTime 0.7",
+            "MoveL Offs(p1,100,200,0), v200, fine, tool0",
+        )
+    )
+    assert report.moves[1].zone.stops
+    assert report.moves[1].wait == pytest.approx(0.7)
+    assert report.waiting == pytest.approx(0.7)
+
+
+def test_what_limits_a_move(small: Small) -> None:
+    _, report = drive(
+        small(
+            "MoveL Offs(p1,200,0,0), v50, fine, tool0",
+            "MoveAbsJ [[90,0,0,0,90,0],[9E9,9E9,9E9,9E9,9E9,9E9]], vmax, fine, tool0",
+            "MoveAbsJ [[91,0,0,0,90,0],[9E9,9E9,9E9,9E9,9E9,9E9]], vmax, fine, tool0",
+            "MoveJ Offs(p1,0,0,0), v100\\T:=20, fine, tool0",
+        )
+    )
+    slow, fast, short, timed = report.moves[1:]
+    assert slow.limits[0].name == "programmed TCP speed"
+    assert slow.limits[0].share > 0.9
+    assert fast.limits[0].name == "J1 velocity"
+    assert short.limits[0].name == "J1 acceleration"
+    assert short.limits[0].share == pytest.approx(1.0)
+    assert timed.limits[0].name == "programmed time"
+    assert timed.duration == pytest.approx(20, rel=1e-4)
+
+
+def test_the_drawn_path_runs_from_waypoint_to_waypoint(small: Small) -> None:
+    run, _ = drive(
+        small(
+            "MoveL Offs(p1,100,0,0), v200, z10, tool0",
+            "MoveJ Offs(p1,100,200,0), v200, z10, tool0",
+            "MoveL Offs(p1,0,200,0), v200, fine, tool0",
+        )
+    )
+    geometry = path_geometry(run, ROBOT)
+    assert len(geometry.nominal) == 3
+    for points, start, end in zip(
+        geometry.nominal, geometry.waypoints[:-1], geometry.waypoints[1:], strict=True
+    ):
+        assert points[0] == pytest.approx(start, abs=1e-9)
+        assert points[-1] == pytest.approx(end, abs=1e-9)
+    assert geometry.waypoints[0] == pytest.approx(run.trajectory.position[0])
+    assert geometry.waypoints[-1] == pytest.approx(run.trajectory.position[-1])

@@ -1,0 +1,55 @@
+"""What the README says is true."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text("utf-8")
+DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def test_the_python_example_runs(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    monkeypatch.chdir(ROOT)
+    exec(compile(example, "README.md", "exec"), {})
+    assert re.match(r"\d+\.\d{3} s\n", capsys.readouterr().out)
+
+
+def test_the_main_command_runs(
+    flyby: Callable[..., Result], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (line,) = re.findall(r"\.venv/bin/flyby (emulate .*)", README)
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    result = flyby(*shlex.split(line))
+    assert result.exit_code == 0, result.output
+    written = {path.name for path in tmp_path.iterdir()} - {"examples"}
+    assert written == {"path.png", "path.csv", "cleaned.mod"}
+
+
+def test_there_is_one_test_command_for_ci() -> None:
+    assert len(re.findall(r"^python -m venv .*pytest$", README, re.MULTILINE)) == 1
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_links_lead_somewhere(document: Path) -> None:
+    links = re.findall(r"\]\(([^)#:]+)\)", document.read_text("utf-8"))
+    for link in links:
+        assert (document.parent / link).exists(), link
+
+
+def test_the_command_line_is_documented(flyby: Callable[..., Result]) -> None:
+    text = (ROOT / "docs" / "cli.md").read_text("utf-8")
+    for command in ("emulate", "robots", "vendors", "fk", "ik"):
+        assert f"## flyby {command}" in text
+        shown = set(re.findall(r"--[a-z]+", flyby(command, "--help").stdout)) - {"--help"}
+        assert shown <= set(re.findall(r"--[a-z]+", text)), command

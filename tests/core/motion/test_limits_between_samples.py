@@ -1,0 +1,86 @@
+"""Limits of joints and TCP on a finer grid than the one that was stamped."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flyby.core.motion.blend import TANGENT_ARC, Blend
+from flyby.core.motion.model import MotionModel
+from flyby.core.program.move import MoveC, MoveJ, MoveL
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.zone import FINE, Radius
+
+SLACK = 1.005
+POINTS = 20
+SMOOTH = Blend(alpha=(0, 0, 0, 10, -15, 6))
+MODELS = {
+    "parabola": MotionModel(),
+    "quintic": MotionModel(tcp=SMOOTH, joint=SMOOTH, orientation=SMOOTH),
+    "arc": MotionModel(tcp=TANGENT_ARC, tcp_acceleration=2.0),
+}
+SPEEDS = {
+    "slow": Speed(tcp=0.1, reorientation=1.0),
+    "programmed": Speed(tcp=0.5, tcp_acceleration=1.5, reorientation=3.0, joint=1.0),
+    "flat out": Speed(tcp=7.0, reorientation=20.0),
+}
+
+
+def program(arm, speed, shares) -> Program:
+    zones = [Radius(s * arm.leg, 1.5 * s * arm.leg, 1.5 * s * arm.leg, 0.2 * s) for s in shares]
+    t = arm.target
+    moves = (
+        MoveL(t((1, 0, 0)), speed, zones[0]),
+        MoveL(t((1, 1, 0), (0, 0.3, 0.1)), speed, zones[1]),
+        MoveC(t((0, 1, 0.4), (0.2, 0.1, 0)), speed, zones[2], via=t((0.6, 1.4, 0.1))),
+        MoveJ(arm.joints([0.2, 0.1, -0.1, 0.2, 0.1, 0.3]), speed, zones[3]),
+        MoveJ(t((0, 0.5, 0.5)), speed, zones[0]),
+        MoveL(t((0, 0, 0.8), (0.2, 0, 0)), speed, FINE),
+    )
+    return Program(moves, start=arm.start)
+
+
+def excess(arm, run, speed) -> tuple[float, float, float]:
+    """Worst share of joint velocity, joint acceleration and TCP speed between the samples."""
+    timing, limits = run.timing, arm.robot.limits
+    share = (np.arange(POINTS) + 0.5) / POINTS
+    t = (timing.begin + np.outer(share, timing.end - timing.begin)).T.ravel()
+    _, dq, ddq, _ = timing.states_at(t)
+    q = timing.states_at(t)[0]
+    owner = np.repeat(timing.interval_segments, POINTS)
+    J = arm.robot.jacobian(q)
+    speed_tcp = np.linalg.norm(np.einsum("kij,kj->ki", J[:, :3], dq), axis=1)
+    joint_moves = np.isin(owner, [3, 4]) if speed.joint else np.zeros(len(t), bool)
+    velocity = np.where(joint_moves[:, None], np.minimum(limits.velocity, speed.joint or 9e9), 1.0)
+    velocity = np.where(joint_moves[:, None], velocity, limits.velocity)
+    return (
+        float((np.abs(dq) / velocity).max()),
+        float((np.abs(ddq) / limits.acceleration).max()),
+        float(speed_tcp.max() / speed.tcp),
+    )
+
+
+@pytest.mark.parametrize("name", sorted(MODELS))
+@pytest.mark.parametrize("pace", sorted(SPEEDS))
+@settings(max_examples=3, deadline=None)
+@given(shares=st.lists(st.floats(0.03, 0.3), min_size=4, max_size=4))
+def test_limits_hold_between_samples(arm, name, pace, shares) -> None:
+    speed = SPEEDS[pace]
+    run = arm.controller(MODELS[name]).run(program(arm, speed, shares))
+    assert max(excess(arm, run, speed)) <= SLACK, excess(arm, run, speed)
+
+
+def test_something_always_limits(arm) -> None:
+    """Where neither joint nor TCP were at a limit the stamp would be slower than it may."""
+    speed = SPEEDS["programmed"]
+    run = arm.controller().run(program(arm, speed, [0.2] * 4))
+    rows = run.timing.path_limits.rows
+    x, u = run.timing.stamp.x, np.diff(run.timing.stamp.x) / (2 * rows.spacing)
+    used = x / rows.ceiling.clip(1e-300)
+    at_speed = np.maximum(used[:-1], used[1:]) > 0.999
+    load = np.abs(rows.a * u[:, None, None] + rows.b * np.stack([x[:-1], x[1:]], 1)[..., None])
+    pulling = (load / rows.upper).max(axis=(1, 2)) > 0.999
+    assert np.mean(at_speed | pulling) > 0.97

@@ -1,0 +1,156 @@
+"""Trajectories: resampling, files there and back, and broken files."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flyby.core.errors import InputError
+from flyby.core.motion.trajectory import Trajectory, sample_times
+from flyby.core.program.move import MoveL
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.zone import FINE, Radius
+
+ARRAYS = ("t", "q", "dq", "ddq", "position", "quaternion", "sigma", "move")
+
+
+@pytest.fixture(scope="module")
+def motion(abb) -> Trajectory:
+    speed = Speed(tcp=0.3)
+    moves = (
+        MoveL(abb.target((1, 0, 0), (0.2, 0, 0)), speed, Radius(0.05)),
+        MoveL(abb.target((1, 1, 0)), speed, FINE),
+    )
+    return abb.controller().run(Program(moves, start=abb.start)).trajectory
+
+
+def test_csv_there_and_back(motion, tmp_path) -> None:
+    path = tmp_path / "motion.csv"
+    motion.save_csv(path)
+    header = path.read_text("utf-8").splitlines()[0]
+    assert header == "t,q1,q2,q3,q4,q5,q6,x,y,z,qw,qx,qy,qz,move"
+    back = Trajectory.load_csv(path)
+    for name in ("t", "q", "position", "quaternion"):
+        np.testing.assert_allclose(getattr(back, name), getattr(motion, name), atol=1e-8)
+    np.testing.assert_array_equal(back.move, motion.move)
+    np.testing.assert_allclose(back.dq[2:-2], motion.dq[2:-2], atol=0.02)
+
+
+def test_npz_there_and_back_is_exact(motion, tmp_path) -> None:
+    path = tmp_path / "motion.npz"
+    motion.save_npz(path)
+    back = Trajectory.load_npz(path)
+    for name in ARRAYS:
+        np.testing.assert_array_equal(getattr(back, name), getattr(motion, name))
+
+
+def test_files_are_written_whole_or_not_at_all(motion, tmp_path) -> None:
+    with pytest.raises((InputError, OSError)):
+        motion.save_csv(tmp_path / "nowhere" / "motion.csv")
+    assert list(tmp_path.iterdir()) == []
+
+
+BROKEN = {
+    "header": ("t,a,b", 1),
+    "numbers expected": (
+        "t,q1,x,y,z,qw,qx,qy,qz,move\n0,0,0,0,0,1,0,0,0,1\n0.1,oops,0,0,0,1,0,0,0,1",
+        3,
+    ),
+    "numbers expected ": ("t,q1,x,y,z,qw,qx,qy,qz,move\n0,0,0,0,0,1,0,0,0", 2),
+    "times must increase": (
+        "t,q1,x,y,z,qw,qx,qy,qz,move\n0,0,0,0,0,1,0,0,0,1\n0,0,0,0,0,1,0,0,0,1",
+        3,
+    ),
+}
+
+
+@pytest.mark.parametrize("message", BROKEN)
+def test_broken_csv_is_named_by_file_and_line(message, tmp_path) -> None:
+    text, line = BROKEN[message]
+    path = tmp_path / "broken.csv"
+    path.write_text(text, "utf-8")
+    with pytest.raises(InputError, match=rf"broken\.csv:{line}: .*{message.strip()}"):
+        Trajectory.load_csv(path)
+
+
+@pytest.mark.parametrize("text", ["", "t,q1,x,y,z,qw,qx,qy,qz,move\n", "\x00\xff"])
+def test_an_empty_csv_is_refused(text, tmp_path) -> None:
+    path = tmp_path / "empty.csv"
+    path.write_text(text, "utf-8")
+    with pytest.raises(InputError):
+        Trajectory.load_csv(path)
+
+
+def test_csv_with_nan_is_refused(tmp_path) -> None:
+    path = tmp_path / "nan.csv"
+    path.write_text(
+        "t,q1,x,y,z,qw,qx,qy,qz,move\n0,0,0,0,0,1,0,0,0,1\n0.1,nan,0,0,0,1,0,0,0,1\n", "utf-8"
+    )
+    with pytest.raises(InputError, match="finite"):
+        Trajectory.load_csv(path)
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\x03\x04 broken", b"no archive"])
+def test_broken_npz_is_refused(content, tmp_path) -> None:
+    path = tmp_path / "broken.npz"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=r"broken\.npz"):
+        Trajectory.load_npz(path)
+
+
+def test_npz_without_an_array_is_refused(motion, tmp_path) -> None:
+    path = tmp_path / "part.npz"
+    np.savez(path, t=motion.t, q=motion.q)
+    with pytest.raises(InputError, match=r"part\.npz"):
+        Trajectory.load_npz(path)
+
+
+@pytest.mark.parametrize("load", [Trajectory.load_csv, Trajectory.load_npz])
+def test_missing_files_are_named(load, tmp_path) -> None:
+    with pytest.raises(InputError, match="absent"):
+        load(tmp_path / "absent")
+
+
+@settings(max_examples=15, deadline=None)
+@given(period=st.floats(0.001, 0.02))
+def test_resampling_keeps_the_motion(motion, period) -> None:
+    other = motion.resampled(period)
+    assert other.t[0] == motion.t[0] and other.t[-1] == motion.t[-1]
+    assert np.diff(other.t).max() <= period * (1 + 1e-9)
+    for k in range(6):
+        back = np.interp(other.t, motion.t, motion.q[:, k])
+        np.testing.assert_allclose(other.q[:, k], back, atol=2e-4)
+    np.testing.assert_allclose(np.linalg.norm(other.quaternion, axis=1), 1.0)
+
+
+def test_resampling_at_the_own_period_changes_nothing(motion) -> None:
+    same = motion.resampled(0.004)
+    for name in ("t", "q", "dq", "position", "sigma"):
+        np.testing.assert_allclose(getattr(same, name), getattr(motion, name), atol=1e-9)
+
+
+@settings(max_examples=40, deadline=None)
+@given(duration=st.floats(1e-3, 30), period=st.floats(1e-3, 1.0))
+def test_sample_times_end_exactly_and_leave_no_sliver(duration, period) -> None:
+    t = sample_times(0.0, duration, period)
+    assert t[0] == 0.0 and t[-1] == duration
+    assert (np.diff(t) > 0).all()
+    assert np.diff(t).max() <= period * (1 + 1e-6)
+
+
+def test_what_is_no_trajectory_is_refused(motion) -> None:
+    parts = {name: getattr(motion, name) for name in ARRAYS}
+    for change in (
+        {"t": motion.t[::-1]},
+        {"q": motion.q[:-1]},
+        {"position": np.full_like(motion.position, np.nan)},
+    ):
+        with pytest.raises(InputError):
+            Trajectory(**{**parts, **change})
+    with pytest.raises(InputError):
+        Trajectory(**{name: array[:0] for name, array in parts.items()})
+    with pytest.raises(InputError):
+        motion.resampled(0.0)
