@@ -209,7 +209,7 @@ def _away_from_circle(
     a, b = via - start, end - start
     normal = np.cross(a, b)
     square = float(normal @ normal)
-    centre = start + np.cross((a @ a) * b - (b @ b) * a, normal) / (-2.0 * square)
+    centre = start + np.cross((a @ a) * b - (b @ b) * a, normal) / (2.0 * square)
     radius = float(np.linalg.norm(start - centre))
     unit = normal / np.sqrt(square)
     height = (x - centre) @ unit

@@ -215,6 +215,7 @@ class RouteFinder:
         pose(stage.chain, np.ascontiguousarray(q), rotation[0], position[0])
         kind = np.empty(count, dtype=np.int64)
         via, follows = np.zeros((count, 3)), np.zeros(count, dtype=bool)
+        via_rotation = np.tile(np.eye(3), (count, 1, 1))
         for k, i in enumerate(stage.moves):
             move = moves[i]
             kind[k] = JOINT_SEGMENT if isinstance(move, MoveJ) else LINE_SEGMENT
@@ -231,7 +232,8 @@ class RouteFinder:
                 raise _at(move, i, str(error)) from error
             if isinstance(move, MoveC):
                 kind[k] = ARC_SEGMENT
-                via[k] = move.via.pose.position
+                auxiliary = move.via.pose.matrix()
+                via[k], via_rotation[k] = auxiliary[:3, 3], auxiliary[:3, :3]
                 follows[k] = move.orientation is ArcOrientation.FOLLOWS_ARC
                 _check_arc(move, i, position[k], via[k], position[k + 1])
         pairs = np.stack([np.arange(count), np.arange(count) + 1], -1)
@@ -243,6 +245,7 @@ class RouteFinder:
             rotation[pairs],
             prescribed[pairs],
             via,
+            via_rotation,
             follows,
         )
 

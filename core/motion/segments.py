@@ -25,6 +25,8 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 JOINT_SEGMENT, LINE_SEGMENT, ARC_SEGMENT = 0, 1, 2
+_AMBIGUOUS = 2 * np.pi / 3
+"""rad of turn relative to the tangent from which on the auxiliary point decides the way round."""
 TURN_LENGTH = 0.3
 """m of path that a turn of 1 rad counts as."""
 
@@ -40,6 +42,7 @@ class Ends:
         rotation: (M, 2, 3, 3).
         prescribed: (M, 2, m), the axes that inverse kinematics does not solve for.
         via: (M, 3) m, the auxiliary point of arcs.
+        via_rotation: (M, 3, 3), orientation at the auxiliary point, which tells the way round.
         follows: (M,) bool, arcs whose tool follows the tangent.
     """
 
@@ -49,6 +52,7 @@ class Ends:
     rotation: FloatArray
     prescribed: FloatArray
     via: FloatArray
+    via_rotation: FloatArray
     follows: NDArray[np.bool_]
 
 
@@ -143,6 +147,8 @@ def make_segments(ends: Ends) -> Segments:
         turn_a[arc] = np.where(follows[:, None], swept[:, None] * _into(ends, arc, normal), 0.0)
     relative = _relative(ends, turn_a)
     turn_b = np.where(tcp[:, None], rotation_vector(relative), 0.0)
+    if arc.any():
+        turn_b[arc] = _way_round(ends, arc, position[arc], angle[arc], turn_a[arc], turn_b[arc])
     delta_prescribed = np.where(tcp[:, None], ends.prescribed[:, 1] - ends.prescribed[:, 0], 0.0)
     span = np.linalg.norm(position[:, 1], axis=1)
     length = np.where(arc, angle * span, np.where(tcp, span, 0.0))
@@ -175,6 +181,37 @@ def _circle(ends: Ends, arc: NDArray[np.bool_]) -> tuple[FloatArray, FloatArray,
     u, end = -offset, b - offset
     swept = np.arctan2(np.sum(np.cross(normal, u) * end, 1), np.sum(u * end, 1))
     return start + offset, normal, np.mod(swept, 2 * np.pi)
+
+
+def _way_round(
+    ends: Ends,
+    arc: NDArray[np.bool_],
+    position: FloatArray,
+    angle: FloatArray,
+    turn_a: FloatArray,
+    turn_b: FloatArray,
+) -> FloatArray:
+    """The turns b (A, 3) of the arcs, the longer way round where the auxiliary point says so.
+
+    Its orientation "only selects the direction of reorientation" (RAPID Reference Manual, MoveC).
+    Turns well below a half are taken the short way: programs often leave that orientation alone.
+    """
+    offset = ends.via[arc] - position[:, 0]
+    reached = np.arctan2(np.sum(offset * position[:, 2], 1), np.sum(offset * position[:, 1], 1))
+    share = (np.mod(reached, 2 * np.pi) / angle)[:, None]
+    size = np.linalg.norm(turn_b, axis=1, keepdims=True)
+    longer = turn_b * (1.0 - 2 * np.pi / np.where(size > 0, size, 1.0))
+
+    def miss(turn: FloatArray) -> FloatArray:
+        way = matrix_from_rotation_vector(share * turn_a) @ matrix_from_rotation_vector(
+            share * turn
+        )
+        there = ends.rotation[arc, 0] @ way
+        gap = np.swapaxes(there, 1, 2) @ ends.via_rotation[arc]
+        return np.asarray(np.linalg.norm(rotation_vector(gap), axis=1, keepdims=True))
+
+    wanted = ends.follows[arc][:, None] & (size > _AMBIGUOUS) & (miss(longer) < miss(turn_b))
+    return np.where(wanted, longer, turn_b)
 
 
 def _into(ends: Ends, which: NDArray[np.bool_], vectors: FloatArray) -> FloatArray:

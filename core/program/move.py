@@ -61,7 +61,8 @@ class MoveC(_Motion):
     """The TCP on the arc from the point before through ``via`` to the target.
 
     Args:
-        via: the auxiliary point; its orientation does not matter.
+        via: the auxiliary point; its orientation only tells which way round the tool turns where
+            that is in doubt.
         orientation: how the tool turns along the arc.
     """
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -34,7 +36,8 @@ def ends(seed) -> Ends:
     via = rng.normal(size=(count, 3))
     position = rng.normal(size=(count, 2, 3))
     q, prescribed = rng.normal(size=(count, 2, 6)), rng.normal(size=(count, 2, 2))
-    return Ends(KIND, q, position, rotation, prescribed, via, FOLLOWS)
+    via_rotation = matrix_from_rotation_vector(rng.normal(size=(count, 3)))
+    return Ends(KIND, q, position, rotation, prescribed, via, via_rotation, FOLLOWS)
 
 
 @settings(max_examples=40, deadline=None)
@@ -80,12 +83,35 @@ def test_a_tool_that_follows_the_arc_turns_at_a_constant_rate_relative_to_the_ta
         np.stack([np.eye(3), quarter])[None],
         np.zeros((1, 2, 0)),
         np.array([[np.sqrt(0.5), np.sqrt(0.5), 0.0]]),
+        np.eye(3)[None],
         np.array([True]),
     )
     s = make_segments(e)
     np.testing.assert_allclose(s.turn_a[0], [0, 0, np.pi / 2], atol=1e-12)
     np.testing.assert_allclose(s.turn_b[0], 0.0, atol=1e-12)
     assert s.scale[0] == pytest.approx(np.pi / 2)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_the_auxiliary_point_tells_which_way_the_tool_turns_round_a_half_circle(sense) -> None:
+    """Equal orientations at both ends: the tool hardly turns, or turns once, as the middle says."""
+    tilt = matrix_from_rotation_vector(np.array([0.0, 0.0, 1e-3 * sense]))
+    turns = []
+    for middle in (np.eye(3), matrix_from_rotation_vector(np.array([0.0, 0.0, np.pi]))):
+        e = Ends(
+            np.array([ARC_SEGMENT]),
+            np.zeros((1, 2, 6)),
+            np.array([[[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]]),
+            np.stack([np.eye(3), tilt])[None],
+            np.zeros((1, 2, 0)),
+            np.array([[0.0, 1.0, 0.0]]),
+            middle[None],
+            np.array([True]),
+        )
+        s = make_segments(e)
+        turns.append(s.turn_a[0, 2] + s.turn_b[0, 2])
+    assert turns[0] == pytest.approx(1e-3 * sense)
+    assert turns[1] == pytest.approx(1e-3 * sense + 2 * np.pi)
 
 
 def test_scales_count_length_turn_and_external_axes() -> None:
@@ -152,7 +178,7 @@ def test_the_reverse_is_the_gradient(seed) -> None:
         step = np.zeros_like(out.turn)
         step[i] = h
         values = [
-            total(Ends(KIND, e.q, e.position, turn @ e.rotation, e.prescribed, e.via, FOLLOWS))
+            total(replace(e, rotation=turn @ e.rotation))
             for turn in map(matrix_from_rotation_vector, (step, -step))
         ]
         numeric[i] = (values[0] - values[1]) / (2 * h)
