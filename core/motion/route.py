@@ -1,13 +1,11 @@
-"""Resolves a program's waypoints: frames, configurations, and which moves really move.
+"""Resolves a program's waypoints: frames, configurations, stops, and which moves really move.
 
-Along joint moves the configuration of a pose target is chosen among all solutions of inverse
-kinematics; along moves of the TCP it is where a walk down the nominal path arrives.
+Where a move of the TCP arrives is found by walking down its nominal path.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
@@ -17,16 +15,14 @@ from numpy.typing import NDArray
 from ..errors import InputError, MotionError, Note, Span
 from ..program.move import ArcOrientation, Move, MoveC, MoveJ, Opaque, Wait
 from ..program.program import Program
-from ..program.target import Configuration, JointTarget, PoseTarget
+from ..program.target import JointTarget
 from ..program.tool import WORLD, Tool, WorkObject
 from ..program.zone import FINE, Zone
-from ..robot.assembly import assemble
 from ..robot.chain import Chain
 from ..robot.chain_kernels import pose
-from ..robot.inverse import UnreachableError
 from ..robot.model import Robot
 from ..robot.work_chain import work_chain
-from ..spatial.pose import Pose
+from .configurations import ConfigurationFinder, Label, located
 from .layout import Layout
 from .model import MotionModel
 from .path import Route
@@ -43,14 +39,10 @@ from .tcp_samples import SINGULAR, Samples, States, TcpCurves, sample_tcp
 from .zones import Corners
 
 FloatArray = NDArray[np.float64]
-Label = Callable[[Robot, FloatArray], Configuration | None]
-
+_START = -1
 _COLLINEAR = 1e-6
 _NOWHERE = 1e-9
 """Scale (m or rad) below which a move goes nowhere."""
-_MATCH = 1e-9
-_REDUNDANT = 2
-"""The third axis of a seven-axis arm moves linearly along moves of the TCP (as KUKA's E1 does)."""
 
 
 @dataclass
@@ -90,14 +82,8 @@ class RouteFinder:
 
     def __init__(self, robot: Robot, label: Label) -> None:
         self._robot = robot
-        self._label = label
+        self._targets = ConfigurationFinder(robot, label)
         self._chains: dict[tuple[Tool, WorkObject], Chain] = {}
-        redundant = [_REDUNDANT] if robot.arm_size == 7 else []
-        self.prescribed = np.array(
-            redundant + list(range(robot.arm_size, robot.size)), dtype=np.int64
-        )
-        arm = range(robot.arm_size)
-        self.solved = np.array([j for j in arm if j not in redundant], dtype=np.int64)
 
     def find(
         self, program: Program, start: JointTarget | None, skipped: Collection[int] = ()
@@ -122,39 +108,18 @@ class RouteFinder:
         legs = _Legs()
         for stage in self._stages(moves, skipped):
             q = self._drive(moves, stage, q, legs)
-        return self._route(program, legs, _waypoints(program), q, notes)
+        return self._route(program, legs, _waypoints(program), notes)
 
     def _start(self, program: Program, start: JointTarget | None, notes: list[Note]) -> FloatArray:
         start = start or program.start
-        rest = np.zeros(self._robot.size)
-        rest[:] = np.clip(0.0, self._robot.limits.lower, self._robot.limits.upper)
+        rest = self._targets.rest()
         if start is not None:
-            return self._joints(start, rest, None)
-        first = program.moves[0]
+            return self._targets.joints(start, rest)
         notes.append(Note("no start is known: the robot is taken to stand at the first target", 0))
+        first = program.moves[0]
         if isinstance(first.target, JointTarget):
-            return self._joints(first.target, rest, first)
-        return self._choose(first, 0, rest)
-
-    def _joints(self, target: JointTarget, before: FloatArray, move: Move | None) -> FloatArray:
-        """The configuration of a joint target; axes that it does not name keep their values."""
-        if len(target.joints) != self._robot.arm_size:
-            raise InputError(
-                f"a joint target has {len(target.joints)} values, {self._robot.name} has "
-                f"{self._robot.arm_size} joints"
-            )
-        q = before.copy()
-        q[: self._robot.arm_size] = target.joints
-        self._external(target.external, q)
-        return q
-
-    def _external(self, values: Sequence[float], q: FloatArray) -> None:
-        room = self._robot.size - self._robot.arm_size
-        if len(values) > room:
-            raise InputError(
-                f"a target names {len(values)} external axes, {self._robot.name} has {room}"
-            )
-        q[self._robot.arm_size : self._robot.arm_size + len(values)] = values
+            return self._targets.joints(first.target, rest)
+        return self._targets.choose(first, 0, rest)
 
     def chain(self, tool: Tool, work_object: WorkObject) -> Chain:
         """The chain of a tool and a work object, one object for equal ones."""
@@ -179,7 +144,7 @@ class RouteFinder:
             try:
                 chain = self.chain(move.tool, move.work_object)
             except InputError as error:
-                raise _at(move, i, str(error)) from error
+                raise located(move, i, str(error)) from error
             if not stages or stages[-1].chain is not chain:
                 stages.append(Stage(chain, move.tool, move.work_object, []))
             stages[-1].moves.append(i)
@@ -194,7 +159,7 @@ class RouteFinder:
             move = moves[i]
             ends.q[k, 0] = q
             if ends.kind[k] == JOINT_SEGMENT:
-                q = self._joint_end(move, i, q)
+                q = self._joint_end(move, i, k, stage.chain, ends, q)
             else:
                 if curves is None or segments is None:
                     segments = make_segments(ends)
@@ -221,15 +186,14 @@ class RouteFinder:
             kind[k] = JOINT_SEGMENT if isinstance(move, MoveJ) else LINE_SEGMENT
             try:
                 if isinstance(move.target, JointTarget):
-                    known[k + 1] = self._joints(move.target, known[k], move)
+                    known[k + 1] = self._targets.joints(move.target, known[k])
                     pose(stage.chain, known[k + 1], rotation[k + 1], position[k + 1])
                 else:
-                    known[k + 1] = known[k]
-                    self._external(move.target.external, known[k + 1])
+                    known[k + 1] = self._targets.external(move.target.external, known[k])
                     matrix = move.target.pose.matrix()
                     position[k + 1], rotation[k + 1] = matrix[:3, 3], matrix[:3, :3]
             except InputError as error:
-                raise _at(move, i, str(error)) from error
+                raise located(move, i, str(error)) from error
             if isinstance(move, MoveC):
                 kind[k] = ARC_SEGMENT
                 auxiliary = move.via.pose.matrix()
@@ -237,7 +201,7 @@ class RouteFinder:
                 follows[k] = move.orientation is ArcOrientation.FOLLOWS_ARC
                 _check_arc(move, i, position[k], via[k], position[k + 1])
         pairs = np.stack([np.arange(count), np.arange(count) + 1], -1)
-        prescribed = known[:, self.prescribed]
+        prescribed = known[:, self._targets.prescribed]
         return Ends(
             kind,
             np.zeros((count, 2, size)),
@@ -249,63 +213,19 @@ class RouteFinder:
             follows,
         )
 
-    def _joint_end(self, move: Move, i: int, q: FloatArray) -> FloatArray:
-        if isinstance(move.target, JointTarget):
-            return self._joints(move.target, q, move)
-        return self._choose(move, i, q)
-
-    def _choose(self, move: Move, i: int, before: FloatArray) -> FloatArray:
-        """The configuration of a joint move's pose target."""
-        target = move.target
-        assert isinstance(target, PoseTarget)
-        q = before.copy()
-        self._external(target.external, q)
-        flange = self._flange(move, target.pose, q)
-        external = tuple(q[self._robot.arm_size :])
-        try:
-            solutions = self._robot.inverse(flange, external)
-        except UnreachableError as error:
-            raise _at(move, i, f"target cannot be reached: {error}") from error
-        options = []
-        for solution in solutions:
-            for arm in self._robot.turns(solution.q):
-                full = q.copy()
-                full[: self._robot.arm_size] = arm
-                options.append(full)
-        return self._pick(move, i, options, before)
-
-    def _pick(
-        self, move: Move, i: int, options: Sequence[FloatArray], before: FloatArray
+    def _joint_end(
+        self, move: Move, i: int, k: int, chain: Chain, ends: Ends, q: FloatArray
     ) -> FloatArray:
-        """The option with the programmed configuration that is nearest to ``before``."""
-        distance = [float(np.abs(q - before).sum()) for q in options]
-        wanted = move.target.configuration if isinstance(move.target, PoseTarget) else None
-        if wanted is None:
-            return options[int(np.argmin(distance))]
-        labels = [self._label(self._robot, q) for q in options]
-        misses = [math.inf if name is None else wanted.mismatch(name) for name in labels]
-        best = min(range(len(options)), key=lambda k: (misses[k], distance[k]))
-        if wanted.exact and misses[best] > _MATCH:
-            known = sorted({str(name) for name in labels})
-            raise _at(
-                move,
-                i,
-                f"configuration {wanted} contradicts the pose; the robot reaches it with "
-                f"{', '.join(known)}",
-            )
-        return options[best]
-
-    def _flange(self, move: Move, target: Pose, q: FloatArray) -> Pose:
-        """The flange in the world that puts the TCP on a target in the work object."""
-        tool, work_object = move.tool, move.work_object
-        if work_object.robot_held:
-            return tool.tcp @ target.inverse() @ work_object.pose.inverse()
-        if work_object.moved_by is None:
-            return work_object.pose @ target @ tool.tcp.inverse()
-        stages = self._robot.frame_stages(work_object.moved_by)
-        carrier = np.eye(4)
-        pose(assemble([*stages, work_object.pose]), q, carrier[:3, :3], carrier[:3, 3])
-        return Pose.from_matrix(carrier) @ target @ tool.tcp.inverse()
+        """Where joint move k of a stage ends."""
+        if isinstance(move.target, JointTarget):
+            return self._targets.joints(move.target, q)
+        if not self._targets.redundant:
+            return self._targets.choose(move, i, q)
+        # Of the many configurations of a seven-axis arm, the one that keeps the redundant axis:
+        # the one that a line to the target would arrive with.
+        line = replace(_rows(ends, np.array([k])), kind=np.array([LINE_SEGMENT]))
+        segments = make_segments(line)
+        return self._walk(move, i, 0, chain, segments, _nominal(segments), q)
 
     def _walk(
         self,
@@ -318,8 +238,8 @@ class RouteFinder:
         q: FloatArray,
     ) -> FloatArray:
         """Where the arm arrives that follows the nominal path of segment k from q."""
-        if len(self.solved) != 6:
-            raise _at(
+        if len(self._targets.solved) != 6:
+            raise located(
                 move,
                 i,
                 f"{self._robot.name} has {self._robot.arm_size} joints; only arms with six or "
@@ -333,8 +253,8 @@ class RouteFinder:
         pivots = np.ones(steps + 1)
         failed, error = sample_tcp(
             chain,
-            self.solved,
-            self.prescribed,
+            self._targets.solved,
+            self._targets.prescribed,
             curves,
             Samples(sigma, index, index, index),
             q,
@@ -342,32 +262,21 @@ class RouteFinder:
             pivots,
         )
         if failed >= 0:
-            raise self._lost(move, i, failed / steps, error, float(pivots[failed]))
+            raise self._lost(move, i, failed / steps, error, float(pivots[failed]), q)
         arrived: FloatArray = states.q[-1].copy()
-        wanted = move.target.configuration if isinstance(move.target, PoseTarget) else None
-        if wanted is not None:
-            label = self._label(self._robot, arrived)
-            if label is not None and wanted.exact and wanted.mismatch(label) > _MATCH:
-                raise _at(
-                    move,
-                    i,
-                    f"configuration {wanted} contradicts the path: the arm arrives with {label}; "
-                    "use a joint move, or programme the configuration it arrives with",
-                )
+        self._targets.check_arrival(move, i, arrived)
         return arrived
 
-    def _lost(self, move: Move, i: int, share: float, error: float, pivots: float) -> MotionError:
+    def _lost(
+        self, move: Move, i: int, share: float, error: float, pivots: float, near: FloatArray
+    ) -> MotionError:
         where = f"{100 * share:.0f} % of the way along"
         if pivots < SINGULAR:
-            return _at(move, i, f"the path runs into a singular configuration {where}")
-        try:
-            assert isinstance(move.target, PoseTarget)
-            self._robot.inverse(self._flange(move, move.target.pose, np.zeros(self._robot.size)))
-        except UnreachableError as reason:
-            return _at(move, i, f"target cannot be reached: {reason}")
-        except AssertionError:
-            pass
-        return _at(
+            return located(move, i, f"the path runs into a singular configuration {where}")
+        reason = self._targets.why_unreachable(move, near)
+        if reason is not None:
+            return located(move, i, f"target cannot be reached: {reason}")
+        return located(
             move, i, f"the arm leaves its reach {where}, {1e3 * error:.3g} mm short of the path"
         )
 
@@ -376,7 +285,6 @@ class RouteFinder:
         program: Program,
         legs: _Legs,
         waypoints: dict[int, _Waypoint],
-        q: FloatArray,
         notes: list[Note],
     ) -> Route:
         """Join the stages and drop moves that go nowhere; their stops and waits stay."""
@@ -384,7 +292,7 @@ class RouteFinder:
         keep = make_segments(ends).scale > _NOWHERE
         zones: list[Zone] = []
         owners: list[int] = []
-        dwell = [0.0]
+        dwell = [waypoints[_START].dwell]
         for kept, move in zip(keep, legs.moves, strict=True):
             here = waypoints[move]
             if kept:
@@ -409,8 +317,8 @@ class RouteFinder:
             tuple(owners[:-1]),
             np.array(dwell),
             np.array([False, *changes, False]),
-            self.solved,
-            self.prescribed,
+            self._targets.solved,
+            self._targets.prescribed,
             tuple(replace(n, span=n.span or _span(program, n.move)) for n in notes),
         )
 
@@ -420,23 +328,18 @@ def _span(program: Program, move: int | None) -> Span | None:
     return None if origin is None else origin.statement
 
 
-def _at(move: Move, index: int, message: str) -> MotionError:
-    span = None if move.origin is None else move.origin.statement
-    return MotionError(message, index, span)
-
-
 def _check_arc(move: Move, i: int, start: FloatArray, via: FloatArray, end: FloatArray) -> None:
     a, b = via - start, end - start
     sizes = np.linalg.norm(a), np.linalg.norm(b), np.linalg.norm(end - via)
     if min(sizes) < 1e-6:
-        raise _at(
+        raise located(
             move,
             i,
             "two of the three points of the arc are the same (nearer than 0.001 mm): an arc needs "
             "three different points",
         )
     if np.linalg.norm(np.cross(a, b)) < _COLLINEAR * sizes[0] * sizes[1]:
-        raise _at(
+        raise located(
             move,
             i,
             "the three points of the arc lie on a line: move the auxiliary point, or use a "
@@ -445,15 +348,14 @@ def _check_arc(move: Move, i: int, start: FloatArray, via: FloatArray, end: Floa
 
 
 def _waypoints(program: Program) -> dict[int, _Waypoint]:
-    """Zone and dwell at the end of every move, waits and stopping statements included."""
-    found: dict[int, _Waypoint] = {}
-    index = -1
+    """Zone and dwell at the start and at the end of every move, stopping statements included."""
+    found = {_START: _Waypoint(FINE)}
+    index = _START
     for statement in program.statements:
         if isinstance(statement, Wait):
-            if index >= 0:
-                found[index] = _Waypoint(FINE, found[index].dwell + statement.duration)
+            found[index] = _Waypoint(FINE, found[index].dwell + statement.duration)
         elif isinstance(statement, Opaque):
-            if statement.stops and index >= 0:
+            if statement.stops:
                 found[index] = replace(found[index], zone=FINE)
         else:
             index += 1

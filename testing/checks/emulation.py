@@ -1,0 +1,283 @@
+"""Checks of the motion that comes of a vendor's motion model, robots and labels.
+
+Programs are driven and looked at from outside: through the arm's own kinematics, between the
+samples that the emulator itself looked at, against geometry that is worked out here anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from ...core.errors import MotionError
+from ...core.motion.controller import Controller, Run
+from ...core.motion.derivatives import Derivatives
+from ...core.motion.model import MotionModel
+from ...core.motion.pieces import Sampling
+from ...core.motion.trajectory import Trajectory
+from ...core.program.move import MoveJ, Wait
+from ...core.program.program import Program
+from ...core.program.target import JointTarget
+from ...core.program.zone import FINE, Radius, Zone
+from ...core.robot.model import Robot
+from ..observation import (
+    FloatArray,
+    Observed,
+    at_speed,
+    away_from_legs,
+    outside_zones,
+    turned_away,
+)
+from ..strategies import programs
+from .subject import PROGRAM_EXAMPLES, Subject
+
+ON_PATH = 1e-6
+"""m or rad by which a path may miss what is programmed outside its zones."""
+SAME = 1e-7
+"""m, rad, and their rates as a share of the largest: what rounding of inverse kinematics leaves."""
+SLACK = 1.005
+"""By how much a limit may be passed between samples."""
+FINE_SAMPLING = Sampling(step=0.01, turn=0.04, joint=0.03, blend=48, least=16)
+"""Dense enough for `SLACK` in corners that all but turn back; the default is for speed."""
+ROBOTS = 2
+"""So many robots of a vendor are driven."""
+MOVES = 3
+
+
+class EmulationChecks(Subject):
+    """What is driven is what was programmed, within the limits, and its derivatives are right."""
+
+    def controller(self, robot: Robot, model: MotionModel | None = None) -> Controller:
+        """The emulator under test."""
+        return Controller(self.vendor, robot, model, FINE_SAMPLING)
+
+    @PROGRAM_EXAMPLES
+    @given(data=st.data())
+    def test_the_path_leaves_the_programmed_one_inside_zones_only(
+        self, data: st.DataObject
+    ) -> None:
+        robot, run = self._drive(data, self.zones())
+        seen, model = Observed.of(robot, run), self.vendor.motion()
+        for away, turning in ((away_from_legs(seen), False), (turned_away(seen), True)):
+            outside = outside_zones(seen, model, turning)
+            assert away[outside].max(initial=0.0) < ON_PATH
+
+    @PROGRAM_EXAMPLES
+    @given(data=st.data())
+    def test_targets_are_the_corners_of_the_path(self, data: st.DataObject) -> None:
+        robot, run = self._drive(data, self.zones())
+        seen = Observed.of(robot, run)
+        for move, q in zip(seen.moves, seen.corners[1:], strict=True):
+            if isinstance(move.target, JointTarget):
+                assert np.abs(q - [*move.target.joints, *move.target.external]).max() < SAME
+            else:
+                gap = robot.flange_pose(q).matrix() - move.target.pose.matrix()
+                assert np.abs(gap).max() < SAME
+            if move.zone == FINE:
+                nearest = np.abs(seen.q - q).max(axis=1)
+                assert nearest.min() < SAME, "a stop point is cut"
+                assert np.abs(seen.dq[nearest.argmin()]).max() < SAME, "no stop at a stop point"
+
+    @PROGRAM_EXAMPLES
+    @given(data=st.data())
+    def test_the_path_has_a_continuous_tangent(self, data: st.DataObject) -> None:
+        _, run = self._drive(data, self._fly_by_zones())
+        path = run.path
+        right = path.pieces.first_sample[1:-1]
+        jump = path.states.dq[right] - path.states.dq[right - 1]
+        flying = ~path.pieces.stop[1:-1]
+        assert np.abs(path.q[right] - path.q[right - 1]).max(initial=0.0) < SAME
+        assert np.abs(jump[flying]).max(initial=0.0) < SAME * np.abs(path.states.dq).max()
+
+    @PROGRAM_EXAMPLES
+    @given(data=st.data())
+    def test_limits_hold_between_samples(self, data: st.DataObject) -> None:
+        robot, run = self._drive(data, self.zones())
+        seen = Observed.of(robot, run)
+        assert (np.abs(seen.dq) <= SLACK * robot.limits.velocity).all()
+        assert (np.abs(seen.ddq) <= SLACK * robot.limits.acceleration).all()
+        twist = seen.twist()
+        for k, move in enumerate(seen.moves):
+            rows = seen.segment == k
+            for part, limit in ((slice(3), move.speed.tcp), (slice(3, 6), move.speed.reorientation)):
+                if limit is not None:
+                    rate = np.linalg.norm(twist[rows, part], axis=1)
+                    assert (rate <= SLACK * limit).all()
+            if isinstance(move, MoveJ) and move.speed.joint is not None:
+                assert (np.abs(seen.dq[rows]) <= SLACK * move.speed.joint).all()
+
+    @PROGRAM_EXAMPLES
+    @given(data=st.data())
+    def test_the_motion_starts_and_ends_as_programmed(self, data: st.DataObject) -> None:
+        robot, run = self._drive(data, self.zones())
+        start, made = run.program.start, run.trajectory
+        assert start is not None
+        assert np.abs(made.q[0] - [*start.joints, *start.external]).max() < SAME
+        assert np.abs(made.q[-1] - Observed.of(robot, run).corners[-1]).max() < SAME
+        assert np.abs(made.dq[[0, -1]]).max() < SAME
+        waits = sum(s.duration for s in run.program.statements if isinstance(s, Wait))
+        assert run.duration >= waits + self.vendor.motion().smoothing
+
+    @PROGRAM_EXAMPLES
+    @given(data=st.data(), factor=st.floats(0.1, 0.9))
+    def test_half_the_speed_takes_twice_the_time(self, data: st.DataObject, factor: float) -> None:
+        robot, run = self._drive(data, self.zones())
+        model = self.vendor.motion()
+        limits = {
+            name: None if value is None else value * factor**2
+            for name, value in (
+                ("tcp_acceleration", model.tcp_acceleration),
+                ("reorientation_acceleration", model.reorientation_acceleration),
+            )
+        }
+        slower = self.controller(robot, replace(model, **limits))
+        timing = slower.run(at_speed(run.program, factor)).timing
+        assert np.isclose(
+            timing.stamp.duration * factor, run.timing.stamp.duration, rtol=SAME, atol=0
+        )
+
+    @PROGRAM_EXAMPLES
+    @given(data=st.data())
+    def test_speed_that_is_allowed_costs_no_time(self, data: st.DataObject) -> None:
+        robot, run = self._drive(data, self.zones())
+        slow = self.controller(robot).run(at_speed(run.program, 0.8))
+        assert run.timing.stamp.duration < slow.timing.stamp.duration
+
+    @PROGRAM_EXAMPLES
+    @given(data=st.data())
+    def test_samples_do_not_depend_on_the_period(self, data: st.DataObject) -> None:
+        robot, run = self._drive(data, self.zones())
+        sample, period = self.controller(robot).sample, self.vendor.motion().period
+        coarse = sample(run.program, run.timing, period)
+        fine = sample(run.program, run.timing, 0.5 * period)
+        assert np.isclose(fine.duration, coarse.duration)
+        every = slice(0, 2 * (len(coarse.t) - 1), 2)
+        assert np.abs(fine.q[every] - coarse.q[:-1]).max() < SAME
+        assert np.abs(fine.q[-1] - coarse.q[-1]).max() < SAME
+        # A cubic misses a motion of bounded acceleration by at most a T² / 16.
+        again = on_times(coarse.resampled(0.5 * period), fine.t)
+        bound = robot.limits.acceleration * period**2 / 16
+        assert (np.abs(again - fine.q) <= 2 * bound + SAME).all()
+
+    @PROGRAM_EXAMPLES
+    @given(data=st.data(), share=st.floats(0, 1), axis=st.integers(0, 2))
+    def test_the_derivative_of_duration_is_its_slope(
+        self, data: st.DataObject, share: float, axis: int
+    ) -> None:
+        robot, run = self._drive(data, self._fly_by_zones())
+        controller, program = self.controller(robot), run.program
+        gradient = Derivatives(controller, program, run.timing).duration()
+        i = round(share * (len(program.moves) - 1))
+        move = program.moves[i]
+        if isinstance(move.target, JointTarget):
+            slope = gradient.joints[i, axis]
+        else:
+            slope = gradient.position[i, axis]
+        _check_slope(controller, run, lambda h: with_target_moved(program, i, axis, h), slope)
+        if move.speed.tcp is not None:
+            tcp = move.speed.tcp
+            _check_slope(
+                controller,
+                run,
+                lambda h: with_move(program, i, speed=replace(move.speed, tcp=tcp + h)),
+                gradient.speed.tcp[i],
+            )
+        if isinstance(move.zone, Radius):
+            zone = move.zone
+            _check_slope(
+                controller,
+                run,
+                lambda h: with_move(program, i, zone=replace(zone, tcp=zone.tcp + h)),
+                gradient.zone[i],
+            )
+
+    @PROGRAM_EXAMPLES
+    @given(data=st.data())
+    def test_what_is_written_moves_alike(self, data: st.DataObject) -> None:
+        self.need("reader", "writer")
+        robot, run = self._drive(data, self.zones())
+        assume(robot.name.partition("/")[2] in self.driven_robots())
+        again = self.read_back(self.vendor.write(run.program, robot))
+        try:
+            copy = self.controller(robot).run(again, run.program.start)
+        except MotionError as error:
+            raise AssertionError(f"the written program cannot be driven: {error}") from error
+        first, second = run.timing, copy.timing
+        assert np.isclose(second.duration, first.duration, rtol=1e-3)
+        share = np.linspace(0.0, 1.0, 50)
+        apart = [timing.states_at(share * timing.duration)[0] for timing in (first, second)]
+        fastest = np.abs(Observed.of(robot, run).dq).max()
+        late = 1e-3 * first.duration
+        assert np.abs(apart[0] - apart[1]).max() < 1e-3 + fastest * late
+
+    def _drive(self, data: st.DataObject, zone: st.SearchStrategy[Zone]) -> tuple[Robot, Run]:
+        """A robot, and what came of a program that it can drive."""
+        names = [n for n in sorted(self.vendor.robots) if self.vendor.robot(n).arm_size == 6]
+        robot = self.vendor.robot(data.draw(st.sampled_from(names[:ROBOTS])))
+        program = data.draw(programs(robot, self.vendor.label, zone, self.speeds(), MOVES))
+        try:
+            return robot, self.controller(robot).run(program)
+        except MotionError:
+            assume(False)
+            raise
+
+    def _fly_by_zones(self) -> st.SearchStrategy[Zone]:
+        return self.zones().filter(lambda zone: zone != FINE)
+
+
+def on_times(trajectory: Trajectory, t: FloatArray) -> FloatArray:
+    """Joints (T, N) of a trajectory whose own times are t up to rounding."""
+    assert np.allclose(trajectory.t, t, atol=1e-9)
+    return trajectory.q
+
+
+def with_move(program: Program, i: int, **changes: object) -> Program:
+    """The program with parts of move ``i`` replaced."""
+    moves = list(program.moves)
+    moves[i] = replace(moves[i], **changes)  # type: ignore[arg-type]
+    return program.with_moves(tuple(moves))
+
+
+def with_target_moved(program: Program, i: int, axis: int, h: float) -> Program:
+    """The program with coordinate or joint ``axis`` of target ``i`` increased by ``h``."""
+    target = program.moves[i].target
+    if isinstance(target, JointTarget):
+        joints = list(target.joints)
+        joints[axis] += h
+        return with_move(program, i, target=replace(target, joints=tuple(joints)))
+    position = list(target.pose.position)
+    position[axis] += h
+    pose = replace(target.pose, position=tuple(position))
+    return with_move(program, i, target=replace(target, pose=pose))
+
+
+def _check_slope(
+    controller: Controller, run: Run, changed: Callable[[float], Program], slope: float
+) -> None:
+    """Compare a derivative of the duration with differences on both sides.
+
+    Where two limits tie they differ, and the derivative is one of them or between; where the path
+    falls into other pieces or samples there is none, and nothing is compared.
+    """
+    h = 1e-5
+    try:
+        timings = [controller.run(changed(step)).timing for step in (-h, h)]
+    except MotionError:
+        return
+    pieces = run.path.pieces
+    for timing in timings:
+        other = timing.path
+        if other.route.moves != run.path.route.moves:
+            return
+        if not np.array_equal(other.pieces.intervals, pieces.intervals):
+            return
+        if not np.array_equal(other.pieces.source, pieces.source):
+            return
+    before, after = (timing.duration for timing in timings)
+    sides = ((run.timing.duration - before) / h, (after - run.timing.duration) / h)
+    room = 2e-3 * abs(slope) + 1e-3
+    assert min(sides) - room <= slope <= max(sides) + room
