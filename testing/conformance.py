@@ -7,17 +7,16 @@ An author subclasses it; pytest finds the inherited tests::
     class TestAcme(VendorConformance):
         name = "acme"
 
-Each part of the suite is a class of its own in `flyby.testing.checks`. Checks of the emulated
-motion (the path leaves the programmed one inside zones only, limits hold between samples) belong
-in another such part, added to the bases below.
+Each part of the suite is a class of its own in `flyby.testing.checks`.
 """
 
 from __future__ import annotations
 
 from .checks.catalogue import CatalogueChecks
+from .checks.emulation import EmulationChecks
 from .checks.language import LanguageChecks
 from .checks.motion_model import MotionModelChecks
 
 
-class VendorConformance(CatalogueChecks, MotionModelChecks, LanguageChecks):
+class VendorConformance(CatalogueChecks, MotionModelChecks, LanguageChecks, EmulationChecks):
     """All checks; ``name`` is the vendor's."""

@@ -71,12 +71,12 @@ class Observed:
     @property
     def corners(self) -> FloatArray:
         """(M + 1, N), configurations at the waypoints."""
-        q: FloatArray = self.run.path.route.ends.q
+        q = self.run.path.route.ends.q
         return np.concatenate([q[:1, 0], q[:, 1]])
 
     def twist(self) -> FloatArray:
         """(S, 6), velocity of the flange in m/s and its rate of turn in rad/s."""
-        return np.einsum("sij,sj->si", self.robot.jacobian(self.q), self.dq)
+        return np.asarray(np.einsum("sij,sj->si", self.robot.jacobian(self.q), self.dq))
 
 
 def away_from_legs(seen: Observed) -> FloatArray:

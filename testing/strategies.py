@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -99,6 +99,11 @@ def zones(largest: float = 0.05) -> st.SearchStrategy[Zone]:
     return st.one_of(st.just(FINE), radii(largest))
 
 
+def fly_by_zones(zone: st.SearchStrategy[Zone] | None = None) -> st.SearchStrategy[Zone]:
+    """Those of ``zone`` that let the robot pass without stopping."""
+    return (zones() if zone is None else zone).filter(lambda found: found != FINE)
+
+
 @st.composite
 def programs(
     draw: st.DrawFn,
@@ -107,6 +112,7 @@ def programs(
     zone: st.SearchStrategy[Zone] | None = None,
     speed: st.SearchStrategy[Speed] | None = None,
     max_moves: int = 6,
+    kinds: Sequence[type[Move]] = (MoveJ, MoveL, MoveC),
 ) -> Program:
     """Programs of joint, linear and circular moves and waits that the robot can drive.
 
@@ -119,7 +125,7 @@ def programs(
     q = draw(regular_configurations(robot, margin=0.15))
     statements: list[Statement] = [MoveJ(joint_target(robot, q), draw(speed), FINE)]
     for _ in range(draw(st.integers(1, max_moves))):
-        kind = draw(st.sampled_from([MoveJ, MoveL, MoveC]))
+        kind = draw(st.sampled_from(kinds))
         move, q = _move(draw, kind, robot, q, label, draw(speed), draw(zone))
         statements.append(move)
         if draw(st.booleans()) and move.zone == FINE:

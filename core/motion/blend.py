@@ -92,7 +92,9 @@ class Blend:
         k1 = P.polymul([0.0, 0.0, 0.5], P.polysub([1.0], alpha))
         k2 = P.polymul(P.polymul(one_minus_s, one_minus_s) / 2, alpha)
         rows = [np.ones(1), f, g, h, k1, k2]
-        table = np.zeros((BASIS, max(map(len, rows))))
+        # As wide as the laws' own lengths ask for: a coefficient that is zero has its column too.
+        width = max(4, len(self.alpha) + 2, len(self.beta) + len(_BUMP) - 1)
+        table = np.zeros((BASIS, width))
         for row, polynomial in zip(table, rows, strict=True):
             row[: len(polynomial)] = polynomial
         return table

@@ -18,6 +18,7 @@ from ..program.target import Configuration, JointTarget, PoseTarget
 from ..robot.assembly import assemble
 from ..robot.chain_kernels import pose
 from ..robot.inverse import UnreachableError
+from ..robot.joint import JointKind
 from ..robot.model import Robot
 from ..spatial.pose import Pose
 
@@ -56,6 +57,9 @@ class ConfigurationFinder:
         self.solved = np.array([j for j in arm if j not in redundant], dtype=np.int64)
         self.prescribed = np.array([*redundant, *range(len(arm), robot.size)], dtype=np.int64)
         self.redundant = bool(redundant)
+        self._full_turn = np.array(
+            [2 * np.pi if j.kind is JointKind.REVOLUTE else 0.0 for j in robot.joints]
+        )
 
     def rest(self) -> FloatArray:
         """All axes at zero, or at the limit nearest to it."""
@@ -112,25 +116,34 @@ class ConfigurationFinder:
             )
         except UnreachableError as error:
             raise located(move, index, f"target cannot be reached: {error}") from error
-        options = []
-        for solution in solutions:
-            for turned in self._robot.turns(solution.q):
-                option = q.copy()
-                option[:arm] = turned
-                options.append(option)
+        if target.configuration is None:
+            turned = [self._nearest_turn(solution.q, before[:arm]) for solution in solutions]
+        else:
+            turned = [t for solution in solutions for t in self._robot.turns(solution.q)]
+        options = np.tile(q, (len(turned), 1))
+        options[:, :arm] = turned
         return self._pick(move, index, target.configuration, options, before)
+
+    def _nearest_turn(self, q: FloatArray, before: FloatArray) -> FloatArray:
+        """Of the arm's configurations whole turns away from q, the one nearest to ``before``."""
+        limits = self._robot.limits
+        turned = q + self._full_turn * np.round((before - q) / (2 * np.pi))
+        if (turned < limits.lower[: len(q)]).any() or (turned > limits.upper[: len(q)]).any():
+            options = self._robot.turns(q)
+            turned = options[np.argmin(np.abs(options - before).sum(axis=1))]
+        return np.asarray(turned)
 
     def _pick(
         self,
         move: Move,
         index: int,
         wanted: Configuration | None,
-        options: Sequence[FloatArray],
+        options: FloatArray,
         before: FloatArray,
     ) -> FloatArray:
-        distance = [float(np.abs(q - before).sum()) for q in options]
+        distance = np.abs(options - before).sum(axis=1)
         if wanted is None:
-            return options[int(np.argmin(distance))]
+            return np.asarray(options[np.argmin(distance)])
         labels = [self._label(self._robot, q) for q in options]
         misses = [math.inf if name is None else wanted.mismatch(name) for name in labels]
         best = min(range(len(options)), key=lambda k: (misses[k], distance[k]))
@@ -141,7 +154,7 @@ class ConfigurationFinder:
                 index,
                 f"configuration {wanted} contradicts the pose; the robot reaches it with {known}",
             )
-        return options[best]
+        return np.asarray(options[best])
 
     def check_arrival(self, move: Move, index: int, arrived: FloatArray) -> None:
         """Hold the end of a move of the TCP against its programmed configuration.

@@ -327,7 +327,7 @@ def _finite(timing: Timing, timed: list[int]) -> SegmentLimits:
     rate = np.sqrt(np.maximum(stamped.x[:-1], stamped.x[1:]))
     top = np.zeros(len(path.route.moves))
     np.maximum.at(top, timing.interval_segments, rate)
-    sample_segment = path.pieces.segment[path.pieces.sample_pieces()]
+    sample_segment = path.pieces.segment[path.pieces.sample_pieces]
     speeds = np.concatenate(
         [
             np.abs(path.states.dq),

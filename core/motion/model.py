@@ -104,6 +104,27 @@ class MotionModel:
         if self.smoothing < 0 or (self.jerk is not None and self.jerk <= 0):
             raise InputError("time.smoothing_s must be zero or more, time.jerk above zero")
 
+    @property
+    def figures(self) -> frozenset[str]:
+        """The dotted keys of all that the model states; each of them needs a provenance."""
+        blends = (f"blend.{name}.{key}" for name in _BLENDS for key in ("kind", "alpha", "beta"))
+        limits = (f"limit.{name}" for name in _LIMITS if getattr(self, name) is not None)
+        return frozenset((*_SINGLE_FIGURES, *blends, *limits))
+
+
+_BLENDS = ("tcp", "joint", "orientation")
+_LIMITS = ("tcp_acceleration", "reorientation_acceleration")
+_SINGLE_FIGURES = (
+    "period_s",
+    "zone.overlap",
+    "zone.neighbour_fraction",
+    "zone.orientation",
+    "zone.mixed_space",
+    "zone.stops_at_pure_reorientation",
+    "time.smoothing_s",
+    "time.jerk",
+)
+
 
 def load_motion_model(path: Path) -> MotionModel:
     """Read a motion model.

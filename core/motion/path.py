@@ -135,7 +135,7 @@ class Path:
     def sample_moves(self) -> IntArray:
         """(S,), index of the move that each sample belongs to."""
         moves = np.array(self.route.moves, dtype=np.int64)
-        return moves[self.pieces.segment[self.pieces.sample_pieces()]]
+        return moves[self.pieces.segment[self.pieces.sample_pieces]]
 
 
 def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
@@ -161,7 +161,7 @@ def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
     conditioning = np.ones(len(sigma))
     for stretch in _stretches(route, layout, pieces):
         view = states.rows(stretch.start, stretch.stop)
-        piece = pieces.sample_pieces()[stretch.start : stretch.stop]
+        piece = pieces.sample_pieces[stretch.start : stretch.stop]
         at = sigma[stretch.start : stretch.stop]
         if stretch.joint_space:
             sample_joint(stretch.chain, joint, pieces.curve[piece, POSITION], at, view)
@@ -311,7 +311,7 @@ def _refuse(route: Route, run: _Run, failed: int, error: float, pivots: float) -
 
 def _singular_notes(route: Route, pieces: Pieces, conditioning: FloatArray) -> list[Note]:
     """One note for every move with a stretch near a singularity."""
-    segment = pieces.segment[pieces.sample_pieces()]
+    segment = pieces.segment[pieces.sample_pieces]
     notes = []
     for k in np.unique(segment[conditioning < NEAR_SINGULAR]):
         worst = conditioning[segment == k].min()
@@ -364,7 +364,7 @@ def pull_path(path: Path, states_bar: States, sigma_bar: FloatArray) -> RouteGra
         np.zeros_like(curves.reference),
         curves.prescribed.zeros_like(),
     )
-    sample_piece = pieces.sample_pieces()
+    sample_piece = pieces.sample_pieces
     for stretch in _stretches(route, layout, pieces):
         rows = slice(stretch.start, stretch.stop)
         view, view_bar = (s.rows(rows.start, rows.stop) for s in (path.states, states_bar))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,20 +73,22 @@ class Pieces:
     halvings: int
     stop: NDArray[np.bool_]
 
-    @property
+    @cached_property
     def first_sample(self) -> IntArray:
         """(P + 1,), index of each piece's first sample; samples stand at both ends of a piece."""
         return np.concatenate([[0], np.cumsum(self.intervals + 1)])
 
-    @property
+    @cached_property
     def first_interval(self) -> IntArray:
         """(P + 1,), index of each piece's first interval."""
         return np.concatenate([[0], np.cumsum(self.intervals)])
 
+    @cached_property
     def sample_pieces(self) -> IntArray:
         """(S,), the piece of every sample."""
         return np.repeat(np.arange(len(self.segment)), self.intervals + 1)
 
+    @cached_property
     def sample_shares(self) -> FloatArray:
         """(S,), how far along its piece every sample stands, from 0 to 1."""
         return np.concatenate(
@@ -98,12 +100,12 @@ class Pieces:
 
     def sigma(self) -> FloatArray:
         """(S,), σ of every sample."""
-        piece, share = self.sample_pieces(), self.sample_shares()
+        piece, share = self.sample_pieces, self.sample_shares
         return (1.0 - share) * self.edge[piece] + share * self.edge[piece + 1]
 
     def pull_sigma(self, sigma_bar: FloatArray, bar: LayoutGradient) -> None:
         """Reverse of `sigma`: add to the layout's gradient."""
-        piece, share = self.sample_pieces(), self.sample_shares()
+        piece, share = self.sample_pieces, self.sample_shares
         edge_bar = np.zeros(len(self.edge))
         np.add.at(edge_bar, piece, (1.0 - share) * sigma_bar)
         np.add.at(edge_bar, piece + 1, share * sigma_bar)

@@ -390,7 +390,7 @@ class ZonePlanner:
                 factors[segment - 1] = _least(factors[segment - 1], factor)
                 factors[segment] = _least(factors[segment], factor)
         for i, factor in enumerate(factors):
-            if factor.value < 1.0:
+            if factor.value < 1.0 - 1e-9:
                 self._note(i, f"overlapping blend shrunk to {100 * factor.value:.4g} %")
         return [
             tuple((before * f, after * f) for before, after in pairs)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
@@ -13,13 +12,11 @@ from hypothesis import strategies as st
 
 from ...core.errors import FlybyError, InputError
 from ...core.program.program import Program
-from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, Target
-from ...core.program.zone import Zone
 from ...core.robot.model import Robot
 from ...core.spatial.rotation import rotation_vector
 from ...core.vendor import LANGUAGE_PARTS, Sources
-from ..strategies import programs, speeds, zones
+from ..strategies import programs
 from .subject import EXAMPLES, PROGRAM_EXAMPLES, Subject
 
 ROUNDING = 1e-5
@@ -28,22 +25,11 @@ SIGNS = " \n;:=,.()[]{}\"'!&#%+-*/\\<>09azAZ_\x00\ufeff"
 
 
 class LanguageChecks(Subject):
-    """What is written is read again, and the reader survives any text.
-
-    A vendor whose language says other zones or speeds overrides `zones` and `speeds`.
-    """
-
-    def zones(self) -> st.SearchStrategy[Zone]:
-        """Zones that the language can say."""
-        return zones()
-
-    def speeds(self) -> st.SearchStrategy[Speed]:
-        """Speeds that the language can say."""
-        return speeds()
+    """What is written is read again, and the reader survives any text."""
 
     def test_what_is_missing_is_refused_by_name(self) -> None:
         vendor = self.vendor
-        robot = vendor.robot(self._driven()[0])
+        robot = vendor.robot(self.driven_robots()[0])
         uses: dict[str, Callable[[], object]] = {
             "reader": lambda: vendor.read("", "program"),
             "writer": lambda: vendor.write(Program(()), robot),
@@ -64,14 +50,14 @@ class LanguageChecks(Subject):
     @EXAMPLES
     @given(text=st.text() | st.text(SIGNS))
     def test_the_reader_survives_any_text(self, text: str) -> None:
-        self._need("reader")
+        self.need("reader")
         for suffix in self.vendor.suffixes:
             self._read_or_refuse(text, f"hostile{suffix}")
 
     @PROGRAM_EXAMPLES
     @given(data=st.data())
     def test_the_reader_survives_damage(self, data: st.DataObject) -> None:
-        self._need("reader", "writer")
+        self.need("reader", "writer")
         *_, sources = self._written(data)
         for file, text in sources.items():
             at, cut = data.draw(st.integers(0, len(text))), data.draw(st.integers(0, 20))
@@ -79,7 +65,7 @@ class LanguageChecks(Subject):
             self._read_or_refuse(text[:at] + patch + text[at + cut :], file)
 
     def test_a_missing_file_is_said_so(self, tmp_path: Path) -> None:
-        self._need("reader")
+        self.need("reader")
         for suffix in self.vendor.suffixes:
             with pytest.raises(FlybyError, match="absent"):
                 self.vendor.read_file(tmp_path / f"absent{suffix}")
@@ -87,9 +73,9 @@ class LanguageChecks(Subject):
     @PROGRAM_EXAMPLES
     @given(data=st.data())
     def test_what_is_written_is_read_again(self, data: st.DataObject) -> None:
-        self._need("reader", "writer")
+        self.need("reader", "writer")
         _, program, sources = self._written(data)
-        again = self._read(sources)
+        again = self.read_back(sources)
         assert len(again.moves) == len(program.moves)
         for move, copy in zip(program.moves, again.moves, strict=True):
             assert type(copy) is type(move)
@@ -99,31 +85,14 @@ class LanguageChecks(Subject):
     @PROGRAM_EXAMPLES
     @given(data=st.data())
     def test_writing_again_changes_nothing(self, data: st.DataObject) -> None:
-        self._need("reader", "writer")
+        self.need("reader", "writer")
         robot, _, sources = self._written(data)
-        assert dict(self.vendor.write(self._read(sources), robot)) == dict(sources)
-
-    def _driven(self) -> list[str]:
-        """Robots that the vendor's language drives."""
-        return sorted(set(self.vendor.robots) - set(self.vendor.emulation_only))
-
-    def _need(self, *parts: str) -> None:
-        for part in parts:
-            if getattr(self.vendor, part) is None:
-                pytest.skip(f"{self.name} has no {part}")
+        assert dict(self.vendor.write(self.read_back(sources), robot)) == dict(sources)
 
     def _written(self, data: st.DataObject) -> tuple[Robot, Program, Sources]:
-        robot = self.vendor.robot(data.draw(st.sampled_from(self._driven())))
+        robot = self.vendor.robot(data.draw(st.sampled_from(self.driven_robots())))
         program = data.draw(programs(robot, self.vendor.label, self.zones(), self.speeds()))
         return robot, program, self.vendor.write(program, robot)
-
-    def _read(self, sources: Sources) -> Program:
-        """The program in ``sources``, read from files as a user would."""
-        (main,) = (f for f in sources if f.lower().endswith(self.vendor.suffixes[0]))
-        with TemporaryDirectory() as folder:
-            for file, text in sources.items():
-                (Path(folder) / file).write_text(text, "utf-8", newline="")
-            return self.vendor.read_file(Path(folder) / main)
 
     def _read_or_refuse(self, text: str, file: str) -> None:
         try:

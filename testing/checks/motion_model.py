@@ -6,25 +6,6 @@ from ...core.motion.model import MotionModel
 from .subject import Subject
 
 STATUSES = {"published", "assumed", "fitted"}
-BLENDS = ("tcp", "joint", "orientation")
-ZONE_RULES = (
-    "overlap",
-    "neighbour_fraction",
-    "orientation",
-    "mixed_space",
-    "stops_at_pure_reorientation",
-)
-
-
-def figures(model: MotionModel) -> set[str]:
-    """The dotted keys of all that a motion model states."""
-    keys = {"period_s", "time.smoothing_s", "time.jerk"}
-    keys |= {f"blend.{name}.{key}" for name in BLENDS for key in ("kind", "alpha", "beta")}
-    keys |= {f"zone.{rule}" for rule in ZONE_RULES}
-    for limit in ("tcp_acceleration", "reorientation_acceleration"):
-        if getattr(model, limit) is not None:
-            keys.add(f"limit.{limit}")
-    return keys
 
 
 class MotionModelChecks(Subject):
@@ -37,7 +18,7 @@ class MotionModelChecks(Subject):
 
     def test_every_figure_has_a_provenance(self) -> None:
         model = self.vendor.motion()
-        assert set(model.provenance) == figures(model)
+        assert set(model.provenance) == model.figures
 
     def test_a_provenance_can_be_followed(self) -> None:
         for key, entry in self.vendor.motion().provenance.items():

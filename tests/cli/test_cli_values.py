@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.cli.kinematics import _turns
@@ -16,11 +16,13 @@ finite = st.floats(-1e6, 1e6)
 turns = st.floats(-180, 180)
 
 
+@settings(deadline=None)
 @given(st.lists(finite), st.sampled_from([",", " ", ", ", "  "]))
 def test_numbers_are_read_as_written(values: list[float], separator: str) -> None:
     assert list(numbers(separator.join(map(repr, values)), "values")) == values
 
 
+@settings(deadline=None)
 @given(st.tuples(finite, finite, finite), st.tuples(turns, st.floats(-89, 89), turns))
 def test_turns_come_back(position: tuple[float, ...], angles: tuple[float, ...]) -> None:
     text = ",".join(map(repr, (*position, *angles)))
@@ -37,6 +39,7 @@ def test_turns_are_about_fixed_axes() -> None:
     assert matrix @ [1, 0, 0] == pytest.approx(np.array([0, 1, 0]))
 
 
+@settings(deadline=None)
 @given(st.tuples(finite, finite, finite, finite))
 def test_quaternions_are_normalised_or_refused(values: tuple[float, ...]) -> None:
     norm = float(np.linalg.norm(values))

@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from flyby.core.errors import FlybyError, InputError, MotionError, Span
 from flyby.core.motion.blend import Blend
 from flyby.core.motion.model import MotionModel
+from flyby.core.motion.pieces import Sampling
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
-from flyby.core.program.origin import MoveOrigin
+from flyby.core.program.origin import MoveOrigin, Origin, Ownership
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
@@ -33,18 +34,26 @@ def drive(arm, *statements, model=None):
     return arm.controller(model).run(Program(statements, start=arm.start))
 
 
+def check_duration(arm, run, ideal) -> None:
+    """The acceleration is constant between samples: 1.5 % above the ideal, less with more."""
+    assert ideal * (1 - 1e-9) <= run.duration <= 1.015 * ideal
+    controller = arm.controller(run.path.model)
+    controller.sampling = Sampling(step=5e-4, turn=2e-3, joint=2e-3, most=1000)
+    assert controller.run(run.program).duration == pytest.approx(ideal, rel=1e-3)
+
+
 # Times
 
 
 def test_a_single_line_takes_the_time_of_its_trapezoid(arm) -> None:
     run = drive(arm, *lines(arm, (1, 0, 0)), model=SLOW)
-    assert run.duration == pytest.approx(arm.leg / 0.2 + 0.2 / 1.0, rel=1e-3)
+    check_duration(arm, run, arm.leg / 0.2 + 0.2 / 1.0)
 
 
 def test_a_single_joint_move_takes_the_time_of_its_leading_joint(arm) -> None:
     speed = Speed(joint=0.5, joint_acceleration=1.5)
     run = drive(arm, MoveJ(arm.joints([0.4, 0.1, -0.2, 0, 0, 0]), speed))
-    assert run.duration == pytest.approx(0.4 / 0.5 + 0.5 / 1.5, rel=1e-3)
+    check_duration(arm, run, 0.4 / 0.5 + 0.5 / 1.5)
 
 
 def test_a_pure_reorientation_keeps_the_tcp_and_takes_its_time(abb) -> None:
@@ -52,7 +61,7 @@ def test_a_pure_reorientation_keeps_the_tcp_and_takes_its_time(abb) -> None:
     run = drive(abb, MoveL(abb.target((0, 0, 0), (0, 0.4, 0)), speed))
     still = run.trajectory.position - run.trajectory.position[0]
     assert np.abs(still).max() < 1e-8
-    assert run.duration == pytest.approx(0.4 / 0.5 + 0.5 / 2.0, rel=1e-3)
+    check_duration(abb, run, 0.4 / 0.5 + 0.5 / 2.0)
 
 
 @settings(max_examples=5, deadline=None)
@@ -213,7 +222,7 @@ def test_three_points_that_make_no_arc_are_refused(abb, message) -> None:
 def test_an_unreachable_target_says_which_move_and_how_far(arm) -> None:
     far = PoseTarget(Pose((9.0, 0.0, 0.5), arm.pose().quaternion))
     for kind in (MoveJ, MoveL):
-        with pytest.raises(MotionError, match=r"move 2: target cannot be reached: .*\d.* mm"):
+        with pytest.raises(MotionError, match=r"move 2: target cannot be reached: .* by \d.* m;"):
             drive(arm, *lines(arm, (1, 0, 0)), kind(far, SPEED))
 
 
@@ -221,7 +230,7 @@ def test_the_message_stands_at_the_statement_of_the_source(abb) -> None:
     span = Span("main.mod", 12, 3, 12, 40)
     far = PoseTarget(Pose((9.0, 0.0, 0.5)))
     with pytest.raises(MotionError, match=r"main\.mod:12:3"):
-        drive(abb, MoveL(far, SPEED, origin=MoveOrigin(span)))
+        drive(abb, MoveL(far, SPEED, origin=MoveOrigin(span, *[Origin(Ownership.OWNED, span)] * 3)))
 
 
 def test_a_joint_limit_is_named_with_the_excess(arm) -> None:
@@ -246,19 +255,17 @@ def test_a_joint_limit_passed_inside_a_blend_alone_is_found(abb) -> None:
 
 def test_a_path_through_a_singular_posture_is_refused_and_one_nearby_noted(abb) -> None:
     home = np.array([0.1, 0.2, 0.3, 0.2, 0.4, 0.1])
-    flange = abb.robot.flange_pose(home).matrix()
     start = JointTarget(tuple(home))
 
-    def target(j5, j4=0.2):
+    def target(j5):
         q = home.copy()
-        q[3], q[4] = j4, j5
+        q[4] = j5
         return PoseTarget(abb.robot.flange_pose(q))
 
     with pytest.raises(MotionError, match="singular"):
-        abb.controller().run(Program((MoveL(target(-0.4), SPEED),), start=start))
+        abb.controller().run(Program((MoveL(target(0.0), SPEED),), start=start))
     near = abb.controller(MotionModel()).run(Program((MoveL(target(5e-4), SPEED),), start=start))
     assert any("near a singular configuration" in note.message for note in near.notes)
-    assert flange.shape == (4, 4)
 
 
 @pytest.mark.parametrize("broken", [float("nan"), float("inf")])
@@ -276,7 +283,7 @@ def test_numbers_that_are_not_finite_are_refused_where_they_enter(abb, broken) -
 
 
 def test_a_joint_target_of_another_robot_is_refused(abb) -> None:
-    with pytest.raises(FlybyError, match="7 values.*6"):
+    with pytest.raises(FlybyError, match=r"7 values.*6"):
         drive(abb, MoveJ(JointTarget((0.0,) * 7), SPEED))
     with pytest.raises(FlybyError, match="external axes"):
         drive(abb, MoveJ(JointTarget(tuple(abb.home), (0.1,)), SPEED))

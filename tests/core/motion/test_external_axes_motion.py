@@ -40,7 +40,7 @@ def away_from_line(p, a, b) -> np.ndarray:
 def test_the_tcp_keeps_to_its_line_while_the_track_moves(abb, slide) -> None:
     robot = abb.robot.with_external_axes([TRACK])
     begin = robot.flange_pose(np.array([*abb.home, 0.2])).position
-    end = np.array(begin) + [0.2, 0.1, 0.0]
+    end = np.array(begin) + np.array([0.2, 0.1, 0.0])
     pose = Pose(tuple(end), robot.flange_pose(np.array([*abb.home, 0.2])).quaternion)
     moves = (MoveL(PoseTarget(pose, external=(0.2 + slide,)), SPEED),)
     start = JointTarget(tuple(abb.home), (0.2,))
@@ -64,7 +64,7 @@ def table_program(abb, turn, zone=FINE):
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = R, p
     at = Pose.from_matrix(matrix)
-    first, second = p + [0.2, 0.0, 0.0], p + [0.2, 0.2, 0.0]
+    first, second = p + np.array([0.2, 0, 0]), p + np.array([0.2, 0.2, 0])
     moves = (
         MoveL(
             PoseTarget(Pose(tuple(first), at.quaternion), external=(turn,)),
@@ -117,7 +117,7 @@ def test_a_stationary_tool_draws_the_programmed_line_on_the_held_part(abb) -> No
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = R, p
     at = Pose.from_matrix(matrix)
-    corners = [p, p + [0.1, 0.0, 0.0], p + [0.1, 0.1, 0.0]]
+    corners = [p, p + np.array([0.1, 0, 0]), p + np.array([0.1, 0.1, 0])]
     moves = (
         MoveL(PoseTarget(Pose(tuple(corners[1]), at.quaternion)), SPEED, Radius(0.02), gun, held),
         MoveL(PoseTarget(Pose(tuple(corners[2]), at.quaternion)), SPEED, FINE, gun, held),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -112,7 +113,7 @@ def test_derivatives_are_those_of_q(arm, name) -> None:
     controller.sampling = replace(controller.sampling, least=150, blend=150, halvings=0)
     path = controller.plan(program)
     first, s = path.pieces.first_sample, path.states
-    for begin, end in zip(first[:-1], first[1:], strict=True):
+    for begin, end in pairwise(first):
         sigma = path.sigma[begin:end]
         h = sigma[1] - sigma[0]
         for value, rate in ((s.q, s.dq), (s.dq, s.ddq)):
@@ -131,7 +132,7 @@ def tcp(arm, q) -> np.ndarray:
 def distance_to_chain(points, corners) -> np.ndarray:
     """Distances (P,) to a chain of lines."""
     best = np.full(len(points), np.inf)
-    for a, b in zip(corners[:-1], corners[1:], strict=True):
+    for a, b in pairwise(corners):
         share = np.clip((points - a) @ (b - a) / np.sum((b - a) ** 2), 0, 1)
         best = np.minimum(best, np.linalg.norm(points - a - share[:, None] * (b - a), axis=1))
     return best

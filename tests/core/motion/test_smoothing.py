@@ -55,16 +55,17 @@ def test_no_joint_strays_further_than_its_bound(arm, window) -> None:
     assert inside.any() and stray.max() > 1e-7
 
 
-def test_the_mean_of_a_ramp_is_known() -> None:
-    """From rest to one at speed 1: the mean over T is a parabola, then the ramp T/2 later."""
-    t = np.linspace(0, 2, 201)
-    # A cubic through these samples is the ramp but for its ends, where it starts and stops.
-    q, dq = np.clip(t, 0, 1)[:, None], np.where(t <= 1, 1.0, 0.0)[:, None]
-    at = np.array([0.1, 0.5, 0.9])
-    mean, rate, _ = moving_average(t, q, dq, 0.2, at)
-    np.testing.assert_allclose(mean[1:, 0], at[1:] - 0.1, atol=1e-5)
-    assert mean[0, 0] == pytest.approx(0.1**2 / 0.4, abs=2e-3)
-    np.testing.assert_allclose(rate[1:, 0], 1.0, atol=1e-5)
+def test_the_mean_of_a_trapezoid_is_known() -> None:
+    """a T²/24 from the middle of the window under acceleration a, the middle itself without."""
+    t = np.linspace(0, 3, 301)
+    dq = np.minimum(np.minimum(t, 1.0), 3.0 - t)
+    q = np.where(t < 1, 0.5 * t**2, np.where(t < 2, t - 0.5, 2 - 0.5 * (3 - t) ** 2))
+    at = np.array([0.6, 1.7, 2.8])
+    mean, rate, bend = moving_average(t, q[:, None], dq[:, None], 0.2, at)
+    middle = np.array([0.5 * 0.5**2, 1.6 - 0.5, 2 - 0.5 * 0.3**2])
+    np.testing.assert_allclose(mean[:, 0] - middle, [0.04 / 24, 0, -0.04 / 24], atol=1e-12)
+    np.testing.assert_allclose(rate[:, 0], [0.5, 1.0, 0.3], atol=1e-12)
+    np.testing.assert_allclose(bend[:, 0], [1.0, 0.0, -1.0], atol=1e-9)
 
 
 @settings(max_examples=15, deadline=None)
