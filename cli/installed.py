@@ -32,15 +32,20 @@ def vendor_of(robot: str) -> Vendor:
     Raises:
         UnknownNameError: there is none.
     """
-    return registry().find_vendor(robot.partition("/")[0])
+    vendor, slash, _ = robot.partition("/")
+    if not slash:
+        registry().find_robot(robot)  # offers the robots that may be meant
+    return registry().find_vendor(vendor)
 
 
 def check_language(vendor: Vendor, program: Path) -> None:
     """Refuse a program that another vendor's controller runs.
 
     Raises:
-        InputError: the file is no program of the vendor, judged by its suffix.
+        InputError: the file is no program of the vendor, judged by its suffix, or a folder.
     """
+    if program.is_dir():
+        raise InputError(f"{program} is a folder; name a program file in it")
     if program.suffix.lower() in vendor.suffixes:
         return
     other = registry().reader_of(program)

@@ -79,6 +79,7 @@ class MotionError(FlybyError):
         if move is not None:
             where += f"move {move + 1}: "
         super().__init__(where + message)
+        self.message = message
         self.move = move
         self.span = span
 

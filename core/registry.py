@@ -106,7 +106,9 @@ class Registry:
         """
         vendor, _, robot = name.partition("/")
         if vendor not in self.vendors or robot not in self.vendors[vendor].robots:
-            self._unknown("robot", name, vendor, self.robot_names)
+            models = {robot: robot.partition("/")[2] for robot in self.robot_names}
+            same = [robot for robot, model in models.items() if model == name.casefold()]
+            self._unknown("robot", name, vendor, same or self.robot_names)
         return self.vendors[vendor].robot(robot)
 
     @property
@@ -132,6 +134,11 @@ class Registry:
         known = ", ".join(
             f"{' '.join(v.suffixes)} ({v.name})" for v in self.vendors.values() if v.suffixes
         )
+        if not suffix:
+            raise InputError(
+                f"{path}: the name has no suffix, which tells a program's language; known: "
+                f"{known or 'none'}"
+            )
         raise InputError(f"{path}: no vendor reads {suffix!r} files; known: {known or 'none'}")
 
     def _unknown(self, kind: str, name: str, vendor: str, known: Iterable[str]) -> None:

@@ -1,6 +1,6 @@
-"""Draws docs/blends.png: one corner in the blends that `flyby` knows, and when it is where.
+"""Draws docs/blends.png: one corner in the blends that `flyby` knows, and how fast each is driven.
 
-python examples/plot_blends.py docs/blends.png
+Run it as ``python examples/plot_blends.py docs/blends.png``.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 from flyby.core.motion.blend import TANGENT_ARC, Blend
 from flyby.core.motion.controller import Controller
 from flyby.core.motion.model import MotionModel
+from flyby.core.motion.pieces import Sampling
 from flyby.core.program.move import MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -50,19 +51,20 @@ def main(file: str) -> None:
     figure, (shape, pace) = plt.subplots(1, 2, figsize=(9, 4), layout="constrained")
     corner = np.array(at.position[:2]) + np.array([leg, 0.0])
     for name, blend in BLENDS.items():
-        controller = Controller(find_vendor("abb"), robot, MotionModel(tcp=blend, period=0.001))
+        model = MotionModel(tcp=blend, period=0.001)
+        controller = Controller(find_vendor("abb"), robot, model, Sampling(blend=64))
         made = controller.run(program).trajectory
         x, y = 1e3 * (made.position[:, :2] - corner).T
-        shape.plot(x, y, label=name)
+        shape.plot(x, y)
         along = np.linalg.norm(np.gradient(made.position, made.t, axis=0), axis=1)
         pace.plot(made.t, 1e3 * along, label=f"{name}: {made.duration:.3f} s")
     turn = np.linspace(0, 2 * np.pi, 200)
     radius = 1e3 * ZONE
     shape.plot(radius * np.cos(turn), radius * np.sin(turn), "k:", lw=0.8, label="zone")
     shape.plot([-1e3 * leg, 0, 0], [0, 0, 1e3 * leg], "k--", lw=0.8, label="programmed")
-    shape.set(xlabel="x from the waypoint, mm", ylabel="y, mm", xlim=(-75, 20), ylim=(-20, 75))
+    shape.set(xlabel="x from the waypoint, mm", ylabel="y, mm", xlim=(-75, 20), ylim=(-25, 75))
     shape.set_aspect("equal")
-    shape.legend(fontsize=7)
+    shape.legend(fontsize=7, loc="lower left")
     pace.set(xlabel="time, s", ylabel="TCP speed, mm/s", ylim=(0, None))
     pace.legend(fontsize=7)
     figure.savefig(file, dpi=120)

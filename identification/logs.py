@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -38,7 +38,7 @@ _ROBOTS = {
     "ur3 (cb3)": "ur/ur3",
 }
 _MOVED_MM = 1.0
-"""Distance beyond which a record's last target is not where the run ended."""
+"""Distance beyond which a record's first or last target is not where the run began or ended."""
 _JOINT_MOVES = {"MoveJ", "MoveAbsJ", "PTP"}
 _LINEAR_MOVES = {"MoveL", "LIN"}
 _ARC_MOVES = {"MoveC", "CIRC"}
@@ -71,8 +71,8 @@ def load_run(path: Path, robots: Callable[[str], Robot]) -> LoggedRun:
     """Read a run from its JSON file; the CSV is the one that it names, beside it.
 
     Where the record gives a target's position alone, its orientation is that of the logged
-    sample nearest to it; where it says that the last target was moved before the run, the log's
-    last sample takes its place.
+    sample nearest to it; where it says that the first or last point was moved before the run, the
+    log's first or last sample takes its place.
 
     Args:
         path: the JSON file.
@@ -92,7 +92,7 @@ def load_run(path: Path, robots: Callable[[str], Robot]) -> LoggedRun:
         t, q = load_samples(log)
         data = _completed(data, robots(robot), q)
         moves = tuple(_move(entry, data) for entry in data["moves"])
-        start = JointTarget(tuple(map(float, data["start_joints_rad"])))
+        start = JointTarget(tuple(map(float, _start(data, q))))
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{path}: not a run: missing or misshapen {error}") from error
     except InputError as error:
@@ -133,6 +133,11 @@ def load_samples(path: Path) -> tuple[FloatArray, FloatArray]:
     return data[keep, 0], data[keep, 1:]
 
 
+def _start(data: dict[str, Any], q: FloatArray) -> Sequence[float]:
+    moved = float(data.get("checks", {}).get("log_start_to_first_target_mm", 0.0)) > _MOVED_MM
+    return tuple(q[0] if moved else data["start_joints_rad"])
+
+
 def _completed(data: dict[str, Any], robot: Robot, q: FloatArray) -> dict[str, Any]:
     """The record with orientations and the true last target filled in from the log."""
     moves = [dict(entry) for entry in data["moves"]]
@@ -153,6 +158,7 @@ def _completed(data: dict[str, Any], robot: Robot, q: FloatArray) -> dict[str, A
     if moved:
         end = {"xyz_m": position[-1].tolist(), "quat_wxyz": quaternion[-1].tolist()}
         moves[-1]["target_pose"] = end
+        moves[-1].pop("target_joints_rad", None)
     return {**data, "moves": moves}
 
 
@@ -197,7 +203,7 @@ def _zone(entry: Mapping[str, Any]) -> Zone:
 def _speed(entry: Mapping[str, Any], joint: bool) -> Speed:
     if "params" in entry:
         params = entry["params"]
-        if "t" in params:
+        if float(params.get("t", 0.0)) != 0.0:
             return Speed(duration=float(params["t"]))
         if joint:
             return Speed(joint=float(params["v"]), joint_acceleration=float(params["a"]))

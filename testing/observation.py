@@ -128,6 +128,8 @@ def outside_zones(seen: Observed, model: MotionModel, turning: bool) -> NDArray[
     _, at = seen.robot.forward(corners)
     for i, move in enumerate(seen.moves[:-1]):
         radius = effective_radius(seen, model, i, turning)
+        if radius == 0.0:
+            continue
         for k in (i, i + 1):
             rows = seen.segment == k
             if isinstance(move.zone, ContourFraction):

@@ -20,12 +20,14 @@ from ..robot.chain_kernels import pose
 from ..robot.inverse import UnreachableError
 from ..robot.joint import JointKind
 from ..robot.model import Robot
+from ..robot.tracking import track
 from ..spatial.pose import Pose
 
 FloatArray = NDArray[np.float64]
 Label = Callable[[Robot, FloatArray], Configuration | None]
 
 _MATCH = 1e-9
+_SAME = 1e-9
 _REDUNDANT = 2
 """The third axis of a seven-axis arm moves linearly along moves of the TCP (as KUKA's E1 does)."""
 
@@ -101,28 +103,63 @@ class ConfigurationFinder:
     def choose(self, move: Move, index: int, before: FloatArray) -> FloatArray:
         """The configuration of a joint move's pose target.
 
-        Of the solutions with the programmed configuration, the one nearest to ``before``.
+        Of the solutions with the programmed configuration, the one nearest to ``before``. A
+        seven-axis arm keeps its third axis.
 
         Raises:
-            MotionError: the pose is out of reach, or contradicts the programmed configuration.
+            MotionError: the pose is out of reach (with the third axis kept), or contradicts the
+                programmed configuration.
         """
         target = move.target
         assert isinstance(target, PoseTarget)
         q = self.external(target.external, before)
         arm = self._robot.arm_size
+        flange = self._flange(move, target.pose, q)
         try:
-            solutions = self._robot.inverse(
-                self._flange(move, target.pose, q), tuple(map(float, q[arm:]))
-            )
+            found = [s.q for s in self._robot.inverse(flange, tuple(map(float, q[arm:])))]
         except UnreachableError as error:
             raise located(move, index, f"target cannot be reached: {error}") from error
-        if target.configuration is None:
-            turned = [self._nearest_turn(solution.q, before[:arm]) for solution in solutions]
+        if self.redundant:
+            turned = self._with_third_kept(found, flange, q)
+            if not turned:
+                name, value = self._robot.axis_names[_REDUNDANT], np.degrees(q[_REDUNDANT])
+                raise located(
+                    move,
+                    index,
+                    f"target cannot be reached with the third axis, {name}, kept at "
+                    f"{value:.4g}°: turn it first by a joint target",
+                )
+        elif target.configuration is None:
+            turned = [self._nearest_turn(solution, before[:arm]) for solution in found]
         else:
-            turned = [t for solution in solutions for t in self._robot.turns(solution.q)]
+            turned = [t for solution in found for t in self._robot.turns(solution)]
         options = np.tile(q, (len(turned), 1))
         options[:, :arm] = turned
         return self._pick(move, index, target.configuration, options, before)
+
+    def _with_third_kept(
+        self, samples: Sequence[FloatArray], flange: Pose, q: FloatArray
+    ) -> list[FloatArray]:
+        """Configurations (n,) of a seven-axis arm at a pose, within limits, third axis as in q.
+
+        Args:
+            samples: some of the arm's configurations at the pose.
+            flange: in the world.
+            q: (N,), the arm's present configuration and the target's external axes.
+        """
+        arm = self._robot.arm_size
+        matrix = flange.matrix()
+        R, p = np.ascontiguousarray(matrix[:3, :3]), np.ascontiguousarray(matrix[:3, 3])
+        kept: list[FloatArray] = []
+        for sample in (q[:arm], *samples):
+            guess = q.copy()
+            guess[:arm] = sample
+            guess[_REDUNDANT] = q[_REDUNDANT]
+            converged, _, _ = track(self._robot.chain, guess, R, p, self.solved, guess)
+            if converged:
+                turns = self._robot.turns(guess[:arm])
+                kept += [t for t in turns if abs(t[_REDUNDANT] - q[_REDUNDANT]) < _SAME]
+        return kept
 
     def _nearest_turn(self, q: FloatArray, before: FloatArray) -> FloatArray:
         """Of the arm's configurations whole turns away from q, the one nearest to ``before``."""
@@ -145,6 +182,8 @@ class ConfigurationFinder:
         if wanted is None:
             return np.asarray(options[np.argmin(distance)])
         labels = [self._label(self._robot, q) for q in options]
+        if self.redundant and all(name is None for name in labels):
+            return np.asarray(options[np.argmin(distance)])
         misses = [math.inf if name is None else wanted.mismatch(name) for name in labels]
         best = min(range(len(options)), key=lambda k: (misses[k], distance[k]))
         if wanted.exact and misses[best] > _MATCH:

@@ -14,6 +14,7 @@ from ..program.program import Program
 from ..program.target import JointTarget
 from ..robot.chain_kernels import poses
 from ..robot.inertia import Inertia
+from ..robot.joint import JointKind
 from ..robot.model import Robot
 from ..spatial.rotation import quaternion_from_matrix
 from ..vendor import Vendor
@@ -36,6 +37,9 @@ _DURATION_ROUNDS = 60
 _DURATION_MET = 1e-6
 _LIMIT_SLACK = 1e-6
 """rad or m by which a path may pass a joint limit: rounding of programmed values."""
+_EXCESS = 1.02
+"""Share of a limit from which on a sampled velocity or acceleration is reported."""
+_DEGREES = 180 / np.pi
 
 
 @dataclass(frozen=True)
@@ -99,13 +103,15 @@ class Controller:
         """
         path = self.plan(program, start)
         timing = self.stamp(program, path)
+        trajectory = self.sample(program, timing, period)
         notes = (
             *program.notes,
             *path.notes,
             *self._duration_notes(program, timing),
             *self._jerk_notes(program),
+            *self._excess_notes(trajectory),
         )
-        return Run(program, path, timing, self.sample(program, timing, period), notes)
+        return Run(program, path, timing, trajectory, notes)
 
     def plan(self, program: Program, start: JointTarget | None = None) -> Path:
         """The geometry of a program's path.
@@ -125,13 +131,15 @@ class Controller:
                 path = build_path(route, self.model, self.sampling)
             except MotionError as error:
                 raise _located(error, program) from error
-            overlapping = path.corners.overlapping
-            if overlapping is None:
+            if not path.corners.overlapping:
                 self._check_limits(program, path)
                 return replace(path, notes=(*notes, *path.notes))
-            move = route.moves[overlapping]
-            skipped.append(move)
-            notes.append(Note("overlapping blends: this waypoint is left out", move))
+            for corner in path.corners.overlapping:
+                move = route.moves[corner]
+                skipped.append(move)
+                notes.append(
+                    Note("its blend overlaps a neighbouring one: this waypoint is left out", move)
+                )
         raise MotionError("the blends of this program overlap beyond remedy")
 
     def stamp(self, program: Program, path: Path) -> Timing:
@@ -145,17 +153,21 @@ class Controller:
             self.robot, self.model, [move.speed for move in moves], path.route.ends.kind
         )
         timed = [k for k, move in enumerate(moves) if move.speed.duration is not None]
-        timing = _timing(path, limits)
-        if not timed:
-            return timing
-        wanted = np.array([moves[k].speed.duration for k in timed], dtype=float)
-        return _hold_durations(timing, timed, wanted)
+        window = self._window(program, path)
+        try:
+            timing = _timing(path, limits, window)
+            if not timed:
+                return timing
+            wanted = np.array([moves[k].speed.duration for k in timed], dtype=float)
+            return _hold_durations(timing, timed, wanted, window)
+        except MotionError as error:
+            raise _located(error, program) from error
 
     def sample(self, program: Program, timing: Timing, period: float | None = None) -> Trajectory:
         """The commanded motion, smoothed in time where the vendor does, every ``period`` s."""
         period = self.model.period if period is None else period
-        window = self._window(program)
-        t = sample_times(0.0, timing.duration + window, period)
+        window = self._window(program, timing.path)
+        t = sample_times(0.0, timing.duration, period)
         if window == 0.0:
             q, dq, ddq, sigma = timing.states_at(t)
         else:
@@ -192,11 +204,11 @@ class Controller:
     def _moves(self, program: Program, path: Path) -> list[Move]:
         return [program.moves[i] for i in path.route.moves]
 
-    def _window(self, program: Program) -> float:
+    def _window(self, program: Program, path: Path) -> float:
         """Length in s of the moving average: the vendor's own, or what the gentlest move needs."""
         if self.model.jerk is None:
             return self.model.smoothing
-        gentlest = min(move.speed.jerk_fraction for move in program.moves)
+        gentlest = min(move.speed.jerk_fraction for move in self._moves(program, path))
         return max(self.model.smoothing, window_for_jerk(self.model.jerk * gentlest))
 
     def _tcp(
@@ -213,23 +225,54 @@ class Controller:
         return position, quaternion_from_matrix(rotation)
 
     def _check_limits(self, program: Program, path: Path) -> None:
-        """Refuse a path that passes a joint limit."""
+        """Refuse a path that passes a joint limit, at the first place where it does."""
         limits = self.robot.limits
+        start = path.route.ends.q[0, 0]
+        beyond = np.maximum(limits.lower - start, start - limits.upper)
+        if beyond.max() > _LIMIT_SLACK:
+            raise MotionError("the start: " + self._excess(int(np.argmax(beyond)), start))
         beyond = np.maximum(limits.lower - path.q, path.q - limits.upper)
-        if beyond.max() <= _LIMIT_SLACK:
+        samples = np.flatnonzero(beyond.max(axis=1) > _LIMIT_SLACK)
+        if not len(samples):
             return
-        sample, axis = np.unravel_index(np.argmax(beyond), beyond.shape)
-        move = int(path.sample_moves()[sample])
-        bound = limits.lower if path.q[sample, axis] < limits.lower[axis] else limits.upper
-        name, excess = self.robot.axis_names[axis], beyond[sample, axis]
-        raise _located(
-            MotionError(
-                f"joint {name} would pass its limit of {bound[axis]:.4f} by {excess:.4f} (rad or "
-                "m); choose another configuration or move the target",
-                move,
-            ),
-            program,
+        moves = path.sample_moves()
+        move = int(moves[samples[0]])
+        samples = samples[moves[samples] == move]
+        row, axis = np.unravel_index(np.argmax(beyond[samples]), beyond[samples].shape)
+        raise _located(MotionError(self._excess(int(axis), path.q[samples[row]]), move), program)
+
+    def _excess(self, axis: int, q: FloatArray) -> str:
+        limits = self.robot.limits
+        joints = [*self.robot.joints, *(external.joint for external in self.robot.external_axes)]
+        unit, factor = ("mm", 1e3) if joints[axis].kind is JointKind.PRISMATIC else ("°", _DEGREES)
+        bound = limits.lower[axis] if q[axis] < limits.lower[axis] else limits.upper[axis]
+        return (
+            f"joint {self.robot.axis_names[axis]} would stand at {factor * q[axis]:.2f} {unit}, "
+            f"beyond its limit of {factor * bound:.2f} {unit}; choose another configuration or "
+            "move the target"
         )
+
+    def _excess_notes(self, trajectory: Trajectory) -> list[Note]:
+        """Moves on which the samples of the commanded motion exceed the robot's own limits."""
+        limits = self.robot.limits
+        notes = []
+        for name, values, bound in (
+            ("velocity", trajectory.dq, limits.velocity),
+            ("acceleration", trajectory.ddq, limits.acceleration),
+        ):
+            share = np.abs(values) / bound
+            for move in np.unique(trajectory.move[share.max(axis=1) > _EXCESS]):
+                rows = share[trajectory.move == move]
+                axis = int(np.argmax(rows.max(axis=0)))
+                notes.append(
+                    Note(
+                        f"{name} of joint {self.robot.axis_names[axis]} reaches "
+                        f"{100 * rows.max():.0f} % of its limit between samples of the path; "
+                        "treat the timing of this move with care",
+                        int(move),
+                    )
+                )
+        return notes
 
     def _jerk_notes(self, program: Program) -> list[Note]:
         if self.model.jerk is not None:
@@ -267,7 +310,7 @@ def _located(error: MotionError, program: Program) -> MotionError:
     origin = program.moves[error.move].origin
     if origin is None:
         return error
-    return MotionError(str(error), None, origin.statement)
+    return MotionError(error.message, error.move, origin.statement)
 
 
 def _carried(move: Move) -> Inertia | None:
@@ -286,7 +329,7 @@ def _carried(move: Move) -> Inertia | None:
     return total
 
 
-def _timing(path: Path, limits: SegmentLimits) -> Timing:
+def _timing(path: Path, limits: SegmentLimits, settling: float) -> Timing:
     made: PathLimits = path_limits(path.states, path.pieces, path.sigma, limits)
     try:
         found = stamp(made.rows)
@@ -294,18 +337,20 @@ def _timing(path: Path, limits: SegmentLimits) -> Timing:
         knot = min(error.knot, len(made.rows.spacing) - 1)
         piece = int(np.searchsorted(path.pieces.first_interval, knot, "right")) - 1
         move = path.route.moves[int(path.pieces.segment[piece])]
-        raise MotionError(str(error), move) from error
-    return Timing.of(path, limits, made, found)
+        raise MotionError(f"the limits leave it no speed: {error.message}", move) from error
+    return Timing.of(path, limits, made, found, settling)
 
 
-def _hold_durations(timing: Timing, timed: list[int], wanted: FloatArray) -> Timing:
+def _hold_durations(
+    timing: Timing, timed: list[int], wanted: FloatArray, settling: float
+) -> Timing:
     """Slow segments down until they take the time that was programmed.
 
     Velocities of the segment are scaled in common; a time too short for the robot stays unmet.
     """
     factor = np.ones(len(timed))
     limits = _finite(timing, timed)
-    current = _timing(timing.path, limits)
+    current = _timing(timing.path, limits, settling)
     for _ in range(_DURATION_ROUNDS):
         spent = current.segment_durations()[timed]
         slow = spent < wanted * (1 - _DURATION_MET)
@@ -316,7 +361,7 @@ def _hold_durations(timing: Timing, timed: list[int], wanted: FloatArray) -> Tim
         scaled = limits
         for segment, share in zip(timed, factor, strict=True):
             scaled = scaled.with_velocities_scaled([segment], float(share))
-        current = _timing(timing.path, scaled)
+        current = _timing(timing.path, scaled, settling)
     return current
 
 

@@ -6,10 +6,13 @@ A curve is v(σ) = Σᵢ Cᵢ bᵢ(s(σ)) with control vectors Cᵢ and scalar b
     polynomial    1, f, g, h, k₁, k₂                     (see `blend`)
     arc           1, cos Θ s, sin Θ s
 
-and s(σ) is the monotone rational quadratic map (Gregory & Delbourgo, IMA J. Numer. Anal. 2,
-1982) of the window [σ₀, σ₀ + L] onto [0, 1] with the slopes d₀ and d₁ (per unit of
-ξ = (σ − σ₀)/L) at its ends. It makes dv/dσ continuous across a zone's edges, where the scales
-of neighbouring curves differ.
+and s(σ) undoes the monotone rational quadratic map (Gregory & Delbourgo, IMA J. Numer. Anal. 2,
+1982) of [0, 1] onto the window [σ₀, σ₀ + L],
+
+    (σ − σ₀) / L = (s² + d₀ s (1 − s)) / (1 + (d₀ + d₁ − 2) s (1 − s)),
+
+whose slopes at the ends, L d₀ and L d₁ per s, make dv/dσ continuous across a zone's edges, where
+the scales of neighbouring curves differ. For the parabola it is a quadratic.
 """
 
 from __future__ import annotations
@@ -62,37 +65,71 @@ class Curves(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
+def _map_jet(s: float, d0: float, d1: float) -> tuple[float, float, float, float]:
+    """The rational map at s and its first three derivatives."""
+    across, rate = s * (1 - s), 1 - 2 * s
+    e = d0 + d1 - 2
+    n0, n1, n2 = s * s + d0 * across, 2 * s + d0 * rate, 2 - 2 * d0
+    m0, m1, m2 = 1 + e * across, e * rate, -2 * e
+    f0 = n0 / m0
+    f1 = (n1 - f0 * m1) / m0
+    f2 = (n2 - 2 * f1 * m1 - f0 * m2) / m0
+    f3 = (-3 * f2 * m1 - 3 * f1 * m2) / m0
+    return f0, f1, f2, f3
+
+
+@njit(cache=True, error_model="numpy")
+def _parameter(window: FloatArray, sigma: float) -> float:
+    """s at σ."""
+    y = (sigma - window[0]) / window[1]
+    b = window[2] - (window[2] + window[3] - 2) * y
+    return float(2 * y / (b + math.sqrt(b * b + 4 * (1 - b) * y)))
+
+
+@njit(cache=True, error_model="numpy")
 def parameter_jet(window: FloatArray, sigma: float) -> tuple[float, float, float, float]:
     """s and its first three derivatives with respect to σ."""
     length = window[1]
-    xi = (sigma - window[0]) / length
-    d0, d1 = window[2], window[3]
-    n0, n1, n2 = xi * xi + d0 * xi * (1 - xi), 2 * xi + d0 * (1 - 2 * xi), 2 - 2 * d0
-    e = d0 + d1 - 2
-    m0, m1, m2 = 1 + e * xi * (1 - xi), e * (1 - 2 * xi), -2 * e
-    s0 = n0 / m0
-    s1 = (n1 - s0 * m1) / m0
-    s2 = (n2 - 2 * s1 * m1 - s0 * m2) / m0
-    s3 = (-3 * s2 * m1 - 3 * s1 * m2) / m0
-    return s0, s1 / length, s2 / length**2, s3 / length**3
+    s = _parameter(window, sigma)
+    _, f1, f2, f3 = _map_jet(s, window[2], window[3])
+    s1 = 1 / (f1 * length)
+    return s, s1, -f2 / f1**3 / length**2, (3 * f2 * f2 - f1 * f3) / f1**5 / length**3
+
+
+def parameter_slopes(window: FloatArray, sigma: FloatArray) -> FloatArray:
+    """ds/dσ (P,) of windows (P, 4) at σ (P,)."""
+    slopes = np.empty(len(sigma))
+    _fill_slopes(np.ascontiguousarray(window), np.ascontiguousarray(sigma), slopes)
+    return slopes
+
+
+@njit(cache=True, error_model="numpy")
+def _fill_slopes(window: FloatArray, sigma: FloatArray, slopes: FloatArray) -> None:
+    for k in range(sigma.size):
+        slopes[k] = parameter_jet(window[k], sigma[k])[1]
 
 
 @njit(cache=True, error_model="numpy")
 def _slope_jet(window: FloatArray, sigma: float, end: int) -> tuple[float, float, float]:
-    """Derivative of s, s', s'' (with respect to σ) with respect to the slope d₀ or d₁."""
-    length = window[1]
-    xi = (sigma - window[0]) / length
-    d0, d1 = window[2], window[3]
+    """Derivative of s, s', s'' (with respect to σ) with respect to the slope d₀ or d₁.
+
+    From y = F(s; d): ∂s/∂d = −F_d / F', differentiated twice along y.
+    """
+    length, d0, d1 = window[1], window[2], window[3]
+    s = _parameter(window, sigma)
+    f0, f1, f2, f3 = _map_jet(s, d0, d1)
+    across, rate = s * (1 - s), 1 - 2 * s
     e = d0 + d1 - 2
-    m0, m1, m2 = 1 + e * xi * (1 - xi), e * (1 - 2 * xi), -2 * e
-    s0, s1, s2, _ = parameter_jet(window, sigma)
-    s1, s2 = s1 * length, s2 * length**2
-    b0, b1, b2 = xi * (1 - xi), 1 - 2 * xi, -2.0
+    m0, m1, m2 = 1 + e * across, e * rate, -2 * e
     own = 1.0 if end == 0 else 0.0
-    r0 = (own * b0 - s0 * b0) / m0
-    r1 = (own * b1 - s1 * b0 - s0 * b1 - r0 * m1) / m0
-    r2 = (own * b2 - s2 * b0 - 2 * s1 * b1 - s0 * b2 - 2 * r1 * m1 - r0 * m2) / m0
-    return r0, r1 / length, r2 / length**2
+    p0 = (own - f0) * across / m0
+    p1 = ((own - f0) * rate - f1 * across - p0 * m1) / m0
+    p2 = (-2 * (own - f0) - 2 * f1 * rate - f2 * across - 2 * p1 * m1 - p0 * m2) / m0
+    g0 = -p0 / f1
+    g1 = -p1 / f1 + p0 * f2 / f1**2
+    g2 = -p2 / f1 + (2 * p1 * f2 + p0 * f3) / f1**2 - 2 * p0 * f2**2 / f1**3
+    s1, s2 = 1 / f1, -f2 / f1**3
+    return g0, g1 * s1 / length, (g2 * s1 * s1 + g1 * s2) / length**2
 
 
 @njit(cache=True, error_model="numpy")

@@ -17,6 +17,7 @@ from ..errors import InputError
 from ..program.program import Program
 from ..program.target import JointTarget, PoseTarget
 from ..robot.chain_kernels import jacobians
+from .configurations import located
 from .controller import Controller
 from .energy import pull_energy
 from .limits import SpeedGradient, interval_samples, pull_path_limits
@@ -27,6 +28,8 @@ from .timing import Timing
 from .zones import ZoneGradient
 
 FloatArray = NDArray[np.float64]
+_SINGULAR = 1e8
+"""Condition number (m and rad) of the Jacobian from which on a target counts as singular."""
 
 
 @dataclass(frozen=True)
@@ -298,7 +301,7 @@ class Derivatives:
             q_bar = q_bar + J.T @ pose_bar
             joints[index, :named] += q_bar[:named]
         else:
-            w = np.linalg.solve(J[:, route.solved].T, q_bar[route.solved])
+            w = self._solved(index, J[:, route.solved], q_bar[route.solved])
             pose_bar = pose_bar + w
             held = q_bar.copy()
             held[route.prescribed] -= J[:, route.prescribed].T @ w
@@ -310,6 +313,26 @@ class Derivatives:
             passed[redundant] = q_bar[redundant]
         passed[named:] = q_bar[named:]
         return passed
+
+    def _solved(self, index: int, J: FloatArray, q_bar: FloatArray) -> FloatArray:
+        """Reverse of inverse kinematics at a move's pose target; J is (6, 6).
+
+        Raises:
+            MotionError: the arm is singular there, so that the derivative does not exist.
+        """
+        if J.shape[1] != 6:
+            name, size = self._controller.robot.name, self._controller.robot.arm_size
+            problem = (
+                f"derivatives of pose targets need an arm of six or seven joints, {name} has {size}"
+            )
+        elif not np.linalg.cond(J) < _SINGULAR:
+            problem = (
+                "the arm is singular at the target, where derivatives do not exist; use a joint "
+                "target, or another pose"
+            )
+        else:
+            return np.linalg.solve(J.T, q_bar)
+        raise located(self._program.moves[index], index, problem)
 
     def _end_jacobians(self) -> FloatArray:
         """(M, 2, 6, N), at start and end of every segment, in its own chain."""

@@ -85,17 +85,11 @@ def blend_windows(layout: Layout, channel: int, slopes: FloatArray) -> FloatArra
             the legs' extents (f'(0) and g'(1) of `blend`).
     """
     before, after = layout.extent[:, channel, 0], layout.extent[:, channel, 1]
-    safe = np.where(before > 0, before, 1.0), np.where(after > 0, after, 1.0)
-    length = before + after
-    return np.stack(
-        [
-            layout.waypoint[1:-1] - before,
-            np.where(length > 0, length, 1.0),
-            length / (slopes[:, 0] * safe[0]),
-            length / (slopes[:, 1] * safe[1]),
-        ],
-        -1,
-    )
+    live = (before > 0) & (after > 0)
+    length = np.where(live, before + after, 1.0)
+    entry = np.where(live, slopes[:, 0] * before / length, 1.0)
+    leave = np.where(live, slopes[:, 1] * after / length, 1.0)
+    return np.stack([layout.waypoint[1:-1] - before, length, entry, leave], -1)
 
 
 def pull_segment_windows(
@@ -120,9 +114,10 @@ def pull_blend_windows(
     start, length, entry, leave = (np.where(live, window_bar[:, i], 0.0) for i in range(4))
     k0, k1 = slopes[:, 0], slopes[:, 1]
     bar.waypoint[1:-1] += start
-    bar.extent[:, channel, 0] += -start + length - entry * b / (k0 * a * a) + leave / (k1 * b)
-    bar.extent[:, channel, 1] += length + entry / (k0 * a) - leave * a / (k1 * b * b)
-    return np.stack([-entry * (a + b) / (a * k0**2), -leave * (a + b) / (b * k1**2)], -1)
+    turned = (k0 * entry - k1 * leave) / (a + b) ** 2
+    bar.extent[:, channel, 0] += -start + length + turned * b
+    bar.extent[:, channel, 1] += length - turned * a
+    return np.stack([entry * a / (a + b), leave * b / (a + b)], -1)
 
 
 def blend_slopes(blend: Blend, count: int) -> FloatArray:

@@ -5,6 +5,7 @@ Read from a TOML file in which every figure states where it comes from.
 
 from __future__ import annotations
 
+import math
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -94,15 +95,30 @@ class MotionModel:
     provenance: Mapping[str, Provenance] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        if not self.period > 0:
-            raise InputError(f"the controller's period must be above zero, not {self.period}")
+        if not 0 < self.period < math.inf:
+            raise InputError(
+                f"the controller's period_s must be finite and above zero, not {self.period}"
+            )
         if not 0 < self.neighbour_fraction <= 0.5:
             raise InputError(
                 f"zone.neighbour_fraction lies in (0, 0.5], not {self.neighbour_fraction}: "
                 "beyond a half, neighbouring zones would overlap"
             )
-        if self.smoothing < 0 or (self.jerk is not None and self.jerk <= 0):
-            raise InputError("time.smoothing_s must be zero or more, time.jerk above zero")
+        if not 0 <= self.smoothing < math.inf:
+            raise InputError(
+                f"time.smoothing_s must be finite and zero or more, not {self.smoothing}"
+            )
+        for key, value in (
+            ("time.jerk", self.jerk),
+            *((f"limit.{name}", getattr(self, name)) for name in _LIMITS),
+        ):
+            if value is not None and not 0 < value < math.inf:
+                raise InputError(f"{key} must be finite and above zero, not {value}")
+        if not isinstance(self.stops_at_pure_reorientation, bool):
+            raise InputError(
+                "zone.stops_at_pure_reorientation is true or false, not "
+                f"{self.stops_at_pure_reorientation!r}"
+            )
 
     @property
     def figures(self) -> frozenset[str]:
@@ -144,30 +160,23 @@ def load_motion_model(path: Path) -> MotionModel:
 
 
 def _model(data: dict[str, Any]) -> MotionModel:
-    blend, zone, time, limit = (data.pop(k, {}) for k in ("blend", "zone", "time", "limit"))
-    provenance = {
-        key: Provenance(entry.pop("status"), entry.pop("source", ""), entry)
-        for key, entry in data.pop("provenance", {}).items()
-    }
-    values: dict[str, Any] = {"provenance": provenance}
-    _take(data, values, "", {"period_s": ("period", float)})
-    _take(
-        blend,
-        values,
-        "blend.",
-        {name: (name, lambda entry: Blend(**_tuples(entry))) for name in ("tcp", "joint")}
-        | {"orientation": ("orientation", lambda entry: Blend(**_tuples(entry)))},
+    blend, zone, time, limit, origins = (
+        _table(k, data.pop(k, {})) for k in ("blend", "zone", "time", "limit", "provenance")
     )
+    provenance = {key: _provenance(f"provenance.{key}", entry) for key, entry in origins.items()}
+    values: dict[str, Any] = {"provenance": provenance}
+    _take(data, values, "", {"period_s": ("period", _number)})
+    _take(blend, values, "blend.", {name: (name, _blend) for name in _BLENDS})
     _take(
         zone,
         values,
         "zone.",
         {
             "overlap": ("overlap", Overlap),
-            "neighbour_fraction": ("neighbour_fraction", float),
+            "neighbour_fraction": ("neighbour_fraction", _number),
             "orientation": ("orientation_zone", OrientationZone),
             "mixed_space": ("mixed_space", Space),
-            "stops_at_pure_reorientation": ("stops_at_pure_reorientation", bool),
+            "stops_at_pure_reorientation": ("stops_at_pure_reorientation", _truth),
         },
     )
     _take(
@@ -175,8 +184,8 @@ def _model(data: dict[str, Any]) -> MotionModel:
         values,
         "time.",
         {
-            "smoothing_s": ("smoothing", float),
-            "jerk": ("jerk", lambda v: None if v == "none" else float(v)),
+            "smoothing_s": ("smoothing", _number),
+            "jerk": ("jerk", lambda v: None if v == "none" else _number(v)),
         },
     )
     _take(
@@ -184,8 +193,8 @@ def _model(data: dict[str, Any]) -> MotionModel:
         values,
         "limit.",
         {
-            "tcp_acceleration": ("tcp_acceleration", float),
-            "reorientation_acceleration": ("reorientation_acceleration", float),
+            "tcp_acceleration": ("tcp_acceleration", _number),
+            "reorientation_acceleration": ("reorientation_acceleration", _number),
         },
     )
     return MotionModel(**values)
@@ -206,5 +215,34 @@ def _take(
             raise InputError(f"{prefix}{key}: {error}") from error
 
 
-def _tuples(entry: Mapping[str, Any]) -> dict[str, Any]:
-    return {k: tuple(map(float, v)) if isinstance(v, list) else v for k, v in entry.items()}
+def _table(key: str, entry: Any) -> dict[str, Any]:
+    if not isinstance(entry, dict):
+        raise InputError(f"{key}: a table is expected, not {entry!r}")
+    return entry
+
+
+def _provenance(key: str, entry: Any) -> Provenance:
+    details = dict(_table(key, entry))
+    if "status" not in details:
+        raise InputError(f"{key}: the status is missing (published, fitted or assumed)")
+    return Provenance(str(details.pop("status")), str(details.pop("source", "")), details)
+
+
+def _blend(entry: Any) -> Blend:
+    if not isinstance(entry, dict):
+        raise InputError(f"a table is expected, not {entry!r}")
+    return Blend(
+        **{k: tuple(map(_number, v)) if isinstance(v, list) else v for k, v in entry.items()}
+    )
+
+
+def _number(entry: Any) -> float:
+    if isinstance(entry, bool) or not isinstance(entry, int | float):
+        raise InputError(f"a number is expected, not {entry!r}")
+    return float(entry)
+
+
+def _truth(entry: Any) -> bool:
+    if not isinstance(entry, bool):
+        raise InputError(f"true or false is expected, not {entry!r}")
+    return entry

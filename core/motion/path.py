@@ -155,7 +155,7 @@ def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
         for array, part in ((edges.q, states.q), (edges.dq, states.dq), (edges.ddq, states.ddq)):
             array[run.corner, run.side] = part[-1]
     joint = make_joint_curves(layout, model, edges)
-    pieces = cut(layout, route.paces, sampling)
+    pieces = cut(layout, tcp.curves, joint, route.paces, sampling)
     sigma = pieces.sigma()
     states = States.zeros(len(sigma), route.ends.q.shape[2])
     conditioning = np.ones(len(sigma))

@@ -8,8 +8,10 @@ from functools import cache, cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from .curves import Curves, parameter_slopes
 from .layout import Layout, LayoutGradient
 from .segments import JOINT_SEGMENT
+from .tcp_samples import TcpCurves
 from .zones import JOINT_CORNER, POSITION, PRESCRIBED, STOP, TCP_CORNER, TURNING
 
 FloatArray = NDArray[np.float64]
@@ -18,6 +20,9 @@ IntArray = NDArray[np.int64]
 _MERGED = 1e-9
 """Boundaries nearer than this share of a segment are one."""
 _WAYPOINT = -1
+_EVEN = 1.5
+"""Doublings of the rate of s(σ) along a piece below which even steps will do."""
+_MOST_LEAN = 40
 
 
 @dataclass(frozen=True)
@@ -57,6 +62,8 @@ class Pieces:
             joint-space pieces).
         intervals: (P,).
         even: (P,), intervals before those at graded ends were halved.
+        lean: (P,), how often the steps between samples are halved from a piece's beginning to its
+            end: where a blend's legs differ much in extent, its parameter runs unevenly in σ.
         graded: (P, 2) bool, whether the samples crowd towards the beginning and the end.
         halvings: see `Sampling`.
         stop: (P + 1,) bool, boundaries at which the robot comes to rest.
@@ -69,6 +76,7 @@ class Pieces:
     curve: IntArray
     intervals: IntArray
     even: IntArray
+    lean: IntArray
     graded: NDArray[np.bool_]
     halvings: int
     stop: NDArray[np.bool_]
@@ -93,8 +101,8 @@ class Pieces:
         """(S,), how far along its piece every sample stands, from 0 to 1."""
         return np.concatenate(
             [
-                _shares(int(even), bool(first), bool(last), self.halvings)
-                for even, (first, last) in zip(self.even, self.graded, strict=True)
+                _shares(int(even), int(lean), bool(first), bool(last), self.halvings)
+                for even, lean, (first, last) in zip(self.even, self.lean, self.graded, strict=True)
             ]
         )
 
@@ -118,20 +126,29 @@ class Pieces:
 
 
 @cache
-def _shares(even: int, first: bool, last: bool, halvings: int) -> FloatArray:
-    """Samples of one piece from 0 to 1."""
-    shares = np.linspace(0.0, 1.0, even + 1)
-    crowd = 0.5 ** np.arange(halvings, 0, -1) / even
-    begin = crowd if first else crowd[:0]
-    end = 1.0 - crowd[::-1] if last else crowd[:0]
+def _shares(even: int, lean: int, first: bool, last: bool, halvings: int) -> FloatArray:
+    """Samples of one piece from 0 to 1, their steps shrinking by 2^lean along it."""
+    steps = 0.5 ** (lean * np.linspace(0.0, 1.0, even))
+    shares = np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
+    shares[-1] = 1.0
+    crowd = 0.5 ** np.arange(halvings, 0, -1)
+    begin = shares[1] * crowd if first else crowd[:0]
+    end = 1.0 - (1.0 - shares[-2]) * crowd[::-1] if last else crowd[:0]
     return np.concatenate([shares[:1], begin, shares[1:-1], end, shares[-1:]])
 
 
-def cut(layout: Layout, paces: NDArray[np.bool_], sampling: Sampling) -> Pieces:
+def cut(
+    layout: Layout,
+    tcp: TcpCurves,
+    joint: Curves,
+    paces: NDArray[np.bool_],
+    sampling: Sampling,
+) -> Pieces:
     """The pieces of a path.
 
     Args:
         layout: the path's geometry on σ.
+        tcp, joint: its curves.
         paces: (M + 1,), waypoints at which the programmed speed changes.
         sampling: how densely to sample.
     """
@@ -143,7 +160,10 @@ def cut(layout: Layout, paces: NDArray[np.bool_], sampling: Sampling) -> Pieces:
     kind = np.concatenate([layout.corners.kind, [STOP]])[corner]
     joint_corner = inside[:, POSITION] & (kind == JOINT_CORNER)
     joint_space = (layout.segments.ends.kind[segment] == JOINT_SEGMENT) | joint_corner
-    even = _intervals(layout, sampling, np.diff(edge), segment, inside[:, POSITION])
+    lean = _lean(edge, curve, joint_space, tcp, joint)
+    even = _intervals(
+        layout, sampling, np.diff(edge), segment, np.asarray(inside.any(axis=1))
+    ) + 2 * np.abs(lean)
     at_waypoint = source[:, 1] == _WAYPOINT
     inner = np.clip(source[:, 0] - 1, 0, max(last - 1, 0))
     ends = (source[:, 0] == 0) | (source[:, 0] == last + 1)
@@ -161,6 +181,7 @@ def cut(layout: Layout, paces: NDArray[np.bool_], sampling: Sampling) -> Pieces:
         curve,
         intervals,
         even,
+        lean,
         graded,
         sampling.halvings,
         stop,
@@ -188,12 +209,14 @@ def _boundaries(layout: Layout) -> tuple[FloatArray, IntArray]:
     # Waypoints first among equals, then position edges: the sort is stable.
     order = np.argsort(sigma, kind="stable")
     sigma, source = sigma[order], source[order]
-    tolerance = _MERGED * layout.segments.scale.min()
-    keep = np.concatenate([[True], np.diff(sigma) > tolerance])
+    last = len(layout.segments.scale) - 1
+    segment = np.clip(np.searchsorted(layout.waypoint, sigma) - 1, 0, last)
+    tolerance = _MERGED * layout.segments.scale[segment] + 8 * np.spacing(sigma[-1])
+    keep = np.concatenate([[True], np.diff(sigma) > np.maximum(tolerance[1:], tolerance[:-1])])
     # A waypoint is never merged away: it replaces the boundary it would merge into.
     kept = np.cumsum(keep) - 1
     for i in np.flatnonzero(~keep & (source[:, 1] == _WAYPOINT)):
-        first = np.flatnonzero(kept == kept[i])[0]
+        first = np.searchsorted(kept, kept[i])
         sigma[first], source[first] = sigma[i], source[i]
     return sigma[keep], source[keep].astype(np.int64)
 
@@ -218,6 +241,25 @@ def _curves(
             corner[entering] = segment[entering]
             corner[leaving] = segment[leaving] - 1
     return curve.astype(np.int64), corner, inside
+
+
+def _lean(
+    edge: FloatArray,
+    curve: IntArray,
+    joint_space: NDArray[np.bool_],
+    tcp: TcpCurves,
+    joint: Curves,
+) -> IntArray:
+    """How many times s(σ) of the most uneven channel doubles its rate along each piece."""
+    most = np.zeros(len(joint_space))
+    for channel, curves in enumerate((tcp.position, tcp.turning, tcp.prescribed)):
+        window = curves.window[curve[:, channel]]
+        window = np.where(joint_space[:, None], joint.window[curve[:, POSITION]], window)
+        before, after = parameter_slopes(window, edge[:-1]), parameter_slopes(window, edge[1:])
+        doublings = np.log2(after / before)
+        most = np.where(np.abs(doublings) > np.abs(most), doublings, most)
+    doubled = np.where(np.abs(most) < _EVEN, 0.0, np.round(most))
+    return np.asarray(np.clip(doubled, -_MOST_LEAN, _MOST_LEAN).astype(np.int64))
 
 
 def _intervals(

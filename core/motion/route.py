@@ -40,8 +40,12 @@ from .zones import Corners
 
 FloatArray = NDArray[np.float64]
 _START = -1
-_COLLINEAR = 1e-6
-_NOWHERE = 1e-9
+_FURTHEST = 1e3
+"""m from the frame that it is given in beyond which a target, tool or work object is a mistake."""
+_HALF_TURN = np.cos(np.radians(179.9))
+"""Cosine of a reorientation from which on rounding decides the way round."""
+_COLLINEAR = 1e-4
+_NOWHERE = 1e-7
 """Scale (m or rad) below which a move goes nowhere."""
 
 
@@ -65,8 +69,13 @@ class _Waypoint:
 
 @dataclass
 class _Legs:
-    """Resolved moves, before those that go nowhere are dropped."""
+    """Resolved moves, before those that go nowhere are dropped.
 
+    Args:
+        at_start: index of the move whose target is taken for the start; None if that is known.
+    """
+
+    at_start: int | None = None
     ends: list[Ends] = field(default_factory=list)
     chains: list[Chain] = field(default_factory=list)
     moves: list[int] = field(default_factory=list)
@@ -103,9 +112,12 @@ class RouteFinder:
         moves = program.moves
         if not moves:
             raise MotionError(f"program {program.name!r} has no move")
+        for i, move in enumerate(moves):
+            if i not in skipped:
+                _check_near(move, i)
         notes: list[Note] = []
         q = self._start(program, start, notes)
-        legs = _Legs()
+        legs = _Legs(0 if notes else None)
         for stage in self._stages(moves, skipped):
             q = self._drive(moves, stage, q, legs)
         return self._route(program, legs, _waypoints(program), notes)
@@ -159,7 +171,7 @@ class RouteFinder:
             move = moves[i]
             ends.q[k, 0] = q
             if ends.kind[k] == JOINT_SEGMENT:
-                q = self._joint_end(move, i, k, stage.chain, ends, q)
+                q = self._joint_end(move, i, q)
             else:
                 if curves is None or segments is None:
                     segments = make_segments(ends)
@@ -213,19 +225,11 @@ class RouteFinder:
             follows,
         )
 
-    def _joint_end(
-        self, move: Move, i: int, k: int, chain: Chain, ends: Ends, q: FloatArray
-    ) -> FloatArray:
-        """Where joint move k of a stage ends."""
+    def _joint_end(self, move: Move, i: int, q: FloatArray) -> FloatArray:
+        """Where a joint move from q ends."""
         if isinstance(move.target, JointTarget):
             return self._targets.joints(move.target, q)
-        if not self._targets.redundant:
-            return self._targets.choose(move, i, q)
-        # Of the many configurations of a seven-axis arm, the one that keeps the redundant axis:
-        # the one that a line to the target would arrive with.
-        line = replace(_rows(ends, np.array([k])), kind=np.array([LINE_SEGMENT]))
-        segments = make_segments(line)
-        return self._walk(move, i, 0, chain, segments, _nominal(segments), q)
+        return self._targets.choose(move, i, q)
 
     def _walk(
         self,
@@ -305,7 +309,9 @@ class RouteFinder:
                 zones[-1] = FINE
             elif zones:
                 zones[-1], owners[-1] = here.zone, move
-            notes.append(Note("goes nowhere: it is at its target already", move))
+            if move != legs.at_start:
+                notes.append(Note("goes nowhere: it is at its target already", move))
+        notes += _half_turns(ends, keep, legs.moves)
         which = np.flatnonzero(keep)
         speeds = [program.moves[legs.moves[k]].speed for k in which]
         changes = [a != b for a, b in pairwise(speeds)]
@@ -326,6 +332,37 @@ class RouteFinder:
 def _span(program: Program, move: int | None) -> Span | None:
     origin = None if move is None else program.moves[move].origin
     return None if origin is None else origin.statement
+
+
+def _check_near(move: Move, i: int) -> None:
+    """Refuse what no robot reaches, before lengths are computed that no number holds."""
+    places = {"tool": move.tool.tcp.position, "work object": move.work_object.pose.position}
+    if not isinstance(move.target, JointTarget):
+        places["target"] = move.target.pose.position
+    if isinstance(move, MoveC):
+        places["auxiliary point"] = move.via.pose.position
+    for name, position in places.items():
+        furthest = max(map(abs, position))
+        if not furthest <= _FURTHEST:
+            raise located(
+                move,
+                i,
+                f"the {name} lies {furthest:.3g} m away, beyond any robot's reach (at most "
+                f"{_FURTHEST:g} m are taken): check its coordinates and their unit",
+            )
+
+
+def _half_turns(ends: Ends, keep: NDArray[np.bool_], moves: Sequence[int]) -> list[Note]:
+    """Notes of the linear moves that turn the tool by half a turn."""
+    trace = np.einsum("kij,kij->k", ends.rotation[:, 0], ends.rotation[:, 1])
+    half = (ends.kind == LINE_SEGMENT) & keep & (0.5 * (trace - 1.0) < _HALF_TURN)
+    return [
+        Note(
+            "turns the tool by half a turn: rounding decides the way round; put a target between",
+            moves[k],
+        )
+        for k in np.flatnonzero(half)
+    ]
 
 
 def _check_arc(move: Move, i: int, start: FloatArray, via: FloatArray, end: FloatArray) -> None:

@@ -26,7 +26,7 @@ IntArray = NDArray[np.int64]
 
 JOINT_SEGMENT, LINE_SEGMENT, ARC_SEGMENT = 0, 1, 2
 _AMBIGUOUS = 2 * np.pi / 3
-"""rad of turn relative to the tangent from which on the auxiliary point decides the way round."""
+"""rad of arc, or of turn relative to it, beyond which the auxiliary point tells the way round."""
 TURN_LENGTH = 0.3
 """m of path that a turn of 1 rad counts as."""
 
@@ -194,7 +194,8 @@ def _way_round(
     """The turns b (A, 3) of the arcs, the longer way round where the auxiliary point says so.
 
     Its orientation "only selects the direction of reorientation" (RAPID Reference Manual, MoveC).
-    Turns well below a half are taken the short way: programs often leave that orientation alone.
+    Where both arc and turn are well below a half circle the turn goes the short way: programs
+    often leave that orientation alone.
     """
     offset = ends.via[arc] - position[:, 0]
     reached = np.arctan2(np.sum(offset * position[:, 2], 1), np.sum(offset * position[:, 1], 1))
@@ -210,7 +211,8 @@ def _way_round(
         gap = np.swapaxes(there, 1, 2) @ ends.via_rotation[arc]
         return np.asarray(np.linalg.norm(rotation_vector(gap), axis=1, keepdims=True))
 
-    wanted = ends.follows[arc][:, None] & (size > _AMBIGUOUS) & (miss(longer) < miss(turn_b))
+    in_doubt = (size > _AMBIGUOUS) | (angle[:, None] > _AMBIGUOUS)
+    wanted = ends.follows[arc][:, None] & in_doubt & (miss(longer) < miss(turn_b))
     return np.where(wanted, longer, turn_b)
 
 

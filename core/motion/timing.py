@@ -28,7 +28,7 @@ class Timing:
         stamp: x = σ̇² and times without waits.
         begin: (K,) s, when each interval is entered, waits included.
         end: (K,) s, when it is left.
-        duration: s, of everything.
+        duration: s, of everything, settling at the end included.
     """
 
     path: Path
@@ -40,13 +40,27 @@ class Timing:
     duration: float
 
     @classmethod
-    def of(cls, path: Path, limits: SegmentLimits, path_limits: PathLimits, stamp: Stamp) -> Timing:
-        """The timing of a stamp on a path."""
+    def of(
+        cls,
+        path: Path,
+        limits: SegmentLimits,
+        path_limits: PathLimits,
+        stamp: Stamp,
+        settling: float = 0.0,
+    ) -> Timing:
+        """The timing of a stamp on a path.
+
+        Args:
+            path, limits, path_limits, stamp: what was stamped.
+            settling: s that the commanded joints take to arrive at a stop after the stamped ones.
+        """
         pieces = path.pieces
         waypoint_edge = np.flatnonzero(pieces.source[:, 1] < 0)
         first = pieces.first_interval
         wait = np.zeros(first[-1] + 1)
         wait[first[waypoint_edge]] = path.route.dwell[pieces.source[waypoint_edge, 0]]
+        wait[first[path.pieces.stop]] += settling
+        wait[0] -= settling
         # A wait at a knot comes before the interval that leaves it.
         delay = np.cumsum(wait)
         begin, end = stamp.t[:-1] + delay[:-1], stamp.t[1:] + delay[:-1]

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import os
 import secrets
+import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from zipfile import BadZipFile
 
 import numpy as np
+from numpy.lib.npyio import NpzFile
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 from ..errors import InputError
 from ..robot.inertia import Inertia
@@ -20,6 +23,8 @@ from ..robot.model import Robot
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+MOST_SAMPLES = 20_000_000
+"""Some 5 GB of a six-axis robot's samples; at a period of 4 ms nearly a day."""
 _ARRAYS = ("t", "q", "dq", "ddq", "position", "quaternion", "sigma", "move")
 
 
@@ -64,12 +69,15 @@ class Trajectory:
     def resampled(self, period: float) -> Trajectory:
         """The same motion every ``period`` s, and at its end.
 
-        Joints are the cubics that meet positions and velocities; the TCP is interpolated
-        likewise in position and linearly in the quaternion, so resample to periods no longer
-        than the motion's own detail.
+        Joints and their velocities are those of the cubics that meet both at the samples. The
+        TCP's position, the quaternion (then normalised), the accelerations and σ are linear
+        between samples, so resample to periods no longer than the motion's own detail.
+
+        Raises:
+            InputError: the period is not finite and above zero, or makes too many samples.
         """
-        if not period > 0:
-            raise InputError(f"a period must be above zero, not {period}")
+        from scipy.interpolate import CubicHermiteSpline
+
         t = sample_times(self.t[0], self.t[-1], period)
         if len(self.t) == 1:
             return self
@@ -119,7 +127,10 @@ class Trajectory:
 
     @classmethod
     def load_csv(cls, path: Path | str) -> Trajectory:
-        """Read what `save_csv` wrote; velocities and accelerations are those of the spline.
+        """Read what `save_csv` wrote.
+
+        Velocities are central differences of the joints, accelerations those of the velocities
+        (`numpy.gradient`; one-sided at the ends, zero for less than three samples).
 
         Raises:
             InputError: naming file and line.
@@ -137,10 +148,7 @@ class Trajectory:
             raise InputError(f"{path}:1: the header must be t,q1,…,qn,{','.join(tail)}")
         data = np.empty((len(rows) - 1, len(header)))
         for line, row in enumerate(rows[1:], start=2):
-            try:
-                data[line - 2] = [float(value) for value in row]
-            except ValueError as error:
-                raise InputError(f"{path}:{line}: {len(header)} numbers expected") from error
+            data[line - 2] = _numbers(row, len(header), f"{path}:{line}")
         t, q = data[:, 0], data[:, 1 : 1 + size]
         if len(t) > 1 and (np.diff(t) <= 0).any():
             line = int(np.flatnonzero(np.diff(t) <= 0)[0]) + 3
@@ -163,10 +171,37 @@ class Trajectory:
             InputError: naming the file.
         """
         try:
-            with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as data:
-                return cls(**{name: data[name] for name in _ARRAYS})
-        except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
+            with Path(path).open("rb") as file:
+                data = np.load(file, allow_pickle=False)
+                if not isinstance(data, NpzFile):
+                    raise InputError(f"{path}: not a saved trajectory: a single array")
+                missing = [name for name in _ARRAYS if name not in data]
+                if missing:
+                    raise InputError(f"{path}: not a saved trajectory: no {', '.join(missing)}")
+                arrays = {name: data[name] for name in _ARRAYS}
+        except OSError as error:
+            reason = error.strerror or error
+            raise InputError(f"{path}: not a readable trajectory: {reason}") from error
+        except (ValueError, EOFError, BadZipFile, zlib.error, NotImplementedError) as error:
+            # NumPy's own words advise to allow pickles, which would run what the file says.
+            raise InputError(f"{path}: not a saved trajectory, or a damaged one") from error
+        try:
+            return cls(**arrays)
+        except (InputError, TypeError) as error:
             raise InputError(f"{path}: not a saved trajectory: {error}") from error
+
+
+def _numbers(row: Sequence[str], count: int, where: str) -> list[float]:
+    """The finite numbers of one line."""
+    try:
+        values = [float(value) for value in row]
+    except ValueError as error:
+        raise InputError(f"{where}: {count} numbers expected: {error}") from error
+    if len(values) != count:
+        raise InputError(f"{where}: {count} numbers expected, not {len(values)}")
+    if not all(map(math.isfinite, values)):
+        raise InputError(f"{where}: a number is not finite")
+    return values
 
 
 def _finite_rates(t: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -177,7 +212,18 @@ def _finite_rates(t: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]
 
 
 def sample_times(start: float, end: float, period: float) -> FloatArray:
-    """Times every ``period`` from start, and the end (not nearer than a thousandth of a period)."""
+    """Times every ``period`` from start, and the end (not nearer than a thousandth of a period).
+
+    Raises:
+        InputError: the period is not finite and above zero, or makes more than `MOST_SAMPLES`.
+    """
+    if not 0 < period < math.inf:
+        raise InputError(f"a period must be finite and above zero, not {period}")
+    if not (end - start) / period < MOST_SAMPLES:
+        raise InputError(
+            f"{end - start:.6g} s sampled every {period:g} s make more than {MOST_SAMPLES:,} "
+            f"samples: give a period of at least {(end - start) / (MOST_SAMPLES - 1):.2g} s"
+        )
     count = int(np.floor((end - start) / period + 1e-9))
     t = start + period * np.arange(count + 1)
     if end - t[-1] > 1e-3 * period:

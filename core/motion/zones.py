@@ -68,15 +68,14 @@ class Corners:
         reach: (M − 1, 3, 2) of position, turning and prescribed axes; into the segment before
             and the one after the waypoint.
         sources: the same with derivatives.
-        overlapping: index of the first waypoint whose zone overlaps the one before it under
-            `Overlap.SKIP`; None if there is none.
+        overlapping: corners to be left out under `Overlap.SKIP`, because their zones overlap.
         notes: zones cut short and refused.
     """
 
     kind: NDArray[np.int64]
     reach: FloatArray
     sources: list[tuple[tuple[Reach, Reach], ...]]
-    overlapping: int | None = None
+    overlapping: tuple[int, ...] = ()
     notes: list[Note] = field(default_factory=list)
 
 
@@ -101,8 +100,8 @@ def first_exit(
 ) -> float:
     """The smallest share of a joint line at which the TCP is ``radius`` from where it began.
 
-    A bound on the TCP's speed makes each step of the search safe, so that no exit is missed; a
-    bracketed secant then finds it to rounding.
+    A bound on the TCP's speed makes each step of the search safe down to steps of 1e-4 of the
+    line; bisection then finds the exit to rounding.
 
     Args:
         chain: the kinematics.
@@ -211,7 +210,7 @@ class ZonePlanner:
         """
         self._notes = []
         wanted = [self._reaches(i, zone) for i, zone in enumerate(zones)]
-        overlapping = None
+        overlapping: tuple[int, ...] = ()
         if self._model.overlap is Overlap.SHRINK:
             wanted = self._shrunk(wanted)
         elif self._model.overlap is Overlap.SKIP:
@@ -301,7 +300,7 @@ class ZonePlanner:
         size = Reach(radius, ((name, i, 1.0),))
         if self._model.overlap is Overlap.HALF:
             for segment in (i, i + 1):
-                half = self._half(segment)
+                half = self._half(segment, i)
                 if half is not None and half.value < size.value * (1 - 1e-9):
                     size = half
             if name == "tcp" and size.value < radius * (1 - 1e-9):
@@ -312,11 +311,13 @@ class ZonePlanner:
                 )
         return self._exit(i, i, size, zone), self._exit(i + 1, i, size, zone)
 
-    def _half(self, segment: int) -> Reach | None:
-        """TCP distance of the point half way from a waypoint, None where it does not bound."""
+    def _half(self, segment: int, corner: int) -> Reach | None:
+        """TCP distance of the point half way from the waypoint; None where the TCP stands still."""
         s, share = self._segments, self._model.neighbour_fraction
         kind = s.ends.kind[segment]
-        if kind == JOINT_SEGMENT or s.length[segment] < _STILL:
+        if kind == JOINT_SEGMENT:
+            return self._joint_half(segment, corner)
+        if s.length[segment] < _STILL:
             return None
         length = float(s.length[segment])
         if kind != ARC_SEGMENT:
@@ -329,6 +330,25 @@ class ZonePlanner:
             ("arc", segment, -2 * r * sine / swept + share * r * cosine),
         )
         return Reach(2 * r * sine, parts)
+
+    def _joint_half(self, segment: int, corner: int) -> Reach | None:
+        share = self._model.neighbour_fraction
+        near, far = (1, 0) if segment == corner else (0, 1)
+        q_wp, q_other = self._segments.ends.q[segment, near], self._segments.ends.q[segment, far]
+        q = (1 - share) * q_wp + share * q_other
+        R, p, J = np.empty((3, 3)), np.empty(3), np.empty((6, q.size))
+        p_wp, J_wp = np.empty(3), np.empty((6, q.size))
+        jacobian(self._chains[segment], q_wp, R, p_wp, J_wp)
+        jacobian(self._chains[segment], q, R, p, J)
+        distance = float(np.linalg.norm(p - p_wp))
+        if distance < _STILL:
+            return None
+        pull, pull_wp = ((p - p_wp) / distance @ part[:3] for part in (J, J_wp))
+        parts: tuple[Part, ...] = (
+            (f"q{near}", segment, (1 - share) * pull - pull_wp),
+            (f"q{far}", segment, share * pull),
+        )
+        return Reach(distance, parts)
 
     def _exit(self, segment: int, corner: int, size: Reach, zone: Radius) -> Reach:
         """Share of a segment inside the sphere round the waypoint of ``corner``."""
@@ -397,13 +417,26 @@ class ZonePlanner:
             for pairs, f in zip(wanted, factors, strict=True)
         ]
 
-    def _overlapping(self, wanted: list[tuple[tuple[Reach, Reach], ...]]) -> int | None:
+    def _overlapping(self, wanted: list[tuple[tuple[Reach, Reach], ...]]) -> tuple[int, ...]:
+        """Corners to leave out; no two neighbours, as leaving one out changes the other."""
+        found: list[int] = []
         for segment in range(len(wanted) + 1):
             before = wanted[segment - 1][POSITION][1].value if segment > 0 else 0.0
             after = wanted[segment][POSITION][0].value if segment < len(wanted) else 0.0
-            if before + after > 1.0 + 1e-9 or (segment == len(wanted) and before >= 1.0):
-                return min(segment, len(wanted) - 1)
-        return None
+            outermost = segment in (0, len(wanted)) and before + after >= 1.0
+            if not (before + after > 1.0 + 1e-9 or outermost):
+                continue
+            corner = min(segment, len(wanted) - 1)
+            if found and corner - found[-1] < 2:
+                continue
+            if (self._segments.ends.kind[corner : corner + 2] == ARC_SEGMENT).any():
+                raise MotionError(
+                    "its blend overlaps a neighbouring one next to an arc, which cannot be left "
+                    "out; make the blend radius smaller",
+                    self._moves[corner],
+                )
+            found.append(corner)
+        return tuple(found)
 
 
 def pull_corners(

@@ -43,7 +43,9 @@ SAME = 1e-7
 """m, rad, and their rates as a share of the largest: what rounding of inverse kinematics leaves."""
 SLACK = 1.005
 """By how much a limit may be passed between samples."""
-FINE_SAMPLING = Sampling(step=0.01, turn=0.04, joint=0.03, blend=200, least=16)
+FINE_SAMPLING = Sampling(
+    step=0.005, turn=0.02, joint=0.015, blend=200, least=32, most=400, halvings=4
+)
 """Dense enough for `SLACK` even in corners that turn back, where the TCP all but stops."""
 ROBOTS = 2
 """So many robots of a vendor are driven."""
@@ -65,7 +67,7 @@ class EmulationChecks(Subject):
     def test_the_path_leaves_the_programmed_one_inside_zones_only(
         self, data: st.DataObject
     ) -> None:
-        robot, run = self._drive(data, self.zones())
+        robot, run = self._drive(data, fly_by_zones(self.zones()))
         seen, model = Observed.of(robot, run), self.vendor.motion()
         for away, turning in ((away_from_legs(seen), False), (turned_away(seen), True)):
             outside = outside_zones(seen, model, turning)
@@ -289,7 +291,7 @@ def _check_slope(
         other = timing.path
         if other.route.moves != run.path.route.moves:
             return
-        if not np.array_equal(other.pieces.intervals, pieces.intervals):
+        if not np.array_equal(other.pieces.sample_shares, pieces.sample_shares):
             return
         if not np.array_equal(other.pieces.source, pieces.source):
             return

@@ -64,3 +64,15 @@ def test_programs_hold_every_kind_of_move() -> None:
 def test_zones_turn_no_later_than_they_leave(zone: object) -> None:
     assert zone.reorientation >= zone.tcp > 0  # type: ignore[attr-defined]
     assert np.isfinite(zone.angle)  # type: ignore[attr-defined]
+
+
+@CALM
+@given(strategies.fly_by_zones())
+def test_fly_by_zones_never_stop(zone: object) -> None:
+    assert zone != FINE
+
+
+@CALM
+@given(strategies.programs(ROBOT, kinds=[MoveJ], max_moves=3))
+def test_programs_keep_to_the_kinds_asked_for(program: object) -> None:
+    assert all(isinstance(move, MoveJ) for move in program.moves)  # type: ignore[attr-defined]

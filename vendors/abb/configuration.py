@@ -53,6 +53,10 @@ class AbbConfiguration:
         if not 0 <= self.cfx <= 7:
             raise InputError(f"cfx numbers eight postures from 0 to 7, not {self.cfx}")
 
+    def __str__(self) -> str:
+        """As RAPID writes it."""
+        return f"[{self.cf1},{self.cf4},{self.cf6},{self.cfx}]"
+
     @property
     def exact(self) -> bool:
         """True: the controller goes to this solution or reports an error."""

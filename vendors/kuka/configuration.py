@@ -55,6 +55,11 @@ class KukaConfiguration:
         if self.turn is not None and not 0 <= self.turn < 4096:
             raise InputError(f"a Turn lies between 0 and 4095, not {self.turn}")
 
+    def __str__(self) -> str:
+        """As KRL writes it; what is not stated is left out."""
+        stated = (("S", self.status), ("T", self.turn))
+        return ", ".join(f"{name} {value}" for name, value in stated if value is not None)
+
     @property
     def exact(self) -> bool:
         """True: the controller goes to this solution or reports an error."""

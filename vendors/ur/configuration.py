@@ -29,6 +29,10 @@ class UrConfiguration:
         if not self.joints or not all(map(math.isfinite, self.joints)):
             raise InputError(f"qnear needs finite joint values, not {list(self.joints)}")
 
+    def __str__(self) -> str:
+        """The joint values in degrees."""
+        return f"[{', '.join(f'{math.degrees(value):.2f}°' for value in self.joints)}]"
+
     @property
     def exact(self) -> bool:
         """False: the nearest solution is taken, however far."""

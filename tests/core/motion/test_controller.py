@@ -233,11 +233,11 @@ def test_the_message_stands_at_the_statement_of_the_source(abb) -> None:
         drive(abb, MoveL(far, SPEED, origin=MoveOrigin(span, *[Origin(Ownership.OWNED, span)] * 3)))
 
 
-def test_a_joint_limit_is_named_with_the_excess(arm) -> None:
+def test_a_joint_limit_is_named(arm) -> None:
     change = np.zeros(6)
     change[0] = arm.robot.limits.upper[0] - arm.home[0] + 0.1
     name = arm.robot.axis_names[0]
-    with pytest.raises(MotionError, match=rf"move 1.*joint {name} would pass its limit .* by 0\.1"):
+    with pytest.raises(MotionError, match=rf"move 1.*joint {name} would .* limit of [-\d.]+ °"):
         drive(arm, MoveJ(arm.joints(change), SPEED))
 
 
@@ -249,7 +249,7 @@ def test_a_joint_limit_passed_inside_a_blend_alone_is_found(abb) -> None:
         MoveJ(abb.joints([edge - 0.5, 0.4, 0, 0, 0, 0]), SPEED),
     )
     drive(abb, *moves)
-    with pytest.raises(MotionError, match="joint J1 would pass its limit"):
+    with pytest.raises(MotionError, match=r"joint J1 would .* limit of"):
         drive(abb, *moves, model=MotionModel(joint=Blend(beta=(-12.0,))))
 
 

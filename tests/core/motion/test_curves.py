@@ -38,8 +38,8 @@ def value(curves, sigma) -> np.ndarray:
 @given(d0=SLOPES, d1=SLOPES, share=st.floats(0.0, 1.0))
 def test_the_map_to_s_is_monotone_and_meets_both_slopes(d0, d1, share) -> None:
     window = np.array([0.4, 2.5, d0, d1])
-    assert parameter_jet(window, 0.4)[:2] == pytest.approx((0.0, d0 / 2.5))
-    assert parameter_jet(window, 2.9)[:2] == pytest.approx((1.0, d1 / 2.5))
+    assert parameter_jet(window, 0.4)[:2] == pytest.approx((0.0, 1 / (2.5 * d0)))
+    assert parameter_jet(window, 2.9)[:2] == pytest.approx((1.0, 1 / (2.5 * d1)))
     sigma = 0.4 + 2.5 * share
     jet = parameter_jet(window, sigma)
     assert jet[1] > 0

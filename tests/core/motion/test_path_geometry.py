@@ -107,22 +107,22 @@ def test_a_second_order_blend_is_continuous_to_second_order_on_joint_lines(arm, 
 
 @pytest.mark.parametrize("name", ["parabola", "quintic", "arc", "own zone"])
 def test_derivatives_are_those_of_q(arm, name) -> None:
-    """Finite differences over a denser sampling of the same path."""
+    """Trapezoidal rules between samples of a denser sampling of the same path, spaced anyhow."""
     controller = arm.controller(MODELS[name])
     program = mixed_program(arm, [0.25] * 6)
-    controller.sampling = replace(controller.sampling, least=150, blend=150, halvings=0)
+    controller.sampling = replace(controller.sampling, least=300, blend=300, most=1000, halvings=0)
     path = controller.plan(program)
     first, s = path.pieces.first_sample, path.states
     for begin, end in pairwise(first):
-        sigma = path.sigma[begin:end]
-        h = sigma[1] - sigma[0]
-        for value, rate in ((s.q, s.dq), (s.dq, s.ddq)):
-            v = value[begin:end]
-            # Fourth-order central difference on the piece's even samples.
-            numeric = (v[:-4] - 8 * v[1:-3] + 8 * v[3:-1] - v[4:]) / (12 * h)
-            exact = rate[begin + 2 : end - 2]
-            scale = max(1.0, np.abs(exact).max())
-            np.testing.assert_allclose(numeric / scale, exact / scale, atol=1e-4)
+        q, dq, ddq = (array[begin:end] for array in (s.q, s.dq, s.ddq))
+        h = np.diff(path.sigma[begin:end])[:, None]
+        step = h / 2 * (dq[1:] + dq[:-1]) - h**2 / 12 * np.diff(ddq, axis=0)
+        scale = np.abs(dq).max()
+        np.testing.assert_allclose(np.diff(q, axis=0) / h / scale, step / h / scale, atol=1e-6)
+        turn = np.diff(dq, axis=0) / h
+        scale = max(1.0, np.abs(ddq).max())
+        mean = 0.5 * (ddq[1:] + ddq[:-1])
+        np.testing.assert_allclose(turn / scale, mean / scale, atol=5e-3)
 
 
 def tcp(arm, q) -> np.ndarray:
@@ -241,12 +241,14 @@ def test_zones_of_joint_moves_end_on_the_sphere(arm, share, change) -> None:
     assert path.corners.kind[0] != STOP
     wp = arm.home + first
     centre = tcp(arm, wp[None])[0]
+    halves = [tcp(arm, (wp + 0.5 * np.array(far))[None])[0] for far in (-first, change)]
+    radius = min(share * arm.leg, *(np.linalg.norm(half - centre) for half in halves))
     for reach, far in zip(path.corners.reach[0, POSITION], (-first, change), strict=True):
         inside = tcp(arm, wp + np.linspace(0, reach, 50)[:, None] * np.array(far))
         distance = np.linalg.norm(inside - centre, axis=1)
         if reach < 0.5:
-            assert distance[-1] == pytest.approx(share * arm.leg, abs=1e-9)
-        assert (distance[:-1] < share * arm.leg + 1e-9).all()
+            assert distance[-1] == pytest.approx(radius, abs=1e-9)
+        assert (distance[:-1] < radius + 1e-9).all()
 
 
 def test_a_share_of_the_contour_begins_at_its_share_of_half_the_move(abb) -> None:
@@ -296,7 +298,7 @@ def test_a_reversal_turns_back_inside_its_zone(ur, name) -> None:
     run = ur.controller(MODELS[name]).run(Program(moves, start=ur.start))
     points = run.trajectory.position
     line = np.array([ur.pose().position, ur.pose((1, 0, 0)).position])
-    assert distance_to_chain(points, line).max() < 1e-8
+    assert distance_to_chain(points, line).max() < 1e-7
     turned = np.linalg.norm(points - line[1], axis=1).min()
     assert 0.0 < turned < 0.2 * ur.leg
 

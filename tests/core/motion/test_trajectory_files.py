@@ -154,3 +154,35 @@ def test_what_is_no_trajectory_is_refused(motion) -> None:
         Trajectory(**{name: array[:0] for name, array in parts.items()})
     with pytest.raises(InputError):
         motion.resampled(0.0)
+
+
+HEADER = "t,q1,x,y,z,qw,qx,qy,qz,move\n0,0,0,0,0,1,0,0,0,1\n"
+
+
+@pytest.mark.parametrize("row", ["0.1", "0.1,0,0,0,0,1,0,0,0,1,7", "0.1,inf,0,0,0,1,0,0,0,1"])
+def test_a_row_of_another_length_or_without_meaning_is_named(row, tmp_path) -> None:
+    path = tmp_path / "broken.csv"
+    path.write_text(HEADER + row, "utf-8")
+    with pytest.raises(InputError, match=r"broken\.csv:3: "):
+        Trajectory.load_csv(path)
+
+
+def test_damaged_archives_and_other_arrays_are_refused(motion, tmp_path) -> None:
+    sound = tmp_path / "sound.npz"
+    motion.save_npz(sound)
+    content = bytearray(sound.read_bytes())
+    content[200:400] = bytes(200)
+    (tmp_path / "damaged.npz").write_bytes(content)
+    np.save(tmp_path / "single.npy", np.zeros(3))
+    np.savez(tmp_path / "scalars.npz", **dict.fromkeys(ARRAYS, 1.0))
+    np.savez(tmp_path / "objects.npz", **dict.fromkeys(ARRAYS, np.array([{}], dtype=object)))
+    for name in ("damaged.npz", "single.npy", "scalars.npz", "objects.npz"):
+        with pytest.raises(InputError, match=name) as caught:
+            Trajectory.load_npz(tmp_path / name)
+        assert "pickle" not in str(caught.value)
+
+
+@pytest.mark.parametrize("period", [0.0, -1.0, float("nan"), float("inf"), 1e-15])
+def test_periods_that_no_sampling_has_are_refused(motion, period) -> None:
+    with pytest.raises(InputError, match="period"):
+        motion.resampled(period)

@@ -18,6 +18,7 @@ from .literals import (
     MM,
     UNUSED_AXIS,
     Record,
+    check_speed,
     load_value,
     metres,
     tool_value,
@@ -148,6 +149,7 @@ class Converter:
         span: Span,
     ) -> Speed:
         settings = self._run.settings
+        self._guard(span, lambda: check_speed(record, tcp, duration))
         v_tcp, v_ori, v_leax, v_reax = record
         programmed = (v_tcp if tcp is None else tcp, v_ori, v_leax, v_reax)
         scaled = [v * settings.override for v in programmed]

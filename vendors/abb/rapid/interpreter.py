@@ -91,6 +91,7 @@ class Interpreter:
         self._statements: list[ProgramStatement] = []
         self._sources: list[Sources] = []
         self._notes: dict[tuple[str, str], Note] = {}
+        self._kept: dict[str, tuple[Note, int]] = {}
         self._quaternions: dict[Span, float] = {}
         self._where = ""
         self._depth = 0
@@ -116,6 +117,9 @@ class Interpreter:
     def notes(self) -> tuple[Note, ...]:
         """What is to be said about the run."""
         notes = list(self._notes.values())
+        for note, count in self._kept.values():
+            times = f" ({count} times, here first)" if count > 1 else ""
+            notes.append(replace(note, message=note.message + times))
         if self._quaternions:
             worst = max(self._quaternions.values())
             first = next(iter(self._quaternions))
@@ -163,13 +167,15 @@ class Interpreter:
         self._sources.append(sources)
 
     def keep(self, statement: Invoke | Keyword, why: str, stops: bool = False) -> None:
-        """Keep a statement as it stands, with one note per kind and routine."""
+        """Keep a statement as it stands, with one note per kind, at the first of them."""
         span = statement.span
         text = self._texts[span.file][span.start : span.end]
         self.emit(Opaque(text, stops, span))
         if why:
             name = statement.text if isinstance(statement, Invoke) else statement.word.upper()
-            self.note_once(name.lower(), f"{name} is kept and not carried out: {why}", span)
+            message = f"{name} is kept and not carried out: {why}"
+            first, count = self._kept.get(message.lower(), (Note(message, span=span), 0))
+            self._kept[message.lower()] = first, count + 1
 
     def note_once(self, kind: str, message: str, span: Span) -> None:
         """A note, unless this kind was noted in this routine before."""

@@ -91,6 +91,29 @@ def speed_value(record: Record, name: str | None = None) -> Speed:
     )
 
 
+def check_speed(record: Record, tcp: float | None, duration: float | None) -> None:
+    """Refuse speeds that no controller takes, in RAPID's words and units.
+
+    Args:
+        record: ``[v_tcp, v_ori, v_leax, v_reax]``.
+        tcp: ``\\V`` in mm/s, None if absent.
+        duration: ``\\T`` in s, None if absent.
+
+    Raises:
+        InputError: naming the component and its value.
+    """
+    v_tcp, v_ori, v_leax, v_reax = record
+    speeds = [("v_tcp", v_tcp, "mm/s") if tcp is None else ("\\V", tcp, "mm/s")]
+    speeds.append(("v_ori", v_ori, "deg/s"))
+    # Zero speeds of external axes are common where there are none.
+    speeds += [("v_leax", v_leax, "mm/s")] if v_leax != 0 else []
+    speeds += [("v_reax", v_reax, "deg/s")] if v_reax != 0 else []
+    speeds += [("\\T", duration, "s")] if duration is not None else []
+    for name, value, unit in speeds:
+        if not (math.isfinite(value) and value > 0):
+            raise InputError(f"{name} must be above zero, not {value:g} {unit}")
+
+
 def zone_value(record: Record, name: str | None = None) -> Zone:
     """``[finep, pzone_tcp, pzone_ori, pzone_eax, zone_ori, zone_leax, zone_reax]``.
 

@@ -1,0 +1,17 @@
+"""The folder of logged runs, if there is one on this machine."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture(scope="session")
+def logs() -> Path:
+    """The folder that FLYBY_LOGS names; the runs are their publishers', so none comes along."""
+    folder = os.environ.get("FLYBY_LOGS")
+    if folder is None:
+        pytest.skip("no logged runs here: set FLYBY_LOGS to the folder that holds them")
+    return Path(folder)

@@ -1,0 +1,77 @@
+"""Every block of docs/plugins.md is executed, in its order, as one plugin."""
+
+from __future__ import annotations
+
+import re
+import sys
+import tomllib
+from importlib import metadata
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+
+import pytest
+
+from flyby.core import hookspec, vendor
+from flyby.core.errors import InputError, SourceError
+from flyby.core.registry import Registry
+from flyby.testing.conformance import VendorConformance
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "plugins.md").read_text("utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
+
+
+@pytest.fixture(scope="module")
+def page() -> ModuleType:
+    """The page as a module that stands beside the example's robot."""
+    module = ModuleType("flyby_acme")
+    module.__file__ = str(ROOT / "examples" / "fourth_vendor" / "page.py")
+    for block in blocks("python"):
+        exec(compile(block, "docs/plugins.md", "exec"), vars(module))
+    return module
+
+
+def test_every_block_is_of_a_language_that_is_tested() -> None:
+    assert len(re.findall(r"^```\w*$", PAGE, re.MULTILINE)) == 2 * (
+        len(blocks("python")) + len(blocks("toml"))
+    )
+    assert len(blocks("python")) >= 7
+
+
+def test_the_page_is_a_plugin(page: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    (entry,) = blocks("toml")
+    ((group, points),) = tomllib.loads(entry)["project"]["entry-points"].items()
+    assert group == hookspec.GROUP
+    ((name, module),) = points.items()
+    monkeypatch.setitem(sys.modules, module, page)
+    point = metadata.EntryPoint(name, module, group)
+    vars(point).update(dist=SimpleNamespace(name="flyby-acme"))
+    registry = Registry.discover([point])
+    assert registry.broken == ()
+    assert registry.robot_names == ("acme/swift-6",)
+
+
+def test_the_suite_of_the_page_is_the_suite(page: ModuleType) -> None:
+    assert issubclass(page.TestAcme, VendorConformance)
+    assert page.TestAcme.name == "acme"
+
+
+def test_the_language_of_the_page_keeps_its_promises(page: ModuleType) -> None:
+    acme = page.acme()
+    text = "0.5 0.1 0.2 0.0 0.9 0.0 0.25\n"
+    assert dict(acme.write(acme.read(text, "a.acme"), acme.robot("swift-6"))) == {"main.acme": text}
+    with pytest.raises(SourceError, match=r"a\.acme:2:1"):
+        acme.read(text + "1 2 x\n", "a.acme")
+    with pytest.raises(InputError, match="absent"):
+        acme.read_file("absent.acme")
+    assert page.Elbow(True).mismatch(page.Elbow(False)) == 1.0
+
+
+def test_every_part_and_every_method_of_the_suite_is_told() -> None:
+    for part in vendor.Vendor.__dataclass_fields__:
+        assert f"`{part}`" in PAGE or f"{part}=" in PAGE, part
+    for name in ("flyby_register_vendors", "register.add"):
+        assert name in PAGE
