@@ -331,7 +331,7 @@ class Derivatives:
                 "target, or another pose"
             )
         else:
-            return np.linalg.solve(J.T, q_bar)
+            return np.asarray(np.linalg.solve(J.T, q_bar), dtype=np.float64)
         raise located(self._program.moves[index], index, problem)
 
     def _end_jacobians(self) -> FloatArray:

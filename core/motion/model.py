@@ -231,9 +231,11 @@ def _provenance(key: str, entry: Any) -> Provenance:
 def _blend(entry: Any) -> Blend:
     if not isinstance(entry, dict):
         raise InputError(f"a table is expected, not {entry!r}")
-    return Blend(
-        **{k: tuple(map(_number, v)) if isinstance(v, list) else v for k, v in entry.items()}
-    )
+    values: dict[str, Any] = {
+        key: tuple(map(_number, value)) if isinstance(value, list) else value
+        for key, value in entry.items()
+    }
+    return Blend(**values)
 
 
 def _number(entry: Any) -> float:

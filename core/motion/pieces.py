@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .curves import Curves, parameter_slopes
+from .curves import POLYNOMIAL, Curves, parameter_slopes
 from .layout import Layout, LayoutGradient
 from .segments import JOINT_SEGMENT
 from .tcp_samples import TcpCurves
@@ -23,6 +24,7 @@ _WAYPOINT = -1
 _EVEN = 1.5
 """Doublings of the rate of s(σ) along a piece below which even steps will do."""
 _MOST_LEAN = 40
+_SHARPEST = 10.0
 
 
 @dataclass(frozen=True)
@@ -161,9 +163,8 @@ def cut(
     joint_corner = inside[:, POSITION] & (kind == JOINT_CORNER)
     joint_space = (layout.segments.ends.kind[segment] == JOINT_SEGMENT) | joint_corner
     lean = _lean(edge, curve, joint_space, tcp, joint)
-    even = _intervals(
-        layout, sampling, np.diff(edge), segment, np.asarray(inside.any(axis=1))
-    ) + 2 * np.abs(lean)
+    blend = np.where(inside.any(axis=1), sampling.blend * _sharpness(curve, joint_space, tcp), 0.0)
+    even = _intervals(layout, sampling, np.diff(edge), segment, blend) + 2 * np.abs(lean)
     at_waypoint = source[:, 1] == _WAYPOINT
     inner = np.clip(source[:, 0] - 1, 0, max(last - 1, 0))
     ends = (source[:, 0] == 0) | (source[:, 0] == last + 1)
@@ -262,14 +263,28 @@ def _lean(
     return np.asarray(np.clip(doubled, -_MOST_LEAN, _MOST_LEAN).astype(np.int64))
 
 
+def _sharpness(curve: IntArray, joint_space: NDArray[np.bool_], tcp: TcpCurves) -> FloatArray:
+    """How much denser to sample each piece: corners that turn back slow down within little path.
+
+    1 up to a deflection δ of a right angle, then as 1 / cos(δ/2).
+    """
+    control = tcp.position.control[curve[:, POSITION]]
+    size = np.linalg.norm(control[:, 1], axis=1) * np.linalg.norm(control[:, 2], axis=1)
+    blended = (tcp.position.kind[curve[:, POSITION]] == POLYNOMIAL) & ~joint_space & (size > 0)
+    along = np.sum(control[:, 1] * control[:, 2], axis=1) / np.where(size > 0, size, 1.0)
+    half = np.sqrt(np.clip(0.5 + 0.5 * along, 1e-4, 1.0))
+    sharp = np.clip(math.sqrt(0.5) / half, 1.0, _SHARPEST)
+    return np.asarray(np.where(blended, sharp, 1.0))
+
+
 def _intervals(
     layout: Layout,
     sampling: Sampling,
     span: FloatArray,
     segment: IntArray,
-    blend: NDArray[np.bool_],
+    blend: FloatArray,
 ) -> IntArray:
-    """How many intervals each piece gets."""
+    """How many intervals each piece gets, ``blend`` (P,) at least."""
     s = layout.segments
     share = span / s.scale[segment]
     turn = np.linalg.norm(s.turn_a, axis=1) + np.linalg.norm(s.turn_b, axis=1)
@@ -279,7 +294,7 @@ def _intervals(
             share * s.length[segment] / sampling.step,
             share * np.maximum(turn, swept)[segment] / sampling.turn,
             share * np.linalg.norm(s.delta_q, axis=1)[segment] / sampling.joint,
-            np.where(blend, float(sampling.blend), float(sampling.least)),
+            np.maximum(blend, float(sampling.least)),
         ]
     )
     return np.asarray(np.minimum(np.ceil(wanted - 1e-9), sampling.most).astype(np.int64))

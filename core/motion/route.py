@@ -361,7 +361,7 @@ def _half_turns(ends: Ends, keep: NDArray[np.bool_], moves: Sequence[int]) -> li
             "turns the tool by half a turn: rounding decides the way round; put a target between",
             moves[k],
         )
-        for k in np.flatnonzero(half)
+        for k in map(int, np.flatnonzero(half))
     ]
 
 

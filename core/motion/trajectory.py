@@ -212,7 +212,9 @@ def _finite_rates(t: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]
 
 
 def sample_times(start: float, end: float, period: float) -> FloatArray:
-    """Times every ``period`` from start, and the end (not nearer than a thousandth of a period).
+    """Times every ``period`` from start, and the end.
+
+    A last time within a thousandth of a period of the end gives way to it.
 
     Raises:
         InputError: the period is not finite and above zero, or makes more than `MOST_SAMPLES`.
@@ -226,7 +228,9 @@ def sample_times(start: float, end: float, period: float) -> FloatArray:
         )
     count = int(np.floor((end - start) / period + 1e-9))
     t = start + period * np.arange(count + 1)
-    if end - t[-1] > 1e-3 * period:
+    if count > 0 and end - t[-1] <= 1e-3 * period:
+        t[-1] = end
+    elif end > start:
         t = np.append(t, end)
     return np.asarray(t)
 

@@ -20,10 +20,11 @@ from pathlib import Path
 from flyby.core.errors import InputError, SourceError, Span
 from flyby.core.hookspec import VendorRegister, hookimpl
 from flyby.core.motion.model import MotionModel, Overlap, Provenance
-from flyby.core.program.move import Move, MoveC, MoveJ, MoveL, Statement, Wait
+from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Statement, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
-from flyby.core.program.target import JointTarget, PoseTarget
+from flyby.core.program.target import JointTarget, PoseTarget, Target
+from flyby.core.program.tool import FLANGE, WORLD
 from flyby.core.program.zone import FINE, Radius, Zone
 from flyby.core.robot.model import Robot
 from flyby.core.spatial.pose import Pose
@@ -81,7 +82,7 @@ def _statement(words: list[str]) -> Statement:
     numbers, (_, tcp, turn, keyword, radius) = [*map(float, rest[:at])], rest[at:]
     if keyword != "ZONE":
         raise ValueError("ZONE expected after the two speeds")
-    speed = Speed(*(None if word == "-" else float(word) for word in (tcp, turn)))
+    speed = Speed(_optional(tcp), _optional(turn))
     zone: Zone = FINE if float(radius) == 0 else Radius(float(radius))
     if kind == "MOVEJ":
         return MoveJ(JointTarget(tuple(numbers)), speed, zone)
@@ -90,6 +91,10 @@ def _statement(words: list[str]) -> Statement:
     if kind == "MOVEC":
         return MoveC(_pose(numbers[7:]), speed, zone, via=_pose(numbers[:7]))
     raise ValueError(f"unknown word {kind}")
+
+
+def _optional(word: str) -> float | None:
+    return None if word == "-" else float(word)
 
 
 def _pose(numbers: list[float]) -> PoseTarget:
@@ -114,16 +119,17 @@ def _line(statement: Statement) -> str:
     return f"{type(statement).__name__.upper()} {numbers} SPEED {tcp} {turn} ZONE {radius!r}"
 
 
-def _numbers(target: PoseTarget | JointTarget) -> tuple[float, ...]:
+def _numbers(target: Target) -> tuple[float, ...]:
     if isinstance(target, JointTarget):
         return target.joints
     return (*target.pose.position, *target.pose.quaternion)
 
 
 def _refuse_what_cannot_be_said(move: Move) -> None:
-    plain = type(move)(move.target, move.speed, move.zone, **_via(move))
-    if plain != move:
-        raise InputError("ACME knows no tools, work objects, loads or arc modes")
+    if replace(move, tool=FLANGE, work_object=WORLD, load=None) != move:
+        raise InputError("ACME knows no tools, work objects or loads")
+    if isinstance(move, MoveC) and move.orientation is not ArcOrientation.FOLLOWS_ARC:
+        raise InputError("along ACME's arcs the tool follows the arc")
     if isinstance(move, MoveJ) != isinstance(move.target, JointTarget):
         raise InputError("ACME's MOVEJ goes to joint values, the others to poses")
     if move.target.external:
@@ -132,10 +138,6 @@ def _refuse_what_cannot_be_said(move: Move) -> None:
         raise InputError(f"ACME's zones are a radius and nothing else, not {move.zone}")
     if move.speed != Speed(move.speed.tcp, move.speed.reorientation):
         raise InputError("ACME's speeds are those of the TCP and of its turn, nothing else")
-
-
-def _via(move: Move) -> dict[str, PoseTarget]:
-    return {"via": move.via} if isinstance(move, MoveC) else {}
 
 
 @hookimpl
