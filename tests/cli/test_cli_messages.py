@@ -1,0 +1,37 @@
+"""What users are told when names and files do not fit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from typer.testing import Result
+
+from flyby.vendors.abb.configuration import AbbConfiguration
+from flyby.vendors.kuka.configuration import KukaConfiguration
+from flyby.vendors.ur.configuration import UrConfiguration
+
+ROBOT = "abb/irb6640-180-255"
+Flyby = Callable[..., Result]
+
+
+def test_a_robot_without_its_vendor_is_offered_with_it(flyby: Flyby, small) -> None:
+    result = flyby("emulate", small(), "--robot", "irb6640-180-255")
+    assert f"did you mean '{ROBOT}'?" in result.stderr
+
+
+def test_a_folder_and_a_name_without_suffix_are_told(flyby: Flyby, tmp_path: Path) -> None:
+    assert "is a folder" in flyby("emulate", tmp_path, "--robot", ROBOT).stderr
+    assert "no suffix" in flyby("emulate", tmp_path / "program", "--robot", ROBOT).stderr
+
+
+def test_what_is_kept_is_told_once_with_its_count(flyby: Flyby, small) -> None:
+    program = small("SetDO do1, 1", "SetDO do1, 0", "MoveL Offs(p1,10,0,0), v200, fine, tool0")
+    told = flyby("emulate", program, "--robot", ROBOT).stderr
+    assert told.count("SetDO is kept") == told.count("(2 times, here first)") == 1
+
+
+def test_configurations_are_written_as_their_vendor_does() -> None:
+    assert str(AbbConfiguration(0, -1, 0, 7)) == "[0,-1,0,7]"
+    assert (str(KukaConfiguration(2, 35)), str(KukaConfiguration(None, 3))) == ("S 2, T 35", "T 3")
+    assert str(UrConfiguration((0.0, 3.141592653589793))) == "[0.00°, 180.00°]"
