@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline
 
 FloatArray = NDArray[np.float64]
 
@@ -36,6 +35,9 @@ def moving_average(
     Returns:
         Positions, velocities and accelerations (T, N).
     """
+    # Imported here: it takes longer than all else that a start of the command line needs.
+    from scipy.interpolate import CubicHermiteSpline
+
     lead, tail = t[0] - window - 1.0, t[-1] + window + 1.0
     times = np.concatenate([[lead], t, [tail]])
     held = np.concatenate([q[:1], q, q[-1:]])

@@ -52,7 +52,7 @@ ROBOTS = 2
 MOVES = 3
 PERIOD = 0.1
 """s between samples of trajectories: the checks look at the stamp itself."""
-DRIVES = settings(PROGRAM_EXAMPLES, max_examples=12)
+DRIVES = settings(PROGRAM_EXAMPLES, max_examples=30)
 
 
 class EmulationChecks(Subject):
@@ -278,8 +278,8 @@ def _check_slope(
 ) -> None:
     """Compare a derivative of the duration with differences on both sides.
 
-    Where two limits tie they differ, and the derivative is one of them or between; where the path
-    falls into other pieces or samples there is none, and nothing is compared.
+    Near a tie of two limits they differ, and the derivative is only known as well as they agree;
+    where the path falls into other pieces or samples there is none, and nothing is compared.
     """
     h = 1e-5
     try:
@@ -297,5 +297,5 @@ def _check_slope(
             return
     before, after = (timing.duration for timing in timings)
     sides = ((run.timing.duration - before) / h, (after - run.timing.duration) / h)
-    room = 2e-3 * abs(slope) + 1e-3
+    room = 2e-3 * abs(slope) + 1e-3 + abs(sides[1] - sides[0])
     assert min(sides) - room <= slope <= max(sides) + room

@@ -100,10 +100,7 @@ class WithProgram(Controller):
     """Drives another program than it is asked to."""
 
     def plan(self, program: Program, start: Any = None) -> Any:
-        changed = [
-            replace(move, zone=self.zone(move.zone)) if i else move
-            for i, move in enumerate(program.moves)
-        ]
+        changed = [replace(move, zone=self.zone(move.zone)) for move in program.moves]
         return super().plan(program.with_moves(tuple(changed)), start)
 
     def zone(self, zone: Any) -> Any:

@@ -88,7 +88,7 @@ def seven(abb):
 def test_a_seven_axis_joint_move_keeps_the_third_axis(abb, seven) -> None:
     controller = abb.controller(robot=seven)
     home = np.insert(abb.home, 2, 0.3)
-    there = [*home, 0.5, 0.2, 0.0, -0.3, 0.2, 0.3, -0.4]
+    there = home + np.array([0.5, 0.2, 0.0, -0.3, 0.2, 0.3, -0.4])
     target = PoseTarget(seven.flange_pose(there))
     program = Program((MoveJ(target, Speed(), FINE),), start=JointTarget(tuple(map(float, home))))
     path = controller.plan(program)
