@@ -85,7 +85,7 @@ class WithModel(Controller):
 
 
 class Bulging(WithModel):
-    changes = {"tcp": Blend(beta=(60.0,))}  # noqa: RUF012
+    changes = {"tcp": Blend(beta=(60.0,)), "joint": Blend(beta=(60.0,))}  # noqa: RUF012
 
 
 class Wandering(WithModel):
