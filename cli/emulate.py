@@ -48,7 +48,7 @@ def emulate(
     cell: Annotated[
         Path | None, typer.Option(help="Cell file: robot, base and external axes.")
     ] = None,
-    entry: Annotated[str, typer.Option(help="Routine to run.")] = "main",
+    entry: Annotated[str | None, typer.Option(help="Routine to run.")] = None,
     start: Annotated[
         str | None,
         typer.Option(

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from .program.program import Program
     from .program.target import Configuration
     from .robot.model import Robot
+    from .source.answers import Answers
+    from .source.reading import Files, ReadOptions
 
 NAME = re.compile(r"[a-z0-9][a-z0-9_.-]*")
 LANGUAGE_PARTS = ("reader", "writer", "patcher", "recorder")
@@ -33,19 +35,18 @@ Sources = Mapping[str, str]
 class Reader(Protocol):
     """Reads the vendor's source; errors are `SourceError` with file, line and column."""
 
-    def read(self, text: str, file: str, entry: str, robot: Robot | None) -> Program:
-        """The program that the routine ``entry`` of ``text`` drives.
+    def read(self, text: str, file: str, options: ReadOptions) -> Program:
+        """The program that a routine of ``text`` drives; no file is opened.
 
         Args:
             text: the source.
             file: its name, for messages.
-            entry: the routine.
-            robot: whose external axes the program moves; None if it moves none.
+            options: entry, robot, answers, limits.
         """
         ...
 
-    def read_file(self, path: Path, entry: str, robot: Robot | None) -> Program:
-        """The same of a file, and of the files that belong to it."""
+    def read_file(self, path: Path, options: ReadOptions) -> Program:
+        """The same of a file, and of the files that belong to it (`ReadOptions.others`)."""
         ...
 
 
@@ -71,8 +72,21 @@ class Writer(Protocol):
 class Patcher(Protocol):
     """Changes targets, zones and speeds in the user's own files and no other byte."""
 
-    def patch(self, program: Program, sources: Sources) -> Sources:
-        """``sources``, from which ``program`` was read, with the numbers that ``program`` has."""
+    def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
+        """The files that ``program`` was read from, with the numbers that it has now.
+
+        Args:
+            program: read from files (`Program.reading`), then changed.
+            robot: whose it is.
+            options: of the patcher, by name; unknown ones are refused.
+
+        Returns:
+            The files that changed, by the name they were read by.
+
+        Raises:
+            FlybyError: a change has no place in the text, or reading the patched text does not
+                give the changed program.
+        """
         ...
 
 
@@ -133,24 +147,36 @@ class Vendor:
         return self.robots[own]()
 
     def read(
-        self, text: str, file: str, entry: str = "main", robot: Robot | None = None
+        self,
+        text: str,
+        file: str,
+        entry: str | None = None,
+        robot: Robot | None = None,
+        answers: Answers | None = None,
     ) -> Program:
-        """The program in a source text; see `Reader.read`.
+        """The program in a source text; see `Reader.read` and `ReadOptions`.
 
         Raises:
             InputError: the vendor has no reader.
         """
-        return self._part(self.reader, "reader").read(text, file, entry, robot)
+        reader = self._part(self.reader, "reader")
+        return reader.read(text, file, _read_options(entry, robot, answers))
 
     def read_file(
-        self, path: str | Path, entry: str = "main", robot: Robot | None = None
+        self,
+        path: str | Path,
+        entry: str | None = None,
+        robot: Robot | None = None,
+        answers: Answers | None = None,
+        others: Iterable[str | Path] = (),
     ) -> Program:
-        """The program in a source file; see `Reader.read_file`.
+        """The program in a source file; see `Reader.read_file` and `ReadOptions`.
 
         Raises:
             InputError: the vendor has no reader.
         """
-        return self._part(self.reader, "reader").read_file(Path(path), entry, robot)
+        reader = self._part(self.reader, "reader")
+        return reader.read_file(Path(path), _read_options(entry, robot, answers, others))
 
     def write(
         self, program: Program, robot: Robot, options: Mapping[str, str] | None = None
@@ -163,13 +189,15 @@ class Vendor:
         self._check_language(robot)
         return self._part(self.writer, "writer").write(program, robot, options or {})
 
-    def patch(self, program: Program, sources: Sources) -> Sources:
-        """``sources`` with the program's numbers; see `Patcher.patch`.
+    def patch(
+        self, program: Program, robot: Robot, options: Mapping[str, str] | None = None
+    ) -> Files:
+        """The program's own source files with its numbers; see `Patcher.patch`.
 
         Raises:
             InputError: the vendor has no patcher.
         """
-        return self._part(self.patcher, "patcher").patch(program, sources)
+        return self._part(self.patcher, "patcher").patch(program, robot, options or {})
 
     def record(self, program: Program, robot: Robot, period: float) -> Sources:
         """Source that drives ``robot`` and logs itself; see `Recorder.record`.
@@ -196,6 +224,18 @@ class Vendor:
                 + ("" if name != "reader" else "; build the program in Python instead")
             )
         return part
+
+
+def _read_options(
+    entry: str | None,
+    robot: Robot | None,
+    answers: Answers | None,
+    others: Iterable[str | Path] = (),
+) -> ReadOptions:
+    from .source.answers import Answers
+    from .source.reading import ReadOptions
+
+    return ReadOptions(entry, robot, answers or Answers(), others=tuple(map(Path, others)))
 
 
 def lazy_robots(files: Iterable[Path]) -> dict[str, Callable[[], Robot]]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from ..errors import InputError, Span
+from .event import Event
 from .origin import MoveOrigin
 from .speed import Speed
 from .target import PoseTarget, Target
@@ -34,6 +35,7 @@ class _Motion:
         tool: the tool whose centre point is programmed.
         work_object: the frame of the target.
         load: payload carried during the move, in the tool's frame.
+        events: what happens on the way; it does not change the motion.
         origin: where in the source the numbers stand; not part of the value.
     """
 
@@ -43,6 +45,7 @@ class _Motion:
     tool: Tool = FLANGE
     work_object: WorkObject = WORLD
     load: Load | None = None
+    events: tuple[Event, ...] = field(default=(), kw_only=True)
     origin: MoveOrigin | None = field(default=None, compare=False, repr=False, kw_only=True)
 
 

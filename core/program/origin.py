@@ -29,13 +29,14 @@ class Origin:
         datum: name of the declared datum read, with its module or routine if needed; None for a
             literal at the move.
         numbers: spans of the literal numbers that make up the value, in the order of the
-            vendor's own literal form; empty if the value is derived.
+            vendor's own literal form, None for one that is not written out; empty if the value is
+            derived or predefined.
     """
 
     ownership: Ownership
     span: Span
     datum: str | None = None
-    numbers: tuple[Span, ...] = ()
+    numbers: tuple[Span | None, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

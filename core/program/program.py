@@ -4,10 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Protocol
 
 from ..errors import Note
 from .move import Move, MoveC, MoveJ, MoveL, Statement
 from .target import JointTarget
+
+
+class ReadFrom(Protocol):
+    """How a program was read: `flyby.core.source.reading.Reading` says all of it."""
+
+    @property
+    def main(self) -> str:
+        """Name of the source file with the entry."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -19,12 +29,14 @@ class Program:
         name: of the program or module.
         start: joint values before the first move, if the source states them.
         notes: what the reader has to say about the source; not part of the value.
+        reading: the source files, for the patcher; None if it was not read; not part of the value.
     """
 
     statements: tuple[Statement, ...]
     name: str = "main"
     start: JointTarget | None = None
     notes: tuple[Note, ...] = field(default=(), compare=False)
+    reading: ReadFrom | None = field(default=None, compare=False, repr=False)
 
     @cached_property
     def moves(self) -> tuple[Move, ...]:

@@ -27,6 +27,7 @@ from flyby.core.program.target import JointTarget, PoseTarget, Target
 from flyby.core.program.tool import FLANGE, WORLD
 from flyby.core.program.zone import FINE, Radius, Zone
 from flyby.core.robot.model import Robot
+from flyby.core.source.reading import ReadOptions
 from flyby.core.spatial.pose import Pose
 from flyby.core.vendor import Sources, Vendor, lazy_robots
 
@@ -43,7 +44,7 @@ def motion() -> MotionModel:
 class Language:
     """Reads and writes ACME programs."""
 
-    def read(self, text: str, file: str, entry: str, robot: Robot | None) -> Program:
+    def read(self, text: str, file: str, options: ReadOptions) -> Program:
         """See `flyby.core.vendor.Reader`; there is one routine in a file."""
         statements, start = [], 0
         for number, line in enumerate(text.split("\n"), 1):
@@ -57,12 +58,12 @@ class Language:
                         f"{line.strip()!r} is no ACME statement: {error}", span
                     ) from None
             start += len(line) + 1
-        return Program(tuple(statements), entry)
+        return Program(tuple(statements), options.entry or "main")
 
-    def read_file(self, path: Path, entry: str, robot: Robot | None) -> Program:
+    def read_file(self, path: Path, options: ReadOptions) -> Program:
         """The same of a file."""
         try:
-            return self.read(path.read_text("utf-8"), str(path), entry, robot)
+            return self.read(path.read_text("utf-8"), str(path), options)
         except (OSError, UnicodeDecodeError) as error:
             raise InputError(f"{path}: not a readable program: {error}") from error
 

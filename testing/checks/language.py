@@ -33,7 +33,7 @@ class LanguageChecks(Subject):
         uses: dict[str, Callable[[], object]] = {
             "reader": lambda: vendor.read("", "program"),
             "writer": lambda: vendor.write(Program(()), robot),
-            "patcher": lambda: vendor.patch(Program(()), {}),
+            "patcher": lambda: vendor.patch(Program(()), robot),
             "recorder": lambda: vendor.record(Program(()), robot, 0.01),
         }
         for part in LANGUAGE_PARTS:

@@ -19,11 +19,11 @@ from flyby.core.vendor import Vendor
 class Language:
     """A reader and writer that say what they were given."""
 
-    def read(self, text: str, file: str, entry: str, robot: Any) -> Any:
-        return text, file, entry, robot
+    def read(self, text: str, file: str, options: Any) -> Any:
+        return text, file, options.entry, options.robot
 
-    def read_file(self, path: Any, entry: str, robot: Any) -> Any:
-        return str(path), entry, robot
+    def read_file(self, path: Any, options: Any) -> Any:
+        return str(path), options.entry, options.robot
 
     def write(self, program: Any, robot: Any, options: Any) -> Any:
         return {"main.txt": f"{program} {robot.name} {options}"}
@@ -276,7 +276,7 @@ def test_language_parts_are_reached_through_the_vendor() -> None:
     )
     robots: list[Any] = [SimpleNamespace(name=f"acme/arm-{i}") for i in (1, 2)]
     program: Any = "p"
-    assert one.read("x", "a.txt") == ("x", "a.txt", "main", None)
+    assert one.read("x", "a.txt") == ("x", "a.txt", None, None)
     assert one.read_file("a.txt", "weld", robots[0]) == ("a.txt", "weld", robots[0])
     assert one.write(program, robots[0]) == {"main.txt": "p acme/arm-1 {}"}
     options = {"style": "terse"}

@@ -53,13 +53,13 @@ class Reader:
     def __init__(self, answer: Any) -> None:
         self._answer = answer
 
-    def read(self, text: str, file: str, entry: str, robot: Any) -> Any:
+    def read(self, text: str, file: str, options: Any) -> Any:
         if isinstance(self._answer, Exception):
             raise self._answer
         return self._answer
 
-    def read_file(self, path: Any, entry: str, robot: Any) -> Any:
-        return self.read("", str(path), entry, robot)
+    def read_file(self, path: Any, options: Any) -> Any:
+        return self.read("", str(path), options)
 
 
 class WrongLabel:

@@ -12,6 +12,7 @@ from ...core.errors import InputError, UnknownNameError
 if TYPE_CHECKING:
     from ...core.program.program import Program
     from ...core.robot.model import Robot
+    from ...core.source.reading import ReadOptions
     from ...core.vendor import Sources
     from .rapid.options import RapidOptions
 
@@ -22,17 +23,17 @@ Choice = TypeVar("Choice", bound=StrEnum)
 class Rapid:
     """Reader and writer. Writing takes the options ``zones`` and ``opaque`` (`RapidOptions`)."""
 
-    def read(self, text: str, file: str, entry: str, robot: Robot | None) -> Program:
+    def read(self, text: str, file: str, options: ReadOptions) -> Program:
         """See `flyby.core.vendor.Reader.read`."""
         from .rapid.reader import read
 
-        return read(text, file, entry, external_axes=_axis_kinds(robot))
+        return read(text, file, options.entry or "main", external_axes=_axis_kinds(options.robot))
 
-    def read_file(self, path: Path, entry: str, robot: Robot | None) -> Program:
+    def read_file(self, path: Path, options: ReadOptions) -> Program:
         """See `flyby.core.vendor.Reader.read_file`."""
         from .rapid.reader import read_file
 
-        return read_file(path, entry, external_axes=_axis_kinds(robot))
+        return read_file(path, options.entry or "main", external_axes=_axis_kinds(options.robot))
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `flyby.core.vendor.Writer.write`."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from flyby.core.errors import SourceError
+from flyby.core.source.text import SourceText, decode
 from flyby.vendors.abb.rapid.lexer import END, number_value, string_value, tokenize
 from flyby.vendors.abb.rapid.parser import parse
 from flyby.vendors.abb.rapid.reader import read
-from flyby.vendors.abb.rapid.source import SourceText, decode
 from flyby.vendors.abb.rapid.syntax import Assign, If, Number, Operation, Unary
 
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"

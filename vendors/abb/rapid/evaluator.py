@@ -6,10 +6,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from ....core.errors import SourceError, Span
+from ....core.source.provenance import ELSEWHERE, Reads
 from .elements import array_mismatch, check_index, component, default_value, item, replaced
 from .functions import COMPUTED, STATE, euler_zyx
 from .operators import OperandError, apply, is_vector, negate
-from .provenance import ELSEWHERE, Reads, Source, source_of_literal
+from .provenance import Literal, source_of_literal
 from .scope import Cell, Scope, unknown_name
 from .syntax import (
     Aggregate,
@@ -41,7 +42,7 @@ class Located:
     """
 
     value: Value
-    source: Source | None
+    source: Literal | None
     cell: Cell | None
     predefined: str | None = None
 
@@ -190,7 +191,7 @@ class Evaluator:
 
     def _initial(
         self, declaration: Declaration, type_: Type, sizes: tuple[int, ...], scope: Scope
-    ) -> tuple[Value, Source | None, str | None]:
+    ) -> tuple[Value, Literal | None, str | None]:
         if isinstance(type_, Foreign):
             reason = f"'{declaration.text}', a {type_.name}"
             return Unknown(reason, declaration.span), None, None
@@ -203,7 +204,7 @@ class Evaluator:
             raise SourceError(f"{declaration.text}: {wrong}", declaration.value.span)
         source = found.source
         if source is not None and source.datum is None:
-            source = Source(source.literal, source.root, declaration.text)
+            source = Literal(source.expression, source.root, declaration.text)
         return value, source, found.predefined
 
     def assign(self, target: Name, value: Value, scope: Scope) -> None:

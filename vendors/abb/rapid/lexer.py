@@ -14,7 +14,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from .source import SourceText
+from ....core.source.text import SourceText
 
 
 def words(text: str) -> frozenset[str]:

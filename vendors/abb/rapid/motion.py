@@ -14,11 +14,12 @@ from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import WORLD, Load, Tool, WorkObject
 from ....core.program.zone import FINE, Zone
+from ....core.source.provenance import Part
 from .arguments import Bound, bind
 from .convert import undeclared
 from .evaluator import Located
 from .literals import MM
-from .provenance import Part, Source, source_of_literal
+from .provenance import Literal, source_of_literal
 from .scope import Scope
 from .syntax import Expression, Invoke, Name
 from .types import (
@@ -84,14 +85,14 @@ class _MoveReader:
         source = found.source if self.run.settings.displacement is None else None
         if source is None and found.source is not None:
             self.run.evaluator.reads.by_expression(found.source, self.run.move_index)
-        return target, Part(expression.span, source)
+        return target, _part_of(expression.span, source)
 
     def joint_target(self) -> tuple[JointTarget, Part]:
         expression = self.bound.value(0)
         found = self._found(expression, "target", JOINTTARGET)
         name = _datum_name(found, expression)
         target = self.run.convert.joint_target(found.value, name, expression.span)
-        return target, Part(expression.span, found.source)
+        return target, _part_of(expression.span, found.source)
 
     def common(self) -> _Common:
         tool = self._tool()
@@ -156,8 +157,8 @@ class _MoveReader:
         if settings.override == 1.0 and not capped:
             return speed, part
         # Under VelSet the number in the text is not the speed: derived.
-        if part.source is not None:
-            self.run.evaluator.reads.by_expression(part.source, self.run.move_index)
+        for source in filter(None, part.sources):
+            self.run.evaluator.reads.by_expression(source, self.run.move_index)
         return speed, Part(part.span)
 
     def _zone(self) -> tuple[Zone, Part]:
@@ -177,14 +178,18 @@ class _MoveReader:
         if not given:
             own = found.cell is not None and found.predefined is not None
             name = found.cell.name if found.cell is not None and own else None
-            return Part(expression.span, found.source, name)
+            return _part_of(expression.span, found.source, name)
         last = max((self.bound.option_spans[name] for name in given), key=lambda s: s.end)
         whole = replace(expression.span, end=last.end)
         value = self.bound.options[given[0]] if len(given) == 1 else None
         literal = source_of_literal(value, None) if value is not None else None
         if isinstance(value, Name):
             literal = self.run.evaluator.locate(value, self.scope).source
-        return Part(whole, literal)
+        return _part_of(whole, literal)
+
+
+def _part_of(span: Span, source: Literal | None, predefined: str | None = None) -> Part:
+    return Part(span, () if source is None else (source,), predefined)
 
 
 def _refuse_options(bound: Bound) -> None:
@@ -271,8 +276,7 @@ def _fields(common: _Common) -> tuple[Speed, Zone, Tool, WorkObject, Load | None
 def _emit(run: Interpreter, move: Move, sources: Sources) -> None:
     reads = run.evaluator.reads
     for part in (sources.target, sources.speed, sources.zone, sources.via):
-        source: Source | None = part.source if part is not None else None
-        if source is not None:
+        for source in filter(None, part.sources if part is not None else ()):
             reads.by_move(source, run.move_index)
     run.emit_move(move, sources)
 

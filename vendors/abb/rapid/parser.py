@@ -9,10 +9,10 @@ stand in the place, and not which of thirty terminals would be accepted there.
 
 from __future__ import annotations
 
+from ....core.source.text import SourceText
 from .cursor import Cursor
 from .expressions import parse_braces, parse_expression
 from .lexer import END, NAME, tokenize
-from .source import SourceText
 from .statements import parse_block
 from .syntax import AliasDefinition, Declaration, Module, Parameter, RecordDefinition, Routine
 

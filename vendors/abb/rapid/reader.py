@@ -31,11 +31,11 @@ from pathlib import Path
 
 from ....core.errors import InputError, Note, SourceError, Span
 from ....core.program.program import Program
+from ....core.source.text import SourceText, decode
 from .globals import Globals
 from .interpreter import Interpreter
 from .parser import parse
 from .scope import unknown_name
-from .source import SourceText, decode
 from .syntax import Module, Routine
 
 SUFFIXES = (".mod", ".modx", ".prg", ".sys", ".sysx")

@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from .provenance import Source
+from .provenance import Literal
 from .syntax import Declaration
 from .types import Type, Value
 
@@ -34,7 +34,7 @@ class Cell:
     value: Value | None = None
     dimensions: tuple[int, ...] = ()
     constant: bool = False
-    source: Source | None = None
+    source: Literal | None = None
     pending: Declaration | None = None
     scope: Scope | None = None
     present: bool = True

@@ -4,10 +4,60 @@ from __future__ import annotations
 
 import codecs
 from bisect import bisect_right
+from dataclasses import dataclass
+from pathlib import Path
 
-from ....core.errors import SourceError, Span
+from ..errors import InputError, SourceError, Span
 
 UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+LARGEST_FILE = 20_000_000
+"""Bytes. The largest programs seen have two million; what is larger is no program."""
+
+
+@dataclass(frozen=True, slots=True)
+class SourceFile:
+    """A source file as text, with the codec that turns it back into the same bytes.
+
+    Args:
+        name: as the user named it, for messages and spans.
+        text: without a byte-order mark; ends of line as they stand in the file.
+        codec: of Python's, such as ``utf-8``, ``utf-8-sig``, ``cp1252``.
+    """
+
+    name: str
+    text: str
+    codec: str = "utf-8"
+
+    @property
+    def data(self) -> bytes:
+        """The file's bytes.
+
+        Raises:
+            InputError: the text holds a character that the codec has not.
+        """
+        try:
+            return self.text.encode(self.codec)
+        except UnicodeEncodeError as error:
+            character = self.text[error.start]
+            raise InputError(
+                f"{self.name}: {character!r} cannot be written in the file's encoding, {self.codec}"
+            ) from None
+
+
+def read_source(path: Path) -> SourceFile:
+    """A source file from disk; see `decode`.
+
+    Raises:
+        InputError: the file cannot be read, or is too large for a program.
+        SourceError: its bytes are no text.
+    """
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise InputError(f"{path} is larger than {LARGEST_FILE} bytes: no robot program")
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
+    return SourceFile(str(path), *decode(data, str(path)))
 
 
 def decode(source: str | bytes, file: str) -> tuple[str, str]:

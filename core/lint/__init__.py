@@ -1,0 +1,1 @@
+"""What is wrong, or will surprise, in a program that reads well."""

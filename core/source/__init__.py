@@ -1,0 +1,1 @@
+"""Source files of robot programs: what the readers, writers and patchers of all vendors share."""

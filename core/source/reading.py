@@ -1,0 +1,84 @@
+"""How a program is read, and read again when its text has changed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .answers import Answers
+from .limits import Limits
+from .text import SourceFile
+
+if TYPE_CHECKING:
+    from ..program.program import Program
+    from ..robot.model import Robot
+
+Files = Mapping[str, SourceFile]
+"""Source files by name."""
+
+
+@dataclass(frozen=True)
+class ReadOptions:
+    """What a reader may want to know beside the text.
+
+    Args:
+        entry: the routine to run; None for the one that the vendor's controllers would start.
+        robot: whose kinematics answer what the program asks of its own position, and whose
+            external axes it moves; None if none is at hand.
+        answers: to what the program asks of the world.
+        limits: how much is executed.
+        others: further files of the program: modules, subprograms, data lists, configuration.
+            Files that stand beside the program and belong to it by their vendor's rules are found
+            without being named.
+    """
+
+    entry: str | None = None
+    robot: Robot | None = None
+    answers: Answers = field(default_factory=Answers)
+    limits: Limits = field(default_factory=Limits)
+    others: tuple[Path, ...] = ()
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One reading of source files: what was read, and how to do it again.
+
+    Args:
+        files: all files that were read, by the names that spans use.
+        main: the one with the entry.
+        options: how.
+        read: reads files; a vendor's function. It opens no other file.
+    """
+
+    files: Files
+    main: str
+    options: ReadOptions
+    read: Callable[[Files, str, ReadOptions], Program] = field(repr=False)
+
+    def again(self, changed: Files) -> Program:
+        """The program in the same files, of which some have another text.
+
+        Raises:
+            FlybyError: it cannot be read any more.
+        """
+        return self.read({**self.files, **changed}, self.main, self.options)
+
+
+def read_with(
+    files: Files,
+    main: str,
+    options: ReadOptions,
+    read: Callable[[Files, str, ReadOptions], Program],
+) -> Program:
+    """Read, and leave with the program how it was read.
+
+    Args:
+        files: source files by name.
+        main: name of the one with the entry.
+        options: how.
+        read: a vendor's function from files to a program.
+    """
+    program = read(files, main, options)
+    return replace(program, reading=Reading(dict(files), main, options, read))

@@ -1,0 +1,1 @@
+"""Programs carried from one vendor's robot to another's."""

@@ -1,0 +1,1 @@
+"""KRL: KUKA's robot language."""
