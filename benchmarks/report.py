@@ -64,15 +64,28 @@ def _time(call: Callable[[], object], batch: int) -> float:
 
 
 def main(
-    description: str, measure: Callable[[str], Iterable[Figure]], cases: Iterable[str]
+    description: str,
+    measure: Callable[..., Iterable[Figure]],
+    cases: Iterable[str],
+    **counts: int,
 ) -> None:
-    """Command line of a benchmark: measure the cases and print their figures."""
+    """Command line of a benchmark: measure the cases and print their figures.
+
+    Args:
+        description: the benchmark's docstring.
+        measure: gives the figures of a case; it is called with the case and all ``counts``.
+        cases: their names.
+        counts: options that are whole numbers, with their defaults.
+    """
     names = list(cases)
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--json", action="store_true", help="one JSON object a line")
     parser.add_argument("--case", action="append", choices=names, help="only this case (repeat)")
+    for name, value in counts.items():
+        parser.add_argument(f"--{name}", type=int, default=value, help=f"default: {value}")
     arguments = parser.parse_args()
-    figures = (figure for case in arguments.case or names for figure in measure(case))
+    chosen = {name: getattr(arguments, name) for name in counts}
+    figures = (f for case in arguments.case or names for f in measure(case, **chosen))
     for line in _json_lines(figures) if arguments.json else _table(figures):
         print(line, flush=True)
 

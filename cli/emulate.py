@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..core.errors import InputError
-from . import values
 from .console import print_json, print_rich, progress
-from .installed import check_language, registry, vendor_of
+from .loading import Source, robot_of, start_of
+from .options import (
+    AnswersFile,
+    AsJson,
+    CellFile,
+    Entry,
+    Force,
+    OtherFiles,
+    ProgramFile,
+    RobotName,
+    Start,
+)
 from .outputs import check_outputs, writing
 
 if TYPE_CHECKING:
@@ -41,21 +52,13 @@ class _Files:
 
 
 def emulate(
-    program: Annotated[Path, typer.Argument(help="Program file in its vendor's language.")],
-    robot: Annotated[
-        str | None, typer.Option(help="Robot, such as abb/irb6640-180-255 ('flyby robots').")
-    ] = None,
-    cell: Annotated[
-        Path | None, typer.Option(help="Cell file: robot, base and external axes.")
-    ] = None,
-    entry: Annotated[str | None, typer.Option(help="Routine to run.")] = None,
-    start: Annotated[
-        str | None,
-        typer.Option(
-            help="Axis values before the first move, degrees and mm: 0,0,0,0,30,0. "
-            "Without it the robot stands at the first target."
-        ),
-    ] = None,
+    program: ProgramFile,
+    robot: RobotName = None,
+    cell: CellFile = None,
+    entry: Entry = None,
+    io: AnswersFile = None,
+    others: OtherFiles = None,
+    start: Start = None,
     period: Annotated[
         float | None, typer.Option(help="Seconds between samples; the controller's own if unset.")
     ] = None,
@@ -66,56 +69,42 @@ def emulate(
     ] = None,
     write: Annotated[
         Path | None,
-        typer.Option(help="Write the program anew, all moves in one routine, as it was driven."),
+        typer.Option(
+            help="Write the program anew, all moves in one routine, as it was driven: a file, "
+            "beside which further ones are put if the language takes several, or a folder."
+        ),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace output files.")] = False,
+    json: AsJson = False,
+    force: Force = False,
 ) -> None:
     """Drive a program as the robot's controller would: cycle time, path, what limits each move."""
+    source = Source.of(program, entry, io, others)
     files = _Files(csv, npz, plot, write)
-    inputs = [program] if cell is None else [program, cell]
     _check_plot(plot)
-    check_outputs(files.by_option(), inputs, replace_existing=force)
+    outputs = files.by_option()
+    if write is not None and write.is_dir():
+        del outputs["--write"]
+    inputs = source.inputs(cell)
+    check_outputs(outputs, inputs, replace_existing=force)
     if period is not None and not LEAST_PERIOD <= period < float("inf"):
         raise InputError(f"--period must be at least {LEAST_PERIOD:g} s, not {period}")
     with progress("reading the program") as say:
-        vendor, arm = _robot(robot, cell)
-        check_language(vendor, program)
-        parsed = vendor.read_file(program, entry, arm)
-        stand = None if start is None else _stand(start, arm)
+        vendor, arm = robot_of(robot, cell)
+        parsed = source.read(vendor, arm)
+        stand = start_of(start, arm)
         say(f"emulating {len(parsed.moves)} moves")
         run = _run(vendor, arm, parsed, stand, period)
         say("writing results")
-        _write_files(files, vendor, arm, run)
+        made = _write_files(files, vendor, arm, run, inputs, force)
     _tell(run, arm, as_json=json)
     if not json:
-        for path in filter(None, files.by_option().values()):
+        for path in made:
             print_rich(f"wrote {path}")
 
 
 def _check_plot(path: Path | None) -> None:
     if path is not None and path.suffix.lower() not in PLOT_FORMATS:
         raise InputError(f"--plot {path}: the name must end in {', '.join(PLOT_FORMATS)}")
-
-
-def _robot(name: str | None, cell: Path | None) -> tuple[Vendor, Robot]:
-    if cell is None:
-        if name is None:
-            raise InputError("which robot? Give --robot ('flyby robots' lists them) or --cell")
-        return vendor_of(name), registry().find_robot(name)
-    from ..core.cell.file import load_cell
-
-    loaded = load_cell(cell, registry())
-    if name is not None and name != loaded.robot.name:
-        raise InputError(f"--robot {name}: the cell {cell} has a {loaded.robot.name}")
-    return registry().find_vendor(loaded.vendor), loaded.robot
-
-
-def _stand(text: str, robot: Robot) -> JointTarget:
-    from ..core.program.target import JointTarget
-
-    q = values.configuration(text, "--start", robot)
-    return JointTarget(q[: robot.arm_size], q[robot.arm_size :])
 
 
 def _run(
@@ -126,13 +115,22 @@ def _run(
     return Controller(vendor, robot).run(program, start, period)
 
 
-def _write_files(files: _Files, vendor: Vendor, robot: Robot, run: Run) -> None:
-    """Make everything that can fail first, then write."""
+def _write_files(
+    files: _Files,
+    vendor: Vendor,
+    robot: Robot,
+    run: Run,
+    inputs: Sequence[Path],
+    replace_existing: bool,
+) -> list[Path]:
+    """Make everything that can fail first, then write; returns what was written."""
     from ..core.motion.trajectory import write_whole
 
     made: list[tuple[str, Path, bytes]] = []
     if files.write is not None:
-        made.append(("--write", files.write, _source(vendor, robot, run.program)))
+        sources = _sources(files.write, vendor, robot, run.program)
+        check_outputs({f"--write: {path.name}": path for path in sources}, inputs, replace_existing)
+        made += [("--write", path, text.encode()) for path, text in sources.items()]
     if files.plot is not None:
         from .plot import draw
 
@@ -146,17 +144,26 @@ def _write_files(files: _Files, vendor: Vendor, robot: Robot, run: Run) -> None:
     if files.npz is not None:
         with writing("--npz", files.npz):
             run.trajectory.save_npz(files.npz)
+    written = [path for _, path, _ in made]
+    return [*filter(None, (files.csv, files.npz)), *written]
 
 
-def _source(vendor: Vendor, robot: Robot, program: Program) -> bytes:
+def _sources(path: Path, vendor: Vendor, robot: Robot, program: Program) -> dict[Path, str]:
+    """The program's source files by where they go."""
     sources = vendor.write(program, robot)
-    if len(sources) != 1:
+    if path.is_dir():
+        return {path / name: text for name, text in sources.items()}
+    if len(sources) == 1:
+        return {path: next(iter(sources.values()))}
+    # Files that belong together are called alike, and often named inside as well.
+    sources = vendor.write(replace(program, name=path.stem), robot)
+    suffixes = [Path(name).suffix for name in sources]
+    if path.suffix.lower() not in map(str.lower, suffixes):
         raise InputError(
-            f"--write: the program takes several files ({', '.join(sources)}); "
-            "this command writes one"
+            f"--write {path}: the program takes several files; the name ends in "
+            f"{' or '.join(suffixes)}, or is a folder that exists"
         )
-    (text,) = sources.values()
-    return text.encode()
+    return {path.with_suffix(Path(name).suffix): text for name, text in sources.items()}
 
 
 def _tell(run: Run, robot: Robot, *, as_json: bool) -> None:

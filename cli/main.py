@@ -9,9 +9,12 @@ from typer.core import TyperGroup
 
 from ..core.errors import FlybyError
 from .catalogue import robots, vendors
+from .check import check
 from .console import fail
 from .emulate import emulate
 from .kinematics import fk, ik
+from .record import record
+from .translate import translate
 
 NUMBERS_MAY_BE_NEGATIVE = {"ignore_unknown_options": True}
 
@@ -30,12 +33,15 @@ class Commands(TyperGroup):
 
 app = typer.Typer(
     cls=Commands,
-    help="Emulates how industrial robot controllers drive a program.",
+    help="Emulates how industrial robot controllers drive a program, checks and translates it.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
 )
 app.command()(emulate)
+app.command()(check)
+app.command()(translate)
+app.command()(record)
 app.command()(robots)
 app.command()(vendors)
 app.command(context_settings=NUMBERS_MAY_BE_NEGATIVE)(fk)

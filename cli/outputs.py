@@ -1,4 +1,4 @@
-"""Output files: refused before any work is done, written whole or not at all."""
+"""Output files: refused before any of them is written, written whole or not at all."""
 
 from __future__ import annotations
 
@@ -37,6 +37,54 @@ def check_outputs(
             raise InputError(f"{option} {path}: there is no folder {path.parent}")
         if path.exists() and not replace_existing:
             raise InputError(f"{option} {path}: exists already; --force replaces it")
+
+
+def check_folder(option: str, folder: Path | None) -> None:
+    """Refuse a folder for results that cannot be one, before work begins.
+
+    Raises:
+        InputError: naming option and path.
+    """
+    if folder is None:
+        return
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{option} {folder}: is no folder; name another")
+    if not folder.absolute().parent.is_dir():
+        raise InputError(f"{option} {folder}: there is no folder {folder.parent}")
+
+
+def write_sources(
+    option: str,
+    folder: Path,
+    sources: Mapping[str, str],
+    inputs: Iterable[Path],
+    replace_existing: bool,
+) -> list[Path]:
+    """Write source files into a folder, which is made if it is missing.
+
+    Args:
+        option: that names the folder.
+        folder: where.
+        sources: texts by file name.
+        inputs, replace_existing: see `check_outputs`.
+
+    Returns:
+        The files.
+
+    Raises:
+        InputError: one of them must not be written; then none is.
+    """
+    from ..core.motion.trajectory import write_whole
+
+    check_folder(option, folder)
+    paths = [folder / name for name in sources]
+    with writing(option, folder):
+        folder.mkdir(exist_ok=True)
+    check_outputs({f"{option}: {path.name}": path for path in paths}, inputs, replace_existing)
+    for path, text in zip(paths, sources.values(), strict=True):
+        with writing(option, path):
+            write_whole(path, text.encode())
+    return paths
 
 
 @contextmanager

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.motion.controller import Run
+from ..core.motion.reached import zone_reaches
 from ..core.motion.segments import ARC_SEGMENT, JOINT_SEGMENT
 from ..core.program.tool import WORLD
 from ..core.robot.chain_kernels import poses
 from ..core.robot.model import Robot
 from ..core.robot.work_chain import work_chain
-from .report import zone_reaches
 
 FloatArray = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ class PathGeometry:
 def path_geometry(run: Run, robot: Robot) -> PathGeometry:
     """The programmed path of a run; segments in work objects that move are left out."""
     q = run.path.route.ends.q
-    reaches = zone_reaches(run)
+    reaches = zone_reaches(run.path)
     starts = [_tcp(run, robot, k, q[k, :1])[0] for k in range(len(q))]
     last = _tcp(run, robot, len(q) - 1, q[-1, 1:])
     drawn = (_nominal(run, robot, k) for k in range(len(q)))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..core.errors import Note
 from .console import print_rich, print_table, warn
+from .places import note_json, place_json
 from .report import MoveReport, Report, ZoneReport
 from .values import fixed
 
@@ -22,6 +22,12 @@ COLUMNS = (
     ("zone", "left"),
     ("limited by", "left"),
 )
+KINDS = {
+    "contourfraction": "share of contour",
+    "angle": "angle",
+    "speedfraction": "share of speed",
+}
+"""Zones that are no radius, by the class of the programmed zone."""
 CUT = 1e-6
 """m by which a zone is smaller than programmed before it is shown as cut."""
 
@@ -72,7 +78,8 @@ def zone_text(zone: ZoneReport) -> str:
     """A zone and what became of it, in mm."""
     if zone.kind == "fine":
         return "fine"
-    name = zone.name or (zone.kind if zone.radius is None else f"{1e3 * zone.radius:g} mm")
+    kind = KINDS.get(zone.kind, zone.kind)
+    name = zone.name or (kind if zone.radius is None else f"{1e3 * zone.radius:g} mm")
     if zone.stops:
         return f"{name}, stops"
     reach = min(zone.entry, zone.exit)
@@ -91,7 +98,7 @@ def report_json(report: Report) -> dict[str, Any]:
         "length_m": report.length,
         "top_speed_m_s": report.top_speed,
         "moves": [_move_json(move) for move in report.moves],
-        "warnings": [_note_json(note) for note in report.notes],
+        "warnings": [note_json(note) for note in report.notes],
     }
 
 
@@ -101,7 +108,7 @@ def _move_json(move: MoveReport) -> dict[str, Any]:
         "kind": move.kind,
         "target": move.target,
         "position_m": move.position,
-        **_place(move),
+        **place_json(move.span),
         "driven": move.driven,
         "length_m": move.length,
         "begin_s": move.begin,
@@ -117,18 +124,4 @@ def _move_json(move: MoveReport) -> dict[str, Any]:
             "exit_m": move.zone.exit,
         },
         "limits": [{"name": limit.name, "share": limit.share} for limit in move.limits],
-    }
-
-
-def _note_json(note: Note) -> dict[str, Any]:
-    move = None if note.move is None else note.move + 1
-    return {"message": note.message, "move": move, **_place(note)}
-
-
-def _place(thing: MoveReport | Note) -> dict[str, Any]:
-    span = thing.span
-    return {
-        "file": None if span is None else span.file,
-        "line": None if span is None else span.line,
-        "column": None if span is None else span.column,
     }

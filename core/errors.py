@@ -8,6 +8,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 
 class FlybyError(Exception):
@@ -43,9 +44,11 @@ class UnknownNameError(InputError):
         self.name = name
 
 
-@dataclass(frozen=True, slots=True)
-class Span:
-    """A stretch of a source file; lines and columns count from 1, offsets (characters) from 0."""
+class Span(NamedTuple):
+    """A stretch of a source file; lines and columns count from 1, offsets (characters) from 0.
+
+    A tuple, since reading makes one for every number of a program.
+    """
 
     file: str
     line: int

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from .dialect import Dialect
     from .motion.model import MotionModel
     from .program.program import Program
     from .program.target import Configuration
@@ -112,6 +113,8 @@ class Vendor:
         reader, writer, patcher, recorder: of the vendor's language; None if there is none.
         suffixes: of the files that the reader takes, with the dot, in lower case.
         emulation_only: robots that the vendor's language does not drive, with the reason.
+        speaks: what the language can say, for programs that are translated into it; None if it
+            says everything that a `Program` holds.
 
     Raises:
         InputError: a part is missing, or of a wrong kind.
@@ -127,6 +130,7 @@ class Vendor:
     recorder: Recorder | None = None
     suffixes: tuple[str, ...] = ()
     emulation_only: Mapping[str, str] = field(default_factory=dict)
+    speaks: Dialect | None = None
 
     def __post_init__(self) -> None:
         _check_name("a vendor", self.name)
@@ -186,7 +190,7 @@ class Vendor:
         Raises:
             InputError: the vendor has no writer, or its language does not drive the robot.
         """
-        self._check_language(robot)
+        self.check_written(robot)
         return self._part(self.writer, "writer").write(program, robot, options or {})
 
     def patch(
@@ -205,10 +209,15 @@ class Vendor:
         Raises:
             InputError: the vendor has no recorder, or its language does not drive the robot.
         """
-        self._check_language(robot)
+        self.check_written(robot)
         return self._part(self.recorder, "recorder").record(program, robot, period)
 
-    def _check_language(self, robot: Robot) -> None:
+    def check_written(self, robot: Robot) -> None:
+        """Refuse robots that the vendor's language does not drive.
+
+        Raises:
+            InputError: it can be emulated only.
+        """
         reason = self.emulation_only.get(robot.name.removeprefix(f"{self.name}/"))
         if reason is not None:
             raise InputError(

@@ -14,9 +14,20 @@ from __future__ import annotations
 
 from .checks.catalogue import CatalogueChecks
 from .checks.emulation import EmulationChecks
+from .checks.hostility import HostilityChecks
 from .checks.language import LanguageChecks
 from .checks.motion_model import MotionModelChecks
+from .checks.patching import PatchingChecks
+from .checks.recording import RecordingChecks
 
 
-class VendorConformance(CatalogueChecks, MotionModelChecks, LanguageChecks, EmulationChecks):
+class VendorConformance(
+    CatalogueChecks,
+    MotionModelChecks,
+    LanguageChecks,
+    HostilityChecks,
+    PatchingChecks,
+    RecordingChecks,
+    EmulationChecks,
+):
     """All checks; ``name`` is the vendor's."""

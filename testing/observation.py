@@ -134,12 +134,33 @@ def outside_zones(seen: Observed, model: MotionModel, turning: bool) -> NDArray[
             rows = seen.segment == k
             if isinstance(move.zone, ContourFraction):
                 reach = move.zone.fraction * model.neighbour_fraction
-                whole = np.abs(corners[k + 1] - corners[k]).max()
-                inside = np.abs(seen.q[rows] - corners[i + 1]).max(axis=1) <= reach * whole + 1e-9
+                inside = _within_share(seen, k, i + 1, reach)
             else:
                 inside = np.linalg.norm(seen.position[rows] - at[i + 1], axis=1) <= radius + 1e-7
             outside[rows] &= ~inside
     return outside
+
+
+def _within_share(seen: Observed, k: int, corner: int, share: float) -> NDArray[np.bool_]:
+    """Samples of leg k that are within a share of the leg from one of its corners.
+
+    Along legs of the TCP a share is one of the way that the TCP takes: joints do not keep to it.
+    """
+    rows, corners = seen.segment == k, seen.corners
+    joints = np.abs(seen.q[rows] - corners[corner]).max(axis=1)
+    whole = np.abs(corners[k + 1] - corners[k]).max()
+    inside: NDArray[np.bool_] = joints <= share * whole + 1e-9
+    move = seen.moves[k]
+    if isinstance(move, MoveJ):
+        return inside
+    _, at = seen.robot.forward(corners)
+    way = float(np.linalg.norm(at[k + 1] - at[k]))
+    if isinstance(move, MoveC):
+        via = np.array(move.via.pose.position)
+        chords = np.linalg.norm(via - at[k]) + np.linalg.norm(at[k + 1] - via)
+        way = 1.2 * float(chords)  # an arc of two radians is so much longer than its chord
+    away = np.linalg.norm(seen.position[rows] - at[corner], axis=1)
+    return np.asarray(inside | (away <= share * way + 1e-7))
 
 
 def effective_radius(seen: Observed, model: MotionModel, i: int, turning: bool) -> float:

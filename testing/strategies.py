@@ -3,32 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from hypothesis import assume
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from ..core.program.move import Move, MoveC, MoveJ, MoveL, Statement, Wait
+from ..core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Statement, Wait
 from ..core.program.program import Program
 from ..core.program.speed import Speed
-from ..core.program.target import Configuration, JointTarget, PoseTarget
-from ..core.program.tool import FLANGE, Tool
+from ..core.program.target import Configuration, JointTarget, PoseTarget, Target
+from ..core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from ..core.program.zone import FINE, Radius, Zone
 from ..core.robot.model import Robot
-from ..core.spatial.pose import Pose
+from ..core.spatial.pose import IDENTITY, Pose
+from ..core.spatial.rotation import matrix_from_rotation_vector
 
 if TYPE_CHECKING:
     from ..core.vendor import Vendor
 
 FloatArray = NDArray[np.float64]
 Label = Callable[[Robot, FloatArray], Configuration | None]
+Value = TypeVar("Value")
+OfKind = Callable[[type[Move]], st.SearchStrategy[Value]]
+"""A strategy for each kind of move."""
 
 LEAST_SINGULAR_VALUE = 0.03
 """Of the Jacobian with lengths as shares of the arm's own; below, a posture counts as singular."""
 STEP = 0.2
 """rad; largest change of a joint over one linear or circular move."""
+_STEPS = st.floats(-STEP, STEP, allow_subnormal=False)
+_TRIES = 3
 
 
 def robots(vendor: Vendor) -> st.SearchStrategy[Robot]:
@@ -99,9 +106,81 @@ def zones(largest: float = 0.05) -> st.SearchStrategy[Zone]:
     return st.one_of(st.just(FINE), radii(largest))
 
 
-def fly_by_zones(zone: st.SearchStrategy[Zone] | None = None) -> st.SearchStrategy[Zone]:
+def fly_by_zones(zone: OfKind[Zone]) -> OfKind[Zone]:
     """Those of ``zone`` that let the robot pass without stopping."""
-    return (zones() if zone is None else zone).filter(lambda found: found != FINE)
+    return lambda kind: zone(kind).filter(lambda found: found != FINE)
+
+
+def poses(reach: float = 0.4) -> st.SearchStrategy[Pose]:
+    """Frames at most ``reach`` m away along each axis, turned in any way."""
+    lengths = st.floats(-reach, reach, allow_subnormal=False)
+    turns = st.floats(-1.8, 1.8, allow_subnormal=False)
+    return st.builds(_pose, st.tuples(*[lengths] * 3), st.tuples(*[turns] * 3))
+
+
+def loads() -> st.SearchStrategy[Load]:
+    """Rigid bodies of up to 20 kg."""
+    positive = st.floats(0.001, 1.0)
+    return st.builds(
+        Load,
+        mass=st.floats(0.1, 20.0),
+        centre=st.tuples(*[st.floats(-0.2, 0.2, allow_subnormal=False)] * 3),
+        inertia=st.tuples(*[st.just(0.0) | positive] * 3),
+        axes=poses().map(lambda pose: pose.quaternion),
+        name=st.sampled_from(["part", "blank"]),
+    )
+
+
+def tools() -> st.SearchStrategy[Tool]:
+    """The flange, and tools with names, weighed or not."""
+    names = st.sampled_from(["gun", "torch", "gripper_2"])
+    load = st.none() | loads().map(lambda found: replace(found, name=None))
+    return st.just(FLANGE) | st.builds(Tool, name=names, tcp=poses(), load=load)
+
+
+def work_objects() -> st.SearchStrategy[WorkObject]:
+    """The world, and frames with names that stand still."""
+    names = st.sampled_from(["table", "fixture"])
+    return st.just(WORLD) | st.builds(WorkObject, name=names, user=poses(1.0), frame=poses())
+
+
+_JOINTS: st.SearchStrategy[type[Target]] = st.just(JointTarget)
+_FLANGE = st.just(FLANGE)
+_WORLD = st.just(WORLD)
+_NOTHING = st.none()
+_FOLLOWS_ARC = st.just(ArcOrientation.FOLLOWS_ARC)
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What programs are made of.
+
+    Args:
+        zone, speed: for each kind of move.
+        aim: what joint moves end at, `JointTarget` or `PoseTarget`.
+        tool, work_object: of a program's moves; of one name there is one.
+        load: that the tool carries.
+        labelled: whether targets of a kind of move have a label of configuration.
+        arc: how the tool turns along arcs.
+    """
+
+    zone: OfKind[Zone]
+    speed: OfKind[Speed]
+    aim: st.SearchStrategy[type[Target]] = _JOINTS
+    tool: st.SearchStrategy[Tool] = _FLANGE
+    work_object: st.SearchStrategy[WorkObject] = _WORLD
+    load: st.SearchStrategy[Load | None] = _NOTHING
+    labelled: Callable[[type[Move]], bool] = lambda _: True
+    arc: st.SearchStrategy[ArcOrientation] = _FOLLOWS_ARC
+
+
+@dataclass(frozen=True)
+class _Choice:
+    """Tools, work objects and loads that one program has."""
+
+    tools: Sequence[Tool]
+    work_objects: Sequence[WorkObject]
+    loads: Sequence[Load | None]
 
 
 @st.composite
@@ -109,8 +188,7 @@ def programs(
     draw: st.DrawFn,
     robot: Robot,
     label: Label | None = None,
-    zone: st.SearchStrategy[Zone] | None = None,
-    speed: st.SearchStrategy[Speed] | None = None,
+    parts: Parts | None = None,
     max_moves: int = 6,
     kinds: Sequence[type[Move]] = (MoveJ, MoveL, MoveC),
 ) -> Program:
@@ -119,52 +197,111 @@ def programs(
     They begin with a joint move to a stop; linear and circular moves are short and keep away
     from singular postures, so that the configuration can be held.
     """
-    zone = zones() if zone is None else zone
-    speed = speeds() if speed is None else speed
+    parts = parts or Parts(lambda _: zones(), lambda _: speeds())
+    choice = _Choice(
+        draw(_few(parts.tool, lambda tool: tool.name)),
+        draw(_few(parts.work_object, lambda frame: frame.name)),
+        draw(_few(parts.load, lambda load: load.name if load else None)),
+    )
     start = draw(joint_targets(robot))
     q = draw(regular_configurations(robot, margin=0.15))
-    statements: list[Statement] = [MoveJ(joint_target(robot, q), draw(speed), FINE)]
+    first = MoveJ(joint_target(robot, q), draw(parts.speed(MoveJ)), FINE)
+    statements: list[Statement] = [_carrying(draw, first, choice)]
     for _ in range(draw(st.integers(1, max_moves))):
-        kind = draw(st.sampled_from(kinds))
-        move, q = _move(draw, kind, robot, q, label, draw(speed), draw(zone))
+        move, q = _move(draw, kinds, robot, q, label, parts, choice)
         statements.append(move)
         if draw(st.booleans()) and move.zone == FINE:
             statements.append(Wait(draw(st.integers(0, 20)) / 10))
     return Program(tuple(statements), start=start)
 
 
+def _few(
+    values: st.SearchStrategy[Value], name: Callable[[Value], str | None]
+) -> st.SearchStrategy[list[Value]]:
+    return st.lists(values, min_size=1, max_size=2, unique_by=name)
+
+
+def _carrying(draw: st.DrawFn, move: Move, choice: _Choice) -> Move:
+    """The move with a tool, a work object and a load; one that is held has a name of its own."""
+    tool = draw(st.sampled_from(choice.tools))
+    work_object = draw(st.sampled_from(choice.work_objects))
+    if not tool.robot_held:
+        name = f"held_{work_object.name}"
+        work_object = replace(work_object, name=name, robot_held=True)
+    load = draw(st.sampled_from(choice.loads))
+    return replace(move, tool=tool, work_object=work_object, load=load)
+
+
 def _move(
     draw: st.DrawFn,
-    kind: type[Move],
+    kinds: Sequence[type[Move]],
     robot: Robot,
     q: FloatArray,
     label: Label | None,
-    speed: Speed,
-    zone: Zone,
+    parts: Parts,
+    choice: _Choice,
 ) -> tuple[Move, FloatArray]:
-    """A move from ``q``, and where it ends."""
-    if kind is MoveJ:
-        end = draw(regular_configurations(robot, margin=0.15))
-        return MoveJ(joint_target(robot, end), speed, zone), end
-    end = draw(_near(robot, q))
-    target = pose_target(robot, end, label)
+    """A move from ``q``, and where it ends: a joint move where no line or arc was found."""
+    kind = draw(st.sampled_from(kinds))
+    ends = [] if kind is MoveJ else [draw(_near(robot, q)) for _ in range(1 + (kind is MoveC))]
+    if kind is MoveJ or any(end is None for end in ends):
+        assume(MoveJ in kinds)
+        return _joint_move(draw, robot, label, parts, choice)
+    *through, end = (x for x in ends if x is not None)
+    line = _said(draw, MoveL, robot, end, parts, choice)
+    poses = [_target_of(line, robot, x).pose for x in (q, *through, end)]
+    kind = MoveC if through and _make_an_arc(*poses) else MoveL
+    label = label if parts.labelled(kind) else None
+    *via, target = (_target_of(line, robot, x, label) for x in (*through, end))
     if kind is MoveL:
-        return MoveL(target, speed, zone), end
-    via = pose_target(robot, draw(_near(robot, q)), label)
-    assume(_make_an_arc(robot.flange_pose(q), via.pose, target.pose))
-    return MoveC(target, speed, zone, via=via), end
+        return replace(line, target=target), end
+    speed, zone, turning = draw(parts.speed(MoveC)), draw(parts.zone(MoveC)), draw(parts.arc)
+    frames = {part: getattr(line, part) for part in ("tool", "work_object", "load")}
+    return MoveC(target, speed, zone, via=via[0], orientation=turning, **frames), end
+
+
+def _joint_move(
+    draw: st.DrawFn, robot: Robot, label: Label | None, parts: Parts, choice: _Choice
+) -> tuple[Move, FloatArray]:
+    end = draw(regular_configurations(robot, margin=0.15))
+    move = _said(draw, MoveJ, robot, end, parts, choice)
+    if draw(parts.aim) is PoseTarget:
+        label = label if parts.labelled(MoveJ) else None
+        move = replace(move, target=_target_of(move, robot, end, label))
+    return move, end
+
+
+def _said(
+    draw: st.DrawFn,
+    kind: type[MoveJ | MoveL],
+    robot: Robot,
+    q: FloatArray,
+    parts: Parts,
+    choice: _Choice,
+) -> Move:
+    """A move to joint values with everything else that a language says of it."""
+    move = kind(joint_target(robot, q), draw(parts.speed(kind)), draw(parts.zone(kind)))
+    return _carrying(draw, move, choice)
+
+
+def _target_of(move: Move, robot: Robot, q: FloatArray, label: Label | None = None) -> PoseTarget:
+    return pose_target(robot, q, label, move.tool, move.work_object)
 
 
 @st.composite
-def _near(draw: st.DrawFn, robot: Robot, q: FloatArray) -> FloatArray:
-    """Regular configurations at most `STEP` away that move the flange noticeably."""
-    steps = st.floats(-STEP, STEP, allow_subnormal=False)
-    change = np.array(draw(st.lists(steps, min_size=robot.size, max_size=robot.size)))
-    end: FloatArray = np.clip(q + change, robot.limits.lower, robot.limits.upper)
-    assume(is_regular(robot, end) and is_regular(robot, 0.5 * (q + end)))
-    start, stop = (np.array(robot.flange_pose(x).position) for x in (q, end))
-    assume(np.linalg.norm(stop - start) > 1e-2)
-    return end
+def _near(draw: st.DrawFn, robot: Robot, q: FloatArray) -> FloatArray | None:
+    """A regular configuration at most `STEP` away that moves the flange noticeably.
+
+    None if none was found in a few tries.
+    """
+    steps = st.lists(_STEPS, min_size=robot.size, max_size=robot.size)
+    start = np.array(robot.flange_pose(q).position)
+    for _ in range(_TRIES):
+        end: FloatArray = np.clip(q + draw(steps), robot.limits.lower, robot.limits.upper)
+        apart = np.linalg.norm(np.array(robot.flange_pose(end).position) - start)
+        if apart > 1e-2 and is_regular(robot, end) and is_regular(robot, 0.5 * (q + end)):
+            return end
+    return None
 
 
 def _make_an_arc(start: Pose, via: Pose, end: Pose) -> bool:
@@ -185,9 +322,26 @@ def joint_target(robot: Robot, q: FloatArray) -> JointTarget:
 
 
 def pose_target(
-    robot: Robot, q: FloatArray, label: Label | None = None, tool: Tool = FLANGE
+    robot: Robot,
+    q: FloatArray,
+    label: Label | None = None,
+    tool: Tool = FLANGE,
+    work_object: WorkObject = WORLD,
 ) -> PoseTarget:
-    """Where the tool stands in the world at the configuration (N,)."""
+    """Where the tool stands in the work object at the configuration (N,)."""
     configuration = label(robot, q) if label is not None else None
     external = tuple(float(value) for value in q[robot.arm_size :])
-    return PoseTarget(robot.flange_pose(q) @ tool.tcp, configuration, external)
+    flange = robot.flange_pose(q)
+    frame = flange @ work_object.pose if work_object.robot_held else work_object.pose
+    tcp = flange @ tool.tcp if tool.robot_held else tool.tcp
+    # Where there is no frame, the numbers stay as they are.
+    pose = tcp if frame == IDENTITY else frame.inverse() @ tcp
+    return PoseTarget(pose, configuration, external)
+
+
+def _pose(position: tuple[float, float, float], turn: tuple[float, float, float]) -> Pose:
+    """A frame at a position (m), turned by a rotation vector (rad)."""
+    matrix = np.eye(4)
+    matrix[:3, :3] = matrix_from_rotation_vector(np.array(turn))
+    matrix[:3, 3] = position
+    return Pose.from_matrix(matrix)

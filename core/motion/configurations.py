@@ -114,7 +114,7 @@ class ConfigurationFinder:
         assert isinstance(target, PoseTarget)
         q = self.external(target.external, before)
         arm = self._robot.arm_size
-        flange = self._flange(move, target.pose, q)
+        flange = self.flange(move, target.pose, q)
         try:
             found = [s.q for s in self._robot.inverse(flange, tuple(map(float, q[arm:])))]
         except UnreachableError as error:
@@ -220,12 +220,12 @@ class ConfigurationFinder:
         q = self.external(move.target.external, near)
         external = tuple(map(float, q[self._robot.arm_size :]))
         try:
-            self._robot.inverse(self._flange(move, move.target.pose, q), external)
+            self._robot.inverse(self.flange(move, move.target.pose, q), external)
         except UnreachableError as error:
             return str(error)
         return None
 
-    def _flange(self, move: Move, target: Pose, q: FloatArray) -> Pose:
+    def flange(self, move: Move, target: Pose, q: FloatArray) -> Pose:
         """The flange in the world that puts the TCP on a target in the work object."""
         tool, work_object = move.tool, move.work_object
         if work_object.robot_held:

@@ -70,6 +70,7 @@ class Route:
         solved: (6,) axes that inverse kinematics solves for; empty if no segment needs it.
         prescribed: (m,) the other axes.
         notes: what was found on the way.
+        left_out: indices of moves whose waypoint the controller leaves out.
     """
 
     ends: Ends
@@ -82,6 +83,7 @@ class Route:
     solved: IntArray
     prescribed: IntArray
     notes: tuple[Note, ...] = ()
+    left_out: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)

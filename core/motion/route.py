@@ -120,7 +120,8 @@ class RouteFinder:
         legs = _Legs(0 if notes else None)
         for stage in self._stages(moves, skipped):
             q = self._drive(moves, stage, q, legs)
-        return self._route(program, legs, _waypoints(program), notes)
+        route = self._route(program, legs, _waypoints(program), notes)
+        return replace(route, left_out=tuple(sorted(skipped)))
 
     def _start(self, program: Program, start: JointTarget | None, notes: list[Note]) -> FloatArray:
         start = start or program.start

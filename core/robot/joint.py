@@ -65,6 +65,12 @@ class Joint:
             if value is not None and not 0.0 < value < math.inf:
                 raise InputError(f"joint {self.name}: {name} {value:g} must be positive")
 
+    def shown(self, value: float) -> str:
+        """A value in degrees or mm, for messages."""
+        if self.kind is JointKind.PRISMATIC:
+            return f"{1e3 * value:.6g} mm"
+        return f"{math.degrees(value):.6g}°"
+
 
 class ExternalRole(StrEnum):
     """What an external axis carries."""

@@ -17,6 +17,9 @@ A file of answers is TOML::
     [passes]                     # at a line: how often a loop runs whose end is not known
     "main.mod:200" = 3
 
+    [calls]                      # routines whose text is not at hand and that move nothing
+    rGripperOpen = "skip"
+
 Without an answer: waits are satisfied at once; of the branches whose condition is not known the
 first that moves the robot and comes back is taken, else none; a loop whose end is not known runs
 once if it moves the robot, else not at all. What was decided so is noted with its line.
@@ -34,8 +37,9 @@ from ..errors import InputError, Note, Span, UnknownNameError
 Answer = bool | float | str | tuple["Answer", ...]
 """A value in the language's own units; arrays and records are tuples."""
 
-_TABLES = ("values", "sequences", "branches", "passes")
+_TABLES = ("values", "sequences", "branches", "passes", "calls")
 _MOST_PASSES = 10_000
+_LARGEST = 1e300
 
 
 @dataclass(frozen=True)
@@ -47,6 +51,7 @@ class Answers:
         sequences: answers in turn.
         branches: number of the branch taken, 0 for none.
         passes: number of passes.
+        skipped: names of routines that are not at hand and are stepped over.
         file: where they come from, for messages.
     """
 
@@ -54,6 +59,7 @@ class Answers:
     sequences: Mapping[str, tuple[Answer, ...]] = field(default_factory=dict)
     branches: Mapping[str, int] = field(default_factory=dict)
     passes: Mapping[str, int] = field(default_factory=dict)
+    skipped: frozenset[str] = frozenset()
     file: str = ""
 
 
@@ -68,7 +74,7 @@ def load_answers(path: str | Path) -> Answers:
         data = tomllib.loads(Path(path).read_text("utf-8"))
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: no TOML file: {error}") from None
     tables: dict[str, dict[str, object]] = {}
     for name, table in data.items():
@@ -80,8 +86,9 @@ def load_answers(path: str | Path) -> Answers:
     return Answers(
         {key(k): _answer(v, path, k) for k, v in tables.get("values", {}).items()},
         {key(k): _sequence(v, path, k) for k, v in tables.get("sequences", {}).items()},
-        {k.casefold(): _count(v, path, k) for k, v in tables.get("branches", {}).items()},
-        {k.casefold(): _count(v, path, k) for k, v in tables.get("passes", {}).items()},
+        {_place(k): _count(v, path, k) for k, v in tables.get("branches", {}).items()},
+        {_place(k): _count(v, path, k) for k, v in tables.get("passes", {}).items()},
+        frozenset(_skipped(k, v, path) for k, v in tables.get("calls", {}).items()),
         str(path),
     )
 
@@ -94,10 +101,12 @@ def key(text: str) -> str:
 def _answer(value: object, path: str | Path, name: str) -> Answer:
     if isinstance(value, bool | str):
         return value
-    if isinstance(value, int | float):
+    if isinstance(value, int | float) and abs(value) <= _LARGEST:
         return float(value)
     if isinstance(value, list):
         return tuple(_answer(item, path, name) for item in value)
+    if isinstance(value, int | float):
+        raise InputError(f"{path}: {name} is too large, or no number")
     raise InputError(f"{path}: {name} is true or false, a number, a text or a list, not {value!r}")
 
 
@@ -115,6 +124,12 @@ def _count(value: object, path: str | Path, name: str) -> int:
     if ":" not in name:
         raise InputError(f"{path}: {name!r} is no place: write 'file:line'")
     return value
+
+
+def _skipped(name: str, value: object, path: str | Path) -> str:
+    if value != "skip":
+        raise InputError(f'{path}: {name} in [calls] is "skip", not {value!r}')
+    return key(name)
 
 
 @dataclass
@@ -138,6 +153,14 @@ class Course:
             self._turns[name] = turn + 1
             return turns[min(turn, len(turns) - 1)]
         return self.answers.values.get(name)
+
+    def changing(self, text: str) -> bool:
+        """Whether a name or call has one answer after the other."""
+        return key(text) in self.answers.sequences
+
+    def skips(self, routine: str) -> bool:
+        """Whether the user says that a routine which is not at hand moves nothing."""
+        return key(routine) in self.answers.skipped
 
     def branch(self, span: Span, reason: str, returning: Sequence[bool]) -> int:
         """Which branch is taken where a condition is not known.
@@ -197,9 +220,14 @@ class Course:
         self._decided[place] = note, count + 1
 
 
+def _place(text: str) -> str:
+    """How a file, or a line of it, is looked up."""
+    return text.replace("\\", "/").casefold()
+
+
 def _at(table: Mapping[str, int], span: Span) -> int | None:
     """The entry for a place, by the file's path or its name alone."""
-    file = span.file.replace("\\", "/").casefold()
+    file = _place(span.file)
     for name in (file, file.rpartition("/")[2]):
         found = table.get(f"{name}:{span.line}")
         if found is not None:

@@ -14,11 +14,13 @@ class Limits:
     Args:
         statements: executed in a row without a move among them.
         moves: executed in all.
+        repeats: of one and the same move.
         calls: routines that have called each other.
     """
 
     statements: int = 100_000
     moves: int = 20_000
+    repeats: int = 2_000
     calls: int = 40
 
 
@@ -33,6 +35,7 @@ class Meter:
         self._limits = limits
         self._statements = 0
         self._moves = 0
+        self._repeats: dict[tuple[str, int, int], int] = {}
         self._calls = 0
 
     def statement(self, span: Span) -> None:
@@ -55,6 +58,10 @@ class Meter:
         self._statements = 0
         if self._moves > self._limits.moves:
             raise _endless(f"{self._limits.moves} moves are executed", span)
+        place = (span.file, span.line, span.column)
+        repeats = self._repeats[place] = self._repeats.get(place, 0) + 1
+        if repeats > self._limits.repeats:
+            raise _endless(f"this move is executed {self._limits.repeats} times", span)
 
     def call(self, name: str, span: Span) -> None:
         """A routine is entered; `back` is told when it is left.

@@ -14,6 +14,7 @@ from itertools import pairwise
 from ..errors import InputError, Note, Span
 from ..program.move import Move
 from ..program.program import Program
+from ..spatial.pose import Pose
 from .reading import Files, Reading
 
 TOLERANCE = 1e-9
@@ -100,38 +101,53 @@ def patched(after: Program, reading: Reading, edits: Iterable[Edit]) -> Files:
     return files
 
 
-def difference(first: Program, second: Program) -> tuple[int, str] | None:
+def difference(
+    first: Program, second: Program, tolerance: float = TOLERANCE
+) -> tuple[int, str] | None:
     """The first move, and the part of it, in which two programs differ; None if in none.
 
-    Names and places in the source do not count; numbers may differ by `TOLERANCE`. The move is -1
-    for a difference that is no move's.
+    Names and places in the source do not count; numbers may differ by ``tolerance``, and the two
+    quaternions of one rotation are alike. The move is -1 for a difference that is no move's.
     """
     if len(first.moves) != len(second.moves):
         return -1, f"it has {len(second.moves)} moves instead of {len(first.moves)}"
     for index, (one, other) in enumerate(zip(first.moves, second.moves, strict=True)):
-        part = _differing_part(one, other)
+        part = _differing_part(one, other, tolerance)
         if part is not None:
             return index, part
-    rest = [[s for s in p.statements if not isinstance(s, Move)] for p in (first, second)]
-    if not alike(rest[0], rest[1]) or not alike(first.start, second.start):
+    # A move holds the place of a move: it has been compared.
+    rest = [[None if isinstance(s, Move) else s for s in p.statements] for p in (first, second)]
+    same = alike(rest[0], rest[1], tolerance)
+    if not same or not alike(first.start, second.start, tolerance):
         return -1, "statements that are no moves differ"
     return None
 
 
-def alike(one: object, other: object) -> bool:
-    """Whether two values are the same but for labels and `TOLERANCE`."""
+def alike(one: object, other: object, tolerance: float = TOLERANCE) -> bool:
+    """Whether two values are the same but for labels, signs of quaternions and ``tolerance``."""
     if isinstance(one, float | int) and isinstance(other, float | int):
         if isinstance(one, bool) or isinstance(other, bool):
             return one is other
-        return math.isclose(one, other, rel_tol=TOLERANCE, abs_tol=TOLERANCE)
+        return math.isclose(one, other, rel_tol=tolerance, abs_tol=tolerance)
     if type(one) is not type(other):
         return False
+    if isinstance(one, Pose) and isinstance(other, Pose):
+        return _same_pose(one, other, tolerance)
     if isinstance(one, list | tuple) and isinstance(other, list | tuple):
-        return len(one) == len(other) and all(map(alike, one, other))
+        pairs = zip(one, other, strict=False)
+        return len(one) == len(other) and all(alike(a, b, tolerance) for a, b in pairs)
     if is_dataclass(one) and not isinstance(one, type):
         names = [f.name for f in fields(one) if f.compare and f.name not in _LABELS]
-        return all(alike(getattr(one, name), getattr(other, name)) for name in names)
+        return all(alike(getattr(one, n), getattr(other, n), tolerance) for n in names)
     return one == other
+
+
+def _same_pose(one: Pose, other: Pose, tolerance: float) -> bool:
+    opposite = tuple(-x for x in other.quaternion)
+    return alike(one.position, other.position, tolerance) and (
+        alike(one.quaternion, other.quaternion, tolerance)
+        or alike(one.quaternion, opposite, tolerance)
+    )
 
 
 def with_note(program: Program, message: str, span: Span | None = None) -> Program:
@@ -139,12 +155,14 @@ def with_note(program: Program, message: str, span: Span | None = None) -> Progr
     return replace(program, notes=(*program.notes, Note(message, span=span)))
 
 
-def _differing_part(one: Move, other: Move) -> str | None:
+def _differing_part(one: Move, other: Move, tolerance: float) -> str | None:
+    if one == other:
+        return None
     if type(one) is not type(other):
         return "kind"
     names = [f.name for f in fields(one) if f.compare and f.name not in _LABELS]
     for name in names:
-        if not alike(getattr(one, name), getattr(other, name)):
+        if not alike(getattr(one, name), getattr(other, name), tolerance):
             return name.replace("_", " ")
     return None
 
@@ -160,9 +178,13 @@ def _apply(reading: Reading, edits: Iterable[Edit]) -> Files:
                 f"want it to become {known.text} and {edit.text}: give them one value, or each a "
                 "datum of its own"
             )
+    texts = {
+        name: _edited(reading, name, list(places.values())) for name, places in by_file.items()
+    }
     return {
-        name: replace(reading.files[name], text=_edited(reading, name, list(places.values())))
-        for name, places in by_file.items()
+        name: replace(reading.files[name], text=text)
+        for name, text in texts.items()
+        if text != reading.files[name].text
     }
 
 

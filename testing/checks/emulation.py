@@ -34,7 +34,7 @@ from ..observation import (
     outside_zones,
     turned_away,
 )
-from ..strategies import fly_by_zones, programs
+from ..strategies import OfKind, Parts, fly_by_zones, programs
 from .subject import PROGRAM_EXAMPLES, Subject
 
 ON_PATH = 1e-6
@@ -52,7 +52,7 @@ ROBOTS = 2
 MOVES = 3
 PERIOD = 0.1
 """s between samples of trajectories: the checks look at the stamp itself."""
-DRIVES = settings(PROGRAM_EXAMPLES, max_examples=30)
+DRIVES = settings(PROGRAM_EXAMPLES, max_examples=20)
 
 
 class EmulationChecks(Subject):
@@ -67,7 +67,7 @@ class EmulationChecks(Subject):
     def test_the_path_leaves_the_programmed_one_inside_zones_only(
         self, data: st.DataObject
     ) -> None:
-        robot, run = self._drive(data, fly_by_zones(self.zones()))
+        robot, run = self._drive(data, fly_by_zones(self.zones))
         seen, model = Observed.of(robot, run), self.vendor.motion()
         for away, turning in ((away_from_legs(seen), False), (turned_away(seen), True)):
             outside = outside_zones(seen, model, turning)
@@ -76,7 +76,7 @@ class EmulationChecks(Subject):
     @DRIVES
     @given(data=st.data())
     def test_targets_are_the_corners_of_the_path(self, data: st.DataObject) -> None:
-        robot, run = self._drive(data, self.zones())
+        robot, run = self._drive(data, self.zones)
         seen = Observed.of(robot, run)
         for move, q in zip(seen.moves, seen.corners[1:], strict=True):
             if isinstance(move.target, JointTarget):
@@ -92,7 +92,7 @@ class EmulationChecks(Subject):
     @DRIVES
     @given(data=st.data())
     def test_the_path_has_a_continuous_tangent(self, data: st.DataObject) -> None:
-        _, run = self._drive(data, fly_by_zones(self.zones()))
+        _, run = self._drive(data, fly_by_zones(self.zones))
         path = run.path
         right = path.pieces.first_sample[1:-1]
         jump = path.states.dq[right] - path.states.dq[right - 1]
@@ -103,7 +103,7 @@ class EmulationChecks(Subject):
     @DRIVES
     @given(data=st.data())
     def test_limits_hold_between_samples(self, data: st.DataObject) -> None:
-        robot, run = self._drive(data, self.zones())
+        robot, run = self._drive(data, self.zones)
         seen = Observed.of(robot, run)
         assert (np.abs(seen.dq) <= SLACK * robot.limits.velocity).all()
         assert (np.abs(seen.ddq) <= SLACK * robot.limits.acceleration).all()
@@ -123,7 +123,7 @@ class EmulationChecks(Subject):
     @DRIVES
     @given(data=st.data())
     def test_the_motion_starts_and_ends_as_programmed(self, data: st.DataObject) -> None:
-        robot, run = self._drive(data, self.zones())
+        robot, run = self._drive(data, self.zones)
         start, made = run.program.start, run.trajectory
         assert start is not None
         assert np.abs(made.q[0] - [*start.joints, *start.external]).max() < SAME
@@ -137,7 +137,7 @@ class EmulationChecks(Subject):
     @DRIVES
     @given(data=st.data(), factor=st.floats(0.1, 0.9))
     def test_half_the_speed_takes_twice_the_time(self, data: st.DataObject, factor: float) -> None:
-        robot, run = self._drive(data, self.zones())
+        robot, run = self._drive(data, self.zones)
         model = self.vendor.motion()
         for own in ("tcp_acceleration", "reorientation_acceleration"):
             if (limit := getattr(model, own)) is not None:
@@ -152,7 +152,7 @@ class EmulationChecks(Subject):
     @given(data=st.data())
     def test_zones_between_joint_moves_save_time(self, data: st.DataObject) -> None:
         """At the joints' own speeds: under limits of the TCP the shorter way may be the slower."""
-        robot, run = self._drive(data, fly_by_zones(self.zones()), [MoveJ])
+        robot, run = self._drive(data, fly_by_zones(self.zones), [MoveJ])
         assume(len(run.path.route.moves) == len(run.program.moves))
         durations = []
         for changes in ({"speed": Speed()}, {"speed": Speed(), "zone": FINE}):
@@ -164,7 +164,7 @@ class EmulationChecks(Subject):
     @DRIVES
     @given(data=st.data())
     def test_samples_do_not_depend_on_the_period(self, data: st.DataObject) -> None:
-        robot, run = self._drive(data, self.zones())
+        robot, run = self._drive(data, self.zones)
         sample, period = self.controller(robot).sample, run.duration / 200
         coarse = sample(run.program, run.timing, period)
         fine = sample(run.program, run.timing, 0.5 * period)
@@ -182,7 +182,7 @@ class EmulationChecks(Subject):
     def test_the_derivative_of_duration_is_its_slope(
         self, data: st.DataObject, share: float, axis: int
     ) -> None:
-        robot, run = self._drive(data, fly_by_zones(self.zones()))
+        robot, run = self._drive(data, fly_by_zones(self.zones))
         controller, program = self.controller(robot), run.program
         gradient = Derivatives(controller, program, run.timing).duration()
         i = round(share * (len(program.moves) - 1))
@@ -213,7 +213,7 @@ class EmulationChecks(Subject):
     @given(data=st.data())
     def test_what_is_written_moves_alike(self, data: st.DataObject) -> None:
         self.need("reader", "writer")
-        robot, run = self._drive(data, self.zones())
+        robot, run = self._drive(data, self.zones)
         assume(robot.name.partition("/")[2] in self.driven_robots())
         again = self.read_back(self.vendor.write(run.program, robot))
         try:
@@ -231,7 +231,7 @@ class EmulationChecks(Subject):
     def _drive(
         self,
         data: st.DataObject,
-        zone: st.SearchStrategy[Zone],
+        zone: OfKind[Zone],
         kinds: Sequence[type[Move]] = (MoveJ, MoveL, MoveC),
     ) -> tuple[Robot, Run]:
         """A robot, and what came of a program that it can drive."""
@@ -239,7 +239,8 @@ class EmulationChecks(Subject):
         if not names:
             pytest.skip(f"{self.name} has no arm of six axes")
         robot = self.vendor.robot(data.draw(st.sampled_from(names[:ROBOTS])))
-        program = data.draw(programs(robot, self.vendor.label, zone, self.speeds(), MOVES, kinds))
+        parts = Parts(zone, self.speeds, arc=self.arcs())
+        program = data.draw(programs(robot, self.vendor.label, parts, MOVES, kinds))
         try:
             return robot, self.controller(robot).run(program, period=PERIOD)
         except MotionError:

@@ -36,6 +36,31 @@ def test_the_main_command_runs(
     assert written == {"path.png", "path.csv", "cleaned.mod"}
 
 
+def shown_commands() -> list[str]:
+    """Commands of all documents that are meant as they stand: without PLACEHOLDERS and comments."""
+    blocks = [
+        block
+        for document in DOCUMENTS
+        for block in re.findall(r"```sh\n(.*?)```", document.read_text("utf-8"), re.DOTALL)
+    ]
+    lines = [line.split("#")[0].strip() for block in blocks for line in block.splitlines()]
+    commands = [line for line in lines if line.startswith("flyby ")]
+    return [line for line in commands if not re.search(r"\b[A-Z]{3,}|[\[…]", line)]
+
+
+@pytest.mark.parametrize("command", sorted(set(shown_commands())))
+def test_a_command_that_is_shown_runs(
+    command: str, flyby: Callable[..., Result], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    words = shlex.split(command)[1:]
+    result = flyby(*words)
+    assert result.exit_code == 0, result.output
+    if "--out" in words:
+        assert any((tmp_path / words[words.index("--out") + 1]).iterdir())
+
+
 def test_there_is_one_test_command_for_ci() -> None:
     assert len(re.findall(r"^python -m venv .*pytest$", README, re.MULTILINE)) == 1
 
@@ -49,7 +74,7 @@ def test_links_lead_somewhere(document: Path) -> None:
 
 def test_the_command_line_is_documented(flyby: Callable[..., Result]) -> None:
     text = (ROOT / "docs" / "cli.md").read_text("utf-8")
-    for command in ("emulate", "robots", "vendors", "fk", "ik"):
+    for command in ("emulate", "check", "translate", "record", "robots", "vendors", "fk", "ik"):
         assert f"## flyby {command}" in text
         shown = set(re.findall(r"--[a-z]+", flyby(command, "--help").stdout)) - {"--help"}
         assert shown <= set(re.findall(r"--[a-z]+", text)), command

@@ -83,7 +83,7 @@ def test_a_program_and_its_rapid_module_give_the_same_motion(logs, name) -> None
     run, vendor = load_run(path, find_robot), find_vendor("abb")
     robot = find_robot(run.robot)
     ((file, text),) = vendor.writer.write(run.program, robot, {}).items()
-    back = vendor.reader.read(text, file, "main", robot)
+    back = vendor.read(text, file, robot=robot)
     controller = Controller(vendor, robot)
     one = controller.run(run.program).trajectory
     other = controller.run(back, start=run.program.start).trajectory

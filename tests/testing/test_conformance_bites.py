@@ -17,10 +17,12 @@ from flyby.core.robot.joint import Limits
 from flyby.core.vendor import Vendor
 from flyby.testing.conformance import VendorConformance
 
+from ..vendors.words import AbbWords
+
 SOUND = find_vendor("abb")
 
 
-class Suite(VendorConformance):
+class Suite(AbbWords, VendorConformance):
     """The suite about any vendor value; pytest does not collect it by this name."""
 
     def __init__(self, vendor: Vendor) -> None:

@@ -13,11 +13,11 @@ import pytest
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError, SourceError
-from flyby.core.program.move import MoveJ, Opaque
+from flyby.core.program.move import ArcOrientation, Move, MoveJ, Opaque
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
-from flyby.core.program.target import JointTarget
-from flyby.core.program.tool import Tool
+from flyby.core.program.target import JointTarget, Target
+from flyby.core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from flyby.core.program.zone import FINE, Radius, Zone
 from flyby.core.registry import Registry
 from flyby.core.vendor import Vendor
@@ -53,8 +53,23 @@ class TestAcmeConformance(VendorConformance):
     name = "acme"
     vendor: Vendor = ACME  # type: ignore[assignment]
 
-    def zones(self) -> st.SearchStrategy[Zone]:
+    def zones(self, kind: type[Move]) -> st.SearchStrategy[Zone]:
         return zones().map(lambda zone: Radius(zone.tcp) if isinstance(zone, Radius) else FINE)
+
+    def arcs(self) -> st.SearchStrategy[ArcOrientation]:
+        return st.just(ArcOrientation.FOLLOWS_ARC)
+
+    def aims(self) -> st.SearchStrategy[type[Target]]:
+        return st.just(JointTarget)
+
+    def tools(self) -> st.SearchStrategy[Tool]:
+        return st.just(FLANGE)
+
+    def work_objects(self) -> st.SearchStrategy[WorkObject]:
+        return st.just(WORLD)
+
+    def loads(self) -> st.SearchStrategy[Load | None]:
+        return st.none()
 
 
 def test_the_plugin_is_one_file_and_one_toml() -> None:

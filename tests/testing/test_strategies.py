@@ -6,10 +6,15 @@ import numpy as np
 from hypothesis import HealthCheck, find, given, settings
 from hypothesis import strategies as st
 
+from flyby.core.motion.configurations import ConfigurationFinder
 from flyby.core.program.move import MoveC, MoveJ, MoveL
-from flyby.core.program.target import PoseTarget
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.target import JointTarget, PoseTarget
+from flyby.core.program.tool import Tool
 from flyby.core.program.zone import FINE
 from flyby.core.registry import find_robot, find_vendor
+from flyby.core.spatial.pose import IDENTITY
 from flyby.testing import strategies
 
 ROBOT = find_robot("abb/irb1600-6-145")
@@ -67,7 +72,7 @@ def test_zones_turn_no_later_than_they_leave(zone: object) -> None:
 
 
 @CALM
-@given(strategies.fly_by_zones())
+@given(strategies.fly_by_zones(lambda _: strategies.zones())(MoveJ))
 def test_fly_by_zones_never_stop(zone: object) -> None:
     assert zone != FINE
 
@@ -76,3 +81,49 @@ def test_fly_by_zones_never_stop(zone: object) -> None:
 @given(strategies.programs(ROBOT, kinds=[MoveJ], max_moves=3))
 def test_programs_keep_to_the_kinds_asked_for(program: object) -> None:
     assert all(isinstance(move, MoveJ) for move in program.moves)  # type: ignore[attr-defined]
+
+
+PARTS = strategies.Parts(
+    zone=lambda kind: st.just(FINE) if kind is MoveJ else strategies.radii(),
+    speed=lambda kind: st.just(Speed(0.1 if kind is MoveJ else 0.2)),
+    aim=st.sampled_from([JointTarget, PoseTarget]),
+    tool=strategies.tools() | st.just(Tool("stand", IDENTITY, robot_held=False)),
+    work_object=strategies.work_objects(),
+    load=st.none() | strategies.loads(),
+    labelled=lambda kind: kind is not MoveL,
+)
+
+
+@CALM
+@given(strategies.programs(ROBOT, find_vendor("abb").label, PARTS))
+def test_programs_are_made_of_the_parts_asked_for(program: Program) -> None:
+    for move in program.moves:
+        joint = isinstance(move, MoveJ)
+        assert move.speed == Speed(0.1 if joint else 0.2)
+        assert (move.zone == FINE) == joint
+        assert move.tool.robot_held != move.work_object.robot_held
+        if isinstance(move.target, PoseTarget):
+            assert (move.target.configuration is None) == isinstance(move, MoveL)
+
+
+@CALM
+@given(strategies.programs(ROBOT, find_vendor("abb").label, PARTS))
+def test_one_name_is_one_tool(program: Program) -> None:
+    for part in ("tool", "work_object"):
+        values = {getattr(move, part) for move in program.moves}
+        assert len({value.name for value in values}) == len(values)
+
+
+@CALM
+@given(strategies.programs(ROBOT, find_vendor("abb").label, PARTS, kinds=[MoveJ]))
+def test_targets_in_frames_are_where_the_robot_goes(program: Program) -> None:
+    """The inverse through tool and work object gives the configuration that was drawn."""
+    finder = ConfigurationFinder(ROBOT, find_vendor("abb").label)
+    q = finder.rest()
+    for index, move in enumerate(program.moves):
+        if isinstance(move.target, JointTarget):
+            q = finder.joints(move.target, q)
+            continue
+        q = finder.choose(move, index, q)
+        limits = ROBOT.limits
+        assert (q > limits.lower).all() and (q < limits.upper).all()

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ...core.vendor import Sources
     from .rapid.options import RapidOptions
 
-SUFFIXES = (".mod", ".modx", ".prg")
+SUFFIXES = (".mod", ".modx", ".prg", ".sys", ".sysx", ".pgf")
 Choice = TypeVar("Choice", bound=StrEnum)
 
 
@@ -27,13 +27,13 @@ class Rapid:
         """See `flyby.core.vendor.Reader.read`."""
         from .rapid.reader import read
 
-        return read(text, file, options.entry or "main", external_axes=_axis_kinds(options.robot))
+        return read(text, file, options)
 
     def read_file(self, path: Path, options: ReadOptions) -> Program:
         """See `flyby.core.vendor.Reader.read_file`."""
         from .rapid.reader import read_file
 
-        return read_file(path, options.entry or "main", external_axes=_axis_kinds(options.robot))
+        return read_file(path, options)
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `flyby.core.vendor.Writer.write`."""
@@ -42,17 +42,8 @@ class Rapid:
         return RapidWriter(_options(robot, options)).write(program)
 
 
-def _axis_kinds(robot: Robot | None) -> tuple[str, ...] | None:
-    """How RAPID counts the external axes, eax_a first; None without a robot to ask."""
-    from ...core.robot.joint import JointKind
-
-    if robot is None:
-        return None
-    linear = JointKind.PRISMATIC
-    return tuple("linear" if a.joint.kind is linear else "rotating" for a in robot.external_axes)
-
-
 def _options(robot: Robot, options: Mapping[str, str]) -> RapidOptions:
+    from .rapid.convert import axis_kinds
     from .rapid.options import OpaqueStyle, RapidOptions, ZoneStyle
 
     for key in options:
@@ -61,7 +52,7 @@ def _options(robot: Robot, options: Mapping[str, str]) -> RapidOptions:
     return RapidOptions(
         zones=_choice("zones", options.get("zones", ZoneStyle.OWN), ZoneStyle),
         opaque=_choice("opaque", options.get("opaque", OpaqueStyle.KEEP), OpaqueStyle),
-        external_axes=_axis_kinds(robot) or (),
+        external_axes=axis_kinds(robot) or (),
     )
 
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 from ...core.hookspec import VendorRegister, hookimpl
 from ...core.vendor import Vendor, lazy_motion, lazy_robots
+from .dialect import RAPID
+from .editing import RapidPatcher, RapidRecorder
 from .language import SUFFIXES, Rapid
 
 if TYPE_CHECKING:
@@ -37,6 +39,9 @@ def flyby_register_vendors(register: VendorRegister) -> None:
             label=_label,
             reader=rapid,
             writer=rapid,
+            patcher=RapidPatcher(),
+            recorder=RapidRecorder(),
             suffixes=SUFFIXES,
+            speaks=RAPID,
         )
     )

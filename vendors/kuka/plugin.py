@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 from ...core.hookspec import VendorRegister, hookimpl
 from ...core.vendor import Vendor, lazy_motion, lazy_robots
+from .dialect import KRL
+from .language import SUFFIXES, Krl
 
 if TYPE_CHECKING:
     import numpy as np
@@ -27,13 +29,20 @@ def _label(robot: Robot, q: NDArray[np.float64]) -> Configuration | None:
 
 @hookimpl
 def flyby_register_vendors(register: VendorRegister) -> None:
-    """Hand over KUKA. There is no reader or writer of KRL yet."""
+    """Hand over KUKA."""
+    krl = Krl()
     register.add(
         Vendor(
             name="kuka",
             robots=lazy_robots(DATA.glob("robots/*.toml")),
             motion=lazy_motion(DATA / "motion.toml"),
             label=_label,
+            reader=krl,
+            writer=krl,
+            patcher=krl,
+            recorder=krl,
+            suffixes=SUFFIXES,
+            speaks=KRL,
             emulation_only={"iiwa7-r800": SUNRISE, "iiwa14-r820": SUNRISE},
         )
     )

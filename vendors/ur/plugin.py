@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 from ...core.hookspec import VendorRegister, hookimpl
 from ...core.vendor import Vendor, lazy_motion, lazy_robots
+from .dialect import URSCRIPT
+from .language import SUFFIXES, UrScript
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,12 +28,19 @@ def _label(robot: Robot, q: NDArray[np.float64]) -> Configuration | None:
 
 @hookimpl
 def flyby_register_vendors(register: VendorRegister) -> None:
-    """Hand over Universal Robots. There is no reader or writer of URScript yet."""
+    """Hand over Universal Robots."""
+    urscript = UrScript()
     register.add(
         Vendor(
             name="ur",
             robots=lazy_robots(DATA.glob("robots/*.toml")),
             motion=lazy_motion(DATA / "motion.toml"),
             label=_label,
+            reader=urscript,
+            writer=urscript,
+            patcher=urscript,
+            recorder=urscript,
+            suffixes=SUFFIXES,
+            speaks=URSCRIPT,
         )
     )

@@ -1,5 +1,7 @@
 from flyby.testing.conformance import VendorConformance
 
+from ..words import AbbWords
 
-class TestAbbConformance(VendorConformance):
-    name = "abb"
+
+class TestAbbConformance(AbbWords, VendorConformance):
+    pass

@@ -12,7 +12,8 @@ from flyby.core.errors import FlybyError, SourceError
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.origin import Ownership
 from flyby.core.program.program import Program
-from flyby.vendors.abb.rapid import interpreter
+from flyby.core.source.limits import Limits
+from flyby.core.source.reading import ReadOptions
 from flyby.vendors.abb.rapid.reader import read
 
 MESSY = (
@@ -198,13 +199,8 @@ def test_layout_and_case_do_not_matter(data):
     )
 
 
-@pytest.fixture(scope="module", autouse=True)
-def impatient():
-    """Loops without end are met often here: they are given up early."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(interpreter, "STATEMENT_LIMIT", 2000)
-        yield
-
+IMPATIENT = ReadOptions(limits=Limits(statements=2000, moves=500))
+"""Loops without end are met often here: they are given up early."""
 
 PIECES = st.sampled_from(
     [
@@ -247,7 +243,7 @@ BODY = st.lists(PIECES, max_size=25).map("".join)
 @given(st.one_of(st.text(max_size=200), st.binary(max_size=200), BODY))
 def test_hostile_text_is_refused_and_nothing_else(text):
     try:
-        program = read(text, "a.mod")
+        program = read(text, "a.mod", IMPATIENT)
     except FlybyError as error:
         assert isinstance(error, SourceError) and error.span is not None
     else:
@@ -261,7 +257,7 @@ def test_hostile_statements_are_refused_and_nothing_else(declarations, body):
     data = f"VAR num n{{3}}; {point} {declarations if 'WHILE' not in declarations else ''}"
     text = f"MODULE m {data} PROC main() {body} ENDPROC ENDMODULE"
     try:
-        read(text, "a.mod")
+        read(text, "a.mod", IMPATIENT)
     except FlybyError as error:
         assert isinstance(error, SourceError) and error.span is not None
 
@@ -271,7 +267,7 @@ def test_hostile_statements_are_refused_and_nothing_else(declarations, body):
 def test_damaged_programs_are_refused_or_read(place, length, inserted):
     damaged = MESSY[:place] + inserted + MESSY[place + length :]
     try:
-        read(damaged, "a.mod")
+        read(damaged, "a.mod", IMPATIENT)
     except FlybyError as error:
         assert isinstance(error, SourceError) and error.span is not None
 

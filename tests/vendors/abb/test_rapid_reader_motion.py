@@ -162,7 +162,8 @@ def test_arcs_and_singularities():
     fixed = move(f"CirPathMode \\ObjectFrame;\n{arc}")
     assert fixed.orientation is ArcOrientation.FIXED_FRAME
     assert "CirPathMode" in refusal(f"CirPathMode \\CirPointOri;\n{arc}")
-    assert "SingArea \\Wrist" in refusal("SingArea \\Wrist;\nMoveL p,v100,z10,tool0;")
+    notes = program("SingArea \\Wrist;\nMoveL p,v100,z10,tool0;").notes
+    assert "emulated as \\Off" in notes[-1].message
     assert "LockAxis4" in refusal(f"SingArea \\LockAxis4;\n{arc}")
     body = "SingArea\\Wrist;\nMoveJ p,v100,z10,tool0;\nSingArea\\Off;\nMoveL p,v100,z10,tool0;"
     assert len(program(body).moves) == 2
@@ -187,12 +188,11 @@ def test_program_displacement():
         ("SpeedRefresh 50;", "SpeedRefresh"),
         ("PathAccLim TRUE,FALSE;", "\\accmax needs a value"),
         ("PathAccLim TRUE\\AccMax:=0,FALSE;", "above zero"),
-        ("SoftAct 1,50;", "SoftAct is refused"),
-        ("PDispOn p,tool0;", "PDispOn is refused"),
-        ("EOffsSet [1,2,3,4,5,6];", "EOffsSet is refused"),
-        ("DeactUnit STN1;", "DeactUnit is refused"),
-        ("StopMove;", "StopMove is refused"),
-        ("MoveExtJ home,v100,z10;", "MoveExtJ is refused"),
+        ("PDispOn p,tool0;", "present position, which is not known"),
+        ("StorePath;", "StorePath is refused"),
+        ("SyncMoveOn s,all;", "MultiMove"),
+        ("IndAMove M7,1\\ToAbsNum:=90,20;", "IndAMove is refused"),
+        ("MoveExtJ home,v100,z10;", "leaves the arm where it is"),
         ("MoveL p,v100,z10;", "MoveL takes 4 arguments (ToPoint, Speed, Zone, Tool), not 3"),
         ("MoveL p\\ID:=10,v100,z10,tool0;", "MultiMove"),
         ("MoveL p,v100,z10,tool0\\Corr;", "\\CORR"),
@@ -215,7 +215,9 @@ def test_program_displacement():
         (f"MoveL [[0,0,0],[1,0,0,0],[0,0,0,9],{UNUSED}],v100,z10,tool0;", "cfx"),
         (f"MoveL [[0,0,0],[1,0,0,0],[0,0.5,0,0],{UNUSED}],v100,z10,tool0;", "whole numbers"),
         (f"MoveAbsJ [[0,0,9E9,0,0,0],{UNUSED}],v100,z10,tool0;", "axis 3 of the arm"),
-        ("x := 1;\nMoveL p,v100,z10,tool0;", "unknown datum 'x'"),
+        ("MoveL p,v100,z10,tPaint;", "unknown tool 'tPaint': declare it"),
+        ("MoveL p,v100,z10,tool1;", "did you mean tool0? If not: declare it"),
+        ("MoveL p,v100,z10,tool0\\WObj:=wJig;", "unknown work object 'wJig': declare it"),
     ],
 )
 def test_refusals(body, words):

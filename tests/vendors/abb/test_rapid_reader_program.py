@@ -8,7 +8,8 @@ import pytest
 
 from flyby.core.errors import InputError, SourceError
 from flyby.core.program.move import Opaque, Wait
-from flyby.vendors.abb.rapid import interpreter
+from flyby.core.source.limits import Limits
+from flyby.core.source.reading import ReadOptions
 from flyby.vendors.abb.rapid.reader import read, read_file
 
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
@@ -188,20 +189,26 @@ def test_a_loop_with_a_way_out_is_run_to_its_end():
     assert heights(body, "VAR num k;") == [1, 2, 3, 9]
 
 
-def test_loops_without_end_are_refused(monkeypatch):
-    monkeypatch.setattr(interpreter, "STATEMENT_LIMIT", 2000)
+def test_loops_without_end_are_refused():
+    def refused(body, routines="", **limits):
+        options = ReadOptions(limits=Limits(**limits))
+        lift = f"PROC at(num z)\nMoveL Offs({P},0,0,z-600),v100,fine,tool0;\nENDPROC\n"
+        text = f"MODULE M\nVAR num k;\nPROC main()\n{body}\nENDPROC\n{lift}{routines}\nENDMODULE"
+        with pytest.raises(SourceError) as caught:
+            read(text, "a.mod", options)
+        return str(caught.value)
+
     for body in (
-        "again:\nGOTO again;",
-        "WHILE k = 0 DO\nENDWHILE",
+        "again:\nk := k + 1;\nIF k > 0 GOTO again;",
+        "WHILE k < 5 DO\nk := k - 1;\nENDWHILE",
         "FOR i FROM 1 TO 9E9 DO ENDFOR",
     ):
-        assert "loop without end" in refusal(body, "VAR num k;")
-    monkeypatch.setattr(interpreter, "MOVE_LIMIT", 50)
-    assert "50 moves" in refusal("again:\nat 1;\nGOTO again;")
-    assert "calls itself" in refusal("f;", "", "PROC f()\nf;\nENDPROC")
+        assert "loop without end" in refused(body, statements=2000)
+    assert "50 moves" in refused("again:\nat 1;\nIF k = 0 GOTO again;", moves=50)
+    assert "called each other" in refused("f;", "PROC f()\nf;\nENDPROC")
 
 
-def test_unknown_values_travel_but_do_not_decide():
+def test_unknown_values_travel_but_drive_nothing():
     assert heights(
         "x := DInput(di1); y := x + 1; now := CTime(); at 1;",
         "VAR num x; VAR num y; VAR string now;",
@@ -209,12 +216,8 @@ def test_unknown_values_travel_but_do_not_decide():
     assert heights("IF FALSE AND di1 = 1 at 1;") == []
     data = "VAR num x; VAR robtarget p;"
     for body, name in [
-        ("x := DInput(di1) + 1;\nIF x = 1 at 1;", "DInput"),
-        ("IF diPart = 1 at 1;", "diPart"),
+        ("x := DInput(di1) + 1;\nat x;", "DInput"),
         ("p := CRobT();\np.trans.z := 5;\nMoveJ p,v100,fine,tool0;", "CRobT"),
-        ("FOR i FROM 1 TO GInput(g) DO ENDFOR", "GInput"),
-        ("WHILE TestDI(di1) DO ENDWHILE", "TestDI"),
-        ("TEST OpMode() CASE 1: at 1; ENDTEST", "OpMode"),
         ('TPReadNum x, "how many";\nat x;', "TPReadNum"),
     ]:
         message = refusal(body, data)
@@ -238,7 +241,8 @@ def test_unknown_values_travel_but_do_not_decide():
         ("k := TRUE;", "a num is wanted"),
         ("p := [1,2];", "robtarget has 4 components, not 2"),
         ("c := 2;", "constant"),
-        ("kk := 2;", "unknown datum 'kk'"),
+        ("kk.trans := [0,0,2]; at kk.trans.z;", "'kk', which is not declared"),
+        ("two m:=1, 2;", "this argument of two is n, not m"),
         ("at loop;", "depends on itself"),
         ("atx 2;", "did you mean at?"),
         ("FOR i FROM 1 TO 2 STEP 0 DO ENDFOR", "STEP is zero"),
@@ -246,21 +250,21 @@ def test_unknown_values_travel_but_do_not_decide():
         ("RAISE 1;", "error handlers are not run"),
         ("at 1, 2;", "at takes 1 arguments, not 2"),
         ("at 1\\q:=2;", "unknown argument of at 'q'"),
-        ("k := Foo(1);", "unknown function 'Foo'"),
+        ("at Foo(1);", "unknown function 'Foo'"),
         ("k := Offs(p,0,0);", "Offs takes 4 arguments, not 3"),
         ("k := nothing(1);", "without RETURN"),
         ('%"nix"%;', "unknown routine 'nix'"),
         ("IF k at 1;", "a bool is wanted"),
-        ("SearchL di1, p, p, v100, tool0;", "SearchL is refused"),
-        ("TriggL p, v100, t, z10, tool0;", "TriggL is refused"),
-        ("ArcL p, v100, s, w, z10, tool0;", "it might move the robot"),
-        ("MoveLDO p, v100, z10, tool0, do1, 1;", "use MoveL"),
+        ("SearchL di1, 5, p, v100, tool0;", "needs a robtarget to put its point in"),
+        ("TriggL p, v100, z10, tool0;", "takes 5 arguments"),
+        ("rUnknown 5;", "it might move the robot"),
+        ("MoveLDO p, v100, z10, tool0, do1;", "takes 6 arguments"),
     ],
 )
 def test_refusals(body, words):
     data = f"""VAR num n{{3}}; VAR num k; VAR robtarget p:={P}; CONST num c:=1;
       CONST num loop:=loop2; CONST num loop2:=loop;"""
-    routines = "FUNC num nothing(num x)\nENDFUNC"
+    routines = "FUNC num nothing(num x)\nENDFUNC\nPROC two(num n, num m)\nENDPROC"
     assert words in refusal(body, data, routines)
 
 
@@ -297,13 +301,13 @@ def test_entries():
     only = read(text.format(""), "a.mod")
     assert only.name == "Work" and len(only.moves) == 1
     assert "only procedure, go" in only.notes[0].message
-    two = text.format("PROC rest()\nENDPROC\nPROC needs(num x)\nENDPROC")
-    assert read(two, "a.mod", "GO").moves == only.moves
-    assert read(two, "a.mod", "rest").moves == ()
+    two = text.format(f"PROC rest()\nMoveJ {P},v50,z1,tool0;\nENDPROC\nPROC needs(num x)\nENDPROC")
+    assert read(two, "a.mod", ReadOptions("GO")).moves == only.moves
+    assert read(two, "a.mod", ReadOptions("rest")).moves[0].speed.name == "v50"
     with pytest.raises(SourceError, match="choose one of go, rest"):
         read(two, "a.mod")
     with pytest.raises(SourceError, match="takes arguments"):
-        read(two, "a.mod", "needs")
+        read(two, "a.mod", ReadOptions("needs"))
     with pytest.raises(SourceError, match="no procedure"):
         read("MODULE M\nENDMODULE", "a.mod")
 

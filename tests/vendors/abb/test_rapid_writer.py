@@ -117,7 +117,7 @@ ENDMODULE
         rf"""MODULE MainModule
   ! Written by flyby.
   PERS tooldata tGun := [TRUE,[[0,0,250],[1,0,0,0]],[12.5,[0,0,100],[1,0,0,0],0.1,0.2,0.3]];
-  TASK PERS wobjdata wTable := [FALSE,TRUE,"",[[1000,0,500],[1,0,0,0]],[[0,100,0],[1,0,0,0]]];
+  PERS wobjdata wTable := [FALSE,TRUE,"",[[1000,0,500],[1,0,0,0]],[[0,100,0],[1,0,0,0]]];
   PERS loaddata load1 := [3.25,[0,0,50],[1,0,0,0],0,0,0];
   CONST speeddata v12_5 := [12.5,57.29578,5000,572.9578];
   CONST zonedata z7_5 := [FALSE,7.5,7.5,10,0,0,0];
@@ -159,7 +159,7 @@ ENDMODULE
   ! Written by flyby.
   ! Zones are the largest predefined ones within the program's own radii.
   PERS tooldata tFixed := [FALSE,[[1000,2000,3000],[1,0,0,0]],[0.001,[0,0,0.001],[1,0,0,0],0,0,0]];
-  TASK PERS wobjdata wHeld := [TRUE,TRUE,"",[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];
+  PERS wobjdata wHeld := [TRUE,TRUE,"",[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];
   CONST robtarget p10 := [[0,0,0],[0,0,1,0],[0,0,0,0],[1250,90,9E+09,9E+09,9E+09,9E+09]];
   CONST robtarget p20 := [[1,0,0],[0,0,1,0],[0,0,0,0],[-500,9E+09,9E+09,9E+09,9E+09,9E+09]];
 

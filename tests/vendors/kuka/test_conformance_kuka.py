@@ -1,5 +1,7 @@
 from flyby.testing.conformance import VendorConformance
 
+from ..words import KukaWords
 
-class TestKukaConformance(VendorConformance):
-    name = "kuka"
+
+class TestKukaConformance(KukaWords, VendorConformance):
+    pass

@@ -1,5 +1,7 @@
 from flyby.testing.conformance import VendorConformance
 
+from ..words import UrWords
 
-class TestUrConformance(VendorConformance):
-    name = "ur"
+
+class TestUrConformance(UrWords, VendorConformance):
+    pass

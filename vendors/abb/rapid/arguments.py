@@ -37,6 +37,10 @@ class Bound:
         """A required argument."""
         return self.required[index]
 
+    def named(self, name: str) -> Expression:
+        """A required argument by its name."""
+        return self.required[self.names.index(name)]
+
     def option(self, name: str) -> Expression:
         """The value of an optional argument that must have one.
 

@@ -9,7 +9,7 @@ from ....core.errors import SourceError, Span
 from .evaluator import Evaluator
 from .scope import Cell, Scope, unknown_name
 from .syntax import Argument, Expression, Name, Parameter, Routine
-from .types import Foreign, find_unknown, interpreted
+from .types import Foreign, Type, find_unknown, interpreted
 
 
 def present(arguments: Iterable[Argument], scope: Scope) -> Iterator[Argument]:
@@ -32,11 +32,39 @@ def pass_arguments(
     caller: Scope,
     scope: Scope,
     span: Span,
-) -> None:
+) -> list[tuple[Cell, Name]]:
     """Arguments, evaluated in ``caller``, become cells of the routine's ``scope``.
+
+    Returns:
+        Cells whose values go back, after the routine, to the elements and components that were
+        passed by reference.
 
     Raises:
         SourceError: they do not fit the routine's parameters.
+    """
+    pairs = _matched(routine, arguments, span)
+    back: list[tuple[Cell, Name]] = []
+    for parameter, argument in pairs:
+        type_ = evaluator.data.type(parameter.type, scope.home, parameter.span)
+        cell = _parameter(evaluator, parameter, type_, argument, caller)
+        scope.cells[parameter.name] = cell
+        value = argument.value
+        if parameter.mode != "in" and isinstance(value, Name) and value.path:
+            back.append((cell, value))
+    for parameter in routine.parameters:
+        if parameter.name not in scope.cells:
+            type_ = evaluator.data.type(parameter.type, scope.home, parameter.span)
+            scope.cells[parameter.name] = Cell(parameter.name, type_, value=False, present=False)
+    return back
+
+
+def _matched(
+    routine: Routine, arguments: tuple[Argument, ...], span: Span
+) -> list[tuple[Parameter, Argument]]:
+    """Parameters and the arguments given for them.
+
+    Raises:
+        SourceError: there are too few or too many, or of other names.
     """
     required = [p for p in routine.parameters if not p.optional]
     values = [a for a in arguments if a.option is None]
@@ -44,38 +72,34 @@ def pass_arguments(
         raise SourceError(
             f"{routine.text} takes {len(required)} arguments, not {len(values)}", span
         )
+    for parameter, argument in zip(required, values, strict=True):
+        if argument.parameter not in (None, parameter.name):
+            raise SourceError(
+                f"this argument of {routine.text} is {parameter.name}, not {argument.parameter}",
+                argument.span,
+            )
     given = {a.option: a for a in arguments if a.option is not None}
     optional = {p.name: p for p in routine.parameters if p.optional}
     for option in given:
         if option not in optional:
             raise SourceError(unknown_name(f"argument of {routine.text}", option, optional), span)
-    for parameter, argument in zip(required, values, strict=True):
-        scope.cells[parameter.name] = _parameter(evaluator, parameter, argument, caller)
-    for name, parameter in optional.items():
-        passed = given.get(name)
-        if passed is None:
-            type_ = evaluator.types.get(parameter.type, Foreign(parameter.type))
-            scope.cells[name] = Cell(name, type_, value=False, present=False)
-        else:
-            scope.cells[name] = _parameter(evaluator, parameter, passed, caller)
+    pairs = list(zip(required, values, strict=True))
+    return [*pairs, *((optional[option], argument) for option, argument in given.items())]
 
 
 def _parameter(
-    evaluator: Evaluator, parameter: Parameter, argument: Argument, caller: Scope
+    evaluator: Evaluator, parameter: Parameter, type_: Type, argument: Argument, caller: Scope
 ) -> Cell:
     expression = argument.value
-    type_ = evaluator.types.get(parameter.type, Foreign(parameter.type))
     if expression is None:
         if parameter.type != "switch":
             raise SourceError(f"\\{parameter.name} needs a value", argument.span)
         return Cell(parameter.name, type_, value=True)
-    by_reference = parameter.mode != "in"
-    if by_reference or parameter.dimensions:
-        return _referred(evaluator, parameter, expression, caller)
+    if parameter.mode != "in" or parameter.dimensions:
+        return _referred(evaluator, parameter, type_, expression, caller)
     found = evaluator.locate(expression, caller)
-    unknown = find_unknown(found.value)
-    if unknown is None:
-        evaluator.check(found.value, type_, f"\\{parameter.name}", expression.span)
+    if find_unknown(found.value) is None:
+        evaluator.check(found.value, type_, f"parameter {parameter.name}", expression.span)
     name = found.cell.name if found.cell is not None else parameter.name
     return Cell(
         name,
@@ -87,15 +111,41 @@ def _parameter(
 
 
 def _referred(
-    evaluator: Evaluator, parameter: Parameter, expression: Expression, caller: Scope
+    evaluator: Evaluator, parameter: Parameter, type_: Type, expression: Expression, caller: Scope
 ) -> Cell:
     """The caller's own datum, for parameters that the routine may write, and for arrays."""
-    cell = caller.find(expression.name) if isinstance(expression, Name) else None
-    if cell is None or (isinstance(expression, Name) and expression.path):
+    if not isinstance(expression, Name):
+        if parameter.dimensions and parameter.mode == "in":
+            return _anonymous(evaluator, parameter, type_, expression, caller)
         raise SourceError(
-            f"parameter {parameter.name} is passed by reference: it takes the name of a whole "
-            "datum here",
+            f"parameter {parameter.name} is passed by reference: it takes a datum here, and no "
+            "computed value",
             expression.span,
         )
+    cell = evaluator.cell(expression, caller)
+    if cell is None or expression.path:
+        found = evaluator.locate(expression, caller)  # a signal, an element, a component
+        return Cell(expression.text, type_, value=found.value, source=found.source)
     evaluator.settle(cell)
+    if parameter.dimensions not in (0, len(cell.dimensions)) and cell.value is not None:
+        raise SourceError(
+            f"parameter {parameter.name} is an array of {parameter.dimensions} dimensions, and "
+            f"{cell.name} has {len(cell.dimensions)}",
+            expression.span,
+        )
+    if parameter.mode == "in":
+        return replace(cell, overwritten=set(cell.overwritten), elements={}, constant=False)
     return cell
+
+
+def _anonymous(
+    evaluator: Evaluator, parameter: Parameter, type_: Type, expression: Expression, caller: Scope
+) -> Cell:
+    """An array that is written out, or that a function returns."""
+    value = evaluator.evaluate(expression, caller)
+    sizes: list[int] = []
+    inner = value
+    while len(sizes) < parameter.dimensions and isinstance(inner, tuple):
+        sizes.append(len(inner))
+        inner = inner[0]
+    return Cell(parameter.name, type_, value=value, dimensions=tuple(sizes))

@@ -15,7 +15,8 @@ from ....core.spatial.pose import Pose, Quaternion
 from ..configuration import AbbConfiguration
 from .evaluator import Located
 from .literals import (
-    MM,
+    LOAD0,
+    PER_METRE,
     UNUSED_AXIS,
     Record,
     check_speed,
@@ -28,9 +29,10 @@ from .literals import (
 from .options import AXIS_KINDS
 from .scope import Scope, unknown_name
 from .syntax import Expression, Name
-from .types import LOADDATA, ORIENT, POSE, ROBTARGET, TOOLDATA, WOBJDATA, RecordType, Type, Value
+from .types import LOADDATA, ORIENT, POSE, TOOLDATA, WOBJDATA, RecordType, Type, Value
 
 if TYPE_CHECKING:
+    from ....core.robot.model import Robot
     from .interpreter import Interpreter
 
 NORM_TOLERANCE = 1e-3
@@ -39,6 +41,8 @@ EXACT = 1e-6
 """What a `Pose` takes as it stands, and `literals` does: reading and writing keep the digits."""
 ROUNDING = 2e-5
 """What five written decimals leave of a quaternion's unit length: not worth a note."""
+
+UNDEFINED_MASS = -1.0
 
 T = TypeVar("T")
 
@@ -65,10 +69,20 @@ class Converter:
     def tool(self, found: Located, expression: Expression) -> Tool:
         """A tooldata."""
         name = self._name(found, expression, "tool")
+        value = self._with_load(found.value, name, expression.span)
         return self._cached(
-            ("tool", name, found.value),
-            lambda: self._made_of(tool_value, found.value, TOOLDATA, name, expression.span),
+            ("tool", name, value),
+            lambda: self._made_of(tool_value, value, TOOLDATA, name, expression.span),
         )
+
+    def _with_load(self, value: Value, name: str, span: Span) -> Value:
+        """A tooldata whose load is defined: a new tool has the mass -1 until somebody weighs it."""
+        assert isinstance(value, tuple)
+        if value[2][0] != UNDEFINED_MASS:
+            return value
+        message = f"the load of tool {name} is not defined (mass -1): none is taken"
+        self._run.out.note_once(f"load of {name}", message, span)
+        return (*value[:2], LOAD0)
 
     def work_object(self, found: Located, expression: Expression) -> WorkObject:
         """A wobjdata."""
@@ -116,8 +130,8 @@ class Converter:
 
     @staticmethod
     def _name(found: Located, expression: Expression, otherwise: str) -> str:
-        if found.cell is not None and isinstance(expression, Name) and not expression.path:
-            return found.cell.name
+        if isinstance(expression, Name) and not expression.path:
+            return found.cell.name if found.cell is not None else expression.text
         return otherwise if found.source is None or not found.source.datum else found.source.datum
 
     # ------------------------------------------------------------ speeds and zones
@@ -161,9 +175,9 @@ class Converter:
         return self._guard(
             span,
             lambda: Speed(
-                tcp=scaled[0] * MM,
+                tcp=scaled[0] / PER_METRE,
                 reorientation=math.radians(scaled[1]),
-                external_linear=linear * MM if linear != 0 else None,
+                external_linear=linear / PER_METRE if linear != 0 else None,
                 external_angular=math.radians(angular) if angular != 0 else None,
                 tcp_acceleration=settings.tcp_acceleration,
                 joint_acceleration_fraction=settings.acceleration,
@@ -198,8 +212,9 @@ class Converter:
         Args:
             follow: whether its configuration counts for the move.
         """
-        record = self._units(value, ROBTARGET, span)
-        trans, rot, robconf, extax = record
+        assert isinstance(value, tuple)
+        trans, orient, robconf, extax = value
+        rot = self._unit(orient, span)
         configuration = self._configuration(robconf, span) if follow else None
         external = self._external(extax, span)
         pose = self._guard(span, lambda: Pose(metres(trans), _quaternion(rot)))
@@ -208,15 +223,21 @@ class Converter:
             pose = displacement @ pose
         return PoseTarget(pose, configuration, external, name)
 
-    def joint_target(self, value: Value, name: str | None, span: Span) -> JointTarget:
-        """A jointtarget."""
+    def joint_target(
+        self, value: Value, name: str | None, offsets: bool, span: Span
+    ) -> JointTarget:
+        """A jointtarget.
+
+        Args:
+            offsets: whether offsets of external axes count for the move.
+        """
         assert isinstance(value, tuple)
         robax, extax = value
         for number, degrees in enumerate(robax):
             if abs(degrees) >= UNUSED_AXIS:
                 raise SourceError(f"axis {number + 1} of the arm has no value (9E9)", span)
         joints = tuple(math.radians(v) for v in robax)
-        external = self._external(extax, span)
+        external = self._external(extax, span, offsets)
         return self._guard(span, lambda: JointTarget(joints, external, name))
 
     def _configuration(self, robconf: Sequence[float], span: Span) -> AbbConfiguration:
@@ -225,9 +246,15 @@ class Converter:
         cf1, cf4, cf6, cfx = (int(v) for v in robconf)
         return self._guard(span, lambda: AbbConfiguration(cf1, cf4, cf6, cfx))
 
-    def _external(self, extax: Sequence[float], span: Span) -> tuple[float, ...]:
+    def _external(
+        self, extax: Sequence[float], span: Span, offsets: bool = True
+    ) -> tuple[float, ...]:
         """External axes in rad and m, in the robot's order, as far as they are programmed."""
         used = [abs(v) < UNUSED_AXIS for v in extax]
+        shift = self._run.settings.offsets
+        if offsets and shift is not None:
+            pairs = zip(extax, shift, used, strict=True)
+            extax = [v + s if counts and abs(s) < UNUSED_AXIS else v for v, s, counts in pairs]
         if not any(used):
             return ()
         if self._axes is None:
@@ -249,7 +276,7 @@ class Converter:
             )
         kinds = self._axes
         return tuple(
-            extax[i] * MM if kinds[i] == "linear" else math.radians(extax[i])
+            extax[i] / PER_METRE if kinds[i] == "linear" else math.radians(extax[i])
             for i in range(last + 1)
         )
 
@@ -264,7 +291,7 @@ class Converter:
                     "(external_axes=('linear',) or ('rotating',))",
                     span,
                 )
-        self._run.note_once(
+        self._run.out.note_once(
             "external axes",
             "external axes are sent to 0 everywhere; they are taken as not there (9E9 says so)",
             span,
@@ -297,7 +324,7 @@ class Converter:
                 span,
             )
         if error > ROUNDING:
-            self._run.note_quaternion(error, span)
+            self._run.out.note_quaternion(error, span)
         return orient if error <= EXACT else tuple(v / length for v in orient)
 
     @staticmethod
@@ -313,6 +340,16 @@ def _quaternion(orient: Record) -> Quaternion:
     return (w, x, y, z)
 
 
+def axis_kinds(robot: Robot | None) -> tuple[str, ...] | None:
+    """How RAPID counts the robot's external axes, eax_a first; None without a robot to ask."""
+    if robot is None:
+        return None
+    from ....core.robot.joint import JointKind  # late: it takes time
+
+    axes = [axis.joint.kind for axis in robot.external_axes]
+    return tuple("linear" if kind is JointKind.PRISMATIC else "rotating" for kind in axes)
+
+
 def undeclared(kind: str, name: Name, type_: Type, scope: Scope) -> SourceError:
     """The error that a datum of a move is not declared, with the nearest of its type."""
     known: list[str] = []
@@ -320,4 +357,8 @@ def undeclared(kind: str, name: Name, type_: Type, scope: Scope) -> SourceError:
     while inner is not None:
         known += [cell.name for cell in inner.cells.values() if cell.type == type_]
         inner = inner.outer
-    return SourceError(unknown_name(kind, name.text, known), name.span)
+    otherwise = (
+        "declare it, name the file that declares it, or put it beside this one, or answer it in a "
+        f"file (--io): [values] {name.text} = …"
+    )
+    return SourceError(unknown_name(kind, name.text, known, otherwise), name.span)

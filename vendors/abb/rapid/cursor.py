@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from ....core.errors import SourceError, Span
-from .lexer import END, KEYWORDS, NAME, NUMBER, STRING, Tokens
+from .lexer import END, KEYWORDS, LITERAL, NAME, NUMBER, STRING, Tokens
 
 NESTING_LIMIT = 60
 """Brackets and blocks inside each other; what goes deeper is damaged or hostile."""
@@ -24,6 +24,7 @@ class Cursor:
         self.kinds = tokens.kinds
         self.starts = tokens.starts
         self.ends = tokens.ends
+        self.values = tokens.values
         self.index = 0
         self.depth = 0
 
@@ -121,4 +122,5 @@ def _found(kind: str, text: str) -> str:
     if kind in KEYWORDS:
         return f"the keyword {text.upper()}"
     names = {NAME: "the name", NUMBER: "the number", STRING: "the string"}
+    names[LITERAL] = "the value"
     return f"{names[kind]} {short}" if kind in names else f"'{short}'"

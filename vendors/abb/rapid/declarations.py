@@ -12,12 +12,13 @@ from .numbers import number
 
 STORAGE = {
     "tooldata": "PERS",
-    "wobjdata": "TASK PERS",
+    "wobjdata": "PERS",
     "loaddata": "PERS",
     "speeddata": "CONST",
     "zonedata": "CONST",
     "jointtarget": "CONST",
     "robtarget": "CONST",
+    "triggdata": "VAR",
 }
 """data type → how it is declared, in the order in which a module lists them.
 
@@ -31,7 +32,7 @@ class Datum:
 
     Args:
         type: RAPID's data type.
-        text: the value's literal.
+        text: the value's literal; of a triggdata, which has none, what defines it.
         wanted: the name it had, None if it had none.
         stem: what a name is made of if it had none.
     """
@@ -63,6 +64,12 @@ class Declarations:
         self._spelling.setdefault(datum, wanted)
         return datum
 
+    def add_undefined(self, type_: str, definition: str) -> Datum:
+        """A datum without an initial value; data of one definition are one."""
+        datum = Datum(type_, definition, None, "")
+        self._spelling.setdefault(datum, None)
+        return datum
+
     def names(self, names: Names) -> dict[Datum, str]:
         """A name for every datum."""
         given: dict[Datum, str] = {}
@@ -87,12 +94,15 @@ class Declarations:
         """The declarations, by type and then by first use."""
         texts = {names[datum]: datum for datum in self._spelling}
         return [
-            f"{storage} {type_} {name} := {datum.text};"
+            f"{storage} {type_} {name}{_initial(datum)};"
             for type_, storage in STORAGE.items()
             for name, datum in texts.items()
             if datum.type == type_
         ]
 
+
+UNDEFINED = frozenset({"triggdata"})
+"""Types without literals."""
 
 FALLBACK = {
     "tooldata": "tool",
@@ -102,9 +112,14 @@ FALLBACK = {
     "zonedata": "z",
     "jointtarget": "jp",
     "robtarget": "p",
+    "triggdata": "trigg",
 }
-COUNTED = {"jointtarget": "jp", "robtarget": "p"}
+COUNTED = {"jointtarget": "jp", "robtarget": "p", "triggdata": "trigg"}
 """Targets without a name are numbered in tens, as RobotStudio does it."""
+
+
+def _initial(datum: Datum) -> str:
+    return "" if datum.type in UNDEFINED else f" := {datum.text}"
 
 
 def _tens(stem: str) -> Iterator[str]:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from ....core.errors import SourceError
-from .scope import Cell
-from .syntax import Declaration, Name
-from .types import Foreign, RecordType, Scalar, Type, Unknown, Value, interpreted, mismatch
+import math
+from collections.abc import Mapping
 
-ARRAY_LIMIT = 1_000_000
+from ....core.errors import SourceError, Span
+from .scope import Cell
+from .syntax import Name
+from .types import Foreign, Scalar, Type, Unknown, Value, interpreted, mismatch
+
+ARRAY_LIMIT = 100_000
 """Elements of an array; a controller holds fewer."""
 
 
@@ -57,7 +60,14 @@ def component(step: str, type_: Type, dimensions: tuple[int, ...], name: Name) -
 def replaced(
     old: Value, cell: Cell, path: list[str | tuple[int, ...]], new: Value, name: Name
 ) -> Value:
-    """``old``, the value of ``cell``, with the part at ``path`` replaced.
+    """``old`` with the part at ``path`` replaced.
+
+    Args:
+        old: the value of ``cell``, or of the element that ``path`` begins with.
+        cell: the datum.
+        path: components and indices.
+        new: value of the part.
+        name: of the part, for messages.
 
     Raises:
         SourceError: there is no such part, or ``new`` is of another type.
@@ -69,7 +79,6 @@ def replaced(
         if isinstance(step, tuple):
             check_index(step, dimensions, name)
             dimensions = ()
-            places += [i - 1 for i in step]
         else:
             position, type_ = component(step, type_, dimensions, name)
             places.append(position)
@@ -77,6 +86,33 @@ def replaced(
     if wrong is not None:
         raise SourceError(f"{name.text}: {wrong}", name.span)
     return _put(old, places, interpreted(new, type_, name.span))
+
+
+def element(cell: Cell, index: tuple[int, ...]) -> Value:
+    """An element of an array; the index has been checked."""
+    if index in cell.elements:
+        return cell.elements[index]
+    value = cell.value
+    assert value is not None
+    for place in index:
+        value = item(value, place - 1)
+    return value
+
+
+def gathered(value: Value, elements: Mapping[tuple[int, ...], Value]) -> Value:
+    """An array with other elements, by index from 1, all at once."""
+    if not isinstance(value, tuple):
+        return value
+    items = list(value)
+    rows: dict[int, dict[tuple[int, ...], Value]] = {}
+    for (first, *rest), new in elements.items():
+        if rest:
+            rows.setdefault(first - 1, {})[tuple(rest)] = new
+        else:
+            items[first - 1] = new
+    for place, row in rows.items():
+        items[place] = gathered(items[place], row)
+    return tuple(items)
 
 
 def _put(old: Value, places: list[int], new: Value) -> Value:
@@ -90,18 +126,16 @@ def _put(old: Value, places: list[int], new: Value) -> Value:
     return tuple(items)
 
 
-def default_value(
-    declaration: Declaration, type_: Scalar | RecordType, sizes: tuple[int, ...]
-) -> Value:
-    """The value of a variable without an initial value."""
-    count = 1
-    for size in sizes:
-        count *= size
-        if count > ARRAY_LIMIT:
-            raise SourceError(
-                f"{declaration.text} has more than {ARRAY_LIMIT} elements", declaration.span
-            )
-    value: Value = type_.default
+def check_size(name: str, sizes: tuple[int, ...], span: Span) -> None:
+    """Raises:
+    SourceError: an array is larger than any controller's memory.
+    """
+    if math.prod(sizes) > ARRAY_LIMIT:
+        raise SourceError(f"{name} has more than {ARRAY_LIMIT} elements", span)
+
+
+def filled(value: Value, sizes: tuple[int, ...]) -> Value:
+    """An array with one value in all its elements; the value itself if there are no sizes."""
     for size in reversed(sizes):
         value = (value,) * size
     return value

@@ -3,31 +3,44 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ....core.errors import SourceError, Span
+from ....core.source.answers import Course
 from ....core.source.provenance import ELSEWHERE, Reads
-from .elements import array_mismatch, check_index, component, default_value, item, replaced
-from .functions import COMPUTED, STATE, euler_zyx
-from .operators import OperandError, apply, is_vector, negate
+from .answering import free, like_signals, typed
+from .elements import (
+    array_mismatch,
+    check_index,
+    check_size,
+    component,
+    element,
+    filled,
+    gathered,
+    item,
+    replaced,
+)
+from .function_calls import FunctionCalls, Special
+from .globals import Globals
+from .operators import OperandError, apply, negate
 from .provenance import Literal, source_of_literal
-from .scope import Cell, Scope, unknown_name
+from .scope import Cell, Scope
 from .syntax import (
     Aggregate,
-    Argument,
     Call,
     Declaration,
     Expression,
     Name,
     Number,
     Operation,
+    Packed,
     Routine,
     Star,
     Text,
     Truth,
     Unary,
 )
-from .types import NUM, Foreign, Type, Unknown, Value, find_unknown, interpreted, mismatch
+from .types import BOOL, NUM, Foreign, Type, Unknown, Value, find_unknown, interpreted, mismatch
 
 CallFunction = Callable[[Routine, Call, Scope], Value]
 
@@ -39,37 +52,48 @@ class Located:
     Args:
         cell: the datum, None if the expression is no plain datum.
         predefined: name of the controller's own datum that the value is.
+        type: of the value, None if it is not known.
     """
 
     value: Value
     source: Literal | None
     cell: Cell | None
     predefined: str | None = None
+    type: Type | None = None
 
 
 class Evaluator:
     """Evaluates expressions in a scope.
 
     Args:
-        types: data types by name.
-        functions: the program's own functions by name.
-        call: runs one of them.
+        data: the program's types, routines and data.
+        course: the user's answers.
+        text_of: the text that stands at a place.
+        call: runs one of the program's own functions.
+        state: functions that ask the emulated robot.
+        undeclared: is told of a name that is assigned and declared nowhere at hand.
     """
 
     def __init__(
-        self, types: Mapping[str, Type], functions: Mapping[str, Routine], call: CallFunction
+        self,
+        data: Globals,
+        course: Course,
+        text_of: Callable[[Span], str],
+        call: CallFunction,
+        state: Mapping[str, Special],
+        undeclared: Callable[[Name], None],
     ) -> None:
-        self.types = types
-        self.functions = functions
+        self.data = data
         self.reads = Reads()
         self.reader = ELSEWHERE
+        self.turns = 0
+        """How many answers of sequences were given."""
+        self._course = course
+        self._text_of = text_of
+        self._undeclared = undeclared
+        self._elsewhere: dict[str, Value] = {}
         self._checked: dict[int, tuple[Value, Type]] = {}
-        self._call = call
-        self._special: dict[str, Callable[[Call, Scope], Value]] = {
-            "present": _present,
-            "dim": self._dim,
-            "eulerzyx": self._euler,
-        }
+        self._functions = FunctionCalls(self, call, state)
 
     # ------------------------------------------------------------------ values
 
@@ -79,7 +103,7 @@ class Evaluator:
         Raises:
             SourceError: it has none.
         """
-        if isinstance(expression, Number | Text | Truth):
+        if isinstance(expression, Number | Packed | Text | Truth):
             return expression.value
         if isinstance(expression, Name):
             return self._read_name(expression, scope)
@@ -94,17 +118,20 @@ class Evaluator:
             except OperandError as error:
                 raise SourceError(str(error), expression.span) from None
         if isinstance(expression, Call):
-            return self._function(expression, scope)
+            return self._functions.value(expression, scope)
         return _star(expression)
 
-    def locate(self, expression: Expression, scope: Scope) -> Located:
+    def locate(self, expression: Expression, scope: Scope, asking: bool = True) -> Located:
         """A value that a move takes as it stands, with its source.
 
         Unlike `evaluate` this does not count as a read by an expression: the caller tells
         `reads` what it does with the value.
+
+        Args:
+            asking: whether the user's answer is taken where a datum is not known.
         """
         if isinstance(expression, Name):
-            return self._locate_name(expression, scope)
+            return self._locate_name(expression, scope, asking)
         value = self.evaluate(expression, scope)
         return Located(value, source_of_literal(expression, None), None)
 
@@ -129,15 +156,17 @@ class Evaluator:
         if unknown is not None:
             raise SourceError(
                 f"{use} depends on {unknown.reason}: what only the running controller knows "
-                "cannot be followed; put a fixed value in its place",
+                f"cannot be followed; put a fixed value in its place{_answerable(unknown)}",
                 span,
             )
-        wrong = mismatch(value, type_)
-        if wrong is not None:
-            raise SourceError(f"{use}: {wrong}", span)
+        _check_type(value, type_, use, span)
 
     def check_located(self, found: Located, type_: Type, use: str, span: Span) -> None:
         """`check`, once for each value of a datum: moves read few data many times."""
+        if found.source is not None:  # a literal, all of it known
+            if found.type is not type_:
+                _check_type(found.value, type_, use, span)
+            return
         known = self._checked.get(id(found.value))
         if known is not None and known[0] is found.value and known[1] is type_:
             return
@@ -151,23 +180,59 @@ class Evaluator:
         assert isinstance(value, float)
         return value
 
-    # -------------------------------------------------------------------- data
+    def truth(self, value: Value, use: str, span: Span) -> bool:
+        """A known bool."""
+        if value is True or value is False:
+            return value
+        self.check(value, BOOL, use, span)
+        raise AssertionError
 
-    def declare(self, declaration: Declaration, scope: Scope) -> Cell:
-        """A new cell; its value is evaluated when it is first read."""
-        type_ = self.types.get(declaration.type, Foreign(declaration.type))
-        cell = Cell(
-            declaration.text,
-            type_,
-            constant=declaration.kind == "const",
-            pending=declaration,
-            scope=scope,
-        )
-        scope.cells[declaration.name] = cell
-        return cell
+    # ------------------------------------------------------------------- answers
+
+    def ask(self, span: Span, type_: Type | None, sizes: tuple[int, ...] = ()) -> Value | None:
+        """The user's answer to the expression at a place, None if there is none.
+
+        Args:
+            type_: of the answer, None if it is not known.
+            sizes: of an array.
+
+        Raises:
+            SourceError: the answer is of another type.
+        """
+        return self._ask(self.key(span), span, type_, sizes)
+
+    def key(self, span: Span) -> str:
+        """Under which the user may answer the expression at a place."""
+        return " ".join(self._text_of(span).split())
+
+    def _ask(
+        self, key: str, span: Span, type_: Type | None, sizes: tuple[int, ...]
+    ) -> Value | None:
+        answer = self._course.value(key) if key else None
+        self.turns += self._course.changing(key)
+        if answer is None:
+            return None
+        return free(answer) if type_ is None else typed(answer, type_, sizes, key, span)
+
+    def fill(self, target: Name, unknown: Unknown, scope: Scope) -> None:
+        """An instruction writes a datum: the user's answer, or what is not known."""
+        found = self.locate(target, scope, asking=False)
+        sizes = found.cell.dimensions if found.cell is not None and not target.path else ()
+        answer = self.ask(target.span, found.type, sizes)
+        self.assign(target, unknown if answer is None else answer, scope)
+
+    # -------------------------------------------------------------------- data
 
     def settle(self, cell: Cell) -> Value:
         """The value of a cell, evaluated now if it was not yet."""
+        value = self._settled(cell)
+        if cell.elements:
+            value = cell.value = gathered(value, cell.elements)
+            cell.elements.clear()
+        return value
+
+    def _settled(self, cell: Cell) -> Value:
+        """`settle`, leaving out the elements that were written of late."""
         declaration, scope = cell.pending, cell.scope
         if declaration is None:
             assert cell.value is not None
@@ -176,6 +241,7 @@ class Evaluator:
             raise SourceError(f"the value of {cell.name} depends on itself", declaration.span)
         cell.scope = None  # while it is evaluated
         sizes = tuple(self._size(d, scope) for d in declaration.dimensions)
+        check_size(cell.name, sizes, declaration.span)
         cell.dimensions = sizes
         cell.value, cell.source, cell.predefined = self._initial(
             declaration, cell.type, sizes, scope
@@ -194,9 +260,9 @@ class Evaluator:
     ) -> tuple[Value, Literal | None, str | None]:
         if isinstance(type_, Foreign):
             reason = f"'{declaration.text}', a {type_.name}"
-            return Unknown(reason, declaration.span), None, None
+            return filled(Unknown(reason, declaration.span, declaration.text), sizes), None, None
         if declaration.value is None:
-            return default_value(declaration, type_, sizes), None, None
+            return filled(type_.default, sizes), None, None
         found = self.locate(declaration.value, scope)
         value = found.value
         wrong = array_mismatch(value, type_, sizes)
@@ -211,31 +277,60 @@ class Evaluator:
         """``target := value``
 
         Raises:
-            SourceError: the target is not declared, constant, or of another type.
+            SourceError: the target is constant, or of another type.
         """
-        cell = scope.find(target.name)
+        cell = self.cell(target, scope)
         if cell is None:
-            raise SourceError(unknown_name("datum", target.text, scope.names()), target.span)
+            self._assign_elsewhere(target, value)
+            return
         if cell.constant:
             raise SourceError(f"{cell.name} is a constant and cannot be assigned", target.span)
-        old = self.settle(cell)
-        path = self._path(target, scope)
-        if not path:
+        if not target.path:
+            if cell.pending is not None:
+                self.settle(cell)
             wrong = array_mismatch(value, cell.type, cell.dimensions)
             if wrong is not None:
                 raise SourceError(f"{target.text}: {wrong}", target.span)
             cell.value = interpreted(value, cell.type, target.span)
             cell.source, cell.predefined = None, None
+            cell.elements.clear()
             return
-        cell.value = replaced(old, cell, path, value, target)
+        self._assign_part(cell, target, value, scope)
+
+    def _assign_part(self, cell: Cell, target: Name, value: Value, scope: Scope) -> None:
+        """An element or component is written."""
+        old = self._settled(cell)
+        path = self._path(target, scope)
         cell.predefined = None
+        if isinstance(path, Unknown):
+            cell.value, cell.source = replace(path, key=cell.name), None
+            cell.elements.clear()
+            return
         first = path[0]
         if isinstance(first, tuple):
+            check_index(first, cell.dimensions, target)
+            cell.elements[first] = replaced(element(cell, first), cell, path, value, target)
             cell.overwritten.add(first)
         else:
-            cell.source = None
+            cell.value, cell.source = replaced(old, cell, path, value, target), None
+
+    def _assign_elsewhere(self, target: Name, value: Value) -> None:
+        """A datum of a module that is not at hand moves nothing by being written.
+
+        It keeps the value that it is given; of a part of it the type is not known.
+        """
+        self._undeclared(target)
+        if target.path:
+            self._elsewhere.pop(target.name, None)
+        else:
+            self._elsewhere[target.name] = value
 
     # ------------------------------------------------------------------- names
+
+    def cell(self, name: Name, scope: Scope) -> Cell | None:
+        """The datum of a name, of a module beside the program if need be."""
+        found = scope.find(name.name)
+        return self.data.fetched_cell(name.name, name.span) if found is None else found
 
     def _read_name(self, name: Name, scope: Scope) -> Value:
         found = self._locate_name(name, scope)
@@ -243,18 +338,34 @@ class Evaluator:
             self.reads.by_expression(found.source, self.reader)
         return found.value
 
-    def _locate_name(self, name: Name, scope: Scope) -> Located:
-        cell = scope.find(name.name)
+    def _locate_name(self, name: Name, scope: Scope, asking: bool = True) -> Located:
+        found = self._find(name, scope)
+        if asking and isinstance(found.value, Unknown):
+            sizes = found.cell.dimensions if found.cell is not None and not name.path else ()
+            answer = self.ask(name.span, found.type, sizes)
+            if answer is None and not name.path and found.value.key != name.text:
+                answer = self._ask(found.value.key, name.span, found.type, sizes)
+            if answer is not None:
+                return Located(answer, None, found.cell, type=found.type)
+        return found
+
+    def _find(self, name: Name, scope: Scope) -> Located:
+        cell = self.cell(name, scope)
+        if cell is None and not name.path and name.name in self._elsewhere:
+            return Located(self._elsewhere[name.name], None, None)
         if cell is None:
-            reason = f"'{name.text}', which is not declared in this module (a signal?)"
-            return Located(Unknown(reason, name.span), None, None)
+            reason = f"'{name.text}', which is not declared in what is at hand (a signal?)"
+            return Located(Unknown(reason, name.span, self.key(name.span)), None, None)
         if not cell.present:
             raise SourceError(f"the optional argument {cell.name} was not given", name.span)
-        value = self.settle(cell)
         if not name.path:
+            value = self.settle(cell)
             source = None if cell.overwritten else cell.source
-            return Located(value, source, cell, cell.predefined)
+            return Located(value, source, cell, cell.predefined, cell.type)
+        value = self._settled(cell)
         path = self._path(name, scope)
+        if isinstance(path, Unknown):
+            return Located(path, None, cell)
         source = None if path[0] in cell.overwritten else cell.source
         type_: Type = cell.type
         dimensions = cell.dimensions
@@ -267,23 +378,39 @@ class Evaluator:
                     value = item(value, index - 1)
                     shown = label if place == len(step) - 1 else ""
                     source = source.part(index - 1, shown) if source else None
+                value = cell.elements.get(step, value)
             else:
                 position, type_ = component(step, type_, dimensions, name)
                 value = item(value, position)
                 source = source.part(position, f".{step}") if source else None
-        return Located(value, source, cell)
+        return Located(value, source, cell, type=type_)
 
-    def _path(self, name: Name, scope: Scope) -> list[str | tuple[int, ...]]:
-        return [
-            step if isinstance(step, str) else tuple(self._index(e, scope) for e in step)
-            for step in name.path
-        ]
+    def _path(self, name: Name, scope: Scope) -> list[str | tuple[int, ...]] | Unknown:
+        path: list[str | tuple[int, ...]] = []
+        for step in name.path:
+            if isinstance(step, str):
+                path.append(step)
+                continue
+            indices = []
+            for expression in step:
+                value = self.evaluate(expression, scope)
+                if isinstance(value, Unknown):
+                    return value
+                indices.append(self.as_index(value, expression.span))
+            path.append(tuple(indices))
+        return path
 
-    def _index(self, expression: Expression, scope: Scope) -> int:
-        index = self.number(expression, scope, "an index")
-        if index != int(index):
-            raise SourceError(f"an index is a whole number, not {index:g}", expression.span)
-        return int(index)
+    def as_index(self, value: Value, span: Span) -> int:
+        """A known value as an index.
+
+        Raises:
+            SourceError: it is no whole number.
+        """
+        self.check(value, NUM, "an index", span)
+        assert isinstance(value, float)
+        if value != int(value):
+            raise SourceError(f"an index is a whole number, not {value:g}", span)
+        return int(value)
 
     # -------------------------------------------------- operators and functions
 
@@ -291,106 +418,25 @@ class Evaluator:
         value = self.evaluate(operation.first, scope)
         for symbol, operand in operation.rest:
             right = self.evaluate(operand, scope)
+            if symbol in ("=", "<>"):
+                value, right = like_signals(value, right)
             try:
                 value = apply(symbol, value, right)
             except OperandError as error:
                 raise SourceError(str(error), operation.span) from None
         return value
 
-    def _function(self, call: Call, scope: Scope) -> Value:
-        own = self.functions.get(call.name)
-        if own is not None:
-            return self._call(own, call, scope)
-        special = self._special.get(call.name)
-        if special is not None:
-            return special(call, scope)
-        if call.name in COMPUTED:
-            return self._computed(call, scope)
-        if call.name in STATE:
-            return Unknown(f"the value of {call.text}()", call.span)
-        known = [routine.text for routine in self.functions.values()] + sorted(COMPUTED)
-        raise SourceError(unknown_name("function", call.text, known), call.span)
 
-    def _computed(self, call: Call, scope: Scope) -> Value:
-        function, types, options = COMPUTED[call.name]
-        required = [a.value for a in call.arguments if a.option is None and a.value is not None]
-        if len(required) != len(types):
-            raise SourceError(
-                f"{call.text} takes {len(types)} arguments, not {len(required)}", call.span
-            )
-        given = {a.option: a.value for a in call.arguments if a.option is not None}
-        for option in given:
-            if option not in options:
-                raise SourceError(f"{call.text}: \\{option} is not supported", call.span)
-        values = [self.evaluate(e, scope) for e in required]
-        for option in options:
-            expression = given.get(option)
-            values.append(0.0 if expression is None else self.evaluate(expression, scope))
-        unknown = find_unknown(tuple(values))
-        if unknown is not None:
-            return unknown
-        for value, type_ in zip(values, (*types, *[NUM] * len(options)), strict=True):
-            wrong = mismatch(value, type_) if type_ is not None else None
-            if wrong is not None:
-                raise SourceError(f"{call.text}: {wrong}", call.span)
-        try:
-            return _checked(function(*values))
-        except OperandError as error:
-            raise SourceError(f"{call.text}: {error}", call.span) from None
-        except (ValueError, ArithmeticError):
-            raise SourceError(
-                f"{call.text} has no finite value for these arguments", call.span
-            ) from None
-
-    def _dim(self, call: Call, scope: Scope) -> Value:
-        """``Dim(array, n)``: size of the n-th dimension."""
-        array = _only_name(call, 2)
-        cell = scope.find(array.name)
-        if cell is None:
-            raise SourceError(unknown_name("array", array.text, scope.names()), array.span)
-        self.settle(cell)
-        which = call.arguments[1].value
-        index = self._index(which, scope) if which is not None else 0
-        if not 1 <= index <= len(cell.dimensions):
-            raise SourceError(
-                f"{cell.name} has {len(cell.dimensions)} dimensions, not {index}", call.span
-            )
-        return float(cell.dimensions[index - 1])
-
-    def _euler(self, call: Call, scope: Scope) -> Value:
-        """``EulerZYX(\\X, orient)``"""
-        switches = [a.option for a in call.arguments if a.option is not None]
-        required = [a.value for a in call.arguments if a.option is None and a.value is not None]
-        if len(switches) != 1 or switches[0] not in ("x", "y", "z") or len(required) != 1:
-            raise SourceError("EulerZYX takes \\X, \\Y or \\Z and an orient", call.span)
-        value = self.evaluate(required[0], scope)
-        unknown = find_unknown(value)
-        if unknown is not None:
-            return unknown
-        if not is_vector(value, 4):
-            raise SourceError("EulerZYX takes an orient", call.span)
-        assert isinstance(value, tuple)
-        try:
-            return euler_zyx(switches[0], value)
-        except OperandError as error:
-            raise SourceError(f"EulerZYX: {error}", call.span) from None
+def _check_type(value: Value, type_: Type, use: str, span: Span) -> None:
+    wrong = mismatch(value, type_)
+    if wrong is not None:
+        raise SourceError(f"{use}: {wrong}", span)
 
 
-def _present(call: Call, scope: Scope) -> Value:
-    """``Present(parameter)``"""
-    name = _only_name(call, 1)
-    cell = scope.find(name.name)
-    if cell is None:
-        raise SourceError(unknown_name("parameter", name.text, scope.names()), name.span)
-    return cell.present
-
-
-def _only_name(call: Call, count: int) -> Name:
-    arguments: tuple[Argument, ...] = call.arguments
-    first = arguments[0].value if arguments else None
-    if len(arguments) != count or not isinstance(first, Name) or first.path:
-        raise SourceError(f"{call.text} takes a datum as its first argument", call.span)
-    return first
+def _answerable(unknown: Unknown) -> str:
+    if not unknown.key:
+        return ""
+    return f', or answer it in a file (--io): [values] "{unknown.key}" = …'
 
 
 def _star(star: Star) -> Value:
@@ -399,9 +445,3 @@ def _star(star: Star) -> Value:
         "name, and read the program again",
         star.span,
     )
-
-
-def _checked(value: Value) -> Value:
-    if isinstance(value, float) and value - value != 0.0:
-        raise OverflowError
-    return float(value) if type(value) is int else value

@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable
 
 from .cursor import Cursor
-from .lexer import NAME, NUMBER, STRING, number_value, string_value
+from .lexer import LITERAL, NAME, NUMBER, STRING, number_value, string_value
 from .syntax import (
     Aggregate,
     Argument,
@@ -21,6 +21,7 @@ from .syntax import (
     Name,
     Number,
     Operation,
+    Packed,
     Star,
     Text,
     Truth,
@@ -33,19 +34,27 @@ RELATION = frozenset({"<", ">", "<>", "<=", ">=", "="})
 AND = frozenset({"and"})
 OR = frozenset({"or", "xor"})
 _CLOSING = frozenset({",", "]", ")", ";", "}"})
+_ENDING = _CLOSING | {"\\"}
 
 
 def parse_expression(cursor: Cursor) -> Expression:
     """The expression that starts at the cursor."""
-    quick = _lone_number(cursor)
+    quick = _lone_value(cursor)
     if quick is not None:
         return quick
     return _chain(cursor, OR, _negatable_term)
 
 
-def _lone_number(cursor: Cursor) -> Number | None:
-    """A number that is the whole expression: most of any program's text."""
+def _lone_value(cursor: Cursor) -> Expression | None:
+    """A number or literal, or a plain name, that is the whole expression: most of any text."""
     kinds, index = cursor.kinds, cursor.index
+    if kinds[index] == NAME and kinds[index + 1] in _ENDING:
+        text = cursor.text
+        start, end = cursor.starts[index], cursor.ends[index]
+        cursor.index += 1
+        return Name(cursor.source.span(start, end), text.lower(), text)
+    if kinds[index] == LITERAL and kinds[index + 1] in _ENDING:
+        return _packed(cursor)
     signed = kinds[index] == "-"
     if kinds[index + signed] != NUMBER or kinds[index + signed + 1] not in _CLOSING:
         return None
@@ -103,6 +112,8 @@ def _primary(cursor: Cursor) -> Expression:
         return _number(cursor)
     if kind == NAME:
         return _name_or_call(cursor)
+    if kind == LITERAL:
+        return _packed(cursor)
     if kind == "[":
         return _aggregate(cursor)
     if kind == STRING:
@@ -136,6 +147,12 @@ def _number(cursor: Cursor) -> Number:
     if not math.isfinite(value):
         raise cursor.source.error("this number is too large", span.start, span.end)
     return Number(span, -value if negative else value)
+
+
+def _packed(cursor: Cursor) -> Packed:
+    start, text, value = cursor.start, cursor.text, cursor.values[cursor.index]
+    cursor.index += 1
+    return Packed(cursor.source.span(start, start + len(text)), value, text)
 
 
 def _aggregate(cursor: Cursor) -> Aggregate:
@@ -188,7 +205,7 @@ def parse_braces(cursor: Cursor) -> tuple[Expression, ...]:
 
 
 def parse_arguments(cursor: Cursor, end: str) -> tuple[Argument, ...]:
-    """The arguments of a call up to the token ``end``: ``a, b\\Option:=c, \\Switch``."""
+    """The arguments of a call up to the token ``end``: ``a, b:=c\\Option:=d, \\Switch``."""
     arguments: list[Argument] = []
     while cursor.kind != end:
         if arguments and not cursor.accept(",") and cursor.kind != "\\":
@@ -200,8 +217,12 @@ def parse_arguments(cursor: Cursor, end: str) -> tuple[Argument, ...]:
 def _argument(cursor: Cursor) -> Argument:
     start = cursor.start
     if not cursor.accept("\\"):
+        named = cursor.kind == NAME and cursor.peek() == ":="
+        name = cursor.name("an argument's name").lower() if named else None
+        if named:
+            cursor.advance()
         value = parse_expression(cursor)
-        return Argument(value.span, value)
+        return Argument(value.span, value, parameter=name)
     option = cursor.name("the name of an optional argument").lower()
     if cursor.accept(":="):
         given: Expression | None = parse_expression(cursor)

@@ -10,7 +10,6 @@ Definitions: "RAPID Reference Manual", functions.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 
@@ -18,7 +17,20 @@ from ....core.spatial.rotation import matrix_from_quaternion, quaternion_from_ma
 from .lexer import words
 from .literals import Record
 from .operators import OperandError, cross, finite, hamilton
-from .types import NUM, ORIENT, POS, POSE, ROBTARGET, STRING, Type, Value
+from .text_functions import TEXT_FUNCTIONS, Computed
+from .types import (
+    BOOL,
+    JOINTTARGET,
+    NUM,
+    ORIENT,
+    POS,
+    POSE,
+    ROBTARGET,
+    STRING,
+    TOOLDATA,
+    WOBJDATA,
+    Type,
+)
 
 Vector = tuple[float, ...]
 
@@ -78,20 +90,34 @@ def euler_zyx(option: str, orient: Vector) -> float:
     return math.degrees(angles[option])
 
 
-def def_frame(first: Record, second: Record, third: Record) -> Record:
-    """The frame with its origin at ``first``, x towards ``second``, ``third`` on the y side."""
+def def_frame(first: Record, second: Record, third: Record, origin: float = 0.0) -> Record:
+    """The frame with x from ``first`` towards ``second`` and ``third`` on the y side.
+
+    Args:
+        origin: 0 or 1 for an origin at ``first``, 2 at ``second``, 3 where the line through
+            ``third`` meets the x axis at a right angle.
+    """
     points = (first[0], second[0], third[0])
     if max(abs(v) for point in points for v in point) > FARTHEST:
         raise OperandError(f"DefFrame takes points within {FARTHEST:g} mm")
-    origin = np.array(first[0])
-    x = np.array(second[0]) - origin
-    z = np.cross(x, np.array(third[0]) - origin)
+    start = np.array(first[0])
+    x = np.array(second[0]) - start
+    z = np.cross(x, np.array(third[0]) - start)
     if np.linalg.norm(z) < 1e-9:
         raise OperandError("DefFrame needs three points that are not on one line")
     x = x / np.linalg.norm(x)
     z = z / np.linalg.norm(z)
     w, i, j, k = quaternion_from_matrix(np.column_stack([x, np.cross(z, x), z]))
-    return (first[0], (float(w), float(i), float(j), float(k)))
+    places = {0: start, 1: start, 2: np.array(second[0])}
+    at = places.get(int(origin), start + x * float(x @ (np.array(third[0]) - start)))
+    return (tuple(map(float, at)), (float(w), float(i), float(j), float(k)))
+
+
+def displacement_frame(
+    p1: Record, p2: Record, p3: Record, q1: Record, q2: Record, q3: Record, origin: float
+) -> Record:
+    """``DefDframe``: the displacement that takes three points to where they are now."""
+    return pose_mult(def_frame(q1, q2, q3, origin), pose_inv(def_frame(p1, p2, p3, origin)))
 
 
 def rotate(rot: Vector, vector: Vector) -> Vector:
@@ -149,27 +175,6 @@ def _dot(a: Vector, b: Vector) -> float:
     return sum(u * v for u, v in zip(a, b, strict=True))
 
 
-def _part(text: str, position: float, length: float) -> str:
-    start, count = int(position), int(length)
-    if start < 1 or count < 0 or start - 1 + count > len(text):
-        raise OperandError(f"StrPart reaches outside a string of {len(text)} characters")
-    return text[start - 1 : start - 1 + count]
-
-
-def _num_to_string(value: float, decimals: float) -> str:
-    return f"{value:.{int(max(0.0, min(decimals, 15.0)))}f}"
-
-
-def _value_to_string(value: Value) -> str:
-    if isinstance(value, tuple):
-        return "[" + ",".join(_value_to_string(v) for v in value) + "]"
-    if isinstance(value, bool):
-        return "TRUE" if value else "FALSE"
-    return f"{value:g}" if isinstance(value, float) else str(value)
-
-
-Computed = tuple[Callable[..., Value], tuple[Type | None, ...], tuple[str, ...]]
-
 COMPUTED: dict[str, Computed] = {
     "offs": (offs, (ROBTARGET, NUM, NUM, NUM), ()),
     "reltool": (rel_tool, (ROBTARGET, NUM, NUM, NUM), ("rx", "ry", "rz")),
@@ -178,7 +183,8 @@ COMPUTED: dict[str, Computed] = {
     "posevect": (pose_vect, (POSE, POS), ()),
     "orientzyx": (orient_zyx, (NUM, NUM, NUM), ()),
     "norient": (unit, (ORIENT,), ()),
-    "defframe": (def_frame, (ROBTARGET, ROBTARGET, ROBTARGET), ()),
+    "defframe": (def_frame, (ROBTARGET,) * 3, ("origin",)),
+    "defdframe": (displacement_frame, (ROBTARGET,) * 6, ("origin",)),
     "distance": (_distance, (POS, POS), ()),
     "dotprod": (_dot, (POS, POS), ()),
     "vectmagn": (_magnitude, (POS,), ()),
@@ -195,27 +201,45 @@ COMPUTED: dict[str, Computed] = {
     "atan2": (lambda y, x: math.degrees(math.atan2(y, x)), (NUM, NUM), ()),
     "round": (_rounded, (NUM,), ("dec",)),
     "trunc": (_truncated, (NUM,), ("dec",)),
-    "numtostr": (_num_to_string, (NUM, NUM), ()),
-    "valtostr": (_value_to_string, (None,), ()),
-    "strlen": (lambda s: float(len(s)), (STRING,), ()),
-    "strpart": (_part, (STRING, NUM, NUM), ()),
+    **TEXT_FUNCTIONS,
 }
-"""name → function, types of its required arguments (None: any), its optional numbers in order
-(zero if they are absent). These depend on their arguments alone."""
+"""name → function; these depend on their arguments alone."""
 
 _WITH_DNUM = words("abs sqrt pow sin cos tan asin acos atan atan2 round trunc")
 COMPUTED |= {f"{name}dnum": COMPUTED[name] for name in _WITH_DNUM}
 COMPUTED |= dict.fromkeys(("numtodnum", "dnumtonum"), (float, (NUM,), ()))
 
-STATE = words(
-    """ainput aoutput dinput doutput ginput goutput ginputdnum goutputdnum testdi
-    crobt cjointt cpos corient ctool cwobj calcjointt calcrobt clkread cdate ctime gettime
-    readmotor opmode runmode nonmotionmode isstopmoveact isstopstateevent ismechunitactive
-    isfile filesize fssize taskrunmec taskrunrob robos robname cspeedoverride maxrobspeed
-    readnum readstr readbin readstrbin readrawbytes uinumentry uinumtune uialphaentry uilistview
-    uimessagebox uiclientexist testandset testsignread getsysdata corrread eventtype
-    socketgetstatus socketpeek robinlimit strtoval strtobyte strmatch strfind strmap strmemb
-    bitcheck bitand bitor bitxor bitneg bitlsh bitrsh bytetostr poslimit"""
-)
-"""Functions that ask the controller, the operator or the outside world, or that are not computed
-here. Their values are unknown; they move nothing."""
+
+def _asking(**kinds: str) -> dict[str, Type | None]:
+    types: dict[str, Type | None] = {"num": NUM, "bool": BOOL, "string": STRING, "any": None}
+    return {name: types[kind] for kind, names in kinds.items() for name in words(names)}
+
+
+STATE: dict[str, Type | None] = {
+    **_asking(
+        num="""ainput aoutput dinput doutput ginput goutput ginputdnum goutputdnum clkread
+        readmotor opmode runmode nonmotionmode filesize fssize texttab maxrobspeed readnum
+        readbin uinumentry uinumtune uilistview uimessagebox uidnumentry uidnumtune gettime
+        corrread eventtype socketgetstatus getaxisload getmotorconf gettorque iosignalstate
+        testsignread cspeedoverride gettsptint""",
+        bool="""testdi isstopmoveact isstopstateevent ismechunitactive isfile istaskmec
+        taskrunmec taskrunrob uiclientexist robinlimit poslimit validio isvarinit isrobtarget
+        isbrakecheckactive ispathplan stapresent strtoval getnextsym robos
+        texttabfreetouse""",
+        string="""cdate ctime robname readstr readstrbin uialphaentry argname
+        gettaskname getsysinfo strdigcalc textget texttabget socketpeek filename getserviceinfo
+        getmecunitname""",
+        any="""ispersdata getsysdata readrawbytes rawbyteslen calcrotaxisframe calcrotaxframez
+        csystemparam dimension getuasuserdata getmodalpayloadmode""",
+    ),
+    "crobt": ROBTARGET,
+    "cpos": POS,
+    "corient": ORIENT,
+    "cjointt": JOINTTARGET,
+    "calcjointt": JOINTTARGET,
+    "calcrobt": ROBTARGET,
+    "ctool": TOOLDATA,
+    "cwobj": WOBJDATA,
+}
+"""Functions that ask the controller, the operator or the outside world, with the type of their
+values, None where nothing is known of it. They move nothing."""

@@ -1,30 +1,35 @@
 """Runs a program: statements → the moves, waits and kept statements that the robot goes through.
 
-A program is executed where all that decides its course follows from its own text. Values that
-only the running controller has (signals, clocks, the robot's position) travel as `Unknown` through
-assignments and are refused as soon as a branch, a loop or a move depends on one.
+Values that only the running controller has (signals, clocks, an operator's answers) travel as
+`Unknown` through assignments; where a branch or a loop depends on one, `branching` decides, and
+where a move does, it is refused.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from typing import NoReturn
 
 from ....core.errors import Note, SourceError, Span
 from ....core.program.move import Move, Opaque, Wait
 from ....core.program.move import Statement as ProgramStatement
-from ....core.program.origin import MoveOrigin
+from ....core.source.answers import Course
+from ....core.source.limits import Meter
+from ....core.source.reading import ReadOptions
+from .branching import Frame, end_loop, run_for, run_if, run_test, run_while
 from .calls import pass_arguments, present
-from .control import may_leave
 from .convert import Converter
 from .evaluator import Evaluator
+from .flow import Flow
 from .globals import Globals
-from .instructions import INTERPRETED, KEPT, REFUSED, known_names
-from .motion import Sources
+from .instructions import INTERPRETED, KEPT, MOVING, REFUSED, known_names
 from .operators import OperandError, apply
+from .output import Output, Sources
 from .scope import Cell, Scope, unknown_name
 from .settings import Settings
+from .state import StateFunctions
 from .syntax import (
     Argument,
     Assign,
@@ -43,17 +48,10 @@ from .syntax import (
     Routine,
     Statement,
     Test,
-    Truth,
     While,
 )
-from .types import BOOL, NUM, STRING, Foreign, Unknown, Value, interpreted, mismatch
-
-STATEMENT_LIMIT = 1_000_000
-"""Statements executed; a program that needs more has no end that can be waited for."""
-MOVE_LIMIT = 100_000
-"""Moves executed."""
-CALL_LIMIT = 40
-"""Routines that have called each other."""
+from .types import STRING, Unknown, Value, interpreted, mismatch
+from .whereabouts import Whereabouts
 
 
 class _Returned(Exception):
@@ -76,26 +74,37 @@ class Interpreter:
     Args:
         data: modules, routines and data of the program.
         texts: source texts by file, from which kept statements are cut.
+        options: answers, limits and the robot.
         external_axes: see `Converter`.
     """
 
     def __init__(
-        self, data: Globals, texts: Mapping[str, str], external_axes: Sequence[str] | None
+        self,
+        data: Globals,
+        texts: dict[str, str],
+        options: ReadOptions,
+        external_axes: Sequence[str] | None,
     ) -> None:
         self.data = data
         self.settings = Settings()
+        self.out = Output(texts)
+        self.course = Course(options.answers)
+        self.meter = Meter(options.limits)
+        self.flow = Flow(data)
+        self.robot = options.robot
         self.convert = Converter(self, external_axes)
-        self.evaluator = Evaluator(data.types, data.functions, self._call_function)
-        data.declare(self.evaluator)
-        self._texts = texts
-        self._statements: list[ProgramStatement] = []
-        self._sources: list[Sources] = []
-        self._notes: dict[tuple[str, str], Note] = {}
-        self._kept: dict[str, tuple[Note, int]] = {}
-        self._quaternions: dict[Span, float] = {}
-        self._where = ""
-        self._depth = 0
-        self._executed = 0
+        self.whereabouts = Whereabouts(options.robot, external_axes)
+        self.state = StateFunctions(self)
+        self.evaluator = Evaluator(
+            data,
+            self.course,
+            self.out.text_of,
+            self._call_function,
+            self.state.table(),
+            self._note_undeclared,
+        )
+        self._frames: list[Frame] = []
+        self._loops: dict[int, Block] = {}  # bodies of loops that a GOTO closes, by its id
 
     # --------------------------------------------------------------------- the run
 
@@ -104,48 +113,25 @@ class Interpreter:
         with suppress(_Finished):
             self._call(entry, (), self.data.scope_of(entry), entry.span)
 
+    def let_go(self) -> None:
+        """Forget everything: the parts of a run know each other, and would wait for a search for
+        garbage together with the syntax tree."""
+        vars(self).clear()
+
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""
-        sources = enumerate(self._sources)
-        return tuple(
-            statement
-            if isinstance(statement, Wait | Opaque)
-            else replace(statement, origin=self._origin(*next(sources)))
-            for statement in self._statements
-        )
+        return self.out.statements(self.evaluator.reads)
 
     def notes(self) -> tuple[Note, ...]:
         """What is to be said about the run."""
-        notes = list(self._notes.values())
-        for note, count in self._kept.values():
-            times = f" ({count} times, here first)" if count > 1 else ""
-            notes.append(replace(note, message=note.message + times))
-        if self._quaternions:
-            worst = max(self._quaternions.values())
-            first = next(iter(self._quaternions))
-            count = len(self._quaternions)
-            what = "a quaternion is" if count == 1 else f"{count} quaternions are"
-            notes.append(
-                Note(f"{what} not of unit length (by {worst:.1g} at most): normalised", span=first)
-            )
-        return tuple(notes)
-
-    def _origin(self, index: int, sources: Sources) -> MoveOrigin:
-        reads = self.evaluator.reads
-        return MoveOrigin(
-            sources.statement,
-            reads.origin(sources.target, index),
-            reads.origin(sources.speed, index),
-            reads.origin(sources.zone, index),
-            None if sources.via is None else reads.origin(sources.via, index),
-        )
+        return (*self.data.notes, *self.out.notes(), *self.course.notes())
 
     # ------------------------------------------------------ for instruction handlers
 
     @property
-    def move_index(self) -> int:
-        """Index of the move that is being read, or comes next."""
-        return len(self._sources)
+    def frame(self) -> Frame:
+        """The routine that is being run."""
+        return self._frames[-1]
 
     def number(self, expression: Expression, scope: Scope, use: str) -> float:
         """A known num; see `Evaluator.known`."""
@@ -153,38 +139,16 @@ class Interpreter:
 
     def emit(self, statement: Wait | Opaque) -> None:
         """Put a statement that is no move at the end of the program."""
-        self._statements.append(statement)
+        self.out.emit(statement)
 
     def emit_move(self, move: Move, sources: Sources) -> None:
         """Put a move at the end of the program.
 
         Raises:
-            SourceError: there are more than `MOVE_LIMIT`.
+            SourceError: there are too many.
         """
-        if len(self._sources) >= MOVE_LIMIT:
-            raise self._endless(f"{MOVE_LIMIT} moves", sources.statement)
-        self._statements.append(move)
-        self._sources.append(sources)
-
-    def keep(self, statement: Invoke | Keyword, why: str, stops: bool = False) -> None:
-        """Keep a statement as it stands, with one note per kind, at the first of them."""
-        span = statement.span
-        text = self._texts[span.file][span.start : span.end]
-        self.emit(Opaque(text, stops, span))
-        if why:
-            name = statement.text if isinstance(statement, Invoke) else statement.word.upper()
-            message = f"{name} is kept and not carried out: {why}"
-            first, count = self._kept.get(message.lower(), (Note(message, span=span), 0))
-            self._kept[message.lower()] = first, count + 1
-
-    def note_once(self, kind: str, message: str, span: Span) -> None:
-        """A note, unless this kind was noted in this routine before."""
-        where = f" (in {self._where})" if self._where else ""
-        self._notes.setdefault((self._where, kind), Note(message + where, span=span))
-
-    def note_quaternion(self, error: float, span: Span) -> None:
-        """A quaternion was scaled to unit length."""
-        self._quaternions.setdefault(span, error)
+        self.meter.move(sources.statement)
+        self.out.emit_move(move, sources)
 
     def change(
         self, target: Expression, add: Expression | None, amount: float | None, scope: Scope
@@ -201,43 +165,60 @@ class Interpreter:
                 raise SourceError(str(error), target.span) from None
         self.evaluator.assign(target, value, scope)
 
-    def finish(self, message: str, span: Span) -> None:
+    def finish(self, message: str, span: Span) -> NoReturn:
         """End the program here, with a note."""
-        self.note_once("end", message, span)
+        self.out.note_once("end", message, span)
         raise _Finished
 
     # -------------------------------------------------------------------- statements
 
-    def _run_block(self, block: Block, scope: Scope) -> None:
+    def run_block(self, block: Block, scope: Scope) -> None:
+        """Execute statements in order."""
         statements = block.statements
         index = 0
         while index < len(statements):
             try:
                 self._run_statement(statements[index], scope)
+                index += 1
             except _Jump as jump:
-                if jump.goto.name not in block.labels:
-                    raise
-                index = block.labels[jump.goto.name]
-                continue
-            index += 1
+                index = self._after_jump(block, index, jump.goto, scope)
+
+    def _after_jump(self, block: Block, index: int, goto: Goto, scope: Scope) -> int:
+        """Index of the statement where a block goes on after a jump out of one of its statements.
+
+        A jump back that stands in the block itself closes a loop.
+
+        Raises:
+            _Jump: the label is further out.
+        """
+        while goto.name in block.labels:
+            target = block.labels[goto.name]
+            if target > index or goto is not block.statements[index]:
+                return target
+            body = self._loops.setdefault(id(goto), Block(block.statements[target - 1 : index]))
+            span = goto.span._replace(start=body.statements[0].span.start)
+            try:
+                end_loop(self, span, body, scope)
+                return target
+            except _Jump as jump:
+                goto = jump.goto
+        raise _Jump(goto)
 
     def _run_statement(self, statement: Statement, scope: Scope) -> None:
-        self._executed += 1
-        if self._executed > STATEMENT_LIMIT:
-            raise self._endless(f"{STATEMENT_LIMIT} statements", statement.span)
+        self.meter.statement(statement.span)
         if isinstance(statement, Invoke):
             self._invoke(statement, scope)
         elif isinstance(statement, Assign):
             value = self.evaluator.evaluate(statement.value, scope)
             self.evaluator.assign(statement.target, value, scope)
         elif isinstance(statement, If):
-            self._if(statement, scope)
+            run_if(self, statement, scope)
         elif isinstance(statement, For):
-            self._for(statement, scope)
+            run_for(self, statement, scope)
         elif isinstance(statement, While):
-            self._while(statement, scope)
+            run_while(self, statement, scope)
         elif isinstance(statement, Test):
-            self._test(statement, scope)
+            run_test(self, statement, scope)
         elif isinstance(statement, Return):
             value_ = statement.value
             raise _Returned(None if value_ is None else self.evaluator.evaluate(value_, scope))
@@ -248,116 +229,97 @@ class Interpreter:
         elif not isinstance(statement, Label):
             self._keyword(statement)
 
-    def _if(self, statement: If, scope: Scope) -> None:
-        for branch in statement.branches:
-            if self.evaluator.known(branch.condition, scope, BOOL, "IF"):
-                self._run_block(branch.body, scope)
-                return
-        if statement.otherwise is not None:
-            self._run_block(statement.otherwise, scope)
-
-    def _for(self, loop: For, scope: Scope) -> None:
-        start = self.number(loop.start, scope, "FOR")
-        stop = self.number(loop.stop, scope, "FOR")
-        # Without STEP the controller counts down where it has to.
-        step = 1.0 if start <= stop else -1.0
-        if loop.step is not None:
-            step = self.number(loop.step, scope, "FOR")
-        if step == 0:
-            raise SourceError("STEP is zero: the loop has no end", loop.span)
-        counter = Cell(loop.name, NUM)
-        inner = Scope(scope.where, {loop.name: counter}, scope)
-        value = start
-        while value <= stop if step > 0 else value >= stop:
-            counter.value = value
-            self._run_block(loop.body, inner)
-            self._executed += 1
-            if self._executed > STATEMENT_LIMIT:
-                raise self._endless(f"{STATEMENT_LIMIT} statements", loop.span)
-            value += step
-
-    def _while(self, loop: While, scope: Scope) -> None:
-        forever = isinstance(loop.condition, Truth) and loop.condition.value
-        if forever and not may_leave(loop.body):
-            self._run_block(loop.body, scope)
-            self.finish("the program is an endless loop (WHILE TRUE): one pass is read", loop.span)
-        while self.evaluator.known(loop.condition, scope, BOOL, "WHILE"):
-            self._run_block(loop.body, scope)
-            self._executed += 1
-            if self._executed > STATEMENT_LIMIT:
-                raise self._endless(f"{STATEMENT_LIMIT} statements", loop.span)
-
-    def _test(self, test: Test, scope: Scope) -> None:
-        subject = self._decided(test.subject, scope)
-        for case in test.cases:
-            for expression in case.values:
-                try:
-                    equal = apply("=", subject, self._decided(expression, scope))
-                except OperandError as error:
-                    raise SourceError(f"TEST: {error}", expression.span) from None
-                if equal:
-                    self._run_block(case.body, scope)
-                    return
-        if test.otherwise is not None:
-            self._run_block(test.otherwise, scope)
-
-    def _decided(self, expression: Expression, scope: Scope) -> Value:
-        value = self.evaluator.evaluate(expression, scope)
-        self.evaluator.check(value, Foreign("any"), "TEST", expression.span)
-        return value
-
     def _keyword(self, statement: Keyword) -> None:
         if statement.word == "exit":
             raise _Finished
         if statement.word == "connect":
-            self.keep(statement, KEPT["connect"].why)
+            self.out.keep(statement, KEPT["connect"].why)
+            return
+        if statement.word == "placeholder":
+            message = "statements that are not filled in (<SMT>) are stepped over"
+            self.out.count(message, statement.span)
             return
         what = {
-            "placeholder": "this statement is not filled in: write it, or take it out",
             "raise": "RAISE hands an error to a handler, and error handlers are not run",
             "retry": "RETRY stands outside an error handler",
             "trynext": "TRYNEXT stands outside an error handler",
         }
         raise SourceError(what[statement.word], statement.span)
 
-    def _endless(self, what: str, span: Span) -> SourceError:
-        return SourceError(
-            f"{what} are executed and the program has not ended: a loop without end? Give it an "
-            "end, or choose a routine without it as the entry",
-            span,
-        )
-
     # ------------------------------------------------------------------------- calls
 
     def _invoke(self, statement: Invoke, scope: Scope) -> None:
-        routine = self.data.procedures.get(statement.name)
-        if routine is not None:
+        name = statement.name
+        routine = self.data.routine(name, scope.home)
+        if routine is not None and routine.kind == "proc":
             self._call(routine, statement.arguments, scope, statement.span)
             return
         statement = self._with_present_arguments(statement, scope)
-        handler = INTERPRETED.get(statement.name)
+        handler = INTERPRETED.get(name)
         if handler is not None:
-            self.evaluator.reader = self.move_index if statement.name.startswith("move") else -1
+            self.evaluator.reader = self.out.move_index if name in MOVING else -1
             handler(self, statement, scope)
             self.evaluator.reader = -1
             return
-        kept = KEPT.get(statement.name)
-        if kept is not None:
-            self._run_functions_in(statement.arguments, scope)
-            if kept.writes:
-                self._forget(statement, scope)
-            self.keep(statement, kept.why, kept.stops)
+        if name in KEPT:
+            self.keep(statement, scope)
             return
-        raise self._refusal(statement)
+        routine = None if name in REFUSED else self.fetched(statement, scope)
+        if routine is not None:
+            self._call(routine, statement.arguments, scope, statement.span)
+        elif self.course.skips(statement.text):
+            self.out.keep(statement, "it is skipped, as the answers say", stops=False)
+        else:
+            raise self._refusal(statement)
+
+    def fetched(self, statement: Invoke, scope: Scope) -> Routine | None:
+        """A procedure of a module beside the program."""
+        found = self.data.fetched_routine(statement.name, scope.home, statement.span)
+        return found if found is not None and found.kind == "proc" else None
+
+    def keep(self, statement: Invoke, scope: Scope) -> None:
+        """Step over an instruction that does not move the robot; it stays as it stands."""
+        kept = KEPT[statement.name]
+        for argument in statement.arguments:
+            # Functions of the program itself may move the robot, even for a message's text.
+            if argument.value is not None and self.flow.call_moves(argument.value, scope.home):
+                self.evaluator.evaluate(argument.value, scope)
+        if kept.writes:
+            self._fill(statement, scope)
+        self.out.keep(statement, kept.why, kept.stops)
+        for argument in statement.arguments:
+            flag = argument.value
+            if argument.option == "timeflag" and isinstance(flag, Name) and scope.find(flag.name):
+                self.evaluator.assign(flag, False, scope)
+
+    def _fill(self, statement: Invoke, scope: Scope) -> None:
+        """Data that a kept instruction writes have the user's answers, or no known value."""
+        for argument in statement.arguments:
+            if not isinstance(argument.value, Name):
+                continue
+            cell = scope.find(argument.value.name)
+            if cell is not None and not cell.constant:
+                name = argument.value.text
+                unknown = Unknown(f"what {statement.text} gave {name}", statement.span, name)
+                self.evaluator.fill(argument.value, unknown, scope)
+
+    def _note_undeclared(self, name: Name) -> None:
+        message = f"'{name.text}' is written and not declared in what is at hand: it is taken to "
+        self.out.count(message + "be declared in a module that is not", name.span)
 
     def _refusal(self, statement: Invoke) -> SourceError:
         reason = REFUSED.get(statement.name)
         if reason is not None:
             return SourceError(f"{statement.text} is refused: {reason}", statement.span)
-        known = {r.text for r in self.data.procedures.values()} | known_names()
+        known = {*self.data.routine_names("proc"), *known_names()}
+        hint = self.data.hint(statement.name)
+        message = unknown_name(
+            "instruction or routine", statement.text, known, hint or "its text is not at hand"
+        )
         return SourceError(
-            f"{unknown_name('instruction or routine', statement.text, known)}; it might move the "
-            "robot, so it is not stepped over: put its text into this module, or take the call out",
+            f"{message}; it might move the robot, so it is not stepped over: name the module that "
+            f"declares it, or, if it does not move the robot, answer '{statement.text} = \"skip\"' "
+            "in the table [calls] of the answers",
             statement.span,
         )
 
@@ -367,32 +329,27 @@ class Interpreter:
             return statement
         return replace(statement, arguments=tuple(present(statement.arguments, scope)))
 
-    def _run_functions_in(self, arguments: tuple[Argument, ...], scope: Scope) -> None:
-        """Functions of the program itself may move the robot, even for a message's text."""
-        for argument in arguments:
-            value = argument.value
-            if isinstance(value, Call) and value.name in self.data.functions:
-                self.evaluator.evaluate(value, scope)
-
-    def _forget(self, statement: Invoke, scope: Scope) -> None:
-        """Data that a kept instruction may have written have no known value any more."""
-        for argument in statement.arguments:
-            if not isinstance(argument.value, Name):
-                continue
-            cell = scope.find(argument.value.name)
-            if cell is not None and not cell.constant:
-                self.evaluator.settle(cell)
-                cell.value = Unknown(f"what {statement.text} gave {cell.name}", statement.span)
-                cell.source = cell.predefined = None
-
     def _late(self, statement: LateInvoke, scope: Scope) -> None:
         name = self.evaluator.known(statement.routine, scope, STRING, "the routine to call")
         assert isinstance(name, str)
-        routine = self.data.procedures.get(name.lower())
-        if routine is None:
-            known = [r.text for r in self.data.procedures.values()]
-            raise SourceError(unknown_name("routine", name, known), statement.span)
-        self._call(routine, statement.arguments, scope, statement.span)
+        self.call_named(name, statement.arguments, scope, statement.span)
+
+    def call_named(
+        self, name: str, arguments: tuple[Argument, ...], scope: Scope, span: Span
+    ) -> None:
+        """Call the procedure that a string names.
+
+        Raises:
+            SourceError: there is none.
+        """
+        _, _, own = name.rpartition(":")
+        routine = self.data.fetched_routine(own.strip().lower(), scope.home, span)
+        if routine is None or routine.kind != "proc":
+            if self.course.skips(name):
+                return
+            known = self.data.routine_names("proc")
+            raise SourceError(unknown_name("routine", name, known), span)
+        self._call(routine, arguments, scope, span)
 
     def _call_function(self, routine: Routine, call: Call, scope: Scope) -> Value:
         reader, self.evaluator.reader = self.evaluator.reader, -1
@@ -400,7 +357,7 @@ class Interpreter:
         self.evaluator.reader = reader
         if value is None:
             raise SourceError(f"{routine.text} ends without RETURN and a value", call.span)
-        type_ = self.data.types.get(routine.returns or "", Foreign(routine.returns or ""))
+        type_ = self.data.type(routine.returns or "", self.data.scope_of(routine).home, call.span)
         wrong = mismatch(value, type_)
         if wrong is not None:
             raise SourceError(f"the value of {routine.text}: {wrong}", call.span)
@@ -409,26 +366,20 @@ class Interpreter:
     def _call(
         self, routine: Routine, arguments: tuple[Argument, ...], caller: Scope, span: Span
     ) -> Value | None:
-        if self._depth >= CALL_LIMIT:
-            raise SourceError(
-                f"more than {CALL_LIMIT} routines have called each other: {routine.text} calls "
-                "itself without end?",
-                span,
-            )
-        where = self._where
-        scope = Scope(f"{routine.kind.upper()} {routine.text}", {}, self.data.scope_of(routine))
-        pass_arguments(
-            self.evaluator, routine, tuple(present(arguments, caller)), caller, scope, span
-        )
+        outer = self.data.scope_of(routine)
+        scope = outer.inner(f"{routine.kind.upper()} {routine.text}")
+        given = tuple(present(arguments, caller))
+        back = pass_arguments(self.evaluator, routine, given, caller, scope, span)
         for declaration in routine.declarations:
-            self.evaluator.declare(declaration, scope)
-        self._depth += 1
-        self._where = scope.where
+            self.data.declare(declaration, scope)
+        self.meter.call(routine.text, span)
+        where, self.out.where = self.out.where, scope.where
+        self._frames.append(Frame(routine, outer.home, main=not self._frames))
         if routine.handlers:
             kinds = ", ".join(h.upper() for h in routine.handlers)
-            self.note_once("handlers", f"handlers are not run: {kinds}", routine.span)
+            self.out.note_once("handlers", f"handlers are not run: {kinds}", routine.span)
         try:
-            self._run_block(routine.body, scope)
+            self.run_block(routine.body, scope)
         except _Returned as returned:
             return returned.value
         except _Jump as jump:
@@ -436,6 +387,14 @@ class Interpreter:
                 f"no label '{jump.goto.name}' can be reached from here", jump.goto.span
             ) from None
         finally:
-            self._depth -= 1
-            self._where = where
+            self.meter.back()
+            self.out.where = where
+            self._frames.pop()
+            for cell, target in back:
+                self._hand_back(cell, target, caller)
         return None
+
+    def _hand_back(self, cell: Cell, target: Name, caller: Scope) -> None:
+        """What a routine made of an element or component that was passed by reference."""
+        if cell.source is None and cell.value is not None:
+            self.evaluator.assign(target, cell.value, caller)

@@ -2,7 +2,9 @@
 
 One compiled pattern finds every token; blanks, ends of line and comments are part of the pattern
 in front of it. Written by hand rather than with a parser generator because source files hold
-hundreds of thousands of numbers: see `parser` for the measurement.
+hundreds of thousands of numbers: see `parser` for the measurement. For the same reason brackets
+with nothing but numbers in them, as robtargets are, come as one token (`LITERAL`), which the
+standard library's JSON scanner turns into a value.
 
 Sources: "RAPID Reference Manual", basic elements: identifiers, numbers (decimal; 0x, 0o, 0b),
 strings (``""`` for a quote, ``\\xx`` for a character code, ``\\\\`` for a backslash), ``!``
@@ -11,6 +13,7 @@ comments; upper and lower case are the same.
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import dataclass
 
@@ -31,7 +34,11 @@ KEYWORDS = words(
 """Reserved words (the attributes of a module are not: they may be used as names)."""
 
 END = "end of file"
-NAME, NUMBER, STRING = "name", "number", "string"
+NAME, NUMBER, STRING, LITERAL = "name", "number", "string", "literal"
+
+_LEAF = r"-?+[0-9][0-9.eE+-]*+\s*+"
+_ROW = rf"\[\s*+{_LEAF}(?:,\s*+{_LEAF})*+\]\s*+"
+_ITEM = rf"(?:{_LEAF}|{_ROW})"
 
 _TOKEN = re.compile(
     r"""
@@ -40,13 +47,21 @@ _TOKEN = re.compile(
       | (?P<number> 0[xX][0-9a-fA-F]++ | 0[oO][0-7]++ | 0[bB][01]++
                   | (?: [0-9]++ (?: \.[0-9]*+ )? | \.[0-9]++ ) (?: [eE][+-]?[0-9]++ )? )
       | (?P<string> " (?: [^"\r\n]++ | "" )*+ " )
+      | (?P<literal> """
+    rf"\[\s*+{_ITEM}(?:,\s*+{_ITEM})*+\]"
+    r""" )
       | (?P<symbol> := | <> | <= | >= | [-+*/=<>()\[\]{},;:.\\?|%] )
       | (?P<end> \Z )
     )""",
     re.VERBOSE,
 )
+_GROUPS = ("", NAME, NUMBER, STRING, LITERAL, "symbol", END)
+_NAME, _LITERAL, _SYMBOL = (_TOKEN.groupindex[name] for name in ("name", "literal", "symbol"))
 _HEADER = re.compile(r"[\s\ufeff]*%%%.*?%%%", re.DOTALL)
 _ESCAPE = re.compile(r'""|\\\\|\\([0-9a-fA-F]{2})')
+
+
+Row = tuple[float | tuple[float, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,14 +70,17 @@ class Tokens:
 
     Args:
         source: the text.
-        kinds: `NAME`, `NUMBER`, `STRING`, `END`, or the symbol or lower-case keyword itself.
+        kinds: `NAME`, `NUMBER`, `STRING`, `LITERAL`, `END`, or the symbol or lower-case keyword
+            itself.
         starts, ends: offsets.
+        values: of the tokens that are a `LITERAL`, by index.
     """
 
     source: SourceText
     kinds: list[str]
     starts: list[int]
     ends: list[int]
+    values: dict[int, Row]
 
 
 def tokenize(source: SourceText) -> Tokens:
@@ -75,6 +93,7 @@ def tokenize(source: SourceText) -> Tokens:
     kinds: list[str] = []
     starts: list[int] = []
     ends: list[int] = []
+    values: dict[int, Row] = {}
     header = _HEADER.match(text)
     position = header.end() if header else 0
     match = _TOKEN.match
@@ -82,20 +101,41 @@ def tokenize(source: SourceText) -> Tokens:
         found = match(text, position)
         if found is None:
             raise _stray(source, position)
-        kind = found.lastgroup or ""
-        start, position = found.span(kind)
-        if kind == "symbol":
+        group = found.lastindex or 0
+        start, position = found.span(group)
+        kind = _GROUPS[group]
+        if group == _SYMBOL:
             kind = text[start:position]
-        elif kind == "name":
+        elif group == _NAME:
             word = text[start:position].lower()
             if word in KEYWORDS:
                 kind = word
+        elif group == _LITERAL:
+            value = _literal_value(text[start:position])
+            if value is None:
+                kind, position = "[", start + 1
+            else:
+                values[len(kinds)] = value
         kinds.append(kind)
         starts.append(start)
         ends.append(position)
-        if kind == "end":
-            kinds[-1] = END
-            return Tokens(source, kinds, starts, ends)
+        if kind == END:
+            return Tokens(source, kinds, starts, ends, values)
+
+
+_decode = json.JSONDecoder(parse_int=float).decode
+_HUGE = re.compile(r"[eE]\+?[0-9]{3}|[0-9]{300}")
+
+
+def _literal_value(text: str) -> Row | None:
+    """Numbers in brackets; None if not written as JSON writes them, or too large."""
+    if _HUGE.search(text):
+        return None
+    try:
+        rows = _decode(text)
+    except ValueError:
+        return None
+    return tuple([tuple(row) if type(row) is list else row for row in rows])
 
 
 def number_value(literal: str) -> float:

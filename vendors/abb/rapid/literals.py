@@ -24,7 +24,10 @@ from ....core.spatial.pose import Pose, Quaternion, Vector3
 Record = tuple[Any, ...]
 """Numbers, booleans, strings and further records."""
 
-MM = 1e-3
+PER_METRE = 1000.0
+"""mm in a metre. Division gives the double next to the decimal, which a product by 0.001 does not:
+410 mm are 0.41 m."""
+MM = 1 / PER_METRE
 
 UNUSED_AXIS = 9e9
 """Value of an external axis that a target does not position (``9E9``)."""
@@ -40,12 +43,12 @@ LOAD0: Record = (0.001, (0.0, 0.0, 0.001), (1.0, 0.0, 0.0, 0.0), 0.0, 0.0, 0.0)
 def metres(point: Sequence[float]) -> Vector3:
     """A ``pos`` (mm) in m."""
     x, y, z = point
-    return (x * MM, y * MM, z * MM)
+    return (x / PER_METRE, y / PER_METRE, z / PER_METRE)
 
 
 def millimetres(point: Sequence[float]) -> Record:
     """A position in m as ``pos`` (mm)."""
-    return tuple(v / MM for v in point)
+    return tuple(v * PER_METRE for v in point)
 
 
 def unit_quaternion(orient: Sequence[float]) -> Quaternion:
@@ -83,9 +86,9 @@ def speed_value(record: Record, name: str | None = None) -> Speed:
     """``[v_tcp, v_ori, v_leax, v_reax]`` in mm/s, deg/s, mm/s, deg/s."""
     tcp, reorientation, linear, angular = record
     return Speed(
-        tcp=tcp * MM,
+        tcp=tcp / PER_METRE,
         reorientation=math.radians(reorientation),
-        external_linear=linear * MM,
+        external_linear=linear / PER_METRE,
         external_angular=math.radians(angular),
         name=name,
     )
@@ -123,11 +126,11 @@ def zone_value(record: Record, name: str | None = None) -> Zone:
     if finep:
         return FINE
     return Radius(
-        tcp=tcp * MM,
-        reorientation=reorientation * MM,
-        external=external * MM,
+        tcp=tcp / PER_METRE,
+        reorientation=reorientation / PER_METRE,
+        external=external / PER_METRE,
         angle=math.radians(angle),
-        external_linear=linear * MM,
+        external_linear=linear / PER_METRE,
         external_angular=math.radians(angular),
         name=name,
     )

@@ -1,4 +1,4 @@
-"""The move instructions: MoveJ, MoveL, MoveC, MoveAbsJ.
+"""Move instructions: their forms, and how their arguments become a move.
 
 Arguments: "RAPID Reference Manual", instructions MoveAbsJ, MoveC, MoveJ, MoveL.
 """
@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ....core.errors import SourceError, Span
+from ....core.program.event import Event
 from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
@@ -18,7 +19,8 @@ from ....core.source.provenance import Part
 from .arguments import Bound, bind
 from .convert import undeclared
 from .evaluator import Located
-from .literals import MM
+from .literals import PER_METRE, Record
+from .output import Sources
 from .provenance import Literal, source_of_literal
 from .scope import Scope
 from .syntax import Expression, Invoke, Name
@@ -30,23 +32,43 @@ from .types import (
     WOBJDATA,
     ZONEDATA,
     Type,
+    Unknown,
+    Value,
 )
 
 if TYPE_CHECKING:
     from .interpreter import Interpreter
 
-OPTIONS = ("conc", "v", "t", "z", "inpos", "wobj", "tload", "corr", "id")
+_COMMON_OPTIONS = ("conc", "v", "t", "z", "inpos", "wobj", "tload", "corr", "id")
 
 
 @dataclass(frozen=True, slots=True)
-class Sources:
-    """The parts of a move before all reads of the run are known."""
+class Form:
+    """What a move instruction takes.
 
-    statement: Span
-    target: Part
-    speed: Part
-    zone: Part
-    via: Part | None = None
+    Args:
+        kind: ``joint``, ``linear``, ``circular``, ``absolute`` or ``external``, which leaves the
+            arm where it is.
+        names: of its required arguments in order. ``ToPoint`` (``ToJointPos``), ``CirPoint``,
+            ``Speed``, ``Zone`` and ``Tool`` are read here; without ``Zone`` it goes to a stop.
+        options: of its own.
+    """
+
+    kind: str
+    names: tuple[str, ...]
+    options: tuple[str, ...] = ()
+
+
+TO_POINT = ("ToPoint", "Speed", "Zone", "Tool")
+OVER_POINT = ("CirPoint", "ToPoint", "Speed", "Zone", "Tool")
+TO_JOINTS = ("ToJointPos", "Speed", "Zone", "Tool")
+
+FORMS = {
+    "movej": Form("joint", TO_POINT),
+    "movel": Form("linear", TO_POINT),
+    "movec": Form("circular", OVER_POINT),
+    "moveabsj": Form("absolute", TO_JOINTS, ("noeoffs",)),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,36 +85,55 @@ class _Common:
 
 
 class _MoveReader:
-    """Reads one move instruction.
+    """Reads one move instruction."""
 
-    Args:
-        at: index of the first required argument that is the speed.
-    """
-
-    def __init__(self, run: Interpreter, scope: Scope, bound: Bound, at: int) -> None:
+    def __init__(self, run: Interpreter, scope: Scope, bound: Bound) -> None:
         self.run = run
         self.scope = scope
         self.bound = bound
-        self.at = at
+        self.record: Record = ()
         _refuse_options(bound)
 
-    def pose_target(self, index: int, follow: bool) -> tuple[PoseTarget, Part]:
-        expression = self.bound.value(index)
+    def pose_target(self, name: str, follow: bool) -> tuple[PoseTarget, Part]:
+        expression = self.bound.named(name)
         found = self._found(expression, "target", ROBTARGET)
         target = self.run.convert.pose_target(
             found.value, _datum_name(found, expression), follow, expression.span
         )
-        source = found.source if self.run.settings.displacement is None else None
+        self.record = _record(found.value)
+        moved = self.run.settings.displacement is not None or self.run.settings.offsets is not None
+        source = None if moved else found.source
         if source is None and found.source is not None:
-            self.run.evaluator.reads.by_expression(found.source, self.run.move_index)
+            self.run.evaluator.reads.by_expression(found.source, self.run.out.move_index)
         return target, _part_of(expression.span, source)
 
-    def joint_target(self) -> tuple[JointTarget, Part]:
-        expression = self.bound.value(0)
+    def joint_target(self, arm_stays: bool) -> tuple[JointTarget, Part]:
+        expression = self.bound.named("ToJointPos")
         found = self._found(expression, "target", JOINTTARGET)
         name = _datum_name(found, expression)
-        target = self.run.convert.joint_target(found.value, name, expression.span)
-        return target, _part_of(expression.span, found.source)
+        offsets = "useeoffs" in self.bound.options or (
+            not arm_stays and "noeoffs" not in self.bound.options
+        )
+        target = self.run.convert.joint_target(
+            self._with_arm(found.value) if arm_stays else found.value,
+            name,
+            offsets,
+            expression.span,
+        )
+        self.record = _record(found.value)
+        moved = arm_stays or (offsets and self.run.settings.offsets is not None)
+        return target, _part_of(expression.span, None if moved else found.source)
+
+    def _with_arm(self, value: Value) -> Value:
+        """A jointtarget with the arm's present joint values."""
+        present = self.run.whereabouts.jointtarget()
+        if present is None:
+            raise SourceError(
+                f"{self.bound.text} leaves the arm where it is, and its joint values are not known "
+                "here: name the robot, or use MoveAbsJ before",
+                self.bound.span,
+            )
+        return (present[0], _record(value)[1])
 
     def common(self) -> _Common:
         tool = self._tool()
@@ -110,17 +151,21 @@ class _MoveReader:
 
     def _found(self, expression: Expression, kind: str, type_: Type) -> Located:
         found = self.run.evaluator.locate(expression, self.scope)
-        if isinstance(expression, Name) and found.cell is None:
+        if isinstance(expression, Name) and found.cell is None and isinstance(found.value, Unknown):
             raise undeclared(kind, expression, type_, self.scope)
         use = f"the {kind} of {self.bound.text}"
         self.run.evaluator.check_located(found, type_, use, expression.span)
         return found
 
     def _tool(self) -> Tool:
-        expression = self.bound.value(self.at + 2)
+        if "Tool" not in self.bound.names:
+            return self.run.whereabouts.tool
+        expression = self.bound.named("Tool")
         return self.run.convert.tool(self._found(expression, "tool", TOOLDATA), expression)
 
     def _work_object(self) -> WorkObject:
+        if "Tool" not in self.bound.names:
+            return self.run.whereabouts.work_object
         if "wobj" not in self.bound.options:
             return WORLD
         expression = self.bound.option("wobj")
@@ -143,7 +188,7 @@ class _MoveReader:
         return self.run.number(self.bound.option(name), self.scope, use)
 
     def _speed(self) -> tuple[Speed, Part]:
-        expression = self.bound.value(self.at)
+        expression = self.bound.named("Speed")
         found = self._found(expression, "speed", SPEEDDATA)
         assert isinstance(found.value, tuple)
         name = _datum_name(found, expression)
@@ -153,16 +198,18 @@ class _MoveReader:
         part = self._part(found, expression, ("v", "t"))
         settings = self.run.settings
         limit = settings.greatest_tcp
-        capped = limit is not None and speed.tcp is not None and speed.tcp >= limit * MM
+        capped = limit is not None and speed.tcp is not None and speed.tcp >= limit / PER_METRE
         if settings.override == 1.0 and not capped:
             return speed, part
         # Under VelSet the number in the text is not the speed: derived.
         for source in filter(None, part.sources):
-            self.run.evaluator.reads.by_expression(source, self.run.move_index)
+            self.run.evaluator.reads.by_expression(source, self.run.out.move_index)
         return speed, Part(part.span)
 
     def _zone(self) -> tuple[Zone, Part]:
-        expression = self.bound.value(self.at + 1)
+        if "Zone" not in self.bound.names:
+            return FINE, Part(self.bound.span)
+        expression = self.bound.named("Zone")
         found = self._found(expression, "zone", ZONEDATA)
         part = self._part(found, expression, ("z", "inpos"))
         if "inpos" in self.bound.options:
@@ -180,12 +227,17 @@ class _MoveReader:
             name = found.cell.name if found.cell is not None and own else None
             return _part_of(expression.span, found.source, name)
         last = max((self.bound.option_spans[name] for name in given), key=lambda s: s.end)
-        whole = replace(expression.span, end=last.end)
+        whole = expression.span._replace(end=last.end)
         value = self.bound.options[given[0]] if len(given) == 1 else None
         literal = source_of_literal(value, None) if value is not None else None
         if isinstance(value, Name):
             literal = self.run.evaluator.locate(value, self.scope).source
         return _part_of(whole, literal)
+
+
+def _record(value: Value) -> Record:
+    assert isinstance(value, tuple)
+    return value
 
 
 def _part_of(span: Span, source: Literal | None, predefined: str | None = None) -> Part:
@@ -214,76 +266,113 @@ def _datum_name(found: Located, expression: Expression) -> str | None:
     return cell.name if unchanged else None
 
 
-def _check_singularity(run: Interpreter, invoke: Invoke) -> None:
+def read_move(
+    run: Interpreter, form: Form, bound: Bound, scope: Scope, events: tuple[Event, ...] = ()
+) -> tuple[Move, Sources]:
+    """The move of an instruction, and the sources of its numbers.
+
+    Raises:
+        SourceError: a part of it is not declared, not known, or not emulated.
+    """
+    _note_singularity(run, form, bound)
+    reader = _MoveReader(run, scope, bound)
+    settings = run.settings
+    if form.kind in ("absolute", "external"):
+        joints, part = reader.joint_target(form.kind == "external")
+        common = reader.common()
+        move: Move = MoveJ(joints, *_fields(common), events=events)
+        return move, _sources(run, bound, reader, common, part)
+    if form.kind == "circular":
+        arc = _arc_orientation(run, bound)
+        via, via_part = reader.pose_target("CirPoint", settings.check_linear)
+        target, part = reader.pose_target("ToPoint", settings.check_linear)
+        common = reader.common()
+        move = MoveC(target, *_fields(common), events=events, via=via, orientation=arc)
+        return move, _sources(run, bound, reader, common, part, via_part)
+    joint = form.kind == "joint"
+    follow = settings.check_joint if joint else settings.check_linear
+    target, part = reader.pose_target("ToPoint", follow)
+    common = reader.common()
+    kind = MoveJ if joint else MoveL
+    return kind(target, *_fields(common), events=events), _sources(run, bound, reader, common, part)
+
+
+def bind_move(invoke: Invoke, form: Form) -> Bound:
+    """The arguments of a move instruction."""
+    return bind(invoke, form.names, (*_COMMON_OPTIONS, *form.options))
+
+
+def drive(
+    run: Interpreter,
+    form: Form,
+    invoke: Invoke,
+    scope: Scope,
+    events: tuple[Event, ...] = (),
+    bound: Bound | None = None,
+) -> None:
+    """Carry a move instruction out.
+
+    Args:
+        bound: its arguments, if somebody has bound them already.
+    """
+    if bound is None:
+        bound = bind_move(invoke, form)
+    move, sources = read_move(run, form, bound, scope, events)
+    reads = run.evaluator.reads
+    for part in (sources.target, sources.speed, sources.zone, sources.via):
+        for source in filter(None, part.sources if part is not None else ()):
+            reads.by_move(source, run.out.move_index)
+    run.emit_move(move, sources)
+    run.whereabouts.moved(move, sources.record)
+
+
+def _plain(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    drive(run, FORMS[invoke.name], invoke, scope)
+
+
+def _note_singularity(run: Interpreter, form: Form, bound: Bound) -> None:
     mode = run.settings.singularity
-    if mode != "off":
-        name = {"wrist": "Wrist", "lockaxis4": "LockAxis4"}[mode]
+    if mode == "off" or form.kind not in ("linear", "circular"):
+        return
+    name = {"wrist": "Wrist", "lockaxis4": "LockAxis4"}[mode]
+    if mode == "lockaxis4":
         raise SourceError(
-            f"{invoke.text} under SingArea \\{name} bends the orientation near singularities, "
-            "which is not emulated: use SingArea \\Off and targets away from singularities",
-            invoke.span,
+            f"{bound.text} under SingArea \\{name} keeps axis 4 in place, which is not emulated: "
+            "use SingArea \\Off or \\Wrist",
+            bound.span,
         )
+    run.out.note_once(
+        "singularity",
+        f"SingArea \\{name} lets the controller turn the tool a little off between the points; it "
+        "is emulated as \\Off, with the programmed orientation",
+        bound.span,
+    )
 
 
-def _sources(statement: Span, common: _Common, target: Part, via: Part | None = None) -> Sources:
-    return Sources(statement, target, common.speed_part, common.zone_part, via)
-
-
-def _move_joint(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
-    reader = _MoveReader(run, scope, bind(invoke, ("ToPoint", "Speed", "Zone", "Tool"), OPTIONS), 1)
-    target, part = reader.pose_target(0, run.settings.check_joint)
-    common = reader.common()
-    _emit(run, MoveJ(target, *_fields(common)), _sources(invoke.span, common, part))
-
-
-def _move_linear(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
-    _check_singularity(run, invoke)
-    reader = _MoveReader(run, scope, bind(invoke, ("ToPoint", "Speed", "Zone", "Tool"), OPTIONS), 1)
-    target, part = reader.pose_target(0, run.settings.check_linear)
-    common = reader.common()
-    _emit(run, MoveL(target, *_fields(common)), _sources(invoke.span, common, part))
-
-
-def _move_circular(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
-    _check_singularity(run, invoke)
-    names = ("CirPoint", "ToPoint", "Speed", "Zone", "Tool")
-    reader = _MoveReader(run, scope, bind(invoke, names, OPTIONS), 2)
+def _arc_orientation(run: Interpreter, bound: Bound) -> ArcOrientation:
     arc = run.settings.arc
-    if not isinstance(arc, ArcOrientation):
-        raise SourceError(
-            f"MoveC under CirPathMode \\{arc} is not emulated: use \\PathFrame or \\ObjectFrame",
-            invoke.span,
-        )
-    via, via_part = reader.pose_target(0, run.settings.check_linear)
-    target, part = reader.pose_target(1, run.settings.check_linear)
-    common = reader.common()
-    move = MoveC(target, *_fields(common), via=via, orientation=arc)
-    _emit(run, move, _sources(invoke.span, common, part, via_part))
-
-
-def _move_absolute(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
-    names = ("ToJointPos", "Speed", "Zone", "Tool")
-    reader = _MoveReader(run, scope, bind(invoke, names, (*OPTIONS, "noeoffs")), 1)
-    target, part = reader.joint_target()
-    common = reader.common()
-    _emit(run, MoveJ(target, *_fields(common)), _sources(invoke.span, common, part))
+    if isinstance(arc, ArcOrientation):
+        return arc
+    raise SourceError(
+        f"{bound.text} under CirPathMode \\{arc} is not emulated: use \\PathFrame or \\ObjectFrame",
+        bound.span,
+    )
 
 
 def _fields(common: _Common) -> tuple[Speed, Zone, Tool, WorkObject, Load | None]:
     return common.speed, common.zone, common.tool, common.work_object, common.load
 
 
-def _emit(run: Interpreter, move: Move, sources: Sources) -> None:
-    reads = run.evaluator.reads
-    for part in (sources.target, sources.speed, sources.zone, sources.via):
-        for source in filter(None, part.sources if part is not None else ()):
-            reads.by_move(source, run.move_index)
-    run.emit_move(move, sources)
+def _sources(
+    run: Interpreter,
+    bound: Bound,
+    reader: _MoveReader,
+    common: _Common,
+    target: Part,
+    via: Part | None = None,
+) -> Sources:
+    parts = (target, common.speed_part, common.zone_part, via)
+    return Sources(bound.span, *parts, record=reader.record)
 
 
-MOVES = {
-    "movej": _move_joint,
-    "movel": _move_linear,
-    "movec": _move_circular,
-    "moveabsj": _move_absolute,
-}
+MOVES = dict.fromkeys(FORMS, _plain)

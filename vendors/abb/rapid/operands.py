@@ -71,7 +71,7 @@ class Operands:
 
     def speed(self, speed: Speed) -> Operand:
         """A speeddata: a name from the source, else a predefined one, else one of its own."""
-        _refuse_speed(speed)
+        refuse_speed(speed)
         record = speed_record(speed)
         # A duration overrules the speed, which the reader then takes for a literal at the move.
         name = None if speed.duration is not None else _own_name(speed.name)
@@ -111,6 +111,10 @@ class Operands:
         if load is None:
             return "load0"
         return self.declarations.add("loaddata", load_record(load), load.name, "load1")
+
+    def trigger(self, definition: str) -> Datum:
+        """A triggdata, which an instruction defines."""
+        return self.declarations.add_undefined("triggdata", definition)
 
     def _external(self, values: Sequence[float]) -> Record:
         """``extax``: mm or degrees, ``9E9`` for axes that are not positioned."""
@@ -161,7 +165,12 @@ _NOT_IN_RAPID = {
 }
 
 
-def _refuse_speed(speed: Speed) -> None:
+def refuse_speed(speed: Speed) -> None:
+    """Refuse what no speeddata and no setting says.
+
+    Raises:
+        InputError: naming the field.
+    """
     for field, what in _NOT_IN_RAPID.items():
         if getattr(speed, field) is not None:
             raise InputError(f"RAPID has no words for {what} (Speed.{field}): take it away")

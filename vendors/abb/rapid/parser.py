@@ -46,17 +46,18 @@ def _module(cursor: Cursor) -> Module:
     routines: list[Routine] = []
     while not cursor.accept("endmodule"):
         begin = cursor.start
-        if not cursor.accept("local"):
+        local = cursor.accept("local")
+        if not local:
             cursor.accept("task")
         kind = cursor.kind
         if kind in STORAGE:
-            declarations.append(_declaration(cursor, begin))
+            declarations.append(_declaration(cursor, begin, local))
         elif kind in ROUTINES:
-            routines.append(_routine(cursor, begin))
+            routines.append(_routine(cursor, begin, local))
         elif kind == "record":
-            types.append(_record(cursor, begin))
+            types.append(_record(cursor, begin, local))
         elif kind == "alias":
-            types.append(_alias(cursor, begin))
+            types.append(_alias(cursor, begin, local))
         else:
             raise cursor.unexpected("a declaration, PROC, FUNC, TRAP or ENDMODULE")
     return Module(
@@ -80,7 +81,7 @@ def _attributes(cursor: Cursor) -> tuple[str, ...]:
     return tuple(attributes)
 
 
-def _declaration(cursor: Cursor, start: int) -> Declaration:
+def _declaration(cursor: Cursor, start: int, local: bool = False) -> Declaration:
     kind = cursor.kind
     cursor.advance()
     type_name = cursor.name("a type").lower()
@@ -89,10 +90,10 @@ def _declaration(cursor: Cursor, start: int) -> Declaration:
     value = parse_expression(cursor) if cursor.accept(":=") else None
     cursor.expect(";", f"at the end of the declaration of {text}")
     span = cursor.span_from(start)
-    return Declaration(span, kind, type_name, text.lower(), text, dimensions, value)
+    return Declaration(span, kind, type_name, text.lower(), text, dimensions, value, local)
 
 
-def _record(cursor: Cursor, start: int) -> RecordDefinition:
+def _record(cursor: Cursor, start: int, local: bool) -> RecordDefinition:
     cursor.advance()
     name = cursor.name("the name of the record").lower()
     components = []
@@ -100,18 +101,18 @@ def _record(cursor: Cursor, start: int) -> RecordDefinition:
         type_name = cursor.name("a component's type").lower()
         components.append((type_name, cursor.name("a component's name").lower()))
         cursor.expect(";", "after the component")
-    return RecordDefinition(cursor.span_from(start), name, tuple(components))
+    return RecordDefinition(cursor.span_from(start), name, tuple(components), local)
 
 
-def _alias(cursor: Cursor, start: int) -> AliasDefinition:
+def _alias(cursor: Cursor, start: int, local: bool) -> AliasDefinition:
     cursor.advance()
     type_name = cursor.name("a type").lower()
     name = cursor.name("the name of the alias").lower()
     cursor.expect(";", "after the alias")
-    return AliasDefinition(cursor.span_from(start), name, type_name)
+    return AliasDefinition(cursor.span_from(start), name, type_name, local)
 
 
-def _routine(cursor: Cursor, start: int) -> Routine:
+def _routine(cursor: Cursor, start: int, local: bool) -> Routine:
     kind = cursor.kind
     cursor.advance()
     returns = cursor.name("the function's type").lower() if kind == "func" else None
@@ -135,6 +136,7 @@ def _routine(cursor: Cursor, start: int) -> Routine:
         body,
         returns,
         handlers,
+        local,
     )
 
 

@@ -11,6 +11,7 @@ from ....core.errors import InputError
 from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import WORLD
+from .events import Said
 from .formatting import literal
 from .literals import load_record
 from .numbers import number
@@ -23,8 +24,13 @@ LEAST_SHARES = (0.2, 0.1)
 """``AccSet`` takes a smaller acceleration or ramp as this much."""
 
 
-def move_line(move: Move, operands: Operands) -> Line:
+def move_line(move: Move, said: Said, operands: Operands) -> Line:
     """The move instruction.
+
+    Args:
+        move: to be said.
+        said: the instruction's name, and what its events add to it.
+        operands: of the module.
 
     Raises:
         InputError: RAPID cannot say it.
@@ -35,39 +41,47 @@ def move_line(move: Move, operands: Operands) -> Line:
             "robot and the other stands still; here both are alike"
         )
     if isinstance(move.target, JointTarget):
-        return (*_absolute(move, move.target, operands), *_tail(move, operands))
-    return (*_cartesian(move, move.target, operands), *_tail(move, operands))
+        points = _joint_point(move, move.target, operands)
+    else:
+        points = _points(move, move.target, operands)
+    return (f"{said.verb} ", *points, *_tail(move, said, operands))
 
 
-def _absolute(move: Move, target: JointTarget, operands: Operands) -> Line:
-    """``MoveAbsJ ToJointPos`` (MoveAbsJ)."""
+def _joint_point(move: Move, target: JointTarget, operands: Operands) -> Line:
+    """``ToJointPos`` (MoveAbsJ)."""
     if not isinstance(move, MoveJ):
         raise InputError(
             f"RAPID's {type(move).__name__} takes a robtarget, not joint values: give it the pose"
         )
-    return ("MoveAbsJ ", operands.jointtarget(target))
+    return (operands.jointtarget(target),)
 
 
-def _cartesian(move: Move, target: PoseTarget, operands: Operands) -> Line:
-    """``MoveJ ToPoint``, ``MoveL ToPoint``, ``MoveC CirPoint, ToPoint``."""
+def _points(move: Move, target: PoseTarget, operands: Operands) -> Line:
+    """``ToPoint`` (MoveJ, MoveL), ``CirPoint, ToPoint`` (MoveC)."""
     if isinstance(move, MoveC):
         # Under ConfL \Off the configuration of neither point is looked at.
         via = move.via if target.configuration else replace(move.via, configuration=None)
-        return ("MoveC ", operands.robtarget(via), ",", operands.robtarget(target))
-    return (f"{type(move).__name__} ", operands.robtarget(target))
+        return (operands.robtarget(via), ",", operands.robtarget(target))
+    return (operands.robtarget(target),)
 
 
-def _tail(move: Move, operands: Operands) -> Line:
-    r"""``, Speed [\T], Zone, Tool [\WObj];`` (all four)."""
+def _tail(move: Move, said: Said, operands: Operands) -> Line:
+    r"""``, Speed [\T] [,Trigg_1 [\T2] …], Zone, Tool [\WObj] [, Signal, Value];``"""
     duration = move.speed.duration
     frame: Line = ("\\WObj:=", operands.work_object(move.work_object))
+    triggers = [
+        part
+        for number_, trigger in enumerate(said.triggers, 1)
+        for part in ("," if number_ == 1 else f"\\T{number_}:=", trigger)
+    ]
     return (
         *(",", operands.speed(move.speed)),
         "" if duration is None else f"\\T:={number(duration)}",
+        *triggers,
         *(",", operands.zone(move.zone)),
         *(",", operands.tool(move.tool)),
         *(() if move.work_object == WORLD else frame),
-        ";",
+        f"{said.output};",
     )
 
 

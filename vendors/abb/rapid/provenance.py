@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ....core.errors import Span
-from .syntax import Aggregate, Expression, Number, Text, Truth
+from .packed import number_spans, unpacked
+from .syntax import Aggregate, Expression, Number, Packed, Text, Truth
+from .types import Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +37,8 @@ class Literal:
     def part(self, index: int, name: str) -> Literal | None:
         """The source of an item of an aggregate."""
         literal = self.expression
+        if isinstance(literal, Packed):
+            literal = unpacked(literal)
         if not isinstance(literal, Aggregate) or index >= len(literal.items):
             return None
         return Literal(literal.items[index], self.root, f"{self.datum or ''}{name}")
@@ -45,13 +49,25 @@ def source_of_literal(expression: Expression, datum: str | None) -> Literal | No
     return Literal(expression, expression.span, datum) if _is_literal(expression) else None
 
 
+def constant(expression: Expression) -> Value:
+    """The value of an expression that is a source."""
+    if isinstance(expression, Aggregate):
+        return tuple(constant(item) for item in expression.items)
+    assert isinstance(expression, Number | Packed | Text | Truth)
+    return expression.value
+
+
 def _is_literal(expression: Expression) -> bool:
+    if isinstance(expression, Packed):
+        return True
     if isinstance(expression, Aggregate):
         return all(_is_literal(item) for item in expression.items)
     return isinstance(expression, Number | Text | Truth)
 
 
 def _numbers(expression: Expression) -> tuple[Span, ...]:
+    if isinstance(expression, Packed):
+        return number_spans(expression)
     if isinstance(expression, Number):
         return (expression.span,)
     if isinstance(expression, Aggregate):

@@ -27,97 +27,115 @@ the only one of its speed or zone, and belongs to the move.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
-from ....core.errors import InputError, Note, SourceError, Span
+from ....core.errors import SourceError
 from ....core.program.program import Program
-from ....core.source.text import SourceText, decode
+from ....core.source.collection import collection_paused
+from ....core.source.reading import Files, ReadOptions, read_with
+from ....core.source.text import SourceFile, SourceText, decode
+from .convert import axis_kinds
+from .entry import choose_entry
+from .files import MODULES, PROGRAM, beside, collect, loaded
 from .globals import Globals
 from .interpreter import Interpreter
+from .library import Library
 from .parser import parse
-from .scope import unknown_name
-from .syntax import Module, Routine
+from .syntax import Module
 
-SUFFIXES = (".mod", ".modx", ".prg", ".sys", ".sysx")
+SUFFIXES = (*MODULES, PROGRAM)
+
+DEFAULTS = ReadOptions()
 
 
 def read(
     text: str | bytes,
     file: str,
-    entry: str = "main",
+    options: ReadOptions = DEFAULTS,
     *,
     external_axes: Sequence[str] | None = None,
 ) -> Program:
-    """The program that a routine drives.
+    """The program in a text of one module or several; see `read_sources`.
 
     Args:
-        text: of one file with one module or several.
-        file: its name, for messages and spans. Spans count characters of the text without a
-            byte-order mark.
-        entry: procedure without parameters; if there is no ``main`` and only one procedure, that.
-        external_axes: ``"linear"`` (mm) or ``"rotating"`` (degrees) for eax_a, eax_b, …; without
-            it a target that uses an external axis is refused.
+        text: of the file. Spans count characters of the text without a byte-order mark.
+        file: its name, for messages and spans.
+        options: see `ReadOptions`.
+        external_axes: see `read_sources`.
 
     Raises:
         SourceError: with line and column: the text is no RAPID, or its motion cannot be known.
     """
-    decoded, _ = decode(text, file)
-    source = SourceText(decoded, file)
-    try:
-        return _program(parse(source), source, entry, external_axes)
-    except RecursionError:
-        raise SourceError(
-            "expressions, blocks and calls are nested too deeply", source.span(0, 0)
-        ) from None
+    source = SourceFile(file, *decode(text, file))
+    return read_with(
+        {file: source}, file, options, partial(read_sources, external_axes=external_axes)
+    )
 
 
 def read_file(
-    path: str | Path, entry: str = "main", *, external_axes: Sequence[str] | None = None
+    path: str | Path,
+    options: ReadOptions = DEFAULTS,
+    *,
+    external_axes: Sequence[str] | None = None,
 ) -> Program:
-    """The program of a file; see `read`.
+    """The program of a file and of what belongs to it (`files`); see `read_sources`.
 
     Raises:
-        InputError: the file cannot be read.
+        InputError: a file cannot be read.
+        SourceError: as `read`.
     """
+    files = collect(Path(path), options)
+    return read_with(files, str(path), options, partial(read_sources, external_axes=external_axes))
+
+
+def read_sources(
+    files: Files,
+    main: str,
+    options: ReadOptions,
+    *,
+    external_axes: Sequence[str] | None = None,
+) -> Program:
+    """The program that the entry routine of ``main`` drives; no file is opened.
+
+    Args:
+        files: by name: the program's, the others that the user named, and those beside it.
+        main: a module or a list of modules (``.pgf``).
+        options: entry (None for ``main``), robot, answers, limits.
+        external_axes: ``"linear"`` (mm) or ``"rotating"`` (degrees) for eax_a, eax_b, …; those of
+            the robot if it is given. Without either a target that uses one is refused.
+
+    Raises:
+        InputError: a list names a module that is not there.
+        SourceError: with line and column: a text is no RAPID, or its motion cannot be known.
+    """
+    names = loaded(files, main, options)
     try:
-        data = Path(path).read_bytes()
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
-    return read(data, str(path), entry, external_axes=external_axes)
+        with collection_paused():
+            return _program(files, main, names, options, external_axes)
+    except RecursionError:
+        where = SourceText(files[main].text, main).span(0, 0)
+        message = "expressions, blocks and calls are nested too deeply"
+        raise SourceError(message, where) from None
 
 
 def _program(
-    modules: tuple[Module, ...],
-    source: SourceText,
-    entry: str,
+    files: Files,
+    main: str,
+    names: Sequence[str],
+    options: ReadOptions,
     external_axes: Sequence[str] | None,
 ) -> Program:
-    data = Globals(modules)
-    routine, notes = _entry(data, entry, source)
-    module = next(m for m in modules if any(r is routine for r in m.routines))
-    run = Interpreter(data, {source.file: source.text}, external_axes)
-    run.run(routine)
-    return Program(run.statements(), module.text, notes=(*notes, *run.notes()))
-
-
-def _entry(data: Globals, entry: str, source: SourceText) -> tuple[Routine, tuple[Note, ...]]:
-    callable_ = {
-        name: routine
-        for name, routine in data.procedures.items()
-        if all(p.optional for p in routine.parameters)
-    }
-    chosen = callable_.get(entry.lower())
-    if chosen is not None:
-        return chosen, ()
-    if entry.lower() == "main" and len(callable_) == 1:
-        (only,) = callable_.values()
-        message = f"there is no PROC main; the only procedure, {only.text}, is read"
-        return only, (Note(message, span=only.span),)
-    where = data.modules[0].span if data.modules else Span(source.file, 1, 1, 0, 0)
-    if entry.lower() in data.procedures:
-        raise SourceError(f"PROC {entry} takes arguments and cannot be the entry", where)
-    if not callable_:
-        raise SourceError("the module holds no procedure that could be run", where)
-    names = [r.text for r in callable_.values()]
-    message = unknown_name("procedure", entry, names).split(":")[0]
-    raise SourceError(f"{message}: choose one of {', '.join(names)} as the entry", where)
+    parsed = {name: parse(SourceText(files[name].text, name)) for name in names}
+    data = Globals(
+        [module for modules in parsed.values() for module in modules],
+        Library(beside(files, main, names)),
+    )
+    own: list[Module] = [m for n in names if n == main or main not in parsed for m in parsed[n]]
+    entry, notes = choose_entry(data, own, options.entry, main)
+    texts = {name: file.text for name, file in files.items()}
+    run = Interpreter(data, texts, options, external_axes or axis_kinds(options.robot))
+    run.run(entry)
+    program = Program(run.statements(), data.module_of(entry).text, notes=(*notes, *run.notes()))
+    run.let_go()
+    return program

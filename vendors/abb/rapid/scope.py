@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from .provenance import Literal
-from .syntax import Declaration
+from .syntax import Declaration, Routine
 from .types import Type, Value
 
 
@@ -27,6 +27,10 @@ class Cell:
         present: False for an optional parameter that was not given.
         overwritten: elements of an array that were assigned, which have no source any more.
         predefined: name of the controller's own datum whose value it has, until it is assigned.
+        persistent: a ``PERS``.
+        declared: its declaration, None for the controller's own data and parameters.
+        elements: of an array: those written since it was last looked at as a whole. To make a new
+            value of all for each of them would take a large array's time.
     """
 
     name: str
@@ -40,6 +44,21 @@ class Cell:
     present: bool = True
     overwritten: set[tuple[int, ...]] = field(default_factory=set)
     predefined: str | None = None
+    persistent: bool = False
+    declared: Declaration | None = None
+    elements: dict[tuple[int, ...], Value] = field(default_factory=dict)
+
+
+@dataclass(eq=False, slots=True)
+class Home:
+    """What a module keeps to itself (``LOCAL``) beside its data, by lower-case name."""
+
+    module: str
+    routines: dict[str, Routine] = field(default_factory=dict)
+    types: dict[str, Type] = field(default_factory=dict)
+
+
+NOWHERE = Home("")
 
 
 @dataclass(eq=False, slots=True)
@@ -48,11 +67,13 @@ class Scope:
 
     Args:
         where: for messages and notes: ``PROC pick``, ``MODULE main``.
+        home: the module that the text belongs to.
     """
 
     where: str
     cells: dict[str, Cell] = field(default_factory=dict)
     outer: Scope | None = None
+    home: Home = NOWHERE
 
     def find(self, name: str) -> Cell | None:
         """The cell that a name (lower case) stands for."""
@@ -64,6 +85,10 @@ class Scope:
             scope = scope.outer
         return None
 
+    def inner(self, where: str) -> Scope:
+        """An empty scope inside this one."""
+        return Scope(where, {}, self, self.home)
+
     def names(self) -> set[str]:
         """All names that are found from here, as declared."""
         found: set[str] = set()
@@ -74,12 +99,12 @@ class Scope:
         return found
 
 
-def unknown_name(kind: str, name: str, known: Iterable[str]) -> str:
+ELSEWHERE = "if it stands in another module, name that file too, or put it beside this one"
+
+
+def unknown_name(kind: str, name: str, known: Iterable[str], otherwise: str = ELSEWHERE) -> str:
     """The message for a name that is not declared, with the nearest ones that are."""
-    spellings = {k.lower(): k for k in known}
+    spellings = {k.lower(): k for k in known if k.lower() != name.lower()}
     near = difflib.get_close_matches(name.lower(), spellings, n=3, cutoff=0.6)
-    if near:
-        offer = f"did you mean {' or '.join(spellings[n] for n in near)}?"
-    else:
-        offer = "declare it in this module; data of other modules are not read yet"
-    return f"unknown {kind} '{name}': {offer}"
+    offer = f"did you mean {' or '.join(spellings[n] for n in near)}? If not: " if near else ""
+    return f"unknown {kind} '{name}': {offer}{otherwise}"

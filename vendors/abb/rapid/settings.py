@@ -16,9 +16,10 @@ from ....core.program.move import ArcOrientation
 from ....core.program.tool import Load
 from ....core.spatial.pose import Pose
 from .arguments import Bound, bind
+from .literals import UNUSED_AXIS
 from .scope import Scope
-from .syntax import Invoke
-from .types import BOOL, POSE
+from .syntax import Expression, Invoke
+from .types import BOOL, EXTJOINT, POSE, ROBTARGET, find_unknown
 
 if TYPE_CHECKING:
     from .interpreter import Interpreter
@@ -43,6 +44,7 @@ class Settings:
         greatest_tcp: limit on the TCP's speed, mm/s.
         load: carried by the gripper.
         displacement: program displacement, in the object frame.
+        offsets: of external axes, as an extjoint.
         arc: how the tool turns on an arc; a mode's name if it has no equivalent.
     """
 
@@ -56,6 +58,7 @@ class Settings:
     greatest_tcp: float | None = None
     load: Load | None = None
     displacement: Pose | None = None
+    offsets: tuple[float, ...] | None = None
     arc: ArcOrientation | str = ArcOrientation.FOLLOWS_ARC
 
 
@@ -89,7 +92,7 @@ def _acc_set(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
     if not all(0 < ramp <= 100 for ramp in ramps):
         raise SourceError(f"{bound.text}: a ramp is in (0, 100], not {min(ramps):g}", bound.span)
     if len(set(ramps)) > 1:
-        run.note_once(
+        run.out.note_once(
             "finepointramp",
             "AccSet ramps differently towards fine points: the smaller ramp is taken everywhere",
             bound.span,
@@ -125,7 +128,7 @@ def _path_acc_lim(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
     if limits and min(limits) <= 0:
         raise SourceError("PathAccLim: a limit is above zero", bound.span)
     if len(limits) == 1 or (limits and limits[0] != limits[1]):
-        run.note_once(
+        run.out.note_once(
             "pathacclim",
             "PathAccLim limits acceleration and deceleration differently: the smaller limit is "
             "taken for both",
@@ -146,7 +149,15 @@ def _cir_path_mode(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
 
 def _grip_load(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
     bound = bind(invoke, ("Load",), ())
-    run.settings = replace(run.settings, load=run.convert.load(bound.value(0), scope))
+    expression = bound.value(0)
+    unknown = find_unknown(run.evaluator.evaluate(expression, scope))
+    load = None
+    if unknown is None:
+        load = run.convert.load(expression, scope)
+    else:
+        message = f"GripLoad: the payload is {unknown.reason}; none is taken"
+        run.out.note_once("payload", message, invoke.span)
+    run.settings = replace(run.settings, load=load)
 
 
 def _pdisp_set(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
@@ -158,6 +169,60 @@ def _pdisp_set(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
 def _pdisp_off(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
     bind(invoke, (), ())
     run.settings = replace(run.settings, displacement=None)
+
+
+def _pdisp_on(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    r"""``PDispOn [\Rot] [\ExeP,] ProgPoint, Tool [\WObj]``
+
+    The displacement takes the programmed point to the executed one, which is the present position
+    unless it is given; without ``\Rot`` by a shift alone.
+    """
+    bound = bind(invoke, ("ProgPoint", "Tool"), ("rot", "exep", "wobj"))
+    programmed = _point(run, bound.value(0), scope)
+    if "exep" in bound.options:
+        executed = _point(run, bound.option("exep"), scope)
+    else:
+        record = run.state.present_robtarget(
+            bound.value(1), bound.options.get("wobj"), scope, invoke
+        )
+        executed = run.convert.pose(record[:2], bound.span)
+    shift = tuple(e - p for e, p in zip(executed.position, programmed.position, strict=True))
+    displacement = Pose((shift[0], shift[1], shift[2]))
+    if "rot" in bound.options:
+        displacement = executed @ programmed.inverse()
+    run.settings = replace(run.settings, displacement=displacement)
+
+
+def _point(run: Interpreter, expression: Expression, scope: Scope) -> Pose:
+    value = run.evaluator.known(expression, scope, ROBTARGET, "PDispOn")
+    assert isinstance(value, tuple)
+    return run.convert.pose(value[:2], expression.span)
+
+
+def _eoffs_set(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    bound = bind(invoke, ("EAxOffs",), ())
+    offsets = run.evaluator.known(bound.value(0), scope, EXTJOINT, "EOffsSet")
+    assert isinstance(offsets, tuple)
+    run.settings = replace(run.settings, offsets=offsets)
+
+
+def _eoffs_on(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    r"""``EOffsOn [\ExeP,] ProgPoint``: the difference of external axes between the two points."""
+    bound = bind(invoke, ("ProgPoint",), ("exep",))
+    programmed = run.evaluator.known(bound.value(0), scope, ROBTARGET, "EOffsOn")
+    if "exep" in bound.options:
+        executed = run.evaluator.known(bound.option("exep"), scope, ROBTARGET, "EOffsOn")
+    else:
+        executed = run.state.present_robtarget(None, None, scope, invoke)
+    assert isinstance(programmed, tuple) and isinstance(executed, tuple)
+    pairs = zip(executed[3], programmed[3], strict=True)
+    offsets = tuple(e - p if max(abs(e), abs(p)) < UNUSED_AXIS else 0.0 for e, p in pairs)
+    run.settings = replace(run.settings, offsets=offsets)
+
+
+def _eoffs_off(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    bind(invoke, (), ())
+    run.settings = replace(run.settings, offsets=None)
 
 
 def _only_off(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
@@ -192,6 +257,10 @@ SETTINGS: dict[str, Handler] = {
     "gripload": _grip_load,
     "pdispset": _pdisp_set,
     "pdispoff": _pdisp_off,
+    "pdispon": _pdisp_on,
+    "eoffsset": _eoffs_set,
+    "eoffson": _eoffs_on,
+    "eoffsoff": _eoffs_off,
     "worldacclim": _only_off,
     "speedrefresh": _speed_refresh,
 }

@@ -31,7 +31,8 @@ def parse_block(cursor: Cursor, ends: frozenset[str]) -> Block:
     statements = []
     with cursor.nested():
         while cursor.kind not in ends:
-            statements.append(parse_statement(cursor))
+            if not cursor.accept(";"):  # one too many does no harm
+                statements.append(parse_statement(cursor))
     return Block(tuple(statements))
 
 

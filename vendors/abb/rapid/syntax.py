@@ -45,6 +45,21 @@ class Aggregate:
 
 
 @dataclass(frozen=True, slots=True)
+class Packed:
+    """An `Aggregate` of nothing but numbers, two brackets deep at most: most of any program's text.
+
+    Its parts have no nodes of their own until somebody asks for them (`packed`).
+
+    Args:
+        text: as it stands in the source.
+    """
+
+    span: Span
+    value: tuple[float | tuple[float, ...], ...]
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Name:
     """A datum or a part of it: ``p10``, ``p10.trans.x``, ``path{3}``.
 
@@ -98,7 +113,7 @@ class Star:
     span: Span
 
 
-Expression = Number | Text | Truth | Aggregate | Name | Call | Unary | Operation | Star
+Expression = Number | Text | Truth | Aggregate | Packed | Name | Call | Unary | Operation | Star
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,12 +124,14 @@ class Argument:
         option: name of an optional argument (lower case), None for a required one.
         value: None for a switch.
         conditional: given as ``\\Option?parameter``: passed on only if the parameter is present.
+        parameter: name of the required argument (lower case) where it is written: ``n:=1``.
     """
 
     span: Span
     value: Expression | None
     option: str | None = None
     conditional: bool = False
+    parameter: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -260,6 +277,7 @@ class Declaration:
     Args:
         kind: ``const``, ``var`` or ``pers``.
         type: lower-case name of the type.
+        local: known in its own module only.
     """
 
     span: Span
@@ -269,6 +287,7 @@ class Declaration:
     text: str
     dimensions: tuple[Expression, ...] = ()
     value: Expression | None = None
+    local: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -300,6 +319,7 @@ class Routine:
         kind: ``proc``, ``func`` or ``trap``.
         returns: type of a function's value.
         handlers: which of ``error``, ``undo`` and ``backward`` it has; they are not kept.
+        local: known in its own module only.
     """
 
     span: Span
@@ -311,6 +331,7 @@ class Routine:
     body: Block
     returns: str | None = None
     handlers: tuple[str, ...] = ()
+    local: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -320,6 +341,7 @@ class RecordDefinition:
     span: Span
     name: str
     components: tuple[tuple[str, str], ...]
+    local: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -329,6 +351,7 @@ class AliasDefinition:
     span: Span
     name: str
     type: str
+    local: bool = False
 
 
 @dataclass(frozen=True)

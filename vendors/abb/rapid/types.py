@@ -10,7 +10,7 @@ Component names: "RAPID Reference Manual", data types.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from ....core.errors import Span
@@ -24,10 +24,12 @@ class Unknown:
     Args:
         reason: what it is and why it is not known, to stand in a message.
         span: where it came into the program.
+        key: under which the user may answer it.
     """
 
     reason: str
     span: Span
+    key: str = ""
 
 
 Value = float | bool | str | Record | Unknown
@@ -54,6 +56,12 @@ class RecordType:
 
     name: str
     components: Mapping[str, Type]
+    numeric: bool = field(init=False, compare=False)
+    """Whether all components are nums."""
+
+    def __post_init__(self) -> None:
+        kinds = [getattr(c, "python", None) for c in self.components.values()]
+        object.__setattr__(self, "numeric", all(kind is float for kind in kinds))
 
     @property
     def default(self) -> Record:
@@ -128,6 +136,8 @@ BUILT_IN: Mapping[str, Type] = MappingProxyType(
 
 def interpreted(value: Value, type_: Type, span: Span) -> Value:
     """The value, unknown if its type is `Foreign`: components of those have no known places."""
+    if isinstance(value, Unknown):
+        return value
     if isinstance(type_, Foreign) and type_.name != "switch":
         return Unknown(f"a {type_.name}", span)
     return value
@@ -145,6 +155,9 @@ def find_unknown(value: Value) -> Unknown | None:
     return None
 
 
+_FLOATS = {float}
+
+
 def mismatch(value: Value, type_: Type) -> str | None:
     """What keeps a value from being of a type, None if nothing does; unknown parts fit all."""
     if isinstance(value, Unknown) or isinstance(type_, Foreign):
@@ -158,6 +171,8 @@ def mismatch(value: Value, type_: Type) -> str | None:
         return f"a {type_.name} of {count} components is wanted, not {describe(value)}"
     if len(value) != count:
         return f"a {type_.name} has {count} components, not {len(value)}"
+    if type_.numeric and set(map(type, value)) == _FLOATS:
+        return None
     for part, (name, component) in zip(value, type_.components.items(), strict=True):
         found = mismatch(part, component)
         if found is not None:

@@ -10,6 +10,7 @@ from ....core.errors import InputError, MotionError
 from ....core.program.move import Move, MoveC, Opaque, Wait
 from ....core.program.program import Program
 from .arcs import check_arc
+from .events import Events
 from .formatting import Names
 from .numbers import number
 from .operands import Operands
@@ -19,6 +20,26 @@ from .phrases import Line, Settings, move_line
 ENTRY = "main"
 SUFFIX = ".mod"
 _STEP = "  "
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What stands in a module beside the program itself; lines without their indentation.
+
+    Args:
+        header: comments at the head.
+        data: declarations.
+        before, after: instructions of the entry routine, before and after the program's.
+        routines: further routines.
+        names: that these lines declare, and the program's data must not have.
+    """
+
+    header: tuple[str, ...] = ()
+    data: tuple[str, ...] = ()
+    before: tuple[str, ...] = ()
+    after: tuple[str, ...] = ()
+    routines: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +57,7 @@ class RapidWriter:
         return {module_name(program) + SUFFIX: write(program, self.options)}
 
 
-def write(program: Program, options: RapidOptions) -> str:
+def write(program: Program, options: RapidOptions, around: Surroundings = Surroundings()) -> str:
     """The text of a complete module; lines end with LF.
 
     Names from the source are kept where they are legal and unique. Numbers are those that the
@@ -44,21 +65,28 @@ def write(program: Program, options: RapidOptions) -> str:
     and writing what was read gives the same text. ``Program.start`` has no place in RAPID: the
     robot starts from where it stands.
 
+    Args:
+        program: what to say.
+        options: how.
+        around: what else the module holds.
+
     Raises:
         MotionError: RAPID cannot say a move; it is named by number.
     """
     operands = Operands(options)
     lines = _body(program, operands, options)
     module = module_name(program)
-    names = operands.declarations.names(Names(module, ENTRY))
+    names = operands.declarations.names(Names(module, ENTRY, *around.names))
     texts = ["".join(p if isinstance(p, str) else names[p] for p in line) for line in lines]
+    main = [*around.before, *texts, *around.after]
     return "\n".join(
         [
             f"MODULE {module}",
-            *_indented(_header(options)),
-            *_indented(operands.declarations.lines(names)),
+            *_indented([*_header(options), *around.header]),
+            *_indented([*around.data, *operands.declarations.lines(names)]),
             "",
-            *_indented([f"PROC {ENTRY}()", *_indented(texts), "ENDPROC"]),
+            *_indented([f"PROC {ENTRY}()", *_indented(main), "ENDPROC"]),
+            *_indented(around.routines),
             "ENDMODULE",
             "",
         ]
@@ -82,15 +110,16 @@ def _header(options: RapidOptions) -> list[str]:
 def _body(program: Program, operands: Operands, options: RapidOptions) -> list[Line]:
     """The instructions of the entry routine."""
     settings = Settings()
+    events = Events(operands, options.opaque)
     lines: list[Line] = []
     moves: list[Move] = []
     for statement in program.statements:
         if isinstance(statement, Wait):
             lines.append(_wait(statement))
         elif isinstance(statement, Opaque):
-            lines.append((_opaque(statement, options.opaque),))
+            lines += _opaque(statement, options.opaque)
         else:
-            lines += _move(statement, moves, settings, operands)
+            lines += _move(statement, moves, settings, events, operands)
             moves.append(statement)
     return lines
 
@@ -100,19 +129,28 @@ def _wait(wait: Wait) -> Line:
     return (f"WaitTime {number(wait.duration)};",)
 
 
-def _opaque(statement: Opaque, style: OpaqueStyle) -> str:
+def _opaque(statement: Opaque, style: OpaqueStyle) -> list[Line]:
+    """The statement, or a comment and what is left of it: the stop.
+
+    ``WaitRob \\InPos`` waits until the robot stands at the point before (WaitRob).
+    """
     text = "\n".join(statement.text.splitlines())
     if style is OpaqueStyle.KEEP:
-        return text
-    return textwrap.indent(text, "! ", lambda line: True)
+        return [(text,)]
+    comment = textwrap.indent(text, "! ", lambda line: True)
+    return [(comment,), *([("WaitRob \\InPos;",)] if statement.stops else [])]
 
 
-def _move(move: Move, before: list[Move], settings: Settings, operands: Operands) -> list[Line]:
+def _move(
+    move: Move, before: list[Move], settings: Settings, events: Events, operands: Operands
+) -> list[Line]:
     """The move, with the settings that must change before it."""
     try:
         if isinstance(move, MoveC):
             check_arc(before[-1] if before else None, move)
-        return [*settings.changes(move, operands), move_line(move, operands)]
+        said = events.of(move)
+        changes = settings.changes(move, operands)
+        return [*changes, *said.before, move_line(move, said, operands)]
     except InputError as error:
         span = move.origin.statement if move.origin is not None else None
         raise MotionError(str(error), len(before), span) from None
@@ -120,4 +158,4 @@ def _move(move: Move, before: list[Move], settings: Settings, operands: Operands
 
 def _indented(lines: Iterable[str]) -> list[str]:
     # Only the first line of an opaque statement moves: the rest is the user's.
-    return [_STEP + line for line in lines]
+    return [_STEP + line if line else line for line in lines]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ..core.motion.controller import Run
-from ..core.motion.stamping import CEILING, NEXT
+from .controller import Run
+from .stamping import CEILING, NEXT
 
 STOP = "stop"
 PROGRAMMED = {

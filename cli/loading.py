@@ -1,0 +1,91 @@
+"""Programs, robots and answers as the options name them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..core.errors import InputError
+from . import values
+from .installed import check_language, registry, vendor_of
+
+if TYPE_CHECKING:
+    from ..core.program.program import Program
+    from ..core.program.target import JointTarget
+    from ..core.robot.model import Robot
+    from ..core.source.answers import Answers
+    from ..core.vendor import Vendor
+
+
+@dataclass(frozen=True)
+class Source:
+    """A program and what is needed to read it.
+
+    Args:
+        file: the program.
+        entry: the routine to run; None for the vendor's own.
+        answers: file of answers; None for none.
+        others: further files of the program.
+    """
+
+    file: Path
+    entry: str | None = None
+    answers: Path | None = None
+    others: tuple[Path, ...] = ()
+
+    @classmethod
+    def of(
+        cls, file: Path, entry: str | None, answers: Path | None, others: list[Path] | None
+    ) -> Source:
+        """From the options as they were given."""
+        return cls(file, entry, answers, tuple(others or ()))
+
+    def inputs(self, *more: Path | None) -> list[Path]:
+        """All files that are read: none of them is ever written to."""
+        given = (self.file, self.answers, *self.others, *more)
+        return [path for path in given if path is not None]
+
+    def read(self, vendor: Vendor, robot: Robot) -> Program:
+        """The program.
+
+        Raises:
+            FlybyError: it is another vendor's, or cannot be read.
+        """
+        check_language(vendor, self.file)
+        return vendor.read_file(self.file, self.entry, robot, self._answers(), self.others)
+
+    def _answers(self) -> Answers | None:
+        if self.answers is None:
+            return None
+        from ..core.source.answers import load_answers
+
+        return load_answers(self.answers)
+
+
+def robot_of(name: str | None, cell: Path | None) -> tuple[Vendor, Robot]:
+    """The robot that ``--robot`` or ``--cell`` names, with its vendor.
+
+    Raises:
+        InputError: neither is given, or they contradict each other.
+    """
+    if cell is None:
+        if name is None:
+            raise InputError("which robot? Give --robot ('flyby robots' lists them) or --cell")
+        return vendor_of(name), registry().find_robot(name)
+    from ..core.cell.file import load_cell
+
+    loaded = load_cell(cell, registry())
+    if name is not None and name != loaded.robot.name:
+        raise InputError(f"--robot {name}: the cell {cell} has a {loaded.robot.name}")
+    return registry().find_vendor(loaded.vendor), loaded.robot
+
+
+def start_of(text: str | None, robot: Robot) -> JointTarget | None:
+    """Where ``--start`` has the robot stand; None if it was not given."""
+    from ..core.program.target import JointTarget
+
+    if text is None:
+        return None
+    q = values.configuration(text, "--start", robot)
+    return JointTarget(q[: robot.arm_size], q[robot.arm_size :])

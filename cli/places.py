@@ -1,0 +1,30 @@
+"""Places in the source, in tables and as JSON."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ..core.errors import Note, Span
+
+
+def note_json(note: Note) -> dict[str, Any]:
+    """A note with JSON's types: message, move from 1, place."""
+    move = None if note.move is None else note.move + 1
+    return {"message": note.message, "move": move, **place_json(note.span)}
+
+
+def place_json(span: Span | None) -> dict[str, Any]:
+    """File, line and column; None where they are not known."""
+    return {
+        "file": None if span is None else span.file,
+        "line": None if span is None else span.line,
+        "column": None if span is None else span.column,
+    }
+
+
+def short_place(program: Path, span: Span | None) -> str:
+    """The line, with the file before it if that is not the program's main one."""
+    if span is None:
+        return ""
+    return str(span.line) if span.file == str(program) else f"{Path(span.file).name}:{span.line}"

@@ -1,0 +1,151 @@
+"""What a vendor's language has words for: data for translations and checks.
+
+A writer refuses what its language cannot say. A translation asks here first, says it in the
+language's own terms, and lists what has no counterpart. A check searches texts by the `Wording`.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+from .errors import InputError
+from .program.speed import Speed
+from .program.zone import Zone
+
+if TYPE_CHECKING:
+    from .program.move import Move
+
+PACES = ("tcp", "joint_fraction", "joint")
+_SPEED_FIELDS = frozenset(field.name for field in fields(Speed)) - {"name"}
+
+
+@dataclass(frozen=True)
+class MoveWords:
+    """What can be said of one kind of move.
+
+    Args:
+        zones: kinds of zone beside stops, the preferred one first.
+        speeds: the numbers of `Speed` that there are words for.
+        needs: those of ``speeds`` that must be stated, since the language's own default would be
+            taken instead.
+        configurations: whether a target's configuration counts.
+
+    Raises:
+        InputError: a name is no number of `Speed`, or something is needed that cannot be said.
+    """
+
+    zones: tuple[type[Zone], ...]
+    speeds: frozenset[str]
+    needs: frozenset[str] = frozenset()
+    configurations: bool = True
+
+    def __post_init__(self) -> None:
+        unknown = sorted(self.speeds - _SPEED_FIELDS)
+        if unknown:
+            raise InputError(f"MoveWords.speeds: Speed has no {unknown[0]!r}")
+        unsaid = sorted(self.needs - self.speeds)
+        if unsaid:
+            raise InputError(f"MoveWords.needs: {unsaid[0]!r} is not among the speeds")
+
+
+@dataclass(frozen=True)
+class Pitfall:
+    """Words that do not do what they seem to: a zone is asked for, and something switches it off.
+
+    Args:
+        words: what stands in the text.
+        message: what is so; ``{words}`` stands for the words that were found.
+        fix: what to do about it.
+        beside: what else must stand somewhere in the files that are driven; None for nothing.
+        without: what must stand nowhere in them; None for nothing.
+    """
+
+    words: re.Pattern[str]
+    message: str
+    fix: str
+    beside: re.Pattern[str] | None = None
+    without: re.Pattern[str] | None = None
+
+
+@dataclass(frozen=True)
+class Wording:
+    """How a language's text is searched without being read.
+
+    Args:
+        silent: comments and strings.
+        targets: the declaration of a target; its group ``names`` holds the name, or several with
+            commas between them.
+        name: any name.
+        same_case: whether upper and lower case are the same.
+        pitfalls: words that do not do what they seem to.
+    """
+
+    silent: re.Pattern[str]
+    targets: re.Pattern[str]
+    name: re.Pattern[str]
+    same_case: bool = True
+    pitfalls: tuple[Pitfall, ...] = ()
+
+    def __post_init__(self) -> None:
+        if "names" not in self.targets.groupindex:
+            raise InputError("Wording.targets: the pattern needs a group called 'names'")
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """What a language can say.
+
+    Args:
+        joint: of joint moves.
+        line: of lines.
+        arc: of arcs.
+        pace: the number of `Speed` by which joint moves are driven faster or slower: ``tcp``,
+            ``joint_fraction`` or ``joint``.
+        comment: what a line of comment begins with.
+        zone_parts: whether a zone may be larger for reorientation and external axes than for the
+            TCP, and have an angle for pure turns.
+        work_objects: whether targets are given in frames; without, they are given in the robot's
+            base.
+        user_frames: whether a work object has a user frame and an object frame in it.
+        stationary_tools: whether the robot may carry the work object to a tool that stands still.
+        external_axes: whether targets have external axes.
+        rigid_arcs: whether a tool that follows an arc keeps its orientation to the arc, whatever
+            orientation the arc's end has.
+        share_step: by what step shares of joint speed and acceleration are said.
+        least_acceleration_share: the least share of acceleration that is taken.
+        fastest: greatest speed of the TCP that is taken, m/s.
+        wording: how its texts are searched; None if they are not.
+    """
+
+    joint: MoveWords
+    line: MoveWords
+    arc: MoveWords
+    pace: str
+    comment: str
+    zone_parts: bool = False
+    work_objects: bool = True
+    user_frames: bool = False
+    stationary_tools: bool = True
+    external_axes: bool = True
+    rigid_arcs: bool = False
+    share_step: float = 0.01
+    least_acceleration_share: float = 0.01
+    fastest: float = 7.0
+    wording: Wording | None = None
+
+    def __post_init__(self) -> None:
+        if self.pace not in PACES or self.pace not in self.joint.speeds:
+            raise InputError(
+                f"Dialect.pace is one of {', '.join(PACES)} and among the speeds of joint moves, "
+                f"not {self.pace!r}"
+            )
+
+    def words(self, move: Move) -> MoveWords:
+        """What can be said of moves of this kind."""
+        from .program.move import MoveC, MoveJ
+
+        if isinstance(move, MoveJ):
+            return self.joint
+        return self.arc if isinstance(move, MoveC) else self.line

@@ -1,0 +1,136 @@
+"""Checks a program: rules on its text, then on its emulated motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+from ..errors import FlybyError, MotionError, SourceError
+from ..motion.controller import Controller, Run
+from ..program.move import Move, Statement
+from ..program.program import Program
+from ..program.target import JointTarget
+from ..robot.model import Robot
+from ..vendor import Vendor
+from .finding import Finding, ProgramSubject, Rule, RunSubject, Severity
+from .program_rules import PROGRAM_RULES
+from .run_rules import RUN_RULES
+
+CANNOT_DRIVE = "cannot-drive"
+CANNOT_READ = "cannot-read"
+
+
+def rules() -> dict[str, tuple[Severity, str]]:
+    """Severity and summary of every rule by its id."""
+    known: list[Rule[ProgramSubject] | Rule[RunSubject]] = [*PROGRAM_RULES, *RUN_RULES]
+    own = {
+        CANNOT_READ: (Severity.ERROR, "text that cannot be read"),
+        CANNOT_DRIVE: (Severity.ERROR, "moves that the robot cannot drive"),
+    }
+    return {**own, **{rule.id: (rule.severity, rule.summary) for rule in known}}
+
+
+def check(
+    program: Program, vendor: Vendor, robot: Robot, start: JointTarget | None = None
+) -> tuple[Finding, ...]:
+    """All findings, in the order of the program's text.
+
+    A move that cannot be driven is a finding, and what comes before it is checked all the same.
+
+    Args:
+        program: the program.
+        vendor, robot: whose it is.
+        start: where the robot stands; None for the program's own start, else its first target.
+    """
+    wording = None if vendor.speaks is None else vendor.speaks.wording
+    subject = ProgramSubject(program, robot, wording)
+    found = [f for rule in PROGRAM_RULES for f in rule.findings(subject, program)]
+    run, failures = _driven(program, Controller(vendor, robot), start)
+    found += failures
+    if run is not None:
+        driven = RunSubject(run, robot)
+        found += [f for rule in RUN_RULES for f in rule.findings(driven, program)]
+    return tuple(sorted(_once(found), key=_place))
+
+
+def _once(found: Iterable[Finding]) -> list[Finding]:
+    """What a line in a loop shows every time, where it is worst."""
+    told: dict[tuple[object, ...], Finding] = {}
+    for finding in found:
+        what = finding.message if finding.size is None else None
+        key = finding.rule, what, finding.span or finding.move
+        if key not in told or (finding.size or 0.0) > (told[key].size or 0.0):
+            told[key] = finding
+    return list(told.values())
+
+
+def unreadable(error: FlybyError) -> Finding:
+    """The finding that a text cannot be read."""
+    span = error.span if isinstance(error, SourceError | MotionError) else None
+    message = str(error).removeprefix(f"{span}: ") if span is not None else str(error)
+    return Finding(
+        CANNOT_READ,
+        Severity.ERROR,
+        message,
+        "correct the text; nothing else was checked",
+        None,
+        span,
+    )
+
+
+def _driven(
+    program: Program, controller: Controller, start: JointTarget | None
+) -> tuple[Run | None, list[Finding]]:
+    """The run of as much as can be driven, and why no more."""
+    try:
+        return controller.run(program, start), []
+    except FlybyError as error:
+        failure = _failure(program, error)
+    first = failure.move
+    if not first:
+        return None, [failure]
+    try:
+        return controller.run(_before(program, first), start), [failure]
+    except FlybyError:
+        # What comes before fails as well where it is looked at alone: one reason is enough.
+        return None, [failure]
+
+
+def _failure(program: Program, error: FlybyError) -> Finding:
+    if not isinstance(error, MotionError):
+        return Finding(CANNOT_DRIVE, Severity.ERROR, str(error), _FIX)
+    if error.move is None:
+        return Finding(CANNOT_DRIVE, Severity.ERROR, error.message, _FIX_START, None, error.span)
+    span = error.span
+    if span is None:
+        origin = program.moves[error.move].origin
+        span = None if origin is None else origin.statement
+    return Finding(CANNOT_DRIVE, Severity.ERROR, error.message, _FIX, error.move, span)
+
+
+_FIX = "correct this move; what follows it was not checked"
+_FIX_START = (
+    "let the robot begin elsewhere (--start), or correct the program; no motion was checked"
+)
+
+
+def _before(program: Program, move: int) -> Program:
+    """The program up to a move."""
+
+    def kept() -> Iterator[Statement]:
+        left = move
+        for statement in program.statements:
+            if isinstance(statement, Move):
+                if left == 0:
+                    return
+                left -= 1
+            yield statement
+
+    return replace(program, statements=tuple(kept()))
+
+
+def _place(finding: Finding) -> tuple[str, int, int, str]:
+    span, move = finding.span, -1 if finding.move is None else finding.move
+    if span is None:
+        return "", 0, move, finding.rule
+    return span.file, span.start, move, finding.rule

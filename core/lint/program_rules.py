@@ -1,0 +1,199 @@
+"""Rules on what is written, before anything moves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from ..program.move import Move, MoveJ, Opaque, Wait
+from ..program.target import JointTarget, PoseTarget
+from ..program.zone import FINE, Angle, ContourFraction, Radius, Zone
+from .finding import Hit, ProgramSubject, Rule, Severity
+from .text_rules import pitfalls, unused_targets
+
+_SAME_PLACE = 1e-5
+"""m within which two targets are one place."""
+_SAME_TURN = 1e-4
+"""rad, likewise."""
+_SLACK = 1e-6
+
+
+def _zone_last(subject: ProgramSubject) -> Iterator[Hit]:
+    moves = subject.program.moves
+    if moves and moves[-1].zone != FINE:
+        yield Hit(
+            "the last move ends in a zone, but nothing follows: the robot stops at the point",
+            "end the last move at a stop point (fine; no C_..; r=0)",
+            len(moves) - 1,
+        )
+
+
+def _zone_switched_off(subject: ProgramSubject) -> Iterator[Hit]:
+    yield from _stopped_zones(subject)
+    yield from _empty_zones(subject)
+    yield from pitfalls(subject)
+
+
+def _empty_zones(subject: ProgramSubject) -> Iterator[Hit]:
+    for i, move in enumerate(subject.program.moves[:-1]):
+        if has_no_size(move.zone):
+            yield Hit(
+                "a zone is asked for, but its size is 0: the robot stops at the point",
+                "give the zone a size, or program a stop point",
+                i,
+            )
+
+
+def has_no_size(zone: Zone) -> bool:
+    """Whether a zone is programmed that can do nothing."""
+    if isinstance(zone, Radius):
+        return zone.tcp == 0.0 and zone.angle == 0.0
+    if isinstance(zone, Angle):
+        return zone.angle == 0.0
+    return isinstance(zone, ContourFraction) and zone.fraction == 0.0
+
+
+def _stopped_zones(subject: ProgramSubject) -> Iterator[Hit]:
+    index, pending = -1, False
+    for statement in subject.program.statements:
+        stop = _stop(statement)
+        if stop is not None and pending:
+            yield Hit(
+                f"a zone is programmed, but {stop} stops the robot at the point",
+                "program a stop point, or move the instruction away from the corner",
+                index,
+            )
+            pending = False
+        if isinstance(statement, Move):
+            index, pending = index + 1, statement.zone != FINE
+
+
+def _stop(statement: object) -> str | None:
+    """How a statement stops the robot; None if it does not."""
+    if isinstance(statement, Wait):
+        return f"the wait of {statement.duration:g} s after it"
+    if isinstance(statement, Opaque) and statement.stops:
+        lines = statement.text.strip().splitlines()
+        return f"{lines[0][:40] if lines else ''!r} after it"
+    return None
+
+
+def _joint_limit(subject: ProgramSubject) -> Iterator[Hit]:
+    robot = subject.robot
+    joints = [*robot.joints, *(axis.joint for axis in robot.external_axes)]
+    for i, move in enumerate(subject.program.moves):
+        if not isinstance(move.target, JointTarget):
+            continue
+        if len(move.target.joints) != robot.arm_size:
+            yield Hit(
+                f"the target has {len(move.target.joints)} joint values, {robot.name} has "
+                f"{robot.arm_size} joints",
+                "choose the robot that the program is for",
+                i,
+            )
+            continue
+        values = (*move.target.joints, *move.target.external)
+        for joint, value in zip(joints, values, strict=False):
+            if not joint.lower - _SLACK <= value <= joint.upper + _SLACK:
+                yield Hit(
+                    f"{joint.name} at {joint.shown(value)} is outside its range of "
+                    f"{joint.shown(joint.lower)} to {joint.shown(joint.upper)}",
+                    "keep the joint inside its range",
+                    i,
+                )
+
+
+def _speed_beyond(subject: ProgramSubject) -> Iterator[Hit]:
+    robot = subject.robot
+    fastest = max(robot.joints, key=lambda joint: joint.velocity)
+    for i, move in enumerate(subject.program.moves):
+        speed = move.speed.joint
+        if isinstance(move, MoveJ) and speed is not None and speed > fastest.velocity + _SLACK:
+            yield Hit(
+                f"a joint speed of {fastest.shown(speed)}/s is programmed; the fastest joint, "
+                f"{fastest.name}, reaches {fastest.shown(fastest.velocity)}/s",
+                "program a speed that the robot reaches",
+                i,
+            )
+
+
+def _duplicate_targets(subject: ProgramSubject) -> Iterator[Hit]:
+    named: dict[str, tuple[int, PoseTarget, object]] = {}
+    for i, move in enumerate(subject.program.moves):
+        target = move.target
+        if isinstance(target, PoseTarget) and target.name is not None:
+            named.setdefault(target.name, (i, target, (move.work_object, target.external)))
+    cells: dict[object, list[str]] = {}
+    for name, (_, target, frame) in named.items():
+        # Two places that are one may fall into neighbouring cells of the grid: look around.
+        for cell in _cells(target):
+            cells.setdefault((frame, cell), []).append(name)
+    told: set[tuple[str, str]] = set()
+    for names in cells.values():
+        for first, second in combinations(names, 2):
+            pair = first, second
+            if pair in told or not _alike(named[first][1], named[second][1]):
+                continue
+            told.add(pair)
+            yield Hit(
+                f"{second} is the same point as {first}",
+                f"use {first} in both places, so that one correction serves both",
+                named[second][0],
+            )
+
+
+def _cells(target: PoseTarget) -> list[tuple[int, ...]]:
+    """The cells of a grid that a target is within half a cell of."""
+    cell = 4 * _SAME_PLACE
+    low, high = (
+        [int(np.floor((x + step) / cell)) for x in target.pose.position]
+        for step in (-_SAME_PLACE, _SAME_PLACE)
+    )
+    return sorted(
+        {(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])}
+    )
+
+
+def _alike(first: PoseTarget, second: PoseTarget) -> bool:
+    step = first.pose.inverse() @ second.pose
+    half_turn = min(1.0, float(np.linalg.norm(step.quaternion[1:])))
+    near = float(np.linalg.norm(step.position)) < _SAME_PLACE
+    return near and 2 * float(np.arcsin(half_turn)) < _SAME_TURN
+
+
+def _reader_notes(subject: ProgramSubject) -> Iterator[Hit]:
+    for note in subject.program.notes:
+        yield Hit(note.message, "nothing, if meant so (--io answers)", note.move, note.span)
+
+
+PROGRAM_RULES = (
+    Rule(
+        "zone-last",
+        Severity.WARNING,
+        "a zone on the last point",
+        _zone_last,
+    ),
+    Rule(
+        "zone-switched-off",
+        Severity.WARNING,
+        "a zone that is programmed, and something switches it off",
+        _zone_switched_off,
+    ),
+    Rule("joint-limit", Severity.ERROR, "joint targets outside the robot's range", _joint_limit),
+    Rule("speed-beyond-robot", Severity.WARNING, "joint speeds above the robot's", _speed_beyond),
+    Rule(
+        "duplicate-target",
+        Severity.INFO,
+        "targets with different names at one place (0.01 mm)",
+        _duplicate_targets,
+    ),
+    Rule(
+        "unused-target",
+        Severity.INFO,
+        "targets that are declared and never used",
+        unused_targets,
+    ),
+    Rule("reader", Severity.INFO, "what the reader had to decide or leave aside", _reader_notes),
+)

@@ -1,0 +1,117 @@
+"""Rules on the text of a program's own files, searched by the vendor's `Wording`.
+
+What a program reads while it runs is only part of its text: whether a name stands anywhere else is
+asked of all files that belong to it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import PurePath
+
+from ..dialect import Pitfall, Wording
+from ..program.program import Program
+from ..source.reading import Reading
+from ..source.text import SourceText
+from .finding import Hit, ProgramSubject
+
+_VISIBLE = re.compile(r"[^\r\n]")
+
+
+def unused_targets(subject: ProgramSubject) -> Iterator[Hit]:
+    """Targets that are declared and whose name stands nowhere else."""
+    wording, texts = _searched(subject)
+    if wording is None:
+        return
+    known = _known(texts.values(), wording)
+    declared = Counter(
+        _folded(name, wording) for text in texts.values() for name, _ in _declared(text, wording)
+    )
+    for file, text in _own(texts, subject.program).items():
+        source = SourceText(text, file)
+        for name, at in _declared(text, wording):
+            if known[_folded(name, wording)] <= declared[_folded(name, wording)]:
+                yield Hit(
+                    f"{name} is a target that no motion uses",
+                    "remove it, or use it",
+                    span=source.span(at, at + len(name)),
+                )
+
+
+def _known(texts: Iterable[str], wording: Wording) -> Counter[str]:
+    """How often every name stands in the texts."""
+    return Counter(
+        _folded(found[0], wording) for text in texts for found in wording.name.finditer(text)
+    )
+
+
+def _declared(text: str, wording: Wording) -> Iterator[tuple[str, int]]:
+    """Name and offset of every target that is declared."""
+    for found in wording.targets.finditer(text):
+        for one in re.finditer(r"[^,]+", _without_indices(found["names"])):
+            name = wording.name.search(one[0])
+            if name is not None:
+                yield name[0], found.start("names") + one.start() + name.start()
+
+
+def _without_indices(names: str) -> str:
+    return re.sub(r"\[[^\]]*\]", lambda found: " " * len(found[0]), names)
+
+
+def _folded(name: str, wording: Wording) -> str:
+    return name.lower() if wording.same_case else name
+
+
+def pitfalls(subject: ProgramSubject) -> Iterator[Hit]:
+    """Words that do not do what they seem to."""
+    wording, texts = _searched(subject)
+    if wording is None:
+        return
+    own = _own(texts, subject.program)
+    for pitfall in wording.pitfalls:
+        if _applies(pitfall, own):
+            for file, text in own.items():
+                yield from _found(pitfall, SourceText(text, file))
+
+
+def _applies(pitfall: Pitfall, texts: Mapping[str, str]) -> bool:
+    def stands(words: re.Pattern[str]) -> bool:
+        return any(words.search(text) for text in texts.values())
+
+    asked = pitfall.beside is None or stands(pitfall.beside)
+    return asked and not (pitfall.without is not None and stands(pitfall.without))
+
+
+def _found(pitfall: Pitfall, source: SourceText) -> Iterator[Hit]:
+    for found in pitfall.words.finditer(source.text):
+        message = pitfall.message.format(words=found[0])
+        yield Hit(message, pitfall.fix, span=source.span(found.start(), found.end()))
+
+
+def _searched(subject: ProgramSubject) -> tuple[Wording | None, dict[str, str]]:
+    """How to search, and the texts by file with blanks for comments and strings."""
+    reading = subject.program.reading
+    if subject.wording is None or not isinstance(reading, Reading):
+        return None, {}
+    silent = subject.wording.silent
+    return subject.wording, {
+        name: silent.sub(lambda found: _VISIBLE.sub(" ", found[0]), file.text)
+        for name, file in reading.files.items()
+    }
+
+
+def _own(texts: Mapping[str, str], program: Program) -> dict[str, str]:
+    """Those files whose motions are driven, and those that are called like them.
+
+    Others are shared with other programs, which may use what this one does not.
+    """
+    driven = {move.origin.statement.file for move in program.moves if move.origin is not None}
+    assert program.reading is not None
+    stems = {_stem(file) for file in (*driven, program.reading.main)}
+    return {file: text for file, text in texts.items() if _stem(file) in stems}
+
+
+def _stem(file: str) -> str:
+    return str(PurePath(file).with_suffix("")).lower()

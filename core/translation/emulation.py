@@ -1,0 +1,146 @@
+"""One program on one robot, emulated: what the other robot's program is measured against."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import MotionError
+from ..motion.controller import Controller
+from ..motion.limits import interval_samples
+from ..motion.model import MotionModel
+from ..motion.path import Path, Route, build_path
+from ..motion.pieces import Sampling
+from ..motion.route import RouteFinder
+from ..motion.timing import Timing
+from ..program.program import Program
+from ..program.target import JointTarget
+from ..robot.model import Robot
+from ..vendor import Vendor
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Party:
+    """One of the two sides of a translation.
+
+    Args:
+        vendor: whose language and rules.
+        robot: whose kinematics and limits.
+    """
+
+    vendor: Vendor
+    robot: Robot
+
+    @cached_property
+    def model(self) -> MotionModel:
+        """The vendor's motion model."""
+        return self.vendor.motion()
+
+    @cached_property
+    def routes(self) -> RouteFinder:
+        """Resolves waypoints."""
+        return RouteFinder(self.robot, self.vendor.label)
+
+    def route(self, program: Program, start: JointTarget | None = None) -> Route:
+        """The route, on which the speed may change at every waypoint.
+
+        Raises:
+            MotionError: a move that cannot be driven, or none that goes anywhere.
+        """
+        found = self.routes.find(program, start)
+        if not found.moves:
+            raise MotionError(
+                "the program goes nowhere: every move ends where the robot stands; there is "
+                "nothing to translate"
+            )
+        return replace(found, paces=np.ones(len(found.moves) + 1, dtype=np.bool_))
+
+    def path(self, route: Route, program: Program, model: MotionModel | None = None) -> Path:
+        """The path along a route of at least one segment.
+
+        Raises:
+            MotionError: a stretch that the arm cannot follow, with the move's place.
+        """
+        try:
+            return build_path(route, model or self.model, Sampling())
+        except MotionError as error:
+            raise placed(error, program) from error
+
+    def timing(self, program: Program, path: Path) -> Timing:
+        """When the robot is where.
+
+        Raises:
+            MotionError: the limits do not let it move.
+        """
+        return Controller(self.vendor, self.robot).stamp(program, path)
+
+
+def placed(error: MotionError, program: Program) -> MotionError:
+    """The same error with the move's place in the source, if it is known."""
+    if error.move is None or error.span is not None:
+        return error
+    origin = program.moves[error.move].origin
+    return MotionError(error.message, error.move, None if origin is None else origin.statement)
+
+
+def waypoints(route: Route, count: int, start: FloatArray | None = None) -> FloatArray:
+    """The configurations (count, N) at the ends of a program's moves.
+
+    Args:
+        route: the program's; moves that go nowhere are not in it.
+        count: number of the program's moves.
+        start: (N,) where the robot stands, for a route without a segment.
+    """
+    q = route.ends.q[0, 0] if len(route.moves) else start
+    assert q is not None
+    found = np.empty((count, len(q)))
+    segment = {move: k for k, move in enumerate(route.moves)}
+    for i in range(count):
+        q = route.ends.q[segment[i], 1] if i in segment else q
+        found[i] = q
+    return found
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """What each of M segments takes and reaches.
+
+    Args:
+        duration: (M,) s of motion; zones are divided at the waypoint's middle.
+        joint: (M, N) rad/s or m/s, greatest joint speeds.
+        tcp, turn: (M,) m/s and rad/s, greatest speed of the TCP and rate of turn.
+        tcp_acceleration: (M,) m/s², greatest change of the TCP's speed along the path.
+    """
+
+    duration: FloatArray
+    joint: FloatArray
+    tcp: FloatArray
+    turn: FloatArray
+    tcp_acceleration: FloatArray
+
+    @classmethod
+    def of(cls, timing: Timing) -> Peaks:
+        """The peaks of a stamped path."""
+        states, stamp, segment = timing.path.states, timing.stamp, timing.interval_segments
+        left = interval_samples(timing.path.pieces)
+        count = len(timing.path.route.moves)
+        spacing = timing.path.sigma[left + 1] - timing.path.sigma[left]
+        change = (stamp.x[1:] - stamp.x[:-1]) / (2 * spacing)
+        joint, peaks = np.zeros((count, states.dq.shape[1])), np.zeros((3, count))
+        for knot, sample in ((0, left), (1, left + 1)):
+            square = stamp.x[knot : len(stamp.x) - 1 + knot]
+            rate = np.sqrt(square)
+            np.maximum.at(joint, segment, np.abs(states.dq[sample]) * rate[:, None])
+            for row, part in enumerate((slice(0, 3), slice(3, 6))):
+                size = np.linalg.norm(states.v[sample, part], axis=1)
+                np.maximum.at(peaks[row], segment, size * rate)
+            v, a = states.v[sample, :3], states.a[sample, :3]
+            size = np.linalg.norm(v, axis=1)
+            bend = np.sum(v * a, axis=1) / np.where(size > 0, size, 1.0)
+            np.maximum.at(peaks[2], segment, np.abs(size * change + bend * square))
+        return cls(timing.segment_durations(), joint, *peaks)

@@ -1,0 +1,400 @@
+"""Speeds and accelerations in another language's terms.
+
+A line or arc keeps its programmed numbers. A joint move keeps its time and its share of the joints'
+acceleration where the two languages pace joint moves differently: the number that paces it is
+sought with which the new robot's emulated move takes as long as the old one's.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..dialect import Dialect, MoveWords
+from ..motion.path import Path
+from ..program.move import Move, MoveJ
+from ..program.program import Program
+from ..program.speed import Speed
+from ..robot.model import Robot
+from .emulation import Party, Peaks
+from .losses import LossesOfPart
+
+FloatArray = NDArray[np.float64]
+
+_ROUNDS = 8
+_GROWTHS = 4
+"""How often times are sought anew with greater accelerations."""
+_MET = 2e-3
+"""Share of a move's time by which it may miss what is wanted before another round is made."""
+_TOLD = 0.05
+"""Share by which a move may be slower before that is told."""
+_SHORT = 0.02
+"""s: a difference of times that is not told."""
+_STILL = 1e-6
+"""m of TCP path below which a move merely turns the tool."""
+_BINDS = 0.99
+"""Share of a programmed limit from which on it counts as having held the move."""
+_SLOWEST = 1e-4
+"""m/s, rad/s or share; no move is made slower."""
+_SIGNIFICANT = 4
+"""Digits of the numbers that are sought."""
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A program on the old robot.
+
+    Args:
+        party: whose.
+        moves: its moves.
+        segment: index of the segment of each move that is driven.
+        peaks: what the segments take and reach.
+        change: (M, N), how far each segment turns the joints.
+        length: (M,) m of TCP path where that is a line or arc.
+    """
+
+    party: Party
+    moves: Sequence[Move]
+    segment: Mapping[int, int]
+    peaks: Peaks
+    change: FloatArray
+    length: FloatArray
+
+    @classmethod
+    def of(cls, party: Party, program: Program, path: Path) -> Driven:
+        """A program along its path."""
+        ends = path.route.ends
+        return cls(
+            party,
+            program.moves,
+            {move: k for k, move in enumerate(path.route.moves)},
+            Peaks.of(party.timing(program, path)),
+            ends.q[:, 1] - ends.q[:, 0],
+            path.segments.length,
+        )
+
+
+class Pacer:
+    """States the speeds of a program for another language.
+
+    Args:
+        old: the program on the old robot.
+        target: the new side.
+        dialect: of its language.
+        losses: what cannot be carried over goes here.
+    """
+
+    def __init__(self, old: Driven, target: Party, dialect: Dialect, losses: LossesOfPart) -> None:
+        self._old = old
+        self._target = target
+        self._dialect = dialect
+        self._losses = losses
+        spoken = old.party.vendor.speaks
+        self._same_pace = spoken is not None and spoken.pace == dialect.pace
+        self._sought: dict[int, str] = {}
+
+    def pace(self, program: Program, path: Path) -> Program:
+        """The program with its speeds in the language's terms.
+
+        Args:
+            program: on the new robot, with the old speeds.
+            path: of the new robot through it.
+        """
+        change = path.route.ends.q[:, 1] - path.route.ends.q[:, 0]
+        segment = {move: k for k, move in enumerate(path.route.moves)}
+        moves = list(program.moves)
+        for i, move in enumerate(moves):
+            turned = change[segment[i]] if i in segment else np.zeros(self._target.robot.size)
+            stated = self._joint(i, turned) if isinstance(move, MoveJ) else self._line(i)
+            moves[i] = replace(move, speed=stated)
+        paced = self._in_time(program.with_moves(tuple(moves)), path, segment)
+        self._tell_slower(paced, path)
+        return paced
+
+    # ------------------------------------------------------------------- lines and arcs
+
+    def _line(self, i: int) -> Speed:
+        """The speed of a line or arc."""
+        speed, words, peaks = self._old.moves[i].speed, self._words(i), self._old.peaks
+        k = self._old.segment.get(i)
+        stated = _said(speed, words)
+        tcp = speed.tcp
+        if tcp is None and "tcp" in words.needs:
+            tcp = self._dialect.fastest if k is None else _rounded(float(peaks.tcp[k]))
+        if tcp is not None:
+            stated["tcp"] = min(max(tcp, _SLOWEST), self._dialect.fastest)
+        acceleration = self._line_acceleration(i)
+        if acceleration is not None:
+            stated["tcp_acceleration"] = acceleration
+        if k is not None:
+            self._keep_time(i, k, speed, words, stated)
+            self._tell_line(i, k, speed, words)
+        return Speed(**stated)
+
+    def _words(self, i: int) -> MoveWords:
+        return self._dialect.words(self._old.moves[i])
+
+    def _line_acceleration(self, i: int) -> float | None:
+        """m/s² along the path: as programmed, the model's, or what the old robot reached."""
+        speed, words = self._old.moves[i].speed, self._words(i)
+        if "tcp_acceleration" not in words.speeds or speed.tcp_acceleration is not None:
+            return speed.tcp_acceleration if "tcp_acceleration" in words.speeds else None
+        reduced = speed.joint_acceleration_fraction < 1.0
+        lost = reduced and "joint_acceleration_fraction" not in words.speeds
+        if not lost and "tcp_acceleration" not in words.needs:
+            return None
+        if self._old.party.model.tcp_acceleration is not None and not lost:
+            return self._old.party.model.tcp_acceleration
+        return self._reached_acceleration(speed.joint_acceleration_fraction)
+
+    def _reached_acceleration(self, share: float) -> float:
+        """m/s², the greatest that the old robot reaches on its lines and arcs with a share."""
+        alike = [
+            float(self._old.peaks.tcp_acceleration[k])
+            for i, k in self._old.segment.items()
+            if not isinstance(self._old.moves[i], MoveJ)
+            and self._old.moves[i].speed.joint_acceleration_fraction == share
+        ]
+        reached = max(alike, default=0.0)
+        return _rounded(reached) if reached > _SLOWEST else _REST_ACCELERATION
+
+    def _keep_time(
+        self, i: int, k: int, speed: Speed, words: MoveWords, stated: dict[str, Any]
+    ) -> None:
+        """For what has a duration, or is a pure turn that the language has no speed for."""
+        if speed.duration is not None and "duration" not in words.speeds:
+            self._sought[i] = "tcp"
+        turning = self._old.length[k] < _STILL and "reorientation" not in words.speeds
+        if turning and "duration" in words.speeds:
+            stated["duration"] = _rounded(float(self._old.peaks.duration[k]))
+
+    def _tell_line(self, i: int, k: int, speed: Speed, words: MoveWords) -> None:
+        limit = speed.reorientation
+        reached = float(self._old.peaks.turn[k])
+        held = limit is not None and reached > _BINDS * limit and self._old.length[k] >= _STILL
+        if held and "reorientation" not in words.speeds:
+            self._losses.at(
+                i,
+                f"the speed of reorientation ({np.degrees(limit or 0):.4g}°/s), which holds this "
+                "move, has no words: the tool may turn faster",
+            )
+        if speed.tcp_acceleration is not None and "tcp_acceleration" not in words.speeds:
+            self._losses.at(
+                i, f"the acceleration of the TCP ({speed.tcp_acceleration:.4g} m/s²) has no words"
+            )
+        self._tell_jerk(i, speed, words)
+
+    def _tell_jerk(self, i: int, speed: Speed, words: MoveWords) -> None:
+        if speed.jerk_fraction < 1.0 and "jerk_fraction" not in words.speeds:
+            self._losses.at(i, f"a reduced jerk ({speed.jerk_fraction:.0%}) has no words")
+
+    # ---------------------------------------------------------------------- joint moves
+
+    def _joint(self, i: int, turned: FloatArray) -> Speed:
+        """The speed of a joint move by which the new robot turns its axes by ``turned`` (N,)."""
+        speed, words, k = self._old.moves[i].speed, self._dialect.joint, self._old.segment.get(i)
+        stated = _said(speed, words)
+        self._tell_jerk(i, speed, words)
+        robot = self._target.robot
+        leading = _leading(robot, turned)
+        share = _acceleration_share(self._old, speed, k)
+        if "joint_acceleration_fraction" in words.speeds:
+            least = self._dialect.least_acceleration_share
+            share = max(least, self._stepped(share))
+            stated["joint_acceleration_fraction"] = share
+        if "joint_acceleration" in words.needs and not self._keeps(speed, "joint_acceleration"):
+            limit = float(robot.limits.acceleration[leading])
+            stated["joint_acceleration"] = _rounded(share * limit)
+        pace = self._dialect.pace
+        if self._same_pace and getattr(speed, pace) is not None:
+            return Speed(**stated)
+        stated[pace] = self._first_pace(k, leading)
+        if k is not None and "duration" not in stated:
+            self._sought[i] = pace
+            if pace == "tcp" and float(self._old.peaks.tcp[k]) < _STILL:
+                stated["tcp"] = self._dialect.fastest
+                stated["reorientation"] = max(_SLOWEST, _rounded(float(self._old.peaks.turn[k])))
+                self._sought[i] = "reorientation"
+        return Speed(**stated)
+
+    def _keeps(self, speed: Speed, name: str) -> bool:
+        return self._same_pace and getattr(speed, name) is not None
+
+    def _first_pace(self, k: int | None, leading: int) -> float:
+        """Where the search for the number that paces a joint move begins."""
+        limits = self._target.robot.limits
+        greatest = {
+            "tcp": self._dialect.fastest,
+            "joint_fraction": 1.0,
+            "joint": _rounded_down(float(limits.velocity[leading])),
+        }[self._dialect.pace]
+        if k is None:
+            return greatest
+        if self._dialect.pace == "tcp":
+            return min(greatest, max(_SLOWEST, float(self._old.peaks.tcp[k])))
+        old = self._old.party.robot.limits.velocity
+        share = float((self._old.peaks.joint[k] / old).max())
+        return greatest * min(1.0, max(0.01, share))
+
+    def _stepped(self, share: float) -> float:
+        """A share as the language says it, at least one step."""
+        step = self._dialect.share_step
+        if step == 0.0:
+            return share
+        return min(1.0, max(step, round(round(share / step) * step, 9)))
+
+    # -------------------------------------------------------------------------- in time
+
+    def _in_time(self, program: Program, path: Path, segment: Mapping[int, int]) -> Program:
+        """The program with those numbers that were left to be sought.
+
+        Where a share of acceleration keeps a joint move from its time, the share grows.
+        """
+        sought = [i for i in self._sought if i in segment]
+        for _ in range(_GROWTHS):
+            if not sought:
+                break
+            program, late = self._matched(program, path, segment, sought)
+            sought = [i for i in late if self._may_accelerate(program.moves[i])]
+            program = self._accelerated(program, {i: late[i] for i in sought})
+        return program
+
+    def _matched(
+        self, program: Program, path: Path, segment: Mapping[int, int], sought: Sequence[int]
+    ) -> tuple[Program, dict[int, float]]:
+        """The program with numbers that meet the times, and by what factor moves are late.
+
+        Times are nearly linear in the inverse of a speed: secant steps in it, all moves at once.
+        """
+        rows = [segment[i] for i in sought]
+        wanted = self._old.peaks.duration[[self._old.segment[i] for i in sought]]
+        value = np.array([getattr(program.moves[i].speed, self._sought[i]) for i in sought])
+        most = np.array([self._most(path, i, segment[i]) for i in sought])
+        slow = 1.0 / np.minimum(value, most)
+        before: tuple[FloatArray, FloatArray] | None = None
+        for _ in range(_ROUNDS):
+            program = self._at(program, sought, 1.0 / slow)
+            spent = self._target.timing(program, path).segment_durations()[rows]
+            error = wanted - spent
+            if (np.abs(error) < _MET * wanted).all():
+                break
+            step = slow * (wanted / np.maximum(spent, 1e-9) - 1.0)
+            if before is not None:
+                slope = (spent - before[1]) / np.where(slow == before[0], np.inf, slow - before[0])
+                step = np.where(slope > 1e-9, error / np.maximum(slope, 1e-9), step)
+            before = slow, spent
+            slow = np.clip(slow + step, np.maximum(1.0 / most, 0.2 * slow), 5.0 * slow)
+        # Late at the greatest speed: not for want of speed, nor for its rounding.
+        late = (spent > (1 + _TOLD) * wanted) & (slow * most < 1.0 + _TOLD)
+        factors = {sought[int(k)]: float(spent[k] / wanted[k]) for k in np.flatnonzero(late)}
+        return self._at(program, sought, 1.0 / slow), factors
+
+    def _may_accelerate(self, move: Move) -> bool:
+        """Whether a move's acceleration is below what the new robot can do."""
+        speed = move.speed
+        if not isinstance(move, MoveJ):
+            return False
+        if self._accelerates_by == "joint_acceleration_fraction":
+            return speed.joint_acceleration_fraction < 1.0
+        most = float(self._target.robot.limits.acceleration.max())
+        return speed.joint_acceleration is not None and speed.joint_acceleration < most
+
+    @property
+    def _accelerates_by(self) -> str:
+        share = "joint_acceleration_fraction"
+        return share if share in self._dialect.joint.speeds else "joint_acceleration"
+
+    def _accelerated(self, program: Program, late: Mapping[int, float]) -> Program:
+        """The program with moves accelerated by the square of the factor by which they are late."""
+        moves, name = list(program.moves), self._accelerates_by
+        for i, factor in late.items():
+            value = getattr(moves[i].speed, name) * 1.05 * factor**2
+            most = float(self._target.robot.limits.acceleration.max())
+            share = name == "joint_acceleration_fraction"
+            number = self._stepped(min(1.0, value)) if share else _rounded(min(most, value))
+            moves[i] = replace(moves[i], speed=_with(moves[i].speed, name, number))
+        return program.with_moves(tuple(moves))
+
+    def _most(self, path: Path, i: int, k: int) -> float:
+        """The greatest value of the number that is sought."""
+        name = self._sought[i]
+        if name == "joint_fraction":
+            return 1.0
+        if name == "joint":
+            turned = path.route.ends.q[k, 1] - path.route.ends.q[k, 0]
+            leading = _leading(self._target.robot, turned)
+            return _rounded_down(float(self._target.robot.limits.velocity[leading]))
+        return self._dialect.fastest if name == "tcp" else 4 * np.pi
+
+    def _at(self, program: Program, sought: Sequence[int], values: FloatArray) -> Program:
+        moves = list(program.moves)
+        for i, value in zip(sought, map(float, values), strict=True):
+            name = self._sought[i]
+            share = name == "joint_fraction"
+            number = self._stepped(value) if share else _rounded(value)
+            moves[i] = replace(moves[i], speed=_with(moves[i].speed, name, number))
+        return program.with_moves(tuple(moves))
+
+    def _tell_slower(self, program: Program, path: Path) -> None:
+        """Losses of moves that the new robot cannot drive as fast."""
+        spent = self._target.timing(program, path).segment_durations()
+        for k, i in enumerate(path.route.moves):
+            if i not in self._old.segment:
+                continue
+            wanted = float(self._old.peaks.duration[self._old.segment[i]])
+            if spent[k] > wanted * (1 + _TOLD) and spent[k] > wanted + _SHORT:
+                self._losses.at(
+                    i,
+                    f"takes {spent[k]:.3f} s instead of {wanted:.3f} s: the limits of "
+                    f"{self._target.robot.name} hold it",
+                    "time",
+                    float(spent[k]) - wanted,
+                )
+
+
+_REST_ACCELERATION = 1.2
+"""m/s² for lines that are not driven; URScript's own default."""
+
+
+def _said(speed: Speed, words: MoveWords) -> dict[str, Any]:
+    """The numbers of a speed that there are words for."""
+    values = {name: getattr(speed, name) for name in sorted(words.speeds)}
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def _with(speed: Speed, name: str, value: float) -> Speed:
+    changed: dict[str, Any] = {name: value}
+    return replace(speed, **changed)
+
+
+def _leading(robot: Robot, turned: FloatArray) -> int:
+    """The axis of the arm that needs the longest for its way."""
+    arm = robot.arm_size
+    return int(np.argmax(np.abs(turned[:arm]) / robot.limits.velocity[:arm]))
+
+
+def _acceleration_share(old: Driven, speed: Speed, k: int | None) -> float:
+    """The share of the joints' acceleration that a joint move is programmed with."""
+    share = speed.joint_acceleration_fraction
+    if speed.joint_acceleration is None or k is None:
+        return share
+    robot = old.party.robot
+    limit = float(robot.limits.acceleration[_leading(robot, old.change[k])])
+    return min(share, speed.joint_acceleration / limit)
+
+
+def _rounded(value: float) -> float:
+    """The value with so many digits as mean something."""
+    return float(f"{value:.{_SIGNIFICANT}g}")
+
+
+def _rounded_down(value: float) -> float:
+    """The same, of a limit: at most the value."""
+    rounded = _rounded(value)
+    step = 10.0 ** (math.floor(math.log10(value)) + 1 - _SIGNIFICANT)
+    return rounded if rounded <= value else _rounded(value - step)

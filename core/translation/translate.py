@@ -1,0 +1,295 @@
+"""Carries a program from one vendor's robot to another's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..dialect import Dialect
+from ..errors import Note, Span
+from ..motion.controller import Controller
+from ..motion.model import Overlap
+from ..motion.path import Path, Route
+from ..motion.segments import make_segments
+from ..program.event import Event
+from ..program.move import ArcOrientation, MoveC, MoveJ, MoveL, Opaque, Statement, Wait
+from ..program.program import Program
+from ..program.target import JointTarget
+from ..program.zone import FINE, Angle, Radius, SpeedFraction, Zone
+from ..robot.model import Robot
+from ..spatial.pose import IDENTITY, Pose
+from ..vendor import Vendor
+from .corners import Corner, corners_of, fit_zones
+from .emulation import Party
+from .frames import Frames
+from .half_turns import decided
+from .losses import Losses, LossesOfPart
+from .pacing import Driven, Pacer
+from .targets import Placer
+
+_CUT_TOLD = 0.05
+"""Share of a corner's cut from which on a difference is told."""
+_CUT_SMALL = 5e-5
+"""m of difference between cuts that is not told."""
+_TURN_TOLD = 1e-2
+"""rad of turn beside a waypoint from which on the zone of reorientation matters."""
+_RIGID = 1e-6
+"""rad by which a tool that follows an arc rigidly may miss the orientation of its end."""
+_RIGID_TOLD = 1e-3
+"""rad, likewise, from which on the difference is told."""
+
+
+@dataclass(frozen=True, slots=True)
+class TranslationOptions:
+    """How a program is translated.
+
+    Args:
+        base: the new robot's world (for a robot of the catalogue: its base) in the old robot's.
+    """
+
+    base: Pose = IDENTITY
+
+
+@dataclass(frozen=True)
+class Translation:
+    """A program in another robot's terms.
+
+    Args:
+        program: what the target vendor's writer takes.
+        losses: what could not be carried over, in the order of the source; moves and lines are
+            the source's.
+        start: where the new robot stands at first.
+    """
+
+    program: Program
+    losses: tuple[Note, ...]
+    start: JointTarget
+
+
+def translate(
+    program: Program,
+    source: tuple[Vendor, Robot],
+    target: tuple[Vendor, Robot],
+    options: TranslationOptions | None = None,
+) -> Translation:
+    """A program for another robot, by the rules of ``docs/translation.md``.
+
+    Args:
+        program: for the source robot.
+        source, target: vendor and robot of either side.
+        options: how.
+
+    Raises:
+        MotionError: the old robot cannot drive the program, the new one cannot reach a target or
+            follow a line, or the new language has no such frames; the message names move and line.
+    """
+    return _Translator(
+        program, Party(*source), Party(*target), options or TranslationOptions()
+    ).run()
+
+
+@dataclass
+class _Translator:
+    source_program: Program
+    source: Party
+    target: Party
+    options: TranslationOptions
+    losses: Losses = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.losses = Losses(self.source_program)
+
+    @property
+    def dialect(self) -> Dialect | None:
+        return self.target.vendor.speaks
+
+    def run(self) -> Translation:
+        """The steps, one after the other."""
+        drivable, kept = self._drivable()
+        losses = self.losses.through(kept)
+        route = self.source.route(drivable)
+        program = decided(drivable, route, losses)
+        if program is not drivable:
+            route = self.source.route(program)
+        path = self.source.path(route, program)
+        driven = Driven.of(self.source, program, path)
+        frames = Frames(self.options.base, self.dialect)
+        placed = Placer(self.source, self.target, self.dialect, frames).place(
+            program, route, losses
+        )
+        new_route = self.target.route(placed.program, placed.start)
+        said = self._with_said_arcs(placed.program, new_route, losses)
+        if said is not placed.program:
+            new_route = self.target.route(said, placed.start)
+        zoned, new_path = self._zoned(said, new_route, path, losses)
+        paced = zoned
+        if self.dialect is not None:
+            paced = Pacer(driven, self.target, self.dialect, losses).pace(zoned, new_path)
+        return Translation(
+            replace(paced, statements=tuple(self._worded(paced))),
+            self.losses.sorted(),
+            placed.start,
+        )
+
+    # ------------------------------------------------------------- what is driven at all
+
+    def _drivable(self) -> tuple[Program, list[int]]:
+        """The program with what is not emulated replaced, and which of its moves are kept."""
+        program = self._with_known_zones(self.source_program)
+        left_out = self._left_out(program)
+        kept = [i for i in range(len(program.moves)) if i not in left_out]
+        for i in left_out:
+            self.losses.at(
+                i,
+                f"left out, as the controller of {self.source.robot.name} leaves it out: its blend "
+                "overlaps a neighbouring one",
+            )
+        statements, index = [], 0
+        for statement in program.statements:
+            if isinstance(statement, MoveJ | MoveL | MoveC):
+                index += 1
+                if index - 1 in left_out:
+                    continue
+            statements.append(statement)
+        return replace(program, statements=tuple(statements)), kept
+
+    def _with_known_zones(self, program: Program) -> Program:
+        moves = list(program.moves)
+        for i, move in enumerate(moves):
+            beside_joint = isinstance(move, MoveJ) or (
+                i + 1 < len(moves) and isinstance(moves[i + 1], MoveJ)
+            )
+            reason = None
+            if isinstance(move.zone, SpeedFraction):
+                reason = "a zone by speed (C_VEL) is not emulated"
+            elif isinstance(move.zone, Angle) and beside_joint:
+                reason = "a zone by orientation (C_ORI) beside a joint move is not emulated"
+            if reason is not None:
+                self.losses.at(i, f"{reason}: it becomes a stop")
+                moves[i] = replace(move, zone=FINE)
+        return program.with_moves(tuple(moves))
+
+    def _left_out(self, program: Program) -> set[int]:
+        """Moves that the old robot's controller skips because blends overlap."""
+        if self.source.model.overlap is not Overlap.SKIP:
+            return set()
+        path = Controller(self.source.vendor, self.source.robot).plan(program)
+        return set(path.route.left_out)
+
+    # ---------------------------------------------------------------------------- arcs
+
+    def _with_said_arcs(self, program: Program, route: Route, losses: LossesOfPart) -> Program:
+        """Arcs on which the tool turns beside following them, where the language has none."""
+        if self.dialect is None or not self.dialect.rigid_arcs:
+            return program
+        moves, changed = list(program.moves), False
+        segments = make_segments(route.ends)
+        for k, i in enumerate(route.moves):
+            move = moves[i]
+            if not isinstance(move, MoveC) or move.orientation is ArcOrientation.FIXED_FRAME:
+                continue
+            rest = float(np.linalg.norm(segments.turn_b[k]))
+            if rest <= _RIGID:
+                continue
+            # Up to half a circle, following and turning from pose to pose are nearly the same.
+            if rest > _RIGID_TOLD or segments.angle[k] > np.pi:
+                losses.at(
+                    i,
+                    "the tool turns evenly from pose to pose: the language knows arcs that the "
+                    "tool follows rigidly, not such that it turns along as well",
+                )
+            moves[i] = replace(move, orientation=ArcOrientation.FIXED_FRAME)
+            changed = True
+        return program.with_moves(tuple(moves)) if changed else program
+
+    # --------------------------------------------------------------------------- zones
+
+    def _zoned(
+        self, program: Program, route: Route, old: Path, losses: LossesOfPart
+    ) -> tuple[Program, Path]:
+        """The program with zones that cut its corners like the old ones, and its path."""
+        wanted = self._wanted(route, old)
+        fitted = fit_zones(self.target, self.dialect, program, route, wanted)
+        zones: list[Zone] = [FINE] * len(program.moves)
+        for i, zone in enumerate(fitted.zones):
+            for move in range(route.moves[i], route.moves[i + 1]):
+                zones[move] = zone
+        moves = [replace(move, zone=zones[i]) for i, move in enumerate(program.moves)]
+        for i, (one, other) in enumerate(zip(wanted, fitted.corners, strict=True)):
+            self._tell_zone(route.zone_moves[i], one, other, losses)
+        path = self.target.path(replace(route, zones=fitted.zones), program)
+        return program.with_moves(tuple(moves)), path
+
+    def _wanted(self, route: Route, old: Path) -> list[Corner]:
+        """What the old controller makes of each corner of the new route."""
+        known: dict[int, Corner] = {}
+        corners = corners_of(old)
+        for i, corner in enumerate(corners):
+            for move in range(old.route.moves[i], old.route.moves[i + 1]):
+                known[move] = corner
+        stop = Corner(False, 0.0, 0.0, 0.0, FINE)
+        return [known.get(move, stop) for move in route.moves[:-1]]
+
+    def _tell_zone(self, move: int, wanted: Corner, found: Corner, losses: LossesOfPart) -> None:
+        """What the corner at the end of a move loses."""
+        if not wanted.passed:
+            return
+        if not found.passed:
+            losses.at(
+                move, "the robot stops here: the language, or its controller, has no such zone"
+            )
+            return
+        apart = abs(found.cut - wanted.cut)
+        if apart > max(_CUT_SMALL, _CUT_TOLD * wanted.cut):
+            losses.at(
+                move,
+                f"passes the waypoint at {1e3 * found.cut:.2f} mm instead of "
+                f"{1e3 * wanted.cut:.2f} mm: zones reach no further here",
+                "cut",
+                apart,
+            )
+        zone = wanted.zone
+        parts = self.dialect is None or self.dialect.zone_parts
+        wider = isinstance(zone, Radius) and zone.reorientation > 1.001 * zone.tcp
+        if wider and not parts and wanted.turn > _TURN_TOLD:
+            losses.at(
+                move,
+                "the wider zone of reorientation has no words: the tool turns within the zone of "
+                "the TCP",
+            )
+
+    # ---------------------------------------------------------------------- statements
+
+    def _worded(self, program: Program) -> list[Statement]:
+        """The statements; what belongs to another language becomes comments."""
+        if self.source.vendor.name == self.target.vendor.name:
+            return list(program.statements)
+        found: list[Statement] = []
+        for statement in program.statements:
+            if isinstance(statement, Opaque):
+                found += self._comments(statement)
+            elif isinstance(statement, Wait):
+                found.append(statement)
+            else:
+                for event in statement.events:
+                    found += self._event(event)
+                found.append(replace(statement, events=()))
+        return found
+
+    def _comments(self, statement: Opaque) -> list[Opaque]:
+        if statement.text.strip():
+            shown = statement.text.strip().splitlines()[0][:60]
+            self.losses.statement(statement.span, f"becomes a comment: {shown}")
+        return self._commented(statement.text, statement.span)
+
+    def _event(self, event: Event) -> list[Opaque]:
+        self.losses.statement(event.span, f"an event on the way becomes a comment: {event.text}")
+        return self._commented(event.text, event.span)
+
+    def _commented(self, text: str, span: Span | None) -> list[Opaque]:
+        """A comment for each line, in ASCII: controllers do not agree on any other encoding."""
+        if self.dialect is None:
+            return [Opaque(text, span=span)]
+        lines = text.encode("ascii", "replace").decode().splitlines() or [""]
+        return [Opaque(self.dialect.comment + line.strip(), span=span) for line in lines]

@@ -1,0 +1,102 @@
+"""Checks that a reader answers any text: with a program, or with an error that says where."""
+
+from __future__ import annotations
+
+import codecs
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ...core.errors import FlybyError, SourceError
+from ...core.program.program import Program
+from ...core.source.patching import difference
+from ...core.source.reading import Reading
+from ..hostile import SIGNS, hostile_texts, hostile_variants
+from .subject import EXAMPLES, PROGRAM_EXAMPLES, Subject
+
+
+class HostilityChecks(Subject):
+    """The reader survives any text, and takes the encodings that files come in."""
+
+    @EXAMPLES
+    @given(text=st.text() | st.text(SIGNS))
+    def test_the_reader_survives_any_text(self, text: str) -> None:
+        self.need("reader")
+        for suffix in self.vendor.suffixes:
+            self._read_or_refuse(text, f"hostile{suffix}")
+
+    @PROGRAM_EXAMPLES
+    @given(data=st.data())
+    def test_the_reader_survives_damage(self, data: st.DataObject) -> None:
+        self.need("reader", "writer")
+        robot = self.vendor.robot(self.driven_robots()[0])
+        for file, text in self.vendor.write(data.draw(self.programs(robot)), robot).items():
+            at, cut = data.draw(st.integers(0, len(text))), data.draw(st.integers(0, 20))
+            patch = data.draw(st.text(SIGNS, max_size=3))
+            self._read_or_refuse(text[:at] + patch + text[at + cut :], file)
+
+    def test_the_reader_survives_hostile_texts(self) -> None:
+        self.need("reader")
+        for text in hostile_texts():
+            self._read_or_refuse(text, f"hostile{self.vendor.suffixes[0]}")
+
+    def test_the_reader_survives_hostile_programs(self) -> None:
+        self.need("reader", "writer")
+        _, sources = self.sample()
+        for file, text in sources.items():
+            for variant in hostile_variants(text):
+                self._read_or_refuse(variant, file)
+
+    def test_files_keep_their_bytes(self) -> None:
+        """Ends of line, byte-order marks and code pages are read, and nothing of them is lost."""
+        self.need("reader", "writer")
+        _, sources = self.sample()
+        plain = self.read_back(sources)
+        for name, encoded in self._encodings(dict(sources)).items():
+            program = self.read_bytes(encoded)
+            assert difference(program, plain) is None, name
+            if isinstance(program.reading, Reading):
+                kept = [file.data for file in program.reading.files.values()]
+                for data in encoded.values():
+                    assert data in kept, f"{name}: the file's bytes are not kept"
+
+    def test_utf_16_is_refused(self) -> None:
+        self.need("reader", "writer")
+        _, sources = self.sample()
+        for codec in ("utf-16-le", "utf-16-be"):
+            mark = codecs.BOM_UTF16_LE if codec.endswith("le") else codecs.BOM_UTF16_BE
+            with pytest.raises(FlybyError):
+                self.read_bytes({f: mark + text.encode(codec) for f, text in sources.items()})
+
+    def _encodings(self, sources: dict[str, str]) -> dict[str, dict[str, bytes]]:
+        """The same program in other bytes, by what is peculiar about them."""
+        found = {"CR LF": {f: t.replace("\n", "\r\n").encode() for f, t in sources.items()}}
+        if self.comment is None:
+            return found
+        for codec, words in (
+            ("cp1252", b"Gr\xf6\xdfe \x80"),
+            ("utf-8-sig", "Größe".encode()),
+            ("gbk", b"\x81\x8d\xb3\xcc"),
+        ):
+            mark = codecs.BOM_UTF8 if codec == "utf-8-sig" else b""
+            comment = self.comment.encode() + b" " + words + b"\n"
+            found[codec] = {f: mark + _after_first_line(t, comment) for f, t in sources.items()}
+        return found
+
+    def _read_or_refuse(self, text: str, file: str) -> None:
+        try:
+            program = self.vendor.read(text, file)
+        except SourceError as error:
+            assert str(error)
+            assert error.span is None or error.span.line >= 1
+        except FlybyError as error:
+            assert str(error)
+        else:
+            assert isinstance(program, Program)
+
+
+def _after_first_line(text: str, line: bytes) -> bytes:
+    """The text's bytes with a line after the first, where every language takes a comment."""
+    first, rest = text.encode().split(b"\n", 1)
+    return first + b"\n" + line + rest

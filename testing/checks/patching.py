@@ -1,0 +1,139 @@
+"""Checks of a vendor's patcher: the user's own file with other numbers, and nothing else."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from difflib import SequenceMatcher
+from typing import Any
+
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from ...core.errors import FlybyError, Span
+from ...core.program.move import Move
+from ...core.program.origin import MoveOrigin, Origin, Ownership
+from ...core.program.program import Program
+from ...core.program.target import JointTarget, Target
+from ...core.program.zone import Fine
+from ...core.source.patching import difference, reading_of
+from ...core.source.reading import Files
+from .subject import PROGRAM_EXAMPLES, Subject
+
+PARTS = ("target", "via", "speed", "zone")
+
+
+@dataclass(frozen=True)
+class _Change:
+    """A part of a move that was changed."""
+
+    move: int
+    part: str
+    program: Program
+    origin: Origin
+    statement: Span
+
+
+class PatchingChecks(Subject):
+    """A patch gives the changed program and touches nothing else, or it is refused."""
+
+    @PROGRAM_EXAMPLES
+    @given(data=st.data())
+    def test_a_patch_gives_the_changed_program(self, data: st.DataObject) -> None:
+        self.need("reader", "writer", "patcher")
+        robot = self.vendor.robot(data.draw(st.sampled_from(self.driven_robots())))
+        program = self.read_back(self.vendor.write(data.draw(self.programs(robot)), robot))
+        change = self._change(data, program)
+        before = reading_of(program)
+        try:
+            files = self.vendor.patch(change.program, robot)
+        except FlybyError as error:
+            assert not must_be_patched(program, change), f"an owned {change.part}: {error}"
+            return
+        assert set(files) <= set(before.files)
+        assert difference(change.program, before.again(files)) is None
+        check_stretches(before.files, files, change)
+
+    @PROGRAM_EXAMPLES
+    @given(data=st.data())
+    def test_a_patch_of_nothing_changes_no_file(self, data: st.DataObject) -> None:
+        self.need("reader", "writer", "patcher")
+        robot = self.vendor.robot(self.driven_robots()[0])
+        program = self.read_back(self.vendor.write(data.draw(self.programs(robot)), robot))
+        assert dict(self.vendor.patch(program, robot)) == {}
+
+    def _change(self, data: st.DataObject, program: Program) -> _Change:
+        """One part of one move with other numbers."""
+        index = data.draw(st.integers(0, len(program.moves) - 1))
+        move = program.moves[index]
+        part = data.draw(st.sampled_from([p for p in PARTS if hasattr(move, p)]))
+        old = getattr(move, part)
+        new = data.draw(self._other(part, move))
+        assume(new != old)
+        moves = list(program.moves)
+        moves[index] = replace(move, **{part: new})
+        assert isinstance(move.origin, MoveOrigin), "moves that were read know their origin"
+        origin = getattr(move.origin, part)
+        changed = program.with_moves(tuple(moves))
+        return _Change(index, part, changed, origin, move.origin.statement)
+
+    def _other(self, part: str, move: Move) -> st.SearchStrategy[Any]:
+        if part == "zone":
+            return self.said_zones(type(move))
+        if part == "speed":
+            return self.other_speeds(move).map(lambda s: replace(s, name=move.speed.name))
+        target = getattr(move, part)
+        return st.integers(-50, 50).map(lambda tenths: shifted(target, 1e-4 * tenths))
+
+
+def shifted(target: Target, step: float) -> Target:
+    """The target further along its first axis, m or rad."""
+    if isinstance(target, JointTarget):
+        first, *rest = target.joints
+        return replace(target, joints=(first + step, *rest))
+    x, y, z = target.pose.position
+    return replace(target, pose=replace(target.pose, position=(x + step, y, z)))
+
+
+def must_be_patched(program: Program, change: _Change) -> bool:
+    """Whether all numbers of the part stand in the text, and no other move reads them."""
+    old, new = (getattr(p.moves[change.move], change.part) for p in (program, change.program))
+    same_words = type(old) is type(new) and not isinstance(old, Fine)
+    if change.part == "speed":
+        same_words = _stated(old) == _stated(new)
+    written = bool(change.origin.numbers) and None not in change.origin.numbers
+    return change.origin.ownership is Ownership.OWNED and written and same_words
+
+
+def _stated(speed: object) -> list[str]:
+    return [name for name in speed.__slots__ if getattr(speed, name) is not None]  # type: ignore[attr-defined]
+
+
+def check_stretches(before: Files, after: Files, change: _Change) -> None:
+    """Only the part's own numbers and the move's own statement have become other text, and only
+    whole lines, declarations of new data, have come."""
+    spans = [change.origin.span, change.statement]
+    spans += [span for span in change.origin.numbers if span is not None]
+    for name, file in after.items():
+        old = before[name]
+        assert file.codec == old.codec and file.data != old.data
+        own = sorted((s.start, s.end) for s in spans if s.file == name)
+        assert own, f"{name} has nothing of the change"
+        pieces, at = [], 0
+        for start, end in own:
+            if start >= at:
+                pieces.append(old.text[at:start])
+            at = max(at, end)
+        pieces.append(old.text[at:])
+        pattern = "(?:.*?)".join(map(re.escape, pieces))
+        kept = without_new_lines(old.text, file.text)
+        assert any(re.fullmatch(pattern, text, re.DOTALL) for text in (file.text, kept)), (
+            f"{name} changed elsewhere"
+        )
+
+
+def without_new_lines(before: str, after: str) -> str:
+    """A text without the lines that stand between those of ``before``."""
+    old, new = before.splitlines(keepends=True), after.splitlines(keepends=True)
+    steps = SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
+    return "".join("".join(new[a:b]) for step, _, _, a, b in steps if step != "insert")

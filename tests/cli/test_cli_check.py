@@ -1,0 +1,60 @@
+"""``flyby check``: findings with line, rule and fix, and an exit status that scripts can use."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+from typer.testing import Result
+
+ROBOT = "abb/irb6640-180-255"
+
+Flyby = Callable[..., Result]
+Small = Callable[..., Path]
+
+
+def test_findings_have_line_rule_and_fix(flyby: Flyby, small: Small) -> None:
+    path = small("MoveL Offs(p1,100,0,0), v500, z100, tool0", "MoveL p1, v500, z10, tool0")
+    result = flyby("check", path, "--robot", ROBOT)
+    assert result.exit_code == 0
+    assert "zone-cut" in result.stdout
+    assert "zone-last" in result.stdout
+    assert "2 warning" in result.stdout
+
+
+def test_json_has_every_finding_with_its_place(flyby: Flyby, small: Small) -> None:
+    path = small("MoveL Offs(p1,100,0,0), v500, z100, tool0", "MoveL p1, v500, fine, tool0")
+    report = json.loads(flyby("check", path, "--robot", ROBOT, "--json").stdout)
+    (cut,) = [f for f in report["findings"] if f["rule"] == "zone-cut"]
+    assert (cut["file"], cut["line"], cut["move"], cut["severity"]) == (str(path), 6, 2, "warning")
+    assert cut["fix"]
+
+
+def test_an_error_among_the_findings_ends_with_status_1(flyby: Flyby, small: Small) -> None:
+    path = small("MoveL Offs(p1,9000,0,0), v500, fine, tool0")
+    result = flyby("check", path, "--robot", ROBOT)
+    assert result.exit_code == 1
+    assert "cannot-drive" in result.stdout
+
+
+def test_a_text_that_cannot_be_read_is_a_finding(flyby: Flyby, small: Small) -> None:
+    path = small("MoveL pNowhere, v500, fine, tool0")
+    result = flyby("check", path, "--robot", ROBOT, "--json")
+    assert result.exit_code == 1
+    (finding,) = json.loads(result.stdout)["findings"]
+    assert (finding["rule"], finding["line"]) == ("cannot-read", 6)
+
+
+def test_a_missing_file_is_no_finding(flyby: Flyby, tmp_path: Path) -> None:
+    result = flyby("check", tmp_path / "absent.mod", "--robot", ROBOT)
+    assert result.exit_code == 1
+    assert "absent.mod" in result.stderr
+    assert not result.stdout
+
+
+def test_nothing_found_is_said(flyby: Flyby, small: Small) -> None:
+    path = small("MoveL Offs(p1,100,0,0), v500, fine, tool0", "MoveAbsJ home, v500, fine, tool0")
+    result = flyby("check", path, "--robot", ROBOT)
+    assert result.exit_code == 0
+    assert "nothing found" in result.stdout

@@ -1,0 +1,263 @@
+"""What a text leaves open: conditions, loops, answers; what is refused and what is stepped over."""
+
+from __future__ import annotations
+
+import pytest
+
+from flyby.core.errors import SourceError
+from flyby.core.program.move import Opaque
+from flyby.core.source.answers import Answers, load_answers
+from flyby.core.source.limits import Limits
+from flyby.core.source.reading import ReadOptions
+from flyby.vendors.abb.rapid.reader import read
+
+UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
+P = f"[[500,0,600],[0,0,1,0],[0,0,0,0],{UNUSED}]"
+AT = f"PROC at(num z)\nMoveL Offs({P},0,0,z-600),v100,fine,tool0;\nENDPROC\n"
+
+
+def program(body, data="", routines="", answers=None, **limits):
+    text = f"MODULE M\n{data}\nPROC main()\n{body}\nENDPROC\n{AT}{routines}\nENDMODULE"
+    return read(text, "a.mod", ReadOptions(answers=answers or Answers(), limits=Limits(**limits)))
+
+
+def heights(body, *rest, **options):
+    moves = program(body, *rest, **options).moves
+    return [round(move.target.pose.position[2] * 1000, 6) for move in moves]
+
+
+def said(*args, **options):
+    return [str(note) for note in program(*args, **options).notes]
+
+
+# ------------------------------------------------------------------------- branches
+
+
+@pytest.mark.parametrize(
+    ("body", "taken"),
+    [
+        ("IF di1=1 THEN at 1; ELSE at 2; ENDIF", [1]),
+        ("IF di1=1 THEN k:=1; ELSE at 2; ENDIF", [2]),
+        ("IF di1=1 THEN k:=1; ELSEIF di2=1 THEN at 2; ENDIF at 9;", [2, 9]),
+        ("IF di1=1 THEN k:=1; ELSEIF FALSE THEN at 2; ELSE k:=3; ENDIF at k;", [3]),
+        ("IF di1=1 THEN k:=1; ENDIF at k;", [0]),
+        ("IF di1=1 at 1;", [1]),
+        ("IF di1=1 THEN at 1; EXIT; ELSE at 2; ENDIF", [2]),
+        ("IF di1=1 THEN at 1; Stop; ENDIF at 2;", [2]),
+        ("IF di1=1 THEN at 1; RETURN; ENDIF at 2;", [2]),
+        ("sub; at 9;", [1, 9]),
+        ("IF di1=1 THEN quit; ELSE at 2; ENDIF", [2]),
+        ("IF k=0 OR di1=1 at 1;", [1]),
+        ("IF k=1 AND di1=1 at 1;", []),
+        ("IF di1=1 THEN deep; ENDIF", [5]),
+        ("TEST GInput(g) CASE 1: k:=1; CASE 2,3: at 3; DEFAULT: at 4; ENDTEST", [3]),
+        ("TEST k CASE 1: at 1; CASE n: at 2; DEFAULT: at 4; ENDTEST", [2]),
+        ("TEST OpMode() CASE 1: k:=1; DEFAULT: k:=2; ENDTEST at k;", [2]),
+        ("again: at 1; IF di1=1 THEN at 2; GOTO again; ENDIF at 3;", [1, 3]),
+        ("IF fOther(1,2) THEN at 1; ENDIF", [1]),
+        ("IF bIn at 1;", [1]),
+        ("k:=a{GInput(g)}; IF k>2 at 1;", [1]),
+        ("a{GInput(g)}:=5; IF a{1}>2 at 1;", [1]),
+    ],
+)
+def test_the_first_branch_that_moves_and_comes_back_is_taken(body, taken):
+    routines = """
+      PROC sub()
+        IF di1=1 THEN at 1; RETURN; ENDIF
+        at 2;
+      ENDPROC
+      PROC quit() at 7; EXIT; ENDPROC
+      PROC deep() IF di7=1 deeper; ENDPROC
+      PROC deeper() at 5; ENDPROC
+    """
+    data = "VAR num k; VAR num a{3}; VAR num n; PERS bool bIn; VAR signaldi sig;"
+    assert heights(f"n := AInput(ai1);\nbIn := TestDI(di1);\n{body}", data, routines) == taken
+
+
+def test_what_was_decided_is_noted_once_with_line_and_branch():
+    body = "FOR i FROM 1 TO 3 DO\nIF diPart=1 THEN\nat i;\nELSE\nk:=1;\nENDIF\nENDFOR"
+    (note,) = said(body, "VAR num k;")
+    assert note.startswith("a.mod:5:4: ")
+    assert "diPart" in note and "branch 1 of 2" in note and "(3 times)" in note
+
+
+def test_a_branch_that_goes_on_is_better_than_one_that_ends_the_program():
+    body = (
+        'TPReadNum n,"peg";\nIF n=1 THEN\nk:=5;\nELSEIF n=2 THEN\nk:=6;\nELSE\nEXIT;\nENDIF\nat k;'
+    )
+    assert heights(body, "VAR num n; VAR num k;") == [5]
+
+
+def test_answers_to_branches_and_passes_by_line():
+    body = "IF di1=1 THEN\nat 1;\nELSE\nat 2;\nENDIF\nWHILE di2=0 DO\nat 3;\nENDWHILE"
+    assert heights(body) == [1, 3]
+    answers = Answers(branches={"a.mod:4": 2}, passes={"a.mod:9": 3})
+    assert heights(body, answers=answers) == [2, 3, 3, 3]
+    assert said(body, answers=answers) == []
+    assert heights(body, answers=Answers(branches={"a.mod:4": 0})) == [2, 3]
+    with pytest.raises(SourceError, match="there are 2 branches, not 3"):
+        program(body, answers=Answers(branches={"a.mod:4": 3}, file="io.toml"))
+
+
+def test_a_datum_of_a_module_that_is_not_at_hand_is_written():
+    body = "nDone := 4;\nIncr nDone;\nat nDone;\nsPlc.state := 7;\nnDone := 6;\nat nDone;"
+    assert heights(body) == [5, 6]
+    first, second = said(body)
+    assert first.startswith("a.mod:4:1: 'nDone' is written and not declared in what is at hand")
+    assert first.endswith("(3 times, here first)") and second.startswith("a.mod:7:1: 'sPlc' is")
+
+
+@pytest.mark.parametrize(
+    ("condition", "taken"),
+    [
+        ("bGo", [1]),
+        ("NOT bOn", [2]),
+        ("bGo=TRUE AND n=3", [1, 3]),
+        ("3=n", [3]),
+        ("NOT (bOn OR n<>0)", [2]),
+        ("n>5", [3]),
+        ("bGo OR di1=1", []),
+        ("n=0", []),
+        ("a{2}=7", [5]),
+        ("n<>n", [3]),
+        ("DInput(di1)=1 AND bGo", []),
+        ("nMost=9", []),
+    ],
+)
+def test_what_was_waited_for_holds_afterwards(condition, taken):
+    """Where it is not known which value satisfied the wait, the branch that moves is taken."""
+    data = "VAR bool bGo; VAR bool bOn:=TRUE; VAR num n; VAR num a{3}; CONST num nMost:=1;"
+    body = f"""WaitUntil\\Inpos,{condition}\\MaxTime:=3;
+      IF bGo at 1;
+      IF NOT bOn at 2;
+      IF n=3 THEN at 3; ELSEIF n<>0 THEN at 4; ENDIF
+      IF a{{2}}=7 at 5;"""
+    assert heights(body, data) == taken
+
+
+def test_elements_are_written_without_touching_copies():
+    data = "VAR num a{3}:=[1,2,3]; VAR num b{3}; VAR num m{2,2}:=[[1,2],[3,4]]; VAR num c{2,2};"
+    body = """a{2}:=20; b:=a; a{2}:=21; b{3}:=a{2}+1;
+      at a{2}; at b{2}; at b{3};
+      m{2,1}:=30; m{1,2}:=m{2,1}+1; c:=m; m{2,1}:=0; m{2,2}:=9;
+      at c{2,1}; at c{1,2}; at m{2,1}; at m{2,2};
+      a:=[5,6,7]; a{1}:=8; at a{1}; at a{3};
+      b{GInput(g)}:=1; IF b{1}=4 at 99;"""
+    assert heights(body, data) == [21, 20, 22, 30, 31, 0, 9, 8, 7, 99]
+
+
+# ---------------------------------------------------------------------------- loops
+
+
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        ("WHILE di1=1 DO at 1; ENDWHILE at 2;", [1, 2]),
+        ("WHILE di1=1 DO k:=1; ENDWHILE at k;", [0]),
+        ("FOR i FROM 1 TO GInput(g) DO at i; ENDFOR at 9;", [1, 9]),
+        ("FOR i FROM GInput(g) TO 5 DO k:=1; ENDFOR at k;", [0]),
+        ("WHILE TRUE DO at 1; IF di1=1 RETURN; ENDWHILE", [1]),
+        ("loop; at 9;", [1, 9]),
+        ("WHILE TRUE DO at 1; IF di1=1 GOTO out; at 2; ENDWHILE out: at 9;", [1, 2, 9]),
+        ("WHILE bRun DO at 1; n:=n+1; ENDWHILE at 9;", [1]),
+        ("WHILE bRun DO at 1; bRun:=FALSE; ENDWHILE at 9;", [1, 9]),
+        ("WHILE n<3 DO at n; Incr n; ENDWHILE", [0, 1, 2]),
+        ("again: at 1; n:=n+1; GOTO again; at 2;", [1]),
+        ("again: at 1; IF di1=1 GOTO out; GOTO again; out: at 9;", [1, 9]),
+        ("again: at n; n:=n+1; IF n=3 GOTO out; GOTO again; out: at 9;", [0, 1, 2, 9]),
+        ("WHILE TRUE DO at 1; IF di1=1 GOTO next; at 2; next: ENDWHILE", [1, 2]),
+        ("WHILE n<2 DO n:=n+1; ENDWHILE WHILE DInput(di1)=1 DO at n; ENDWHILE", [2]),
+    ],
+)
+def test_loops_that_the_text_does_not_end(body, expected):
+    routines = "PROC loop()\nWHILE TRUE DO\nat 1;\nIF di1=1 RETURN;\nENDWHILE\nENDPROC"
+    assert heights(body, "VAR num k; VAR num n; VAR bool bRun:=TRUE;", routines) == expected
+
+
+def test_loops_end_by_sequences_of_answers():
+    answers = Answers(sequences={"dinput(di1)": (0.0, 0.0, 1.0), "di2": (True, True, False)})
+    body = "WHILE DInput( di1 )=0 DO\nat 1;\nENDWHILE\nWHILE di2=1 DO\nat 2;\nENDWHILE\nat 3;"
+    assert heights(body, answers=answers) == [1, 1, 2, 2, 3]
+
+
+# -------------------------------------------------------------------------- answers
+
+
+def test_answers_to_signals_calls_operators_and_data(tmp_path):
+    file = tmp_path / "io.toml"
+    file.write_text(
+        f"""
+        [values]
+        di_part = true
+        "GInput(giJob)" = 7
+        nHeight = 40
+        bFlag = 1
+        pVision = {P.replace("9E9", "9e9")}
+        tGrip = [true, [[0,0,100],[1,0,0,0]], [1,[0,0,1],[1,0,0,0],0,0,0]]
+        "aPos{{2}}.trans.z" = 11
+        [calls]
+        rGripOpen = "skip"
+        """
+    )
+    answers = load_answers(file)
+    body = """
+      IF di_part=1 at 1;
+      IF di_part = high at 2;
+      at GInput(giJob);
+      TPReadNum nHeight, "height?";
+      at nHeight;
+      bFlag := TestDI(di9);
+      IF bFlag at 3;
+      rGripOpen 50, \\Fast;
+      pVision := fVision();
+      MoveL pVision,v100,fine,tGrip;
+      at z;
+    """
+    data = "VAR num nHeight; VAR bool bFlag; VAR robtarget pVision;"
+    read_program = program(body.replace("at z;", ""), data, answers=answers)
+    assert [round(m.target.pose.position[2] * 1000) for m in read_program.moves] == [
+        *(1, 2, 7, 40, 3, 600)
+    ]
+    assert read_program.moves[-1].tool.name == "tGrip"
+    assert read_program.moves[-1].tool.tcp.position == (0, 0, 0.1)
+    kept = [s.text for s in read_program.statements if isinstance(s, Opaque)]
+    assert "rGripOpen 50, \\Fast;" in kept
+    with pytest.raises(SourceError, match=r"the answer to 'nHeight': a num is wanted"):
+        program('TPReadNum nHeight, "?";', data, answers=Answers({"nheight": "high"}))
+
+
+def test_a_refusal_names_the_key_of_its_answer():
+    with pytest.raises(SourceError, match=r'\[values\] "GInput\(gi1\)" = …'):
+        program("at GInput( gi1 );".replace("( gi1 )", "(gi1)"))
+    with pytest.raises(SourceError, match=r"in the table \[calls\]"):
+        program("rSomething;")
+    with pytest.raises(SourceError, match=r"\[values\] tNot = …"):
+        program(f"MoveL {P},v100,fine,tNot;")
+
+
+def test_waits_set_their_time_flag_to_false():
+    body = "WaitUntil di1=1\\MaxTime:=2\\TimeFlag:=bLate;\nIF bLate at 1;\nat 2;"
+    assert heights(body, "VAR bool bLate:=TRUE;") == [2]
+
+
+def test_signals_are_handed_to_routines_by_their_names():
+    routines = "PROC check(VAR signaldi sig)\nIF DInput(sig)=1 at 1;\nIF sig=1 at 2;\nENDPROC"
+    assert heights("check diA;", "", routines) == [1, 2]
+    assert heights("check diA;", "", routines, answers=Answers({"dia": False})) == [1]
+
+
+def test_elements_and_components_are_handed_over_by_reference():
+    routines = (
+        "PROC count(INOUT num n)\nn := n + 1;\nENDPROC\nPROC all(num n{*})\nat n{2};\nENDPROC"
+    )
+    body = "count a{2};\ncount p.trans.z;\nat a{2};\nat p.trans.z;\nall a;\nall [7,8];"
+    assert heights(body, f"VAR num a{{2}}:=[1,2]; VAR robtarget p:={P};", routines) == [
+        *(3, 601, 3, 8)
+    ]
+
+
+def test_late_calls():
+    routines = "PROC part2()\nat 2;\nENDPROC"
+    assert heights('CallByVar "part",2; %"M:part2"%;', "", routines) == [2, 2]
+    with pytest.raises(SourceError, match="the routine to call depends on"):
+        program('%"part"+NumToStr(GInput(g),0)%;')

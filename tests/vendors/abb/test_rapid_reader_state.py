@@ -1,0 +1,235 @@
+"""What a program asks of its own position, tool and frame; functions on strings and bits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flyby.core.errors import SourceError
+from flyby.core.registry import find_robot
+from flyby.core.source.answers import Answers
+from flyby.core.source.reading import ReadOptions
+from flyby.vendors.abb.rapid.reader import read
+
+UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
+P = f"[[500,0,600],[0,0,1,0],[0,0,0,0],{UNUSED}]"
+DATA = f"""
+  CONST robtarget p:={P};
+  CONST jointtarget home:=[[0,10,20,0,30,0],{UNUSED}];
+  PERS tooldata tGun:=[TRUE,[[0,0,100],[1,0,0,0]],[4,[0,0,50],[1,0,0,0],0,0,0]];
+  PERS wobjdata wTable:=[FALSE,TRUE,"",[[100,0,50],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];
+  VAR robtarget now; VAR jointtarget jNow; VAR pos at; VAR num n; VAR string s; VAR bool b;
+"""
+"""``p`` points down: z of the tool is -z of the world, x is -x."""
+
+
+def program(body, robot=None, answers=None, data=""):
+    text = f"MODULE M\n{DATA}{data}\nPROC main()\n{body}\nENDPROC\nENDMODULE"
+    return read(text, "a.mod", ReadOptions(robot=robot, answers=answers or Answers()))
+
+
+def last(body, **options):
+    return program(body, **options).moves[-1]
+
+
+def refusal(body, **options):
+    with pytest.raises(SourceError) as caught:
+        program(body, **options)
+    return str(caught.value)
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return find_robot("abb/irb1200-5-090")
+
+
+def value(expression, kind="num", robot=None):
+    """A num's value, as the height of a target in mm."""
+    target = last(
+        f"{'n' if kind == 'num' else 'b'}:={expression};\n"
+        + ("IF b n:=1;\n" if kind == "bool" else "")
+        + "MoveL Offs(p,0,0,n-600),v100,fine,tool0;",
+        robot=robot,
+    ).target
+    return round(target.pose.position[2] * 1000, 9)
+
+
+# -------------------------------------------------------------------------- position
+
+
+def test_the_last_target_is_where_the_robot_stands():
+    before = "MoveL p,v100,fine,tGun\\WObj:=wTable;\n"
+    same = last(f"{before}now:=CRobT();\nMoveL now,v100,fine,tGun\\WObj:=wTable;")
+    assert same.target.pose == program(before).moves[0].target.pose
+    assert same.target.configuration == program(before).moves[0].target.configuration
+    world = last(f"{before}MoveL CRobT(\\Tool:=tGun\\WObj:=wobj0),v100,fine,tGun;").target.pose
+    assert world.position == pytest.approx((0.6, 0, 0.65))
+    flange = last(f"{before}MoveL CRobT(\\Tool:=tool0\\WObj:=wobj0),v100,fine,tool0;").target.pose
+    assert flange.position == pytest.approx((0.6, 0, 0.75))
+    up = last(f"{before}at:=CPos();\nnow:=p; now.trans.z:=at.z+5;\nMoveL now,v100,fine,tGun;")
+    assert up.target.pose.position == pytest.approx((0.5, 0, 0.605))
+
+
+def test_joint_values_are_known_after_a_joint_target():
+    body = "MoveAbsJ home,v100,fine,tGun;\njNow:=CJointT();\njNow.robax.rax_6:=45;\n"
+    target = last(f"{body}MoveAbsJ jNow,v100,fine,tGun;").target
+    expected = [math.radians(v) for v in (0, 10, 20, 0, 30, 45)]
+    assert target.joints == pytest.approx(expected)
+
+
+def test_without_a_robot_its_kinematics_are_asked_for_by_name():
+    message = refusal("MoveAbsJ home,v100,fine,tGun;\nMoveL CRobT(),v100,fine,tGun;")
+    assert "CRobT() (name the robot)" in message and '[values] "CRobT()"' in message
+    assert "CJointT" in refusal("MoveL p,v100,fine,tGun;\nMoveAbsJ CJointT(),v100,fine,tGun;")
+    first = "now:=CRobT(\\Tool:=tool0);\nMoveL now,v100,fine,tool0;"
+    assert "CRobT" in refusal(first)
+    answers = Answers(
+        {"crobt(\\tool:=tool0)": ((1.0, 2.0, 3.0), (1.0, 0.0, 0.0, 0.0), (0.0,) * 4, (9e9,) * 6)}
+    )
+    assert last(first, answers=answers).target.pose.position == pytest.approx((1e-3, 2e-3, 3e-3))
+
+
+def test_the_robot_answers_with_its_kinematics(robot):
+    body = "MoveAbsJ home,v100,fine,tGun\\WObj:=wTable;\n"
+    pose = last(f"{body}MoveL CRobT(\\Tool:=tGun\\WObj:=wTable),v100,fine,tGun;", robot=robot)
+    q = np.radians([0, 10, 20, 0, 30, 0])
+    back = last(
+        f"{body}MoveAbsJ CalcJointT(CRobT(),tGun\\WObj:=wTable),v100,fine,tGun;", robot=robot
+    )
+    assert back.target.joints == pytest.approx(tuple(q), abs=1e-9)
+    again = last(f"{body}MoveL CalcRobT(home,tGun\\WObj:=wTable),v100,fine,tGun;", robot=robot)
+    assert again.target.pose.position == pytest.approx(pose.target.pose.position, abs=1e-12)
+    assert again.target.configuration == pose.target.configuration
+    assert "CalcJointT: " in refusal(
+        "MoveAbsJ home,v100,fine,tool0;\nnow:=p; now.trans.x:=9000;\n"
+        "MoveAbsJ CalcJointT(now,tool0),v100,fine,tool0;",
+        robot=robot,
+    )
+
+
+@settings(deadline=None, max_examples=15)
+@given(st.tuples(*[st.floats(-40, 40) for _ in range(4)], st.floats(20, 70), st.floats(-90, 90)))
+def test_calc_joint_undoes_calc_rob(robot, degrees):
+    joints = ",".join(f"{v:.3f}" for v in degrees)
+    body = f"MoveAbsJ [[{joints}],{UNUSED}],v100,fine,tGun;\nnow:=CRobT();\n"
+    target = last(f"{body}MoveAbsJ CalcJointT(now,tGun),v100,fine,tGun;", robot=robot).target
+    expected = [math.radians(float(f"{v:.3f}")) for v in degrees]
+    assert target.joints == pytest.approx(expected, abs=1e-7)
+
+
+def test_displacement_counts_in_the_present_position():
+    body = "PDispSet [[10,0,0],[1,0,0,0]];\nMoveL p,v100,fine,tool0;\nnow:=CRobT();\n"
+    assert last(f"{body}MoveL now,v100,fine,tool0;").target.pose.position[0] == pytest.approx(0.51)
+    undone = f"{body}now:=ORobT(now);\nPDispOff;\nMoveL now,v100,fine,tool0;"
+    assert last(undone).target.pose.position[0] == pytest.approx(0.51)
+
+
+def test_present_tool_and_frame():
+    body = "MoveL p,v100,fine,tGun\\WObj:=wTable;\ntNow:=CTool();\nwNow:=CWObj();\n"
+    move = last(
+        f"{body}MoveL p,v100,fine,tNow\\WObj:=wNow;", data="PERS tooldata tNow; PERS wobjdata wNow;"
+    )
+    assert move.tool.tcp.position == (0, 0, 0.1)
+    assert move.work_object.user.position == pytest.approx((0.1, 0, 0.05))
+
+
+def test_mirrored_points():
+    plane = "[[0,0,500],[1,0,0,0]]"
+    target = last(f"MoveL MirPos(p,{plane}),v100,fine,tool0;").target
+    assert target.pose.position == pytest.approx((0.5, 0, 0.4))
+    # Pointing up now; mirrored twice it is what it was.
+    R = target.pose.matrix()[:3, :3]
+    assert R[:, 2] == pytest.approx((0, 0, 1))
+    twice = last(f"MoveL MirPos(MirPos(p,{plane}),{plane}),v100,fine,tool0;").target.pose
+    assert twice.matrix() == pytest.approx(last("MoveL p,v100,fine,tool0;").target.pose.matrix())
+    other = last(f"MoveL MirPos(p,{plane}\\MirY),v100,fine,tool0;").target.pose.matrix()
+    assert np.linalg.det(other[:3, :3]) == pytest.approx(1)
+    assert other[:3, 2] == pytest.approx((0, 0, 1))
+
+
+def test_frames_of_points():
+    points = ",".join(f"Offs(p,{x},{y},0)" for x, y in ((0, 0), (100, 0), (50, 30)))
+    body = "fNow:=DefFrame({}{});\nMoveL Offs(p,fNow.trans.x,0,0),v100,fine,tool0;"
+    data = "VAR pose fNow;"
+    for origin, x in (("", 0.5), ("\\Origin:=2", 0.6), ("\\Origin:=3", 0.55)):
+        move = last(body.format(points, origin), data=data)
+        assert move.target.pose.position[0] == pytest.approx(0.5 + x)
+    moved = ",".join(f"Offs(p,{x},{y},7)" for x, y in ((0, 0), (100, 0), (50, 30)))
+    shift = f"fNow:=DefDframe({points},{moved});\nMoveL Offs(p,0,0,fNow.trans.z),v100,fine,tool0;"
+    assert last(shift, data=data).target.pose.position[2] == pytest.approx(0.607)
+
+
+# --------------------------------------------------------------- strings, bits, data
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        *[('StrFind("Robotics",1,"aeiou")', 2), ('StrFind("Robotics",1,"aeiou"\\NotInSet)', 1)],
+        *[('StrFind("abc",1,STR_DIGIT)', 4), ('StrMatch("Robotics",1,"bo")', 3)],
+        *[('StrMatch("Robotics",4,"bo")', 9), ('StrLen(StrMap("Robotics","aeiou","AEIOU"))', 8)],
+        *[('StrToByte("10")', 10), ('StrToByte("AE"\\Hex)', 174), ('StrToByte("A"\\Char)', 65)],
+        *[("BitAnd(38,34)", 34), ("BitOr(39,162)", 167), ("BitXOr(39,162)", 133)],
+        *[("BitNeg(38)", 217), ("BitLSh(38,3)", 48), ("BitRSh(38,1)", 19)],
+        *[("BitAndDnum(1099511627776,1099511627777)", 1099511627776)],
+        *[("StrLen(NumToStr(1.5,2\\Exp))", 8), ("StrLen(ByteToStr(5\\Bin))", 8)],
+        *[("StrLen(ValToStr([1,2,3]))", 7), ("CSpeedOverride()", 100), ("Dim(aRow,1)", 3)],
+    ],
+)
+def test_functions_of_nums(expression, expected):
+    text = f"n:={expression};\nMoveL Offs(p,0,0,n/1E6-600),v100,fine,tool0;"
+    height = last(text, data="VAR num aRow{3};").target.pose.position[2]
+    assert height * 1e9 == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    ("condition", "holds"),
+    [
+        *[('StrMemb("Robotics",2,"aeiou")', True), ('StrMemb("S4",1,STR_DIGIT)', False)],
+        *[('StrOrder("FIRST","SECOND",STR_UPPER)', True), ('StrOrder("b","a","ab")', False)],
+        *[('StrDigCmp("1234",LT,"99999999999999999")', True), ("BitCheck(6,2)", True)],
+        *[('DecToHex("255")="FF"', True), ('HexToDec("ff")="255"', True)],
+        *[('ByteToStr(122\\Hex)="7A"', True), ('ByteToStr(65\\Char)="A"', True)],
+        *[('StrMap("Robotics","aeiou","AEIOU")="RObOtIcs"', True), ("IsPers(tGun)", True)],
+        *[("IsVar(n)", True), ('Type(p)="robtarget"', True), ("TestAndSet(b)", True)],
+        *[('StrToVal("3.8",n)', True), ('StrToVal("x",n)', False), ("TestAndSet(bSet)", False)],
+        *[('StrToVal("[1,2,3]",at)', True), ('StrToVal("[1,2]",at)', False)],
+    ],
+)
+def test_functions_of_bools(condition, holds):
+    text = f"IF {condition} MoveL p,v100,fine,tool0;"
+    assert len(program(text, data="VAR bool bSet:=TRUE;").moves) == holds
+
+
+def test_values_read_from_strings_arrive():
+    body = 'b:=StrToVal("[1,2,"+"3.5]",at);\nn:=at.z;\nb:=StrToVal("-2",n);\n'
+    target = last(f"{body}MoveL Offs(p,0,0,at.z+n),v100,fine,tool0;").target
+    assert target.pose.position[2] == pytest.approx(0.6015)
+    message = refusal("b:=StrToVal(ReadStr(io),n);\nMoveL Offs(p,0,0,n),v100,fine,tool0;")
+    assert "ReadStr" in message
+
+
+def test_bits_are_set_and_cleared():
+    body = "n:=5;\nBitSet n,2;\nBitClear n,1;\nMoveL Offs(p,0,0,n),v100,fine,tool0;"
+    assert last(body).target.pose.position[2] == pytest.approx(0.606)
+    assert "numbered from 1 to 8" in refusal("BitSet n,9;")
+
+
+@pytest.mark.parametrize(
+    ("expression", "words"),
+    [
+        ('StrFind("abc",9,"a")', "position 9 is outside"),
+        ('StrMap("abc","ab","c")', "two strings of equal length"),
+        ('StrToByte("x1")', "no finite value"),
+        ("BitAnd(300,1)", "no whole number of 8 bits"),
+        ("BitAnd(1.5,1)", "no whole number of 8 bits"),
+        ('StrDigCmp("a",LT,"1")', "strings of digits"),
+        ("StrLen(5)", "a string is wanted"),
+    ],
+)
+def test_functions_refuse_what_they_do_not_take(expression, words):
+    assert words in refusal(f"s:=ValToStr({expression});")

@@ -1,0 +1,205 @@
+"""URScript texts as files hold them, and texts that are damaged."""
+
+import gzip
+import random
+import time
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flyby.core.errors import FlybyError, InputError, SourceError
+from flyby.core.registry import find_vendor
+from flyby.core.source.reading import Reading, ReadOptions
+from flyby.core.source.text import SourceFile
+from flyby.vendors.ur.urscript.reader import read, read_file
+
+PROGRAM = """def prog():
+  # Größe
+  set_tcp(p[0.0,0.0,0.1,0.0,0.0,0.0])
+  global Waypoint_1_p=p[-.144, -.436, .202, -.001, 3.116, .039]
+  global Waypoint_1_q=[-1.6, -1.727, -2.203, -0.808, 1.595, -0.031]
+  thread Step_Counter():
+    while (True):
+      count = count + 1.0
+      sync()
+    end
+  end
+  count = 0.0
+  run Step_Counter()
+  while (True):
+    $ 1 "Robot Program"
+    $ 2 "Waypoint_1" "breakAfter"
+    movej(get_inverse_kin(Waypoint_1_p, qnear=Waypoint_1_q), a=1.3962634, v=1.0471975)
+    if (get_standard_digital_in(0) == True):
+      movel(pose_trans(Waypoint_1_p, p[0,0,-0.1,0,0,0]), a=1.2, v=0.25, r=0.01)
+    end
+  end
+end
+"""
+
+
+def refusal(text: str) -> str:
+    with pytest.raises(SourceError) as caught:
+        read(text, "t.script")
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("codec", ["utf-8", "utf-8-sig", "cp1252", "latin-1"])
+@pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
+def test_files_in_all_encodings(tmp_path: Path, codec: str, ending: str) -> None:
+    path = tmp_path / "prog.script"
+    path.write_bytes(PROGRAM.replace("\n", ending).encode(codec))
+    program = find_vendor("ur").read_file(path)
+    assert len(program.moves) == 2
+    assert program.name == "prog"
+    assert isinstance(program.reading, Reading)
+    assert program.reading.files[str(path)].data == path.read_bytes()
+    assert program.reading.again({}) == program
+
+
+def test_files_are_read_again_with_changes(tmp_path: Path) -> None:
+    path = tmp_path / "prog.script"
+    path.write_text(PROGRAM, "utf-8")
+    program = read_file(path)
+    assert isinstance(program.reading, Reading)
+    changed = SourceFile(str(path), PROGRAM.replace("v=0.25", "v=0.5"))
+    assert program.reading.again({str(path): changed}).moves[1].speed.tcp == 0.5
+
+
+def test_other_files_are_executed_before(tmp_path: Path) -> None:
+    library, main = tmp_path / "lib.script", tmp_path / "main.script"
+    library.write_text("height = 0.25\ndef go(x):\n  movej([x, 0, 0, 0, 0, 0])\nend\n")
+    main.write_text("def prog():\n  go(height)\n  movej([1, 0, 0, 0, 0])\nend\n")
+    with pytest.raises(SourceError) as caught:
+        read_file(main, ReadOptions(others=(library,)))
+    assert str(caught.value).startswith(f"{main}:3:9: ")
+    main.write_text("def prog():\n  go(height)\nend\n")
+    (move,) = read_file(main, ReadOptions(others=(library,))).moves
+    assert move.origin is not None
+    assert (move.origin.statement.file, move.origin.statement.line) == (str(library), 3)
+    assert move.origin.target.numbers[0] is not None
+    assert move.origin.target.numbers[0].line == 1
+
+
+def test_compressed_programs_say_what_to_read(tmp_path: Path) -> None:
+    for name in ("prog.urp", "prog.script"):
+        path = tmp_path / name
+        path.write_bytes(gzip.compress(b"<URProgram/>"))
+        with pytest.raises(InputError, match=r"read that"):
+            read_file(path)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_file(tmp_path / "none.script")
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "complaint"),
+    [
+        ("def f():\n  movej(Q\nend", "3:1", "the keyword end stands where ',' or ')'"),
+        ("def f():\n  x = 1\n", "3:1", "the file ends where 'end' of 'def f' in line 1"),
+        ("if True:\n  x = 1\n", "3:1", "'end' of 'if' in line 1"),
+        ("x = 1\nend", "2:1", "this 'end' closes nothing"),
+        ("else:\nend", "1:1", "this 'else' closes nothing"),
+        ("def f()\nend", "1:8", "the end of the line stands where ':'"),
+        ("def (x):\nend", "1:5", "stands where a name after 'def'"),
+        ("while True\nend", "1:11", "where ':' after the condition"),
+        ("x = [1, 2", "1:10", "',' or ']' of a list begun in line 1"),
+        ("x = (1 + 2", "1:11", "')' for the bracket opened in line 1"),
+        ("x = 1 2", "1:7", "the number 2 stands where the end of the line"),
+        ("x = ", "1:5", "the file ends where a value"),
+        ("x = * 2", "1:5", "'*' stands where a value"),
+        ('x = "abc', "1:5", "no closing quote"),
+        ("x = “abc”", "1:5", "is no quote of URScript"),
+        ("movej({{ q }})", "1:7", "a template whose placeholders"),
+        ("f() = 1", "1:1", "only a variable"),
+        ("x = 1e999", "1:5", "is too large"),
+        ("x = [1, 1e999]", "1:5", "a number in this list is too large"),
+        ("x = " + "9" * 5000, "1:5", "is too large"),
+        ("x = 1\0", "1:6", "0x00 does not belong"),
+        ("<?xml version='1.0'?>", "1:2", "'?' does not belong here"),
+        ("x = " + "(" * 80 + "1" + ")" * 80, "1:66", "more than 60 brackets and blocks"),
+        ("if True:\n" * 80 + "end\n" * 80, "61:9", "more than 60 brackets and blocks"),
+        ("Loop 3 times:\nend", "1:6", "stands where the end of the line"),
+        ("break", "1:1", "'break' stands outside of a loop"),
+        ("while 1:\ndef f():\ncontinue\nend\nend", "3:1", "stands outside of a loop"),
+        ("x += 1", "1:4", "stands where a value"),
+    ],
+)
+def test_texts_that_are_no_urscript(text: str, place: str, complaint: str) -> None:
+    message = refusal(text)
+    assert complaint in message
+    assert message.startswith(f"t.script:{place}: ")
+
+
+def test_sums_and_chains_of_any_length_are_no_deep_trees() -> None:
+    (move,) = read(f"movej([{'+'.join(['0.001'] * 2000)}, 0, 0, 0, 0, 0])", "t.script").moves
+    assert move.target.joints[0] == pytest.approx(2.0)  # type: ignore[union-attr]
+    assert "too deeply" in refusal("a = [0]\nx = a" + "[0]" * 5000)
+
+
+def test_large_values_are_refused_before_they_cost_time() -> None:
+    started = time.process_time()
+    refusal("x = make_list(9999, 0)\ni = 0\nwhile i < 9000000:\n  x[1] = i\n  i = i + 1\nend")
+    refusal("x = 3\nwhile x > 0:\n  x = x * x\nend")
+    assert time.process_time() - started < 10
+
+
+ALPHABET = [
+    "movej(",
+    "movel(",
+    "p[0,0,0,0,0,0]",
+    "[0,0,0,0,0,0]",
+    ")",
+    "(",
+    "[",
+    "]",
+    ",",
+    "=",
+    "end",
+]
+ALPHABET += ["def f():", "if x:", "else:", "while True:", "thread t():", "run t()", "kill", "join"]
+ALPHABET += [
+    "get_digital_in(1)",
+    "x",
+    "x[0]",
+    "1",
+    "-2.5",
+    '"s"',
+    "\n",
+    "\n",
+    "\n",
+    "return",
+    "halt",
+]
+ALPHABET += [
+    "get_inverse_kin(",
+    "struct(a=1)",
+    ".a",
+    "and",
+    "not",
+    "global",
+    "True",
+    "None",
+    "break",
+]
+
+
+@settings(max_examples=300)
+@given(st.lists(st.sampled_from(ALPHABET), max_size=40))
+def test_any_words_are_read_or_refused(words: list[str]) -> None:
+    try:
+        read(" ".join(words), "t.script")
+    except FlybyError as error:
+        assert str(error)
+
+
+@settings(max_examples=200)
+@given(st.randoms(use_true_random=False), st.text(max_size=8))
+def test_damaged_programs_are_read_or_refused(chance: random.Random, noise: str) -> None:
+    start = chance.randrange(len(PROGRAM))
+    end = min(start + chance.randrange(12), len(PROGRAM))
+    try:
+        read(PROGRAM[:start] + noise + PROGRAM[end:], "t.script")
+    except FlybyError as error:
+        assert str(error)

@@ -1,0 +1,44 @@
+"""What RAPID has words for ("RAPID Reference Manual": speeddata, zonedata, AccSet, PathAccLim)."""
+
+from __future__ import annotations
+
+import re
+
+from ...core.dialect import Dialect, MoveWords, Wording
+from ...core.program.zone import Radius
+
+_SPEEDS = frozenset(
+    {
+        "tcp",
+        "reorientation",
+        "external_linear",
+        "external_angular",
+        "tcp_acceleration",
+        "joint_acceleration_fraction",
+        "jerk_fraction",
+        "duration",
+    }
+)
+
+_WORDING = Wording(
+    silent=re.compile(r'![^\r\n]*|"[^"\r\n]*"'),
+    targets=re.compile(
+        r"\b(?:const|pers|var)\s+(?:robtarget|jointtarget)\s+(?P<names>\w+)", re.IGNORECASE
+    ),
+    name=re.compile(r"[^\W\d]\w*"),
+)
+
+_MOVE = MoveWords((Radius,), _SPEEDS, frozenset({"tcp"}))
+
+RAPID = Dialect(
+    joint=_MOVE,
+    line=_MOVE,
+    arc=_MOVE,
+    pace="tcp",
+    comment="! ",
+    zone_parts=True,
+    user_frames=True,
+    least_acceleration_share=0.2,
+    fastest=7.0,
+    wording=_WORDING,
+)

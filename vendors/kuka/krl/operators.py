@@ -1,0 +1,176 @@
+"""Operators on values.
+
+INT with INT gives INT, division without its remainder; anything with a REAL gives REAL (KUKA
+"Quickguide KRL-Syntax"). ``a : b`` is frame b taken from a into the frame of a, of the type of b.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from ....core.errors import InputError
+from .frames import frame_of, pose_of
+from .types import AXES, POSES
+from .values import Choice, Struct, Unknown, Value, shown
+
+_COMPONENTS = frozenset("xyzabc")
+
+
+class OperandError(Exception):
+    """An operator cannot be applied; the message says why."""
+
+
+def apply(symbol: str, left: Value, right: Value) -> Value:
+    """The value of ``left symbol right``.
+
+    Raises:
+        OperandError: the operands are of the wrong kind, or there is no finite value.
+    """
+    if isinstance(left, Unknown) or isinstance(right, Unknown):
+        return _with_unknown(symbol, left, right)
+    if symbol == ":":
+        return chained(left, right)
+    if symbol in _COMPARISONS:
+        return _compared(symbol, left, right)
+    if symbol in _LOGIC:
+        return _logic(symbol, left, right)
+    if symbol in _BITWISE:
+        if _is_int(left) and _is_int(right):
+            return _BITWISE[symbol](int(left), int(right))  # type: ignore[arg-type]
+        raise _wrong(symbol, "whole numbers", left, right)
+    return _arithmetic(symbol, left, right)
+
+
+def negate(symbol: str, operand: Value) -> Value:
+    """The value of ``-``, ``+``, ``not`` or ``b_not`` before an operand.
+
+    Raises:
+        OperandError: it is of the wrong kind.
+    """
+    if isinstance(operand, Unknown):
+        return operand
+    if symbol == "not":
+        if not isinstance(operand, bool):
+            raise OperandError(f"NOT wants a BOOL, not {shown(operand)}")
+        return not operand
+    if symbol == "b_not":
+        if not _is_int(operand):
+            raise OperandError(f"B_NOT wants a whole number, not {shown(operand)}")
+        return ~int(operand)  # type: ignore[arg-type]
+    if not _is_number(operand):
+        raise OperandError(f"'{symbol}' wants a number, not {shown(operand)}")
+    return -operand if symbol == "-" else +operand  # type: ignore[operator]
+
+
+def chained(left: Value, right: Value) -> Struct:
+    """``left : right``
+
+    Raises:
+        OperandError: they are no frames or positions.
+    """
+    for value in (left, right):
+        if not _is_frame(value):
+            raise OperandError(f"':' wants frames or positions, not {shown(value)}")
+        assert isinstance(value, Struct)
+        unknown = next((v for v in value.fields.values() if isinstance(v, Unknown)), None)
+        if unknown is not None:
+            raise OperandError(f"':' wants known frames; one holds {unknown.reason}")
+    assert isinstance(left, Struct) and isinstance(right, Struct)
+    try:
+        made = frame_of(pose_of(left.fields) @ pose_of(right.fields), right.type or "frame")
+    except InputError as error:
+        raise OperandError(str(error)) from None
+    kept = {k: v for k, v in right.fields.items() if k not in _COMPONENTS}
+    return Struct(made.type, {**made.fields, **kept}, moved_by=left.moved_by)
+
+
+def _is_frame(value: Value) -> bool:
+    if not isinstance(value, Struct) or value.type in AXES:
+        return False
+    return value.type in POSES or (value.type == "" and bool(_COMPONENTS & value.fields.keys()))
+
+
+def _with_unknown(symbol: str, left: Value, right: Value) -> Value:
+    """What can be said although one operand is not known."""
+    for known in (left, right):
+        if symbol == "and" and known is False:
+            return False
+        if symbol == "or" and known is True:
+            return True
+    return left if isinstance(left, Unknown) else right
+
+
+_COMPARISONS: dict[str, Callable[[float, float], bool]] = {
+    "==": lambda a, b: a == b,
+    "<>": lambda a, b: a != b,
+    "<": lambda a, b: a < b,
+    ">": lambda a, b: a > b,
+    "<=": lambda a, b: a <= b,
+    ">=": lambda a, b: a >= b,
+}
+
+
+def _compared(symbol: str, left: Value, right: Value) -> bool:
+    if _is_number(left) and _is_number(right):
+        return _COMPARISONS[symbol](left, right)  # type: ignore[arg-type]
+    alike = any(isinstance(left, kind) and isinstance(right, kind) for kind in (bool, str, Choice))
+    if alike and symbol in ("==", "<>"):
+        return (left == right) == (symbol == "==")
+    codes = [ord(v) if isinstance(v, str) and len(v) == 1 else v for v in (left, right)]
+    if _is_number(codes[0]) and _is_number(codes[1]):
+        return _COMPARISONS[symbol](*codes)  # type: ignore[arg-type]
+    raise _wrong(symbol, "two values of one type", left, right)
+
+
+_LOGIC: dict[str, Callable[[bool, bool], bool]] = {
+    "and": lambda a, b: a and b,
+    "or": lambda a, b: a or b,
+    "exor": lambda a, b: a != b,
+}
+_BITWISE: dict[str, Callable[[int, int], int]] = {
+    "b_and": lambda a, b: a & b,
+    "b_or": lambda a, b: a | b,
+    "b_exor": lambda a, b: a ^ b,
+}
+
+
+def _logic(symbol: str, left: Value, right: Value) -> bool:
+    if not (isinstance(left, bool) and isinstance(right, bool)):
+        raise _wrong(symbol, "BOOLs", left, right)
+    return _LOGIC[symbol](left, right)
+
+
+def _arithmetic(symbol: str, left: Value, right: Value) -> Value:
+    if not (_is_number(left) and _is_number(right)):
+        raise _wrong(symbol, "numbers", left, right)
+    assert isinstance(left, int | float) and isinstance(right, int | float)
+    whole = isinstance(left, int) and isinstance(right, int)
+    if symbol == "/":
+        if right == 0:
+            raise OperandError("a division by zero")
+        value: int | float = math.trunc(left / right) if whole else left / right
+    elif symbol == "*":
+        value = left * right
+    else:
+        value = left + right if symbol == "+" else left - right
+    if whole and abs(value) >= 2**31:
+        raise OperandError("the result is too large for an INT")
+    # $VEL_MA and $ACC_MA, the machine's own maxima, count as infinite; so may half of them.
+    if not math.isfinite(value) and math.isfinite(left) and math.isfinite(right):
+        raise OperandError("the result is no finite number")
+    if math.isnan(value):
+        raise OperandError("the result is no number")
+    return value
+
+
+def _is_number(value: Value) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _is_int(value: Value) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _wrong(symbol: str, wanted: str, left: Value, right: Value) -> OperandError:
+    return OperandError(f"'{symbol.upper()}' wants {wanted}, not {shown(left)} and {shown(right)}")

@@ -1,0 +1,69 @@
+"""How a KRL program is written."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TypeVar
+
+from ....core.errors import InputError, UnknownNameError
+
+Choice = TypeVar("Choice", bound=StrEnum)
+
+
+class ZoneStyle(StrEnum):
+    """Which approximation a program uses."""
+
+    OWN = "own"
+    """The program's zones as they are; KUKA has no predefined ones."""
+
+
+class OpaqueStyle(StrEnum):
+    """What becomes of statements that were kept as text."""
+
+    KEEP = "keep"
+    """They are written as they stand: for programs that were read from KRL. The data and signals
+    that they name must exist on the controller."""
+    COMMENT = "comment"
+    """They become comments: for programs from another language."""
+
+
+@dataclass(frozen=True, slots=True)
+class KrlOptions:
+    """How a program is written.
+
+    Args:
+        zones: see `ZoneStyle`.
+        opaque: see `OpaqueStyle`.
+    """
+
+    zones: ZoneStyle = ZoneStyle.OWN
+    opaque: OpaqueStyle = OpaqueStyle.KEEP
+
+    @classmethod
+    def of(cls, options: Mapping[str, str]) -> KrlOptions:
+        """From options by name.
+
+        Raises:
+            InputError: an unknown option, or a value that it does not take.
+        """
+        for key in options:
+            if key not in ("zones", "opaque"):
+                raise UnknownNameError("option of the KRL writer", key, ("zones", "opaque"))
+        return cls(
+            choice("zones", options.get("zones", ZoneStyle.OWN), ZoneStyle),
+            choice("opaque", options.get("opaque", OpaqueStyle.KEEP), OpaqueStyle),
+        )
+
+
+def choice(key: str, value: str, kind: type[Choice]) -> Choice:
+    """The value of an option.
+
+    Raises:
+        InputError: it is none of those that there are.
+    """
+    try:
+        return kind(value)
+    except ValueError:
+        raise InputError(f"option {key}: one of {', '.join(kind)}, not {value!r}") from None

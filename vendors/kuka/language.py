@@ -1,0 +1,55 @@
+"""KRL as the core asks for it: reads and writes for a robot. Imports are late: they take time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ...core.program.program import Program
+    from ...core.robot.model import Robot
+    from ...core.source.reading import Files, ReadOptions
+    from ...core.vendor import Sources
+
+SUFFIXES = (".src",)
+
+
+class Krl:
+    """Reader, writer, patcher and recorder."""
+
+    def read(self, text: str, file: str, options: ReadOptions) -> Program:
+        """See `flyby.core.vendor.Reader.read`."""
+        from ...core.source.reading import read_with
+        from ...core.source.text import SourceFile, decode
+        from .krl.reader import read_sources
+
+        decoded, codec = decode(text, file)
+        files = {file: SourceFile(file, decoded, codec)}
+        return read_with(files, file, options, read_sources)
+
+    def read_file(self, path: Path, options: ReadOptions) -> Program:
+        """See `flyby.core.vendor.Reader.read_file`."""
+        from ...core.source.reading import read_with
+        from .krl.collect import collect
+        from .krl.reader import read_sources
+
+        return read_with(collect(path, options.others), str(path), options, read_sources)
+
+    def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
+        """See `flyby.core.vendor.Writer.write`."""
+        from .krl.writer import write
+
+        return write(program, robot, options)
+
+    def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
+        """See `flyby.core.vendor.Patcher.patch`."""
+        from .krl.patcher import patch
+
+        return patch(program, robot, options)
+
+    def record(self, program: Program, robot: Robot, period: float) -> Sources:
+        """See `flyby.core.vendor.Recorder.record`."""
+        from .krl.recorder import record
+
+        return record(program, robot, period)

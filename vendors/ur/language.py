@@ -1,0 +1,49 @@
+"""URScript as the core asks for it: reads and writes for a robot. Late imports: they take time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ...core.program.program import Program
+    from ...core.robot.model import Robot
+    from ...core.source.reading import Files, ReadOptions
+    from ...core.vendor import Sources
+
+SUFFIXES = (".script", ".urscript")
+
+
+class UrScript:
+    """Reader, writer, patcher and recorder."""
+
+    def read(self, text: str, file: str, options: ReadOptions) -> Program:
+        """See `flyby.core.vendor.Reader.read`."""
+        from .urscript.reader import read
+
+        return read(text, file, options)
+
+    def read_file(self, path: Path, options: ReadOptions) -> Program:
+        """See `flyby.core.vendor.Reader.read_file`."""
+        from .urscript.reader import read_file
+
+        return read_file(path, options)
+
+    def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
+        """See `flyby.core.vendor.Writer.write`."""
+        from .urscript.writer import write
+
+        return write(program, robot, options)
+
+    def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
+        """See `flyby.core.vendor.Patcher.patch`."""
+        from .urscript.patcher import patch
+
+        return patch(program, robot, options)
+
+    def record(self, program: Program, robot: Robot, period: float) -> Sources:
+        """See `flyby.core.vendor.Recorder.record`."""
+        from .urscript.recorder import record
+
+        return record(program, robot, period)
