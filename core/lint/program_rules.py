@@ -73,6 +73,8 @@ def _stopped_zones(subject: ProgramSubject) -> Iterator[Hit]:
 def _stop(statement: object) -> str | None:
     """How a statement stops the robot; None if it does not."""
     if isinstance(statement, Wait):
+        if statement.duration == 0:
+            return "an instruction after it that ends the look-ahead"
         return f"the wait of {statement.duration:g} s after it"
     if isinstance(statement, Opaque) and statement.stops:
         lines = statement.text.strip().splitlines()

@@ -124,9 +124,7 @@ class Controller:
         for _ in range(_SKIPS):
             route = self._routes.find(program, start, skipped)
             if not route.moves:
-                raise MotionError(
-                    "the program goes nowhere: every move ends where the robot stands"
-                )
+                raise _located(_goes_nowhere(skipped), program)
             try:
                 path = build_path(route, self.model, self.sampling)
             except MotionError as error:
@@ -301,6 +299,20 @@ class Controller:
                     )
                 )
         return notes
+
+
+def _goes_nowhere(left_out: Sequence[int]) -> MotionError:
+    if left_out:
+        return MotionError(
+            "its blend overlaps a neighbouring one, so that the controller leaves the waypoint "
+            "out, and nothing is left that goes anywhere: make the blend smaller, or a stop",
+            min(left_out),
+        )
+    return MotionError(
+        "the program goes nowhere: this and every other move ends where the robot stands; let it "
+        "begin elsewhere",
+        0,
+    )
 
 
 def _located(error: MotionError, program: Program) -> MotionError:

@@ -111,7 +111,7 @@ class RouteFinder:
         """
         moves = program.moves
         if not moves:
-            raise MotionError(f"program {program.name!r} has no move")
+            raise _no_move(program)
         for i, move in enumerate(moves):
             if i not in skipped:
                 _check_near(move, i)
@@ -420,3 +420,11 @@ def _nominal(segments: Segments) -> TcpCurves:
     corners = Corners(np.zeros(count - 1, dtype=np.int64), np.zeros((count - 1, 3, 2)), [])
     unit = replace(segments, scale=np.ones(count))
     return make_tcp_curves(Layout.of(unit, corners), MotionModel()).curves
+
+
+def _no_move(program: Program) -> MotionError:
+    reading = program.reading
+    return MotionError(
+        f"program {program.name!r} has no move: choose as the entry the routine that drives",
+        span=None if reading is None else Span(reading.main, 1, 1, 0, 0),
+    )

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
-_MOST_DIGITS = 17
+_DIGITS = 16
+"""Decimals of so many digits lie further apart than doubles, or nearly so; there are few to try."""
 _NEIGHBOURS = 3
 
 
@@ -25,17 +26,22 @@ def shortest(value: float, guess: float, convert: Callable[[float], float]) -> s
     Returns:
         A decimal without exponent; the nearest one where none comes back exactly.
     """
-    for digits in range(1, _MOST_DIGITS + 1):
+    for digits in range(1, _DIGITS + 1):
         candidate = float(f"{guess:.{digits}g}")
         if convert(candidate) == value:
             return plain(candidate)
+    exact = [plain(candidate) for candidate in _around(guess) if convert(candidate) == value]
+    return min(exact, key=len, default=plain(guess))
+
+
+def _around(guess: float) -> Iterator[float]:
+    """The double itself, and the nearest ones on both sides."""
+    yield guess
     lower = upper = guess
     for _ in range(_NEIGHBOURS):
         lower, upper = math.nextafter(lower, -math.inf), math.nextafter(upper, math.inf)
-        for candidate in (lower, upper):
-            if convert(candidate) == value:
-                return plain(candidate)
-    return plain(guess)
+        yield lower
+        yield upper
 
 
 def plain(value: float) -> str:

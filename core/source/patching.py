@@ -7,7 +7,7 @@ result is read again: it must be the changed program, or nothing is handed out.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from itertools import pairwise
 
@@ -20,6 +20,9 @@ from .reading import Files, Reading
 TOLERANCE = 1e-9
 """m, rad, s and their like: how near a number must come back. Decimals of mm and degrees do not
 give every double; a nanometre is a thousand times below what controllers resolve."""
+
+_SHOWN = 6
+"""Moves that a message names."""
 
 _LABELS = ("name", "origin", "span", "notes", "reading")
 """Fields that say where a value stands or what it is called, and not what it is."""
@@ -148,6 +151,13 @@ def _same_pose(one: Pose, other: Pose, tolerance: float) -> bool:
         alike(one.quaternion, other.quaternion, tolerance)
         or alike(one.quaternion, opposite, tolerance)
     )
+
+
+def listed(moves: Sequence[int]) -> str:
+    """Moves by number, for messages: "moves 1, 2 and 3 others"."""
+    numbers = ", ".join(str(move + 1) for move in moves[:_SHOWN])
+    more = f" and {len(moves) - _SHOWN} others" if len(moves) > _SHOWN else ""
+    return f"move{'s' if len(moves) > 1 else ''} {numbers}{more}"
 
 
 def with_note(program: Program, message: str, span: Span | None = None) -> Program:

@@ -17,13 +17,14 @@ class RapidPatcher:
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         """See `flyby.core.vendor.Patcher.patch`."""
+        from ...core.source.options import PatchOptions
         from ...core.source.patching import reading_of
         from .rapid.convert import axis_kinds
-        from .rapid.patcher import PatchOptions, patch
+        from .rapid.patcher import patch
 
         # The files are read again as they were read, be it without a robot.
         kinds = axis_kinds(reading_of(program).options.robot)
-        return patch(program, PatchOptions.of(options), kinds or ())
+        return patch(program, PatchOptions.of(options, "RAPID patcher"), kinds or ())
 
 
 class RapidRecorder:

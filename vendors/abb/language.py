@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
-
-from ...core.errors import InputError, UnknownNameError
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ...core.program.program import Program
@@ -17,7 +14,6 @@ if TYPE_CHECKING:
     from .rapid.options import RapidOptions
 
 SUFFIXES = (".mod", ".modx", ".prg", ".sys", ".sysx", ".pgf")
-Choice = TypeVar("Choice", bound=StrEnum)
 
 
 class Rapid:
@@ -43,21 +39,13 @@ class Rapid:
 
 
 def _options(robot: Robot, options: Mapping[str, str]) -> RapidOptions:
+    from ...core.source.options import check_names, choice
     from .rapid.convert import axis_kinds
     from .rapid.options import OpaqueStyle, RapidOptions, ZoneStyle
 
-    for key in options:
-        if key not in ("zones", "opaque"):
-            raise UnknownNameError("option of the RAPID writer", key, ("zones", "opaque"))
+    check_names(options, ("zones", "opaque"), "RAPID writer")
     return RapidOptions(
-        zones=_choice("zones", options.get("zones", ZoneStyle.OWN), ZoneStyle),
-        opaque=_choice("opaque", options.get("opaque", OpaqueStyle.KEEP), OpaqueStyle),
+        zones=choice(options, "zones", ZoneStyle.OWN),
+        opaque=choice(options, "opaque", OpaqueStyle.KEEP),
         external_axes=axis_kinds(robot) or (),
     )
-
-
-def _choice(key: str, value: str, kind: type[Choice]) -> Choice:
-    try:
-        return kind(value)
-    except ValueError:
-        raise InputError(f"option {key}: one of {', '.join(kind)}, not {value!r}") from None

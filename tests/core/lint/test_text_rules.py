@@ -121,6 +121,13 @@ def test_targets_that_stand_nowhere_else_are_told(suffix, data, names) -> None:
     assert [message.split()[0] for _, message in hits] == names.split()
 
 
+def test_reading_the_position_behind_a_zone_is_told_as_what_it_is() -> None:
+    moves = CLEAN[".src"][2].replace(" c_dis\n", " c_dis\n  $VEL.CP=0.001*$POS_ACT.X\n")
+    hits = found(".src", "zone-switched-off", "  $APO.CDIS=20", moves)
+    assert [line for line, _ in hits] == [9]
+    assert "but an instruction after it that ends the look-ahead stops the robot" in hits[0][1]
+
+
 def test_an_approximation_that_no_motion_asks_for_is_told() -> None:
     switched_off = partial(found, ".src", "zone-switched-off")
     stops = CLEAN[".src"][2].replace(" C_DIS", "").replace(" c_dis", " ; c_dis")

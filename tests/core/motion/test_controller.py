@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import FlybyError, InputError, MotionError, Span
 from flyby.core.motion.blend import Blend
+from flyby.core.motion.controller import Controller
 from flyby.core.motion.model import MotionModel
 from flyby.core.motion.pieces import Sampling
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
@@ -19,6 +20,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import FINE, Radius
+from flyby.core.registry import find_vendor
 from flyby.core.spatial.pose import Pose
 
 SPEED = Speed(tcp=0.2, reorientation=3.0)
@@ -179,13 +181,34 @@ def test_a_program_without_a_start_begins_at_its_first_target(arm) -> None:
 
 
 def test_a_program_of_one_point_goes_nowhere(arm) -> None:
-    with pytest.raises(MotionError, match="goes nowhere"):
-        drive(arm, MoveL(arm.target(), SPEED))
+    span = Span("a.mod", 4, 5, 30, 40)
+    place = MoveOrigin(span, *[Origin(Ownership.DERIVED, span)] * 3)
+    with pytest.raises(MotionError, match=r"^a\.mod:4:5: move 1: the program goes nowhere"):
+        drive(arm, MoveL(arm.target(), SPEED, origin=place))
+
+
+def test_left_out_waypoints_are_named_if_nothing_else_moves() -> None:
+    ur = find_vendor("ur")
+    robot = ur.robot("ur5e")
+    home, turned = "[0, -1.5, 1.5, 0, 1.5, 0]", "[0, -1.5, 1.5, 0, 1.5, 0.3]"
+    text = (
+        f"set_tcp(p[0, 0, 0.1, 0, 0, 0])\nmovej({home})\nmovej({turned}, r=0.01)\nmovej({home})\n"
+    )
+    with pytest.raises(MotionError, match=r"^a\.script:3:1: move 2: its blend overlaps"):
+        Controller(ur, robot).run(ur.read(text, "a.script", robot=robot))
 
 
 def test_an_empty_program_is_refused(abb) -> None:
-    with pytest.raises(FlybyError):
+    with pytest.raises(MotionError, match=r"^program 'main' has no move: choose as the entry"):
         abb.controller().run(Program((), start=abb.start))
+
+
+def test_a_text_without_moves_is_refused_with_its_name() -> None:
+    abb = find_vendor("abb")
+    robot = abb.robot("irb6640-180-255")
+    program = abb.read("MODULE m\nPROC main()\nENDPROC\nENDMODULE\n", "m.mod")
+    with pytest.raises(MotionError, match=r"^m\.mod:1:1: program 'm' has no move"):
+        Controller(abb, robot).run(program)
 
 
 def test_a_zone_at_the_last_point_is_a_stop(abb) -> None:

@@ -23,6 +23,7 @@ from flyby.core.source.patching import (
     alike,
     changed_moves,
     difference,
+    listed,
     patched,
     reading_of,
     with_note,
@@ -247,3 +248,9 @@ def test_a_note_is_added() -> None:
     place = Span("a", 1, 1, 0, 1)
     program = with_note(with_note(Program(()), "first"), "second", place)
     assert [str(note) for note in program.notes] == ["first", "a:1:1: second"]
+
+
+def test_moves_are_listed_by_number() -> None:
+    assert listed([2]) == "move 3"
+    assert listed([0, 4]) == "moves 1, 5"
+    assert listed(range(9)) == "moves 1, 2, 3, 4, 5, 6 and 3 others"

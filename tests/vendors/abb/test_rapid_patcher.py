@@ -8,11 +8,12 @@ import pytest
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
-from flyby.core.errors import FlybyError, InputError, MotionError, UnknownNameError
+from flyby.core.errors import FlybyError, InputError, MotionError
 from flyby.core.program.move import Move, MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import FINE, ContourFraction, Radius
+from flyby.core.source.options import PatchOptions, Sharing
 from flyby.core.source.patching import difference
 from flyby.core.source.reading import ReadOptions, read_with
 from flyby.core.source.text import SourceFile, decode
@@ -20,7 +21,7 @@ from flyby.testing import strategies as given_by
 from flyby.vendors.abb.configuration import AbbConfiguration
 from flyby.vendors.abb.rapid import predefined
 from flyby.vendors.abb.rapid.options import RapidOptions
-from flyby.vendors.abb.rapid.patcher import PatchOptions, Sharing, patch
+from flyby.vendors.abb.rapid.patcher import patch
 from flyby.vendors.abb.rapid.reader import read_sources
 from flyby.vendors.abb.rapid.writer import write
 
@@ -392,14 +393,6 @@ def test_other_statements_and_other_programs_are_refused() -> None:
         patch(replace(program, statements=program.statements[1:]), REFUSE)
     with pytest.raises(InputError, match="not read from source files"):
         patch(Program(program.statements), REFUSE)
-
-
-def test_options_are_checked() -> None:
-    assert PatchOptions.of({"shared": "own"}) == PatchOptions(shared=Sharing.OWN)
-    with pytest.raises(UnknownNameError, match="did you mean 'shared'"):
-        PatchOptions.of({"share": "own"})
-    with pytest.raises(InputError, match="option derived: one of refuse, own"):
-        PatchOptions.of({"derived": "freeze"})
 
 
 def test_nothing_changed_gives_no_file() -> None:

@@ -116,6 +116,28 @@ def test_errors_say_where_and_what(text, place, words):
     assert words in message
 
 
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        (
+            "IF a THEN\nb;\nENDPROC",
+            "the keyword ENDPROC stands where ENDIF, to close the IF of line 3",
+        ),
+        (
+            "FOR i FROM 1 TO 2 DO\nENDWHILE",
+            "ENDWHILE stands where ENDFOR, to close the FOR of line 3",
+        ),
+        ("WHILE a DO\nERROR\n", "ERROR stands where ENDWHILE, to close the WHILE of line 3"),
+        ("TEST a\nCASE 1:\nb;\nENDIF", "ENDIF stands where ENDTEST, to close the TEST of line 3"),
+        ("b;\nPROC c()\n", "PROC stands where ENDPROC, to close PROC main of line 2"),
+        ("IF a THEN\nb;\n", "file ends where ENDIF, to close the IF of line 3, should follow"),
+    ],
+)
+def test_an_open_block_is_named_with_its_line(body, words):
+    with pytest.raises(SourceError, match=words):
+        parse(SourceText(f"MODULE m\nPROC main()\n{body}", "m.mod"))
+
+
 def test_deep_nesting_is_refused_and_not_a_crash():
     for text in ("(" * 5000, "[" * 5000, "- " * 5000, "NOT " * 5000, "a{" * 5000, "f(" * 5000):
         message = error_at(f"MODULE M\nPROC main()\nx := {text}")[2]

@@ -173,6 +173,13 @@ def test_a_literal_that_others_read_is_refused_or_gets_company(job: Program) -> 
     )
 
 
+@pytest.mark.parametrize("options", [{}, OWN])
+def test_a_zone_with_parts_of_its_own_is_refused_for_what_it_is(job: Program, options) -> None:  # type: ignore[no-untyped-def]
+    uneven = zoned(Radius(0.005, 0.01, 0.01))
+    with pytest.raises(FlybyError, match=r"move 3: zone: KRL's C_DIS has one distance"):
+        KUKA.patch(changed(job, dict.fromkeys((2, 4, 5), uneven)), ROBOT, options)
+
+
 def test_neighbours_with_settings_of_their_own_are_not_restored_between(job: Program) -> None:
     src, _ = patch(job, {4: paced(tcp=0.2), 5: paced(tcp=0.3)}, OWN)
     assert src == SRC.replace(

@@ -133,8 +133,8 @@ def test_spline_ptp_by_percent(krl):
 def test_what_is_not_at_hand_is_assumed_and_said(krl):
     program = krl(OLD, POINTS.replace("#CONSTANT", "#VAR"))
     messages = [str(note) for note in program.notes]
-    assert sum("TOOL_DATA[2] is not at hand" in m for m in messages) == 1
-    assert sum("BASE_DATA[3] is not at hand" in m for m in messages) == 1
+    assert sum("TOOL_DATA[2] is in no $config.dat at hand" in m for m in messages) == 1
+    assert sum("BASE_DATA[3] is in no $config.dat at hand" in m for m in messages) == 1
     assert program.moves[0].target.joints[1] == math.radians(-90)
     assert program.moves[1].tool.name == "TOOL_DATA[2]"
 

@@ -352,6 +352,15 @@ def test_a_controller_s_tree(tmp_path):
     assert program.reading.main == str(main)
 
 
+def test_a_frame_that_the_configuration_leaves_open_is_told(tmp_path):
+    text = "DEF main( )\nBAS(#INITMOV,0)\nBAS(#BASE,2)\nPTP {A1 0,A2 -90,A3 90,A4 0,A5 5,A6 0}\nEND"
+    main = write(tmp_path, "main.src", text)
+    text = "DEFDAT $CONFIG\nDECL FRAME BASE_DATA[8]\nBASE_DATA[1]={X 5,Y 0}\nENDDAT"
+    write(tmp_path, "$config.dat", text)
+    notes = [str(note) for note in Krl().read_file(main, ReadOptions()).notes]
+    assert any("BASE_DATA[2] is in no $config.dat at hand: a frame of zeros" in n for n in notes)
+
+
 def test_files_that_the_user_names(tmp_path):
     main = write(tmp_path, "a/main.src", f"DEF main( )\n{INIT}fetch()\nEND")
     other = write(tmp_path, "b/fetch.src", f"DEF fetch( )\n{P[2]}\nEND")

@@ -309,8 +309,12 @@ def test_halt_ends_the_program_everywhere() -> None:
 def test_notes_count_what_is_kept_by_kind() -> None:
     notes = messages("set_digital_out(1, True)\nset_flag(1, True)\nset_digital_out(1, False)")
     (note,) = [m for m in notes if "outputs" in m]
-    assert note.startswith("t.script:1:1: 3 statements kept")
-    assert note.endswith("set_digital_out, set_flag")
+    assert note == (
+        "t.script:1:1: statements that set outputs and registers are kept and not carried out: "
+        "set_digital_out, set_flag (3 statements, here first)"
+    )
+    (note,) = messages("stopj(2)")
+    assert note.endswith("statements that stop the robot are kept and not carried out: stopj")
 
 
 def test_remote_procedures_are_kept() -> None:

@@ -343,5 +343,5 @@ def test_moves_that_disagree_are_named() -> None:
 def test_unknown_options_are_refused() -> None:
     with pytest.raises(UnknownNameError, match="option of the URScript patcher"):
         patched(f"movel({ONE})", {0: zone(0.1)}, opaque="comment")
-    with pytest.raises(InputError, match="one of keep, own"):
+    with pytest.raises(InputError, match="one of refuse, own"):
         patched(f"movel({ONE})", {0: zone(0.1)}, shared="copy")

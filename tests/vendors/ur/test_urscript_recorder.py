@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from flyby.core.errors import InputError, SourceError
+from flyby.core.errors import InputError
 from flyby.core.program.move import MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -104,8 +104,17 @@ def test_names_of_the_program_give_way_to_those_of_the_recorder() -> None:
     assert len({re.split(r"[ (]", line)[1] for line in defined}) == len(defined)
 
 
-def test_statements_that_need_their_own_script_are_refused() -> None:
-    text = "def grip(w):\n  rq_move(w)\nend\nmovej([0, 0, 0, 0, 0, 0])\nrq_go(width)\nwidth = 3\n"
-    program = read(text, "own.script")
-    with pytest.raises(SourceError, match="width"):
-        record(program, UR5E, 0.008)
+def test_statements_that_do_not_move_the_robot_become_comments() -> None:
+    text = (
+        "def job():\n"
+        "  steps = 0\n"
+        "  thread Step_Counter():\n    while True:\n      steps = steps + 1\n      sync()\n"
+        "    end\n  end\n"
+        "  run Step_Counter()\n"  # as PolyScope exports every program
+        "  movej([0, -1.5, 1.5, 0, 0, 0])\n"
+        "  set_digital_out(0, True)\n"
+        "end\njob()\n"
+    )
+    written = lines(program=read(text, "own.script"))
+    assert "# run Step_Counter()" in written and "# set_digital_out(0, True)" in written
+    assert not [line for line in written if line.startswith(("run ", "set_digital_out("))]

@@ -123,9 +123,10 @@ def _routine(cursor: Cursor, start: int, local: bool) -> Routine:
         declarations.append(_declaration(cursor, cursor.start))
     end = f"end{kind}"
     ends = frozenset({end, *HANDLERS})
-    body = parse_block(cursor, ends)
-    handlers = _handlers(cursor, ends)
-    cursor.expect(end, f"to end {kind.upper()} {text}")
+    head = f"{kind.upper()} {text}"
+    body = parse_block(cursor, ends, head, start)
+    handlers = _handlers(cursor, ends, head, start)
+    cursor.expect(end, f"to end {head}")
     return Routine(
         cursor.span_from(start),
         kind,
@@ -140,7 +141,7 @@ def _routine(cursor: Cursor, start: int, local: bool) -> Routine:
     )
 
 
-def _handlers(cursor: Cursor, ends: frozenset[str]) -> tuple[str, ...]:
+def _handlers(cursor: Cursor, ends: frozenset[str], head: str, start: int) -> tuple[str, ...]:
     """Handlers are checked for their form and left out of the tree."""
     handlers = []
     while (kind := cursor.kind) in HANDLERS:
@@ -150,7 +151,7 @@ def _handlers(cursor: Cursor, ends: frozenset[str]) -> tuple[str, ...]:
             while cursor.accept(","):
                 parse_expression(cursor)
             cursor.expect(")", "after the error numbers")
-        parse_block(cursor, ends)
+        parse_block(cursor, ends, head, start)
         handlers.append(kind)
     return tuple(handlers)
 

@@ -17,16 +17,15 @@ New data are ``LOCAL CONST`` beside those of the same type in the module of the 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
-from enum import StrEnum
 
-from ....core.errors import InputError, Span, UnknownNameError
+from ....core.errors import InputError, Span
 from ....core.program.origin import Ownership
 from ....core.program.program import Program
 from ....core.program.zone import Fine
-from ....core.source.patching import Edit, alike, patched, reading_of
+from ....core.source.options import PatchOptions, Sharing
+from ....core.source.patching import Edit, alike, listed, patched, reading_of
 from ....core.source.reading import Files
 from .additions import Additions
 from .inplace import InPlace, Texts
@@ -34,44 +33,6 @@ from .places import Operand, Places
 from .substitutes import Substitutes
 from .syntax import Aggregate, Name
 from .uses import Kind, Use, uses
-
-_SHOWN = 6
-
-
-class Sharing(StrEnum):
-    """What becomes of a change that the text as it stands has no place for."""
-
-    REFUSE = "refuse"
-    """It is an error that names the move."""
-    OWN = "own"
-    """The move gets a datum of its own."""
-
-
-@dataclass(frozen=True, slots=True)
-class PatchOptions:
-    """How a program is patched.
-
-    Args:
-        shared: for data that other moves read as well.
-        derived: for what expressions compute.
-    """
-
-    shared: Sharing = Sharing.REFUSE
-    derived: Sharing = Sharing.REFUSE
-
-    @classmethod
-    def of(cls, options: Mapping[str, str]) -> PatchOptions:
-        """From text.
-
-        Raises:
-            InputError: an unknown option or value.
-        """
-        for key, value in options.items():
-            if key not in ("shared", "derived"):
-                raise UnknownNameError("option of the RAPID patcher", key, ("shared", "derived"))
-            if value not in tuple(Sharing):
-                raise InputError(f"option {key}: one of {', '.join(Sharing)}, not {value!r}")
-        return cls(**{key: Sharing(value) for key, value in options.items()})
 
 
 def patch(program: Program, options: PatchOptions, axis_kinds: Sequence[str] = ()) -> Files:
@@ -189,7 +150,7 @@ class _Plan:
         elif against and options.shared is Sharing.REFUSE:
             datum = origin.datum or "the literal"
             raise use.error(
-                f"{datum} is read by {_moves(against)} as well, and that is to have another "
+                f"{datum} is read by {listed(against)} as well, and that is to have another "
                 "value: change them all alike, or give the move a datum of its own (shared=own)"
             )
 
@@ -211,7 +172,7 @@ class _Plan:
         if others:
             raise use.error(
                 "the instruction is executed several times, and a datum there would hold for "
-                f"{_moves(others)} too, which is to have another value: change them all alike, or "
+                f"{listed(others)} too, which is to have another value: change them all alike, or "
                 "none"
             )
 
@@ -219,9 +180,3 @@ class _Plan:
 def _plain_stop(operand: Operand) -> bool:
     r"""``z10\Inpos:=inpos50``: a stop point whatever the zone is, and nothing computed."""
     return operand.option("inpos") is not None and isinstance(operand.expression, Name | Aggregate)
-
-
-def _moves(moves: Sequence[int]) -> str:
-    numbers = ", ".join(str(move + 1) for move in moves[:_SHOWN])
-    more = f" and {len(moves) - _SHOWN} others" if len(moves) > _SHOWN else ""
-    return f"move{'s' if len(moves) > 1 else ''} {numbers}{more}"

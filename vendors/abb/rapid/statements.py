@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from .cursor import Cursor
 from .expressions import parse_arguments, parse_expression, parse_name
-from .lexer import NAME
+from .lexer import END, NAME
 from .syntax import (
     Assign,
     Block,
@@ -25,12 +25,33 @@ from .syntax import (
     While,
 )
 
+_CLOSING = frozenset(
+    {"else", "elseif", "endif", "endfor", "endwhile", "case", "default", "endtest"}
+    | {"endproc", "endfunc", "endtrap", "endmodule", "proc", "func", "trap", END}
+    | {"error", "undo", "backward"}
+)
+"""What ends a block, or begins what no block holds."""
 
-def parse_block(cursor: Cursor, ends: frozenset[str]) -> Block:
-    """Statements up to one of the keywords ``ends``, which is left to be read."""
+
+def parse_block(cursor: Cursor, ends: frozenset[str], opened_by: str, start: int) -> Block:
+    """Statements up to one of the keywords ``ends``, which is left to be read.
+
+    Args:
+        cursor: at the first statement.
+        ends: one of them begins with ``end``.
+        opened_by: what the block belongs to, for messages.
+        start: where that begins.
+
+    Raises:
+        SourceError: another block's end, or the end of the file, comes first.
+    """
     statements = []
     with cursor.nested():
-        while cursor.kind not in ends:
+        while (kind := cursor.kind) not in ends:
+            if kind in _CLOSING:
+                (closing,) = (end.upper() for end in ends if end.startswith("end"))
+                line = cursor.source.span(start, start).line
+                raise cursor.unexpected(f"{closing}, to close {opened_by} of line {line},")
             if not cursor.accept(";"):  # one too many does no harm
                 statements.append(parse_statement(cursor))
     return Block(tuple(statements))
@@ -92,12 +113,14 @@ def _if(cursor: Cursor) -> If:
             compact = Block((parse_statement(cursor),))
         return If(cursor.span_from(start), (Branch(condition, compact),), None)
     ends = frozenset({"elseif", "else", "endif"})
-    branches = [Branch(condition, parse_block(cursor, ends))]
+    branches = [Branch(condition, parse_block(cursor, ends, "the IF", start))]
     while cursor.accept("elseif"):
         condition = parse_expression(cursor)
         cursor.expect("then", "after the condition")
-        branches.append(Branch(condition, parse_block(cursor, ends)))
-    otherwise = parse_block(cursor, frozenset({"endif"})) if cursor.accept("else") else None
+        branches.append(Branch(condition, parse_block(cursor, ends, "the IF", start)))
+    otherwise = None
+    if cursor.accept("else"):
+        otherwise = parse_block(cursor, frozenset({"endif"}), "the IF", start)
     _end(cursor, "endif")
     return If(cursor.span_from(start), tuple(branches), otherwise)
 
@@ -112,7 +135,7 @@ def _for(cursor: Cursor) -> For:
     last = parse_expression(cursor)
     step = parse_expression(cursor) if cursor.accept("step") else None
     cursor.expect("do", "at the head of the loop")
-    body = parse_block(cursor, frozenset({"endfor"}))
+    body = parse_block(cursor, frozenset({"endfor"}), "the FOR", start)
     _end(cursor, "endfor")
     return For(cursor.span_from(start), name, first, last, step, body)
 
@@ -122,7 +145,7 @@ def _while(cursor: Cursor) -> While:
     cursor.advance()
     condition = parse_expression(cursor)
     cursor.expect("do", "after the condition")
-    body = parse_block(cursor, frozenset({"endwhile"}))
+    body = parse_block(cursor, frozenset({"endwhile"}), "the WHILE", start)
     _end(cursor, "endwhile")
     return While(cursor.span_from(start), condition, body)
 
@@ -139,11 +162,11 @@ def _test(cursor: Cursor) -> Test:
         while cursor.accept(","):
             values.append(parse_expression(cursor))
         cursor.expect(":", "after the values of the case")
-        cases.append(Case(tuple(values), parse_block(cursor, ends)))
+        cases.append(Case(tuple(values), parse_block(cursor, ends, "the TEST", start)))
     otherwise = None
     if cursor.accept("default"):
         cursor.expect(":", "after DEFAULT")
-        otherwise = parse_block(cursor, frozenset({"endtest"}))
+        otherwise = parse_block(cursor, frozenset({"endtest"}), "the TEST", start)
     _end(cursor, "endtest")
     return Test(cursor.span_from(start), subject, tuple(cases), otherwise)
 

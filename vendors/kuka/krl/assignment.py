@@ -111,7 +111,7 @@ class Assignment:
             if fields is not None and step not in fields:
                 known = ", ".join(name.upper() for name in fields)
                 raise SourceError(
-                    f"a {holder.type.upper()} has no component {step.upper()} (it has {known})",
+                    f"{holder.type.upper()} has no component {step.upper()} (it has {known})",
                     target.span,
                 )
             holder.fields[step] = value

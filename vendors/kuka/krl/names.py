@@ -122,7 +122,7 @@ class Names:
             if found is None and fields is not None and step not in fields:
                 known = ", ".join(name.upper() for name in fields)
                 raise SourceError(
-                    f"a {value.type.upper()} has no component {step.upper()} (it has {known})",
+                    f"{value.type.upper()} has no component {step.upper()} (it has {known})",
                     node.span,
                 )
             return found

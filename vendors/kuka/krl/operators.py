@@ -148,7 +148,7 @@ def _arithmetic(symbol: str, left: Value, right: Value) -> Value:
     whole = isinstance(left, int) and isinstance(right, int)
     if symbol == "/":
         if right == 0:
-            raise OperandError("a division by zero")
+            raise OperandError("division by zero")
         value: int | float = math.trunc(left / right) if whole else left / right
     elif symbol == "*":
         value = left * right

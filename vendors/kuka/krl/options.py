@@ -5,11 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TypeVar
 
-from ....core.errors import InputError, UnknownNameError
-
-Choice = TypeVar("Choice", bound=StrEnum)
+from ....core.source.options import check_names, choice
 
 
 class ZoneStyle(StrEnum):
@@ -48,22 +45,7 @@ class KrlOptions:
         Raises:
             InputError: an unknown option, or a value that it does not take.
         """
-        for key in options:
-            if key not in ("zones", "opaque"):
-                raise UnknownNameError("option of the KRL writer", key, ("zones", "opaque"))
+        check_names(options, ("zones", "opaque"), "KRL writer")
         return cls(
-            choice("zones", options.get("zones", ZoneStyle.OWN), ZoneStyle),
-            choice("opaque", options.get("opaque", OpaqueStyle.KEEP), OpaqueStyle),
+            choice(options, "zones", ZoneStyle.OWN), choice(options, "opaque", OpaqueStyle.KEEP)
         )
-
-
-def choice(key: str, value: str, kind: type[Choice]) -> Choice:
-    """The value of an option.
-
-    Raises:
-        InputError: it is none of those that there are.
-    """
-    try:
-        return kind(value)
-    except ValueError:
-        raise InputError(f"option {key}: one of {', '.join(kind)}, not {value!r}") from None

@@ -20,62 +20,26 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
-from enum import StrEnum
+from dataclasses import replace
 
-from ....core.errors import FlybyError, InputError, Span, UnknownNameError
+from ....core.errors import FlybyError, InputError, Span
 from ....core.program.origin import Ownership
 from ....core.program.program import Program
 from ....core.program.target import JointTarget, PoseTarget
-from ....core.program.zone import Fine
+from ....core.program.zone import Fine, Zone
 from ....core.robot.model import Robot
-from ....core.source.patching import Edit, alike, patched, reading_of
+from ....core.source.options import PatchOptions, Sharing
+from ....core.source.patching import Edit, alike, listed, patched, reading_of
 from ....core.source.reading import Files
 from .additions import Additions, Motion, settings_of
 from .aggregates import e6axis, e6pos
 from .forms import shown_approximation, shown_velocity, words_of
 from .inplace import InPlace, Texts, Wanted, literals_of
-from .options import choice
-from .pacing import approximation
+from .pacing import approximation, zone_settings
 from .places import Places
 from .uses import Kind, Use, uses
 
-_SHOWN = 6
 _WORDS = re.compile(r"(?i)(?:[ \t]+C_(?:PTP|DIS|ORI|VEL|SPL))+[ \t]*$")
-
-
-class Sharing(StrEnum):
-    """What becomes of a change that the text as it stands has no place for."""
-
-    REFUSE = "refuse"
-    """It is an error that names the move."""
-    OWN = "own"
-    """The move gets numbers of its own."""
-
-
-@dataclass(frozen=True, slots=True)
-class PatchOptions:
-    """How a program is patched.
-
-    Args:
-        shared: for literals that other moves read as well.
-        derived: for what expressions compute, and what no literal of the program states.
-    """
-
-    shared: Sharing = Sharing.REFUSE
-    derived: Sharing = Sharing.REFUSE
-
-    @classmethod
-    def of(cls, options: Mapping[str, str]) -> PatchOptions:
-        """From options by name.
-
-        Raises:
-            InputError: an unknown option or value.
-        """
-        for key in options:
-            if key not in ("shared", "derived"):
-                raise UnknownNameError("option of the KRL patcher", key, ("shared", "derived"))
-        return cls(**{key: choice(key, value, Sharing) for key, value in options.items()})
 
 
 def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
@@ -93,7 +57,7 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         FlybyError: a change has no place in the text, or the patched text is not read as
             ``program``.
     """
-    chosen = PatchOptions.of(options)
+    chosen = PatchOptions.of(options, "KRL patcher")
     reading = reading_of(program)
     parts = uses(reading.again({}), program)
     places = Places(reading.files)
@@ -163,6 +127,8 @@ class _Plan:
 
     def _edits_for(self, use: Use) -> list[Edit]:
         try:
+            if isinstance(use.new, Zone):
+                list(zone_settings(use.new))  # refuses what KRL cannot say
             if use.kind is Kind.ZONE and type(use.old) is not type(use.new):
                 return list(self._another_approximation(use))
             wanted = self._literals.wanted(use)
@@ -223,7 +189,7 @@ class _Plan:
                     "number to change: have the move get its own (derived=own), or leave it"
                 )
         elif self._options.shared is Sharing.REFUSE:
-            who = f"is read by {_moves(against)} as well, and that is to have another value"
+            who = f"is read by {listed(against)} as well, and that is to have another value"
             raise InputError(
                 f"{use.origin.datum or 'the literal'} "
                 f"{who if against else 'does not state all of it'}: change all alike, or have "
@@ -240,7 +206,7 @@ class _Plan:
         if others:
             raise InputError(
                 "the instruction is executed several times, and what is put there would hold for "
-                f"{_moves(others)} too, which is to have another value: change them all alike"
+                f"{listed(others)} too, which is to have another value: change them all alike"
             )
 
     def _own(self, use: Use) -> Iterator[Edit]:
@@ -324,7 +290,7 @@ class _Plan:
         if others and float(standing) != float(text):
             raise InputError(
                 f"the inline form's approximation distance, {standing}, is read by "
-                f"{_moves(others)} as well: give it move data of its own on the teach pendant"
+                f"{listed(others)} as well: give it move data of its own on the teach pendant"
             )
         return Edit(span, standing if float(standing) == float(text) else text, use.index)
 
@@ -339,9 +305,3 @@ def _motions(parts: Sequence[Use]) -> list[Motion]:
         use.index: Motion(use.index, use.move, use.statement, literals[use.index]) for use in parts
     }
     return [found[index] for index in sorted(found)]
-
-
-def _moves(moves: Sequence[int]) -> str:
-    numbers = ", ".join(str(move + 1) for move in moves[:_SHOWN])
-    more = f" and {len(moves) - _SHOWN} others" if len(moves) > _SHOWN else ""
-    return f"move{'s' if len(moves) > 1 else ''} {numbers}{more}"

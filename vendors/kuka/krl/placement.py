@@ -89,7 +89,7 @@ class Placements:
         if value.shipped:
             self._note(
                 what,
-                f"{what} is not at hand (no $config.dat with it): a frame of zeros is assumed",
+                f"{what} is in no $config.dat at hand: a frame of zeros is assumed",
                 span,
             )
         elif missing and not value.moved_by:

@@ -131,7 +131,7 @@ def _struct(value: Struct, type_name: str, fields: Mapping[str, str], types: Typ
                 continue  # an E6POS handed to a POS or FRAME
             known = ", ".join(f.upper() for f in fields)
             raise KrlTypeError(
-                f"a {type_name.upper()} has no component {name.upper()} (it has {known})"
+                f"{type_name.upper()} has no component {name.upper()} (it has {known})"
             )
         if wanted in ("", "char") or isinstance(part, Array | Choice):
             made[name] = part

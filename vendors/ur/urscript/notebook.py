@@ -46,5 +46,6 @@ class Notebook:
             count = sum(calls.counts.values())
             names = list(calls.counts)
             shown = ", ".join(names[:_SHOWN]) + (", …" if len(names) > _SHOWN else "")
-            many = "1 statement" if count == 1 else f"{count} statements"
-            yield Note(f"{many} kept and not carried out that {kind}: {shown}", span=calls.span)
+            times = "" if count == 1 else f" ({count} statements, here first)"
+            message = f"statements that {kind} are kept and not carried out: {shown}{times}"
+            yield Note(message, span=calls.span)

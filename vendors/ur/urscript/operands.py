@@ -114,7 +114,7 @@ def blend(zone: Zone) -> str:
         if getattr(zone, what) > zone.tcp:
             raise InputError(
                 f"Radius.{what} is {getattr(zone, what):g} m and the TCP's {zone.tcp:g} m: "
-                "URScript has one radius for all"
+                "URScript has one radius for all: make them equal, or 0"
             )
     for what in ("angle", "external_linear", "external_angular"):
         if getattr(zone, what) > 0:

@@ -11,11 +11,11 @@ from ....core.program.move import Move
 from ....core.program.program import Program
 from ....core.program.zone import Radius
 from ....core.robot.model import Robot
+from ....core.source.options import PatchOptions, Sharing
 from ....core.source.patching import Edit, changed_moves, patched, reading_of
 from ....core.source.reading import Files, Reading
 from .changes import Argument, arguments
 from .move_calls import MoveCall, MoveCalls
-from .options import DatumStyle, PatchOptions
 
 _INSERTED = ("a", "v", "t", "r")
 """Arguments that may be put in, in the order in which they stand."""
@@ -34,7 +34,7 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
             the changed program.
         MotionError: the same of one move.
     """
-    chosen = PatchOptions.of(options)
+    chosen = PatchOptions.of(options, "URScript patcher")
     reading = reading_of(program)
     program = program.with_moves(tuple(map(_with_one_radius, program.moves)))
     before = reading.again({})
@@ -45,7 +45,7 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         return patched(program, reading, asked.edits(chosen, inline_shared=frozenset()))
     except FlybyError:
         # Numbers that all moves agree on may still be read by an expression somewhere.
-        again = asked.in_place if chosen.shared is DatumStyle.OWN else frozenset()
+        again = asked.in_place if chosen.shared is Sharing.OWN else frozenset()
         if not again:
             raise
         return patched(program, reading, asked.edits(chosen, inline_shared=again))
@@ -136,7 +136,7 @@ class Asked:
         texts = argument.texts(self._present)
         stated = zip(argument.spans, texts, strict=True)
         if any(span is None and text is not None for span, text in stated):
-            if options.derived is DatumStyle.OWN:
+            if options.derived is Sharing.OWN:
                 return True
             raise argument.error(
                 "the script computes it, so that there is no number to change; the option "
@@ -144,7 +144,7 @@ class Asked:
             )
         if all(span is None or len(self._wanted[span]) == 1 for span in argument.spans):
             return False
-        if options.shared is DatumStyle.OWN:
+        if options.shared is Sharing.OWN:
             return True
         spans = filter(None, argument.spans)
         others = {move for span in spans for move in self._wanted[span].values()} - {argument.move}

@@ -9,7 +9,7 @@ from ....core.program.program import Program
 from ....core.robot.model import Robot
 from ....core.vendor import Sources
 from .formatting import number
-from .options import ScriptOptions
+from .options import OpaqueStyle, ScriptOptions
 from .writer import SUFFIX, Script, body, indented
 
 CYCLE = 0.002
@@ -34,7 +34,8 @@ _HEAD = """\
 # Set flyby_host to the computer that takes the log, and start a listener there before the
 # program, for instance: nc -l 50010 > run.csv
 # The log has a header t,q1,q2,q3,q4,q5,q6, in s and rad. The time counts controller cycles; where
-# the network cannot follow, record actual_q over RTDE instead and give it this header."""
+# the network cannot follow, record actual_q over RTDE instead and give it this header.
+# Statements that do not move the robot are comments here."""
 
 _RECORDER = """\
 global flyby_logging = True
@@ -77,7 +78,14 @@ socket_close("{socket}")"""
 def record(program: Program, robot: Robot, period: float) -> Sources:
     """A script that drives a program and sends time and joints to a computer every ``period`` s.
 
-    What arrives there is a log as `flyby.identification.logs` reads it.
+    What arrives there is a log as `flyby.identification.logs` reads it. Statements that were kept
+    as text become comments: the variables and threads that they name need not exist in the new
+    script.
+
+    Args:
+        program: to be driven.
+        robot: that it drives.
+        period: s between samples.
 
     Raises:
         InputError: the period is no whole number of controller cycles, or URScript does not drive
@@ -86,7 +94,7 @@ def record(program: Program, robot: Robot, period: float) -> Sources:
     """
     cycle = CB3_CYCLE if robot.name.rpartition("/")[2] in _CB3 else CYCLE
     cycles = _cycles(period, cycle, robot.name)
-    script = body(program, robot, ScriptOptions(), *_NAMES)
+    script = body(program, robot, ScriptOptions(opaque=OpaqueStyle.COMMENT), *_NAMES)
     return {script.name + SUFFIX: _text(script, cycles, cycle)}
 
 
