@@ -1,0 +1,25 @@
+"""Sequential quadratic programming: `NLP`, `solve`, and what goes with them."""
+
+from .derivatives import DerivativeCheck, check_derivatives
+from .hessians import HessianKind
+from .multistart import MultiStart, scattered_starts, solve_from
+from .nlp import NLP, NlpError
+from .qp.backends import BackendKind
+from .result import Iteration, Result, Status
+from .solver import solve
+
+__all__ = [
+    "NLP",
+    "BackendKind",
+    "DerivativeCheck",
+    "HessianKind",
+    "Iteration",
+    "MultiStart",
+    "NlpError",
+    "Result",
+    "Status",
+    "check_derivatives",
+    "scattered_starts",
+    "solve",
+    "solve_from",
+]

@@ -1,0 +1,234 @@
+"""The user's callables: checked, counted, timed and scaled."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+import numpy as np
+from scipy import sparse
+
+from .matrices import SparseMatrix, empty
+from .nlp import NLP, FloatArray, NlpError
+from .patterns import Pattern
+
+GRADIENT_SIZE = 100.0
+"""Functions are scaled down so that no gradient entry at the start is larger (Wächter and Biegler,
+"On the implementation of an interior-point filter line-search algorithm", section 3.8)."""
+_LEAST_FACTOR = 1e-8
+T = TypeVar("T")
+
+
+class CallableError(ArithmeticError):
+    """A callable gave NaN or infinity; the message names it."""
+
+
+@dataclass(slots=True)
+class Point:
+    """Scaled values at x; derivatives once they are asked for.
+
+    Args:
+        x: (n,).
+        f: objective.
+        c: (m,) constraints.
+    """
+
+    x: FloatArray
+    f: float
+    c: FloatArray
+    g: FloatArray = field(default_factory=lambda: np.zeros(0))
+    J: SparseMatrix = field(default_factory=lambda: empty(0))
+
+
+class Evaluation:
+    """A problem's functions, scaled.
+
+    Args:
+        nlp: the problem.
+        jacobian, hessian: the patterns of its matrices.
+
+    Attributes:
+        objective_factor: scaled objective / objective.
+        constraint_factors: (m,) likewise.
+        counts: calls of each callable.
+        seconds: spent in them.
+    """
+
+    def __init__(self, nlp: NLP, jacobian: Pattern, hessian: Pattern) -> None:
+        self.nlp = nlp
+        self.objective_factor = 1.0
+        self.constraint_factors = np.ones(nlp.m)
+        self.counts: dict[str, int] = {}
+        self.seconds = 0.0
+        self._jacobian = jacobian
+        self.hessian = hessian
+        self._residuals: tuple[bytes, FloatArray] | None = None
+        self._residual_jacobian: tuple[bytes, sparse.csc_array] | None = None
+        self._plain = True
+
+    def scale(self, point: Point) -> None:
+        """Choose the factors by the gradients at ``point``, which is scaled too."""
+        largest = float(np.abs(point.g).max(initial=0.0))
+        if largest > GRADIENT_SIZE:
+            self.objective_factor = max(GRADIENT_SIZE / largest, _LEAST_FACTOR)
+        if self.nlp.m:
+            rows = np.zeros(self.nlp.m)
+            np.maximum.at(rows, point.J.pattern.rows, np.abs(point.J.data))
+            large = rows > GRADIENT_SIZE
+            self.constraint_factors[large] = np.maximum(GRADIENT_SIZE / rows[large], _LEAST_FACTOR)
+        self._plain = self.objective_factor == 1.0 and bool((self.constraint_factors == 1.0).all())
+        point.f *= self.objective_factor
+        point.c = point.c * self.constraint_factors
+        point.g = point.g * self.objective_factor
+        point.J = self._scaled_rows(point.J)
+
+    # ------------------------------------------------------------------------- values
+
+    def point(self, x: FloatArray) -> Point:
+        """Values at x.
+
+        Raises:
+            CallableError: one is not finite.
+        """
+        f = self._objective(x) * self.objective_factor
+        c = self._constraints(x) * self.constraint_factors
+        return Point(x, f, c)
+
+    def differentiate(self, point: Point) -> None:
+        """Add the derivatives.
+
+        Raises:
+            CallableError: one is not finite.
+        """
+        point.g = self._gradient(point.x) * self.objective_factor
+        point.J = self._scaled_rows(self._jacobian_at(point.x))
+
+    def unscaled(self, x: FloatArray) -> tuple[float, FloatArray, FloatArray, SparseMatrix]:
+        """f, c (m,), ∇f (n,) and J (m, n) as the callables give them."""
+        return self._objective(x), self._constraints(x), self._gradient(x), self._jacobian_at(x)
+
+    def lagrangian_hessian(self, x: FloatArray, multipliers: FloatArray) -> SparseMatrix:
+        """Hessian of the scaled Lagrangian; multipliers (m,) are the scaled ones.
+
+        Raises:
+            CallableError: an entry is not finite.
+        """
+        hessian = self.nlp.hessian
+        assert hessian is not None
+        factors = multipliers * self.constraint_factors
+        value = self._call("hessian", lambda: hessian(x, self.objective_factor, factors))
+        found = self.hessian.array(value)
+        _check_finite("hessian", found.data, x)
+        return found
+
+    def residual_hessian(self, x: FloatArray) -> sparse.csc_array:
+        """The Gauss–Newton Hessian of the scaled objective."""
+        J = self._residual_jacobian_at(x)
+        return sparse.csc_array(self.objective_factor * (J.T @ J))
+
+    # -------------------------------------------------------------------- the callables
+
+    def _objective(self, x: FloatArray) -> float:
+        if self.nlp.residuals is not None:
+            r = self._residuals_at(x)
+            return 0.5 * float(r @ r)
+        objective = self.nlp.objective
+        if objective is None:
+            return 0.0
+        value = self._call("objective", lambda: objective(x))
+        array = np.asarray(value, dtype=np.float64)
+        if array.size != 1:
+            raise NlpError(f"objective gave shape {array.shape}, expected one number")
+        number = float(array.reshape(()))
+        _check_finite("objective", np.array([number]), x)
+        return number
+
+    def _gradient(self, x: FloatArray) -> FloatArray:
+        if self.nlp.residuals is not None:
+            return np.asarray(self._residual_jacobian_at(x).T @ self._residuals_at(x))
+        gradient = self.nlp.gradient
+        if gradient is None:
+            return np.zeros(self.nlp.n)
+        return self._vector("gradient", lambda: gradient(x), self.nlp.n, x)
+
+    def _constraints(self, x: FloatArray) -> FloatArray:
+        constraints = self.nlp.constraints
+        if constraints is None:
+            return np.zeros(0)
+        return self._vector("constraints", lambda: constraints(x), self.nlp.m, x)
+
+    def _jacobian_at(self, x: FloatArray) -> SparseMatrix:
+        jacobian = self.nlp.jacobian
+        if jacobian is None:
+            return empty(self.nlp.n)
+        found = self._jacobian.array(self._call("jacobian", lambda: jacobian(x)))
+        _check_finite("jacobian", found.data, x)
+        return found
+
+    def _residuals_at(self, x: FloatArray) -> FloatArray:
+        residuals = self.nlp.residuals
+        assert residuals is not None
+        key = x.tobytes()
+        if self._residuals is None or self._residuals[0] != key:
+            value = np.asarray(self._call("residuals", lambda: residuals(x)), dtype=np.float64)
+            if value.ndim != 1:
+                raise NlpError(f"residuals gave shape {value.shape}, expected one dimension")
+            _check_finite("residuals", value, x)
+            self._residuals = key, value
+        return self._residuals[1]
+
+    def _residual_jacobian_at(self, x: FloatArray) -> sparse.csc_array:
+        jacobian = self.nlp.residual_jacobian
+        assert jacobian is not None
+        key = x.tobytes()
+        if self._residual_jacobian is None or self._residual_jacobian[0] != key:
+            value = sparse.csc_array(
+                self._call("residual_jacobian", lambda: jacobian(x)), dtype=np.float64
+            )
+            expected = (len(self._residuals_at(x)), self.nlp.n)
+            if value.shape != expected:
+                raise NlpError(f"residual_jacobian gave shape {value.shape}, expected {expected}")
+            _check_finite("residual_jacobian", value.data, x)
+            self._residual_jacobian = key, value
+        return self._residual_jacobian[1]
+
+    def _vector(
+        self, name: str, function: Callable[[], object], size: int, x: FloatArray
+    ) -> FloatArray:
+        value = np.asarray(self._call(name, function), dtype=np.float64)
+        if value.shape != (size,):
+            if value.size != size or value.ndim > 2:
+                raise NlpError(f"{name} gave shape {value.shape}, expected ({size},)")
+            value = value.reshape(size)
+        _check_finite(name, value, x)
+        return value.copy()  # a callable may fill one array again and again
+
+    def _call(self, name: str, function: Callable[[], T]) -> T:
+        self.counts[name] = self.counts.get(name, 0) + 1
+        begin = time.perf_counter()
+        try:
+            with np.errstate(all="ignore"):
+                return function()
+        except (FloatingPointError, ZeroDivisionError, OverflowError, ValueError) as error:
+            if isinstance(error, NlpError):
+                raise
+            if isinstance(error, ValueError) and "math domain" not in str(error):
+                raise
+            raise CallableError(f"{name} has no value: {error}") from error
+        finally:
+            self.seconds += time.perf_counter() - begin
+
+    def _scaled_rows(self, J: SparseMatrix) -> SparseMatrix:
+        if self._plain or not self.nlp.m:
+            return J
+        return SparseMatrix(J.pattern, J.data * self.constraint_factors[J.pattern.rows])
+
+
+def _check_finite(name: str, values: FloatArray, x: FloatArray) -> None:
+    if np.isfinite(values.sum()):  # one pass where nothing is wrong
+        return
+    bad = np.flatnonzero(~np.isfinite(values))
+    if len(bad):
+        raise CallableError(f"{name} gave {values[bad[0]]} (entry {int(bad[0])})")

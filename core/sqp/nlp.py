@@ -1,0 +1,134 @@
+"""The problem that the solver takes: callables and bounds, checked once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import sparse
+
+from ..errors import InputError
+
+FloatArray = NDArray[np.float64]
+Matrix = FloatArray | sparse.sparray | sparse.spmatrix
+
+Objective = Callable[[FloatArray], float]
+Vector = Callable[[FloatArray], FloatArray]
+MatrixOf = Callable[[FloatArray], Matrix]
+Hessian = Callable[[FloatArray, float, FloatArray], Matrix]
+
+
+class NlpError(InputError, ValueError):
+    """A problem that is not well posed; the message names the argument."""
+
+
+@dataclass(frozen=True, eq=False)
+class NLP:
+    """Minimise f(x) subject to c_lower ≤ c(x) ≤ c_upper and x_lower ≤ x ≤ x_upper.
+
+    With ``residuals`` r and their Jacobian in the place of an objective, f = ½ r·r, and the
+    Gauss–Newton Hessian is at hand.
+
+    Args:
+        n: number of variables.
+        m: number of constraints.
+        objective: x (n,) → f; None asks for any feasible point.
+        gradient: x → ∇f (n,).
+        constraints: x → c (m,); None if there are none.
+        jacobian: x → J (m, n), dense or sparse. The pattern of the first sparse one is kept: later
+            ones may have zeros in it, but no entry outside of it.
+        hessian: x, objective_factor, multipliers (m,) → ∇²(factor f + multipliers·c) (n, n), both
+            triangles, dense or sparse; None for an approximation.
+        x_lower, x_upper: (n,) or a number; None for none. Equal bounds fix a variable.
+        c_lower, c_upper: (m,) or a number; None for none. Equal bounds make an equality.
+        residuals: x → r (k,).
+        residual_jacobian: x → ∂r/∂x (k, n).
+
+    Raises:
+        NlpError: a wrong size, a bound that is NaN or an infinity of the wrong sign, a lower bound
+            above the upper one, a callable without its partner.
+    """
+
+    n: int
+    m: int = 0
+    objective: Objective | None = None
+    gradient: Vector | None = None
+    constraints: Vector | None = None
+    jacobian: MatrixOf | None = None
+    hessian: Hessian | None = None
+    x_lower: ArrayLike | None = field(default=None, repr=False)
+    x_upper: ArrayLike | None = field(default=None, repr=False)
+    c_lower: ArrayLike | None = field(default=None, repr=False)
+    c_upper: ArrayLike | None = field(default=None, repr=False)
+    residuals: Vector | None = None
+    residual_jacobian: MatrixOf | None = None
+
+    def __post_init__(self) -> None:
+        _check_size("n", self.n, 1)
+        _check_size("m", self.m, 0)
+        _check_partners(self)
+        for kind, size in (("x", self.n), ("c", self.m)):
+            lower = _bound(getattr(self, f"{kind}_lower"), f"{kind}_lower", size, -np.inf)
+            upper = _bound(getattr(self, f"{kind}_upper"), f"{kind}_upper", size, np.inf)
+            crossed = np.flatnonzero(lower > upper)
+            if len(crossed):
+                i = int(crossed[0])
+                raise NlpError(
+                    f"{kind}_lower[{i}] = {lower[i]:g} is above {kind}_upper[{i}] = {upper[i]:g}"
+                )
+            object.__setattr__(self, f"{kind}_lower", lower)
+            object.__setattr__(self, f"{kind}_upper", upper)
+
+    @property
+    def bounds(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """x_lower, x_upper (n,), c_lower, c_upper (m,) as arrays."""
+        arrays = (self.x_lower, self.x_upper, self.c_lower, self.c_upper)
+        x_lower, x_upper, c_lower, c_upper = (np.asarray(a, dtype=np.float64) for a in arrays)
+        return x_lower, x_upper, c_lower, c_upper
+
+
+def _check_size(name: str, value: object, least: int) -> None:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+        raise NlpError(f"{name} is a whole number of at least {least}, not {value!r}")
+
+
+def _check_partners(nlp: NLP) -> None:
+    pairs = (
+        ("objective", "gradient"),
+        ("constraints", "jacobian"),
+        ("residuals", "residual_jacobian"),
+    )
+    for first, second in pairs:
+        if (getattr(nlp, first) is None) != (getattr(nlp, second) is None):
+            raise NlpError(f"{first} and {second} come together or not at all")
+    for name in (*(name for pair in pairs for name in pair), "hessian"):
+        value = getattr(nlp, name)
+        if value is not None and not callable(value):
+            raise NlpError(f"{name} is a callable, not {value!r}")
+    if (nlp.constraints is None) != (nlp.m == 0):
+        raise NlpError(f"m = {nlp.m}, but constraints is {nlp.constraints!r}")
+    if nlp.objective is not None and nlp.residuals is not None:
+        raise NlpError("objective and residuals exclude each other")
+    if nlp.hessian is not None and nlp.residuals is not None:
+        raise NlpError("hessian goes with an objective; residuals have the Gauss–Newton Hessian")
+
+
+def _bound(value: ArrayLike | None, name: str, size: int, missing: float) -> FloatArray:
+    try:
+        array = np.asarray(missing if value is None else value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise NlpError(f"{name} is no array of numbers: {error}") from None
+    if array.ndim == 0:
+        array = np.full(size, float(array))
+    if array.shape != (size,):
+        raise NlpError(f"{name} has shape {array.shape}, expected ({size},)")
+    if np.isnan(array).any():
+        raise NlpError(f"{name}[{int(np.flatnonzero(np.isnan(array))[0])}] is NaN")
+    wrong = np.flatnonzero(array == -missing)
+    if len(wrong):
+        raise NlpError(f"{name}[{int(wrong[0])}] is {-missing}: nothing can satisfy it")
+    array = array.copy()
+    array.flags.writeable = False
+    return array

@@ -1,0 +1,1 @@
+"""Convex quadratic subproblems and the back ends that solve them."""

@@ -1,0 +1,55 @@
+"""The back ends by name.
+
+Clarabel is the default: see docs/sqp.md for the measurements behind it.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from ..nlp import NlpError
+from .problem import Backend
+
+
+class BackendKind(StrEnum):
+    """A QP back end."""
+
+    CLARABEL = "clarabel"
+    OSQP = "osqp"
+    PIQP = "piqp"
+    """Needs the optional package ``piqp``."""
+
+
+_FALLBACK = {
+    BackendKind.CLARABEL: BackendKind.OSQP,
+    BackendKind.OSQP: BackendKind.CLARABEL,
+    BackendKind.PIQP: BackendKind.CLARABEL,
+}
+
+
+def make_backends(kind: BackendKind | str, fallback: bool) -> tuple[Backend, ...]:
+    """The back end, and the one that takes over where it fails.
+
+    Raises:
+        NlpError: there is no such back end.
+    """
+    try:
+        first = BackendKind(kind)
+    except ValueError:
+        raise NlpError(f"qp: one of {', '.join(BackendKind)}, not {kind!r}") from None
+    kinds = (first, _FALLBACK[first]) if fallback else (first,)
+    return tuple(_make(k) for k in kinds)
+
+
+def _make(kind: BackendKind) -> Backend:
+    if kind is BackendKind.CLARABEL:
+        from .clarabel_backend import ClarabelBackend
+
+        return ClarabelBackend()
+    if kind is BackendKind.OSQP:
+        from .osqp_backend import OsqpBackend
+
+        return OsqpBackend()
+    from .piqp_backend import PiqpBackend
+
+    return PiqpBackend()

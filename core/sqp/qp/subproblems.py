@@ -1,0 +1,112 @@
+"""Subproblems solved by a back end, made exact where its active set is right, and by another
+one where it fails."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from ..linear import Saddle
+from . import active_set
+from .problem import Backend, QpSolution, QpStatus, QuadraticProgram
+
+_POLISHING = 1
+_FROM_GUESS = 30
+_EXACT = 1e-9
+_INEXACT = 1e-5
+"""Error of a solution from a back end that gave up at which it is still taken."""
+
+
+class Subproblems:
+    """Solves the subproblems of one solution.
+
+    Args:
+        backends: the first one is asked first.
+
+    Attributes:
+        seconds: spent since `use` was called last.
+        used: name of the back end that was asked last.
+    """
+
+    def __init__(self, backends: tuple[Backend, ...]) -> None:
+        self._known: dict[str, Backend] = {}
+        self._saddle = Saddle()
+        self.use(backends)
+
+    def use(self, backends: tuple[Backend, ...]) -> None:
+        """Begin a solution with these back ends; those known already stay as they are set up."""
+        for backend in backends:
+            self._known.setdefault(backend.name, backend)
+        self._backends = tuple(self._known[backend.name] for backend in backends)
+        self.seconds = 0.0
+        self.used = self._backends[0].name
+
+    def solve(self, qp: QuadraticProgram, warm: QpSolution | None = None) -> QpSolution:
+        """The solution of ``qp``; what the last back end says if none solves it."""
+        begin = time.perf_counter()
+        try:
+            return self._solve(qp, warm)
+        finally:
+            self.seconds += time.perf_counter() - begin
+
+    def _solve(self, qp: QuadraticProgram, warm: QpSolution | None) -> QpSolution:
+        if not (np.isfinite(qp.d_lower).any() or np.isfinite(qp.d_upper).any() or len(qp.lower)):
+            return self._unconstrained(qp)
+        if warm is not None:
+            found = self._from_guess(qp, warm)
+            if found is not None:
+                return found
+        found = None
+        for backend in self._backends:
+            found = backend.solve(qp, warm)
+            self.used = backend.name
+            if found.status is QpStatus.SOLVED:
+                return self._polished(qp, found)
+            if found.status is QpStatus.INEXACT:
+                found = self._polished(qp, found)
+                size = max(1.0, float(np.abs(found.y).max(initial=0.0)))
+                good = active_set.error(qp, found) <= _INEXACT * size
+                found = replace(found, status=QpStatus.SOLVED if good else QpStatus.FAILED)
+            if found.status is not QpStatus.FAILED:
+                return found
+        assert found is not None
+        return found
+
+    def _from_guess(self, qp: QuadraticProgram, warm: QpSolution) -> QpSolution | None:
+        """The solution from the active set of another; None where that leads nowhere."""
+        guess = active_set.pushed_by(qp, warm.y, warm.z)
+        found = active_set.settled(qp, guess, self._saddle, _FROM_GUESS)
+        if found is None:
+            return None
+        size = max(1.0, float(np.abs(qp.q).max()))
+        return found if active_set.error(qp, found) <= _EXACT * size else None
+
+    def _unconstrained(self, qp: QuadraticProgram) -> QpSolution:
+        n = len(qp.q)
+        none, zero = np.zeros(n, dtype=np.bool_), np.zeros(n)
+        empty = np.zeros(0)
+        found = self._saddle.solve(qp.P, qp.q, qp.A, np.zeros(0, dtype=np.bool_), empty, none, zero)
+        if found is None:
+            return QpSolution(QpStatus.UNBOUNDED, zero, empty, zero)
+        d = found[0]
+        left = float(np.abs(qp.P @ d + qp.q).max())
+        solved = left <= 1e-6 * max(1.0, float(np.abs(qp.q).max()))
+        return QpSolution(
+            QpStatus.SOLVED if solved else QpStatus.UNBOUNDED, d if solved else zero, empty, zero
+        )
+
+    def _polished(self, qp: QuadraticProgram, found: QpSolution) -> QpSolution:
+        """The exact solution for the active set that a solution shows; the solution itself if that
+        is no better.
+
+        Interior points stop short of their bounds, and first-order methods anywhere near; with the
+        active set known the rest is one linear system.
+        """
+        found = replace(found, d=np.clip(found.d, qp.d_lower, qp.d_upper))
+        shown = active_set.shown_by(qp, found.d, found.y, found.z)
+        better = active_set.settled(qp, shown, self._saddle, _POLISHING)
+        if better is None or active_set.error(qp, better) >= active_set.error(qp, found):
+            return found
+        return replace(better, status=found.status)
