@@ -67,6 +67,7 @@ def main(
     description: str,
     measure: Callable[..., Iterable[Figure]],
     cases: Iterable[str],
+    usual: Iterable[str] | None = None,
     **counts: int,
 ) -> None:
     """Command line of a benchmark: measure the cases and print their figures.
@@ -75,9 +76,10 @@ def main(
         description: the benchmark's docstring.
         measure: gives the figures of a case; it is called with the case and all ``counts``.
         cases: their names.
+        usual: those measured where none is asked for; None for all.
         counts: options that are whole numbers, with their defaults.
     """
-    names = list(cases)
+    names, wanted = list(cases), list(cases if usual is None else usual)
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--json", action="store_true", help="one JSON object a line")
     parser.add_argument("--case", action="append", choices=names, help="only this case (repeat)")
@@ -85,7 +87,7 @@ def main(
         parser.add_argument(f"--{name}", type=int, default=value, help=f"default: {value}")
     arguments = parser.parse_args()
     chosen = {name: getattr(arguments, name) for name in counts}
-    figures = (f for case in arguments.case or names for f in measure(case, **chosen))
+    figures = (f for case in arguments.case or wanted for f in measure(case, **chosen))
     for line in _json_lines(figures) if arguments.json else _table(figures):
         print(line, flush=True)
 

@@ -1,6 +1,8 @@
 """The SQP solver beside IPOPT: CPU time, iterations, objective, violation.
 
-    python benchmarks/sqp.py [--json] [--case double-integrator-40] [--qp clarabel|osqp|piqp]
+    python benchmarks/sqp.py [--json] [--case double-integrator-400] [--qp clarabel|osqp|piqp]
+
+Without ``--case``, those that take a few minutes together.
 
 Both get the same problem, the same start, exact Hessians and the tolerance 1e-6, in one process,
 with one thread; CPU times are medians of five solutions that take turns (of one, where it takes
@@ -307,6 +309,16 @@ def _resolved(kind: str, size: int, qp: str) -> Iterator[tuple[float, tuple[floa
 
 # -------------------------------------------------------------------------------- main
 
+USUAL = (
+    "cubic",
+    "double-integrator-40",
+    "double-integrator-200",
+    "point-mass-100",
+    "point-mass-200",
+    "banded-100",
+    ALL_RESOLVED,
+)
+
 
 def _measure(qp: str) -> Callable[[str], Iterator[Figure]]:
     def measure(case: str) -> Iterator[Figure]:
@@ -327,4 +339,4 @@ def _qp_option() -> str:
 
 if __name__ == "__main__":
     chosen = _qp_option()
-    main(__doc__ or "", _measure(chosen), (*SINGLE, *STARTED, ALL_RESOLVED, *RESOLVED))
+    main(__doc__ or "", _measure(chosen), (*SINGLE, *STARTED, ALL_RESOLVED, *RESOLVED), USUAL)

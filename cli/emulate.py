@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..core.errors import InputError
+from ..core.source.options import OpaqueStyle
 from .console import print_json, print_rich, progress
 from .loading import Source, robot_of, start_of
 from .options import (
@@ -74,12 +75,20 @@ def emulate(
             "beside which further ones are put if the language takes several, or a folder."
         ),
     ] = None,
+    opaque: Annotated[
+        OpaqueStyle | None,
+        typer.Option(
+            help="With --write: statements that do not move the robot are kept as they stand "
+            "(the default), or become comments."
+        ),
+    ] = None,
     json: AsJson = False,
     force: Force = False,
 ) -> None:
     """Drive a program as the robot's controller would: cycle time, path, what limits each move."""
     source = Source.of(program, entry, io, others)
     files = _Files(csv, npz, plot, write)
+    _check_opaque(opaque, write)
     _check_plot(plot)
     outputs = files.by_option()
     if write is not None and write.is_dir():
@@ -95,11 +104,21 @@ def emulate(
         say(f"emulating {len(parsed.moves)} moves")
         run = _run(vendor, arm, parsed, stand, period)
         say("writing results")
-        made = _write_files(files, vendor, arm, run, inputs, force)
+        made = _write_files(files, vendor, arm, run, inputs, _options(opaque), force)
     _tell(run, arm, as_json=json)
     if not json:
         for path in made:
             print_rich(f"wrote {path}")
+
+
+def _check_opaque(style: OpaqueStyle | None, write: Path | None) -> None:
+    if style is not None and write is None:
+        raise InputError(f"--opaque {style} is of the program that --write writes: name its file")
+
+
+def _options(style: OpaqueStyle | None) -> dict[str, str]:
+    """The writer's options; what is not asked for is the writer's own choice."""
+    return {} if style is None else {"opaque": style.value}
 
 
 def _check_plot(path: Path | None) -> None:
@@ -121,6 +140,7 @@ def _write_files(
     robot: Robot,
     run: Run,
     inputs: Sequence[Path],
+    options: Mapping[str, str],
     replace_existing: bool,
 ) -> list[Path]:
     """Make everything that can fail first, then write; returns what was written."""
@@ -128,7 +148,7 @@ def _write_files(
 
     made: list[tuple[str, Path, bytes]] = []
     if files.write is not None:
-        sources = _sources(files.write, vendor, robot, run.program)
+        sources = _sources(files.write, vendor, robot, run.program, options)
         check_outputs({f"--write: {path.name}": path for path in sources}, inputs, replace_existing)
         made += [("--write", path, text.encode()) for path, text in sources.items()]
     if files.plot is not None:
@@ -148,15 +168,17 @@ def _write_files(
     return [*filter(None, (files.csv, files.npz)), *written]
 
 
-def _sources(path: Path, vendor: Vendor, robot: Robot, program: Program) -> dict[Path, str]:
+def _sources(
+    path: Path, vendor: Vendor, robot: Robot, program: Program, options: Mapping[str, str]
+) -> dict[Path, str]:
     """The program's source files by where they go."""
-    sources = vendor.write(program, robot)
+    sources = vendor.write(program, robot, options)
     if path.is_dir():
         return {path / name: text for name, text in sources.items()}
     if len(sources) == 1:
         return {path: next(iter(sources.values()))}
     # Files that belong together are called alike, and often named inside as well.
-    sources = vendor.write(replace(program, name=path.stem), robot)
+    sources = vendor.write(replace(program, name=path.stem), robot, options)
     suffixes = [Path(name).suffix for name in sources]
     if path.suffix.lower() not in map(str.lower, suffixes):
         raise InputError(

@@ -139,6 +139,9 @@ class Registry:
                 f"{path}: the name has no suffix, which tells a program's language; known: "
                 f"{known or 'none'}"
             )
+        for vendor in self.vendors.values():
+            if suffix in vendor.companions:
+                raise InputError(f"{path}: {vendor.companions[suffix]}")
         raise InputError(f"{path}: no vendor reads {suffix!r} files; known: {known or 'none'}")
 
     def _unknown(self, kind: str, name: str, vendor: str, known: Iterable[str]) -> None:

@@ -112,6 +112,8 @@ class Vendor:
             labels none.
         reader, writer, patcher, recorder: of the vendor's language; None if there is none.
         suffixes: of the files that the reader takes, with the dot, in lower case.
+        companions: suffixes of files that stand beside programs and hold none, with what to name in
+            their place.
         emulation_only: robots that the vendor's language does not drive, with the reason.
         speaks: what the language can say, for programs that are translated into it; None if it
             says everything that a `Program` holds.
@@ -129,6 +131,7 @@ class Vendor:
     patcher: Patcher | None = None
     recorder: Recorder | None = None
     suffixes: tuple[str, ...] = ()
+    companions: Mapping[str, str] = field(default_factory=dict)
     emulation_only: Mapping[str, str] = field(default_factory=dict)
     speaks: Dialect | None = None
 
@@ -136,6 +139,7 @@ class Vendor:
         _check_name("a vendor", self.name)
         _check_parts(self)
         object.__setattr__(self, "robots", MappingProxyType({**self.robots}))
+        object.__setattr__(self, "companions", MappingProxyType({**self.companions}))
         object.__setattr__(self, "emulation_only", MappingProxyType({**self.emulation_only}))
         object.__setattr__(self, "motion", cache(self.motion))
 
@@ -306,10 +310,16 @@ def _check_parts(vendor: Vendor) -> None:
 
 
 def _check_suffixes(vendor: Vendor) -> None:
-    wrong = [s for s in vendor.suffixes if not s.startswith(".") or s != s.lower()]
+    given = (*vendor.suffixes, *vendor.companions)
+    wrong = [s for s in given if not s.startswith(".") or s != s.lower()]
     if wrong or isinstance(vendor.suffixes, str):
         raise InputError(
             f"vendor {vendor.name!r}: 'suffixes' is a tuple like ('.mod',), not {vendor.suffixes!r}"
+        )
+    both = sorted(set(vendor.suffixes) & set(vendor.companions))
+    if both:
+        raise InputError(
+            f"vendor {vendor.name!r}: {both[0]!r} is among 'suffixes' and 'companions'"
         )
     if (vendor.reader is None) != (not vendor.suffixes):
         raise InputError(f"vendor {vendor.name!r}: a reader and its 'suffixes' come together")

@@ -11,6 +11,7 @@ Run it as ``python examples/plot_point_mass.py docs/point_mass.png``.
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 
 import matplotlib
 import numpy as np
@@ -28,13 +29,11 @@ TOUCH = 1e-4
 solver's tolerance."""
 
 
-def main(file: str) -> None:
-    """Write the figure, and print what it shows."""
+def main(file: str, counts: Sequence[int] = (20, 40, 100)) -> None:
+    """Write the figure, and print what it shows; the first row has this many nodes."""
     line, way = (MAZE.start, MAZE.goal), MAZE.way
     shown = (
-        ("samples only, from the line", 20, Avoidance.SAMPLES, line),
-        ("samples only, from the line", 40, Avoidance.SAMPLES, line),
-        ("samples only, from the line", 100, Avoidance.SAMPLES, line),
+        *(("samples only, from the line", nodes, Avoidance.SAMPLES, line) for nodes in counts),
         ("samples only, along a free way", 20, Avoidance.SAMPLES, way),
         ("chords, along a free way", 20, Avoidance.CHORDS, way),
         ("Bernstein, along a free way", 20, Avoidance.BERNSTEIN, way),

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
+from ..errors import InputError, MotionError, Span
 from ..program.move import Move
 from ..program.target import JointTarget
 from ..program.tool import Tool, WorkObject
@@ -39,16 +39,21 @@ class Standing:
         self._robot = robot
         self._finder = ConfigurationFinder(robot, label)
         self._q: FloatArray | None = None
-        self._pending: list[tuple[int, Move]] = []
+        self._pending: list[tuple[int, Move, Span | None]] = []
         self._count = 0
         if start is not None:
             self._q = self._finder.joints(start, self._finder.rest())
 
-    def moved(self, move: Move) -> None:
-        """The robot has driven to the target of a move."""
+    def moved(self, move: Move, statement: Span | None = None) -> None:
+        """The robot has driven to the target of a move.
+
+        Args:
+            move: as it was executed.
+            statement: where it stands in the source, for moves without an origin yet.
+        """
         if isinstance(move.target, JointTarget) and not _partial(move.target, self._robot):
             self._pending.clear()
-        self._pending.append((self._count, move))
+        self._pending.append((self._count, move, statement))
         self._count += 1
 
     @property
@@ -61,7 +66,7 @@ class Standing:
 
         Raises:
             InputError: the program asks before its first move, and no start is known.
-            MotionError: a target cannot be reached.
+            MotionError: a move cannot be driven; the error names it and its statement.
         """
         if not self.known:
             raise InputError(
@@ -69,14 +74,23 @@ class Standing:
                 "answer"
             )
         q = self._finder.rest() if self._q is None else self._q
-        for index, move in self._pending:
-            if isinstance(move.target, JointTarget):
-                q = self._finder.joints(move.target, q)
-            else:
-                q = self._finder.choose(move, index, q)
+        for index, move, statement in self._pending:
+            try:
+                q = self._reached(move, index, q)
+            except MotionError as error:
+                span = error.span or statement
+                raise MotionError(error.message, error.move, span) from error
+            except InputError as error:
+                raise MotionError(str(error), index, statement) from error
         self._q = q
         self._pending.clear()
         return q.copy()
+
+    def _reached(self, move: Move, index: int, q: FloatArray) -> FloatArray:
+        """The configuration (N,) after a move from ``q``."""
+        if isinstance(move.target, JointTarget):
+            return self._finder.joints(move.target, q)
+        return self._finder.choose(move, index, q)
 
     def pose(self, tool: Tool, work_object: WorkObject) -> Pose:
         """The TCP of ``tool`` in ``work_object``.

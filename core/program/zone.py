@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..errors import InputError
 
@@ -40,6 +40,48 @@ class Radius:
     external_linear: float = 0.0
     external_angular: float = 0.0
     name: str | None = None
+
+    def resized(self, tcp: float) -> Radius:
+        """The zone with another radius, m; all its parts grow or shrink in the same proportion.
+
+        So are the zones graded that vendors predefine (ABB's ``z10`` to ``z200``), and zones with
+        one distance for all (KUKA's ``C_DIS``, UR's blend radius) keep one. It is another zone
+        than the one that was declared, and has no name.
+
+        Raises:
+            InputError: the zone has radius 0, which is in no proportion to another one.
+        """
+        if self.tcp == 0:
+            raise InputError("Radius.resized: a zone of radius 0 has no proportions; make a Radius")
+        _check("Radius", tcp=tcp)
+
+        def scaled(part: float) -> float:
+            return tcp if part == self.tcp else part * (tcp / self.tcp)
+
+        return Radius(
+            tcp,
+            scaled(self.reorientation),
+            scaled(self.external),
+            self.angle * (tcp / self.tcp),
+            scaled(self.external_linear),
+            self.external_angular * (tcp / self.tcp),
+        )
+
+    def with_one_distance(self) -> Radius:
+        """The zone as a language holds it that has one distance for all: a ``reorientation`` or
+        ``external`` of 0 is the TCP's.
+
+        Raises:
+            InputError: one of them is stated, and another one.
+        """
+        for what in ("reorientation", "external"):
+            part = getattr(self, what)
+            if part != 0 and not math.isclose(part, self.tcp, rel_tol=1e-9):
+                raise InputError(
+                    f"Radius.{what} is {part:g} m and the TCP's {self.tcp:g} m: make them equal "
+                    "(zone.resized(tcp) keeps them so), or 0"
+                )
+        return replace(self, reorientation=self.tcp, external=self.tcp)
 
     def __post_init__(self) -> None:
         _check(

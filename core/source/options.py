@@ -21,6 +21,22 @@ class Sharing(StrEnum):
     """The move gets numbers of its own: a datum, a literal or settings, as the language has it."""
 
 
+class OpaqueStyle(StrEnum):
+    """What becomes of what was kept as text: statements, and actions along a move."""
+
+    KEEP = "keep"
+    """It is written as it stands: for programs that were read from the same language. What it
+    names must exist in the new program or on the controller; a writer refuses what it sees cannot
+    stand there."""
+    COMMENT = "comment"
+    """It becomes a comment: for programs from another language, and where only the motion
+    counts."""
+
+
+AS_COMMENTS = f"option opaque={OpaqueStyle.COMMENT}, on the command line --opaque comment"
+"""How a user has it done, for messages."""
+
+
 @dataclass(frozen=True, slots=True)
 class PatchOptions:
     """How a program's own files are patched.

@@ -14,6 +14,7 @@ from itertools import pairwise
 from ..errors import InputError, Note, Span
 from ..program.move import Move
 from ..program.program import Program
+from ..program.zone import Radius
 from ..spatial.pose import Pose
 from .reading import Files, Reading
 
@@ -72,6 +73,23 @@ def changed_moves(before: Program, after: Program) -> list[tuple[int, Move, Move
         )
     pairs = zip(before.moves, after.moves, strict=True)
     return [(i, o, n) for i, (o, n) in enumerate(pairs) if o != n]
+
+
+def with_one_distance(program: Program) -> Program:
+    """The program with zones as they are read in a language that has one distance for all.
+
+    Zones that it cannot say stay as they are: the patcher refuses them with their move.
+    """
+    return program.with_moves(tuple(map(_with_one_distance, program.moves)))
+
+
+def _with_one_distance(move: Move) -> Move:
+    if not isinstance(move.zone, Radius):
+        return move
+    try:
+        return replace(move, zone=move.zone.with_one_distance())
+    except InputError:
+        return move
 
 
 def patched(after: Program, reading: Reading, edits: Iterable[Edit]) -> Files:

@@ -77,10 +77,12 @@ def _ordering(n: int, rows: IntArray, columns: IntArray) -> IntArray:
     off = rows != columns
     i, j = rows[off], columns[off]
     diagonal = np.arange(n)
-    degree = np.bincount(i, minlength=n) + np.bincount(j, minlength=n)
-    values = np.concatenate([np.ones(2 * len(i)), 2.0 + degree])
-    places = (np.concatenate([i, j, diagonal]), np.concatenate([j, i, diagonal]))
-    matrix = sparse.csc_matrix(sparse.coo_matrix((values, places), shape=(n, n)))
+    down, right = np.concatenate([i, j, diagonal]), np.concatenate([j, i, diagonal])
+    dominant = 2.0 + np.bincount(right, minlength=n)
+    values = np.concatenate([np.ones(2 * len(i)), dominant])
+    order = np.lexsort((down, right))
+    starts = np.searchsorted(right[order], np.arange(n + 1)).astype(np.int32)
+    matrix = sparse.csc_matrix((values[order], down[order].astype(np.int32), starts), shape=(n, n))
     options = {"SymmetricMode": True}
     found = linalg.splu(matrix, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
     return np.argsort(found.perm_c).astype(np.int64)

@@ -15,7 +15,7 @@ from ...core.program.move import Move
 from ...core.program.origin import MoveOrigin, Origin, Ownership
 from ...core.program.program import Program
 from ...core.program.target import JointTarget, Target
-from ...core.program.zone import Fine
+from ...core.program.zone import Fine, Radius, Zone
 from ...core.source.patching import difference, reading_of
 from ...core.source.reading import Files
 from .subject import PROGRAM_EXAMPLES, Subject
@@ -79,11 +79,21 @@ class PatchingChecks(Subject):
 
     def _other(self, part: str, move: Move) -> st.SearchStrategy[Any]:
         if part == "zone":
-            return self.said_zones(type(move))
+            return self._other_zones(move)
         if part == "speed":
             return self.other_speeds(move).map(lambda s: replace(s, name=move.speed.name))
         target = getattr(move, part)
         return st.integers(-50, 50).map(lambda tenths: shifted(target, 1e-4 * tenths))
+
+    def _other_zones(self, move: Move) -> st.SearchStrategy[Zone]:
+        """Any that the language can say; often the move's own, larger or smaller."""
+        any_zone = self.said_zones(type(move))
+        own = move.zone
+        if not isinstance(own, Radius):
+            return any_zone
+        return any_zone | st.sampled_from([0.5, 0.75, 1.25, 1.5]).map(
+            lambda factor: own.resized(factor * own.tcp)
+        )
 
 
 def shifted(target: Target, step: float) -> Target:

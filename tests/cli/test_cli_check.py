@@ -6,8 +6,10 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from typer.testing import Result
 
+ROOT = Path(__file__).parents[2]
 ROBOT = "abb/irb6640-180-255"
 
 Flyby = Callable[..., Result]
@@ -58,3 +60,10 @@ def test_nothing_found_is_said(flyby: Flyby, small: Small) -> None:
     result = flyby("check", path, "--robot", ROBOT)
     assert result.exit_code == 0
     assert "nothing found" in result.stdout
+
+
+@pytest.mark.parametrize("robot", ["kuka/kr30-3", ROBOT])
+def test_a_data_list_is_no_program(flyby: Flyby, robot: str) -> None:
+    result = flyby("check", ROOT / "examples" / "seam.dat", "--robot", robot)
+    assert result.exit_code == 1
+    assert "seam.dat: a data list drives no robot: read the .src of the same name" in result.stderr

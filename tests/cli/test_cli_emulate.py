@@ -80,6 +80,48 @@ def test_the_written_program_takes_as_long(flyby: Flyby, tmp_path: Path) -> None
     assert a == pytest.approx(b, rel=1e-6)
 
 
+def test_statements_of_an_export_become_comments(flyby: Flyby, tmp_path: Path) -> None:
+    """A PolyScope export: what is kept of it names threads and variables of its own."""
+    export = ROOT / "tests" / "corpus" / "urscript" / "montage_zelle_2.script"
+    written = tmp_path / "clean.script"
+    words = ("--robot", "ur/ur5e", "--json")
+    for kept in ((), ("--opaque", "keep")):
+        result = flyby("emulate", export, *words, "--write", written, *kept)
+        assert result.exit_code == 1
+        assert "which the new script does not have" in result.stderr
+        assert "on the command line --opaque comment" in result.stderr
+        assert not written.exists()
+    first = flyby("emulate", export, *words, "--write", written, "--opaque", "comment")
+    assert first.exit_code == 0, first.output
+    second = flyby("emulate", written, *words)
+    assert second.exit_code == 0, second.output
+    a, b = (json.loads(result.stdout) for result in (first, second))
+    assert len(a["moves"]) == len(b["moves"])
+    assert a["cycle_time_s"] == pytest.approx(b["cycle_time_s"], rel=1e-6)
+
+
+def test_statements_are_kept_where_nothing_else_is_asked_for(
+    flyby: Flyby, small: Small, tmp_path: Path
+) -> None:
+    program = small("SetDO doGun, 1", "MoveL Offs(p1,100,0,0), v200, fine, tool0")
+    for words, kept in (((), True), (("--opaque", "keep"), True), (("--opaque", "comment"), False)):
+        written = tmp_path / "a.mod"
+        result = flyby("emulate", program, "--robot", ROBOT, "--write", written, "--force", *words)
+        assert result.exit_code == 0, result.output
+        lines = [line.strip() for line in written.read_text().splitlines()]
+        assert ("SetDO doGun, 1;" in lines) is kept
+        assert ("! SetDO doGun, 1;" in lines) is not kept
+
+
+def test_a_folder_takes_several_files_with_their_options(flyby: Flyby, tmp_path: Path) -> None:
+    seam = ROOT / "examples" / "seam.src"
+    for place in (tmp_path, tmp_path / "own.src"):
+        words = ("--robot", "kuka/kr30-3", "--write", place, "--force", "--opaque", "comment")
+        result = flyby("emulate", seam, *words)
+        assert result.exit_code == 0, result.output
+    assert {path.name for path in tmp_path.iterdir()} >= {"own.src", "own.dat"}
+
+
 @pytest.mark.parametrize(("suffix", "magic"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
 def test_plots(flyby: Flyby, small: Small, tmp_path: Path, suffix: str, magic: bytes) -> None:
     program = small(
@@ -127,6 +169,7 @@ def test_an_unreachable_target_names_line_and_move(flyby: Flyby, small: Small) -
         (("--robot", ROBOT, "--csv", "/nowhere/a.csv"), "there is no folder /nowhere"),
         (("--robot", ROBOT, "--csv", ROOT), "is no regular file"),
         (("--cell", "nowhere.toml"), "nowhere.toml"),
+        (("--robot", ROBOT, "--opaque", "comment"), "--opaque comment is of the program that"),
     ],
 )
 def test_wrong_input_is_one_message(flyby: Flyby, words: tuple[str, ...], message: str) -> None:

@@ -234,6 +234,7 @@ def test_the_installed_registry_is_built_once(monkeypatch: pytest.MonkeyPatch) -
         ({"reader": Language(), "suffixes": ("txt",)}, "suffixes"),
         ({"reader": Language(), "suffixes": (".TXT",)}, "suffixes"),
         ({"reader": Language(), "suffixes": ".txt"}, "suffixes"),
+        ({"companions": {"dat": "no"}}, "suffixes"),
         ({"emulation_only": {"arm-2": "no"}}, "arm-2"),
     ],
 )
@@ -297,3 +298,14 @@ def test_a_reader_is_found_by_suffix() -> None:
         registry.reader_of("a.txt")
     with pytest.raises(InputError, match=r"a.src: no vendor reads '.src' files; known: .txt .mod"):
         registry.reader_of("a.src")
+
+
+def test_a_file_beside_a_program_says_what_to_name() -> None:
+    one = vendor(
+        reader=Language(), suffixes=(".txt",), companions={".dat": "name the .txt beside it"}
+    )
+    registry = Registry({"acme": one})
+    with pytest.raises(InputError, match=r"^job/A\.DAT: name the \.txt beside it$"):
+        registry.reader_of("job/A.DAT")
+    with pytest.raises(InputError, match=r"'\.txt' is among 'suffixes' and 'companions'"):
+        vendor(reader=Language(), suffixes=(".txt",), companions={".txt": "no"})

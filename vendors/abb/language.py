@@ -39,9 +39,9 @@ class Rapid:
 
 
 def _options(robot: Robot, options: Mapping[str, str]) -> RapidOptions:
-    from ...core.source.options import check_names, choice
+    from ...core.source.options import OpaqueStyle, check_names, choice
     from .rapid.convert import axis_kinds
-    from .rapid.options import OpaqueStyle, RapidOptions, ZoneStyle
+    from .rapid.options import RapidOptions, ZoneStyle
 
     check_names(options, ("zones", "opaque"), "RAPID writer")
     return RapidOptions(

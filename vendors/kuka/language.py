@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from ...core.vendor import Sources
 
 SUFFIXES = (".src",)
+COMPANIONS = {
+    ".dat": "a data list drives no robot: read the .src of the same name, which takes its .dat "
+    "with it"
+}
 
 
 class Krl:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ...core.hookspec import VendorRegister, hookimpl
 from ...core.vendor import Vendor, lazy_motion, lazy_robots
 from .dialect import KRL
-from .language import SUFFIXES, Krl
+from .language import COMPANIONS, SUFFIXES, Krl
 
 if TYPE_CHECKING:
     import numpy as np
@@ -42,6 +42,7 @@ def flyby_register_vendors(register: VendorRegister) -> None:
             patcher=krl,
             recorder=krl,
             suffixes=SUFFIXES,
+            companions=COMPANIONS,
             speaks=KRL,
             emulation_only={"iiwa7-r800": SUNRISE, "iiwa14-r820": SUNRISE},
         )

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from flyby.core.errors import InputError, MotionError
+from flyby.core.errors import InputError, MotionError, Span
 from flyby.core.motion.standing import Standing
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
@@ -123,6 +123,17 @@ def test_what_cannot_be_reached_is_an_error_of_its_move() -> None:
     standing.moved(away)
     with pytest.raises(MotionError, match="move 2"):
         standing.joints()
+
+
+def test_the_error_stands_at_the_statement_of_its_move() -> None:
+    statement = Span("a.txt", 3, 1, 20, 30)
+    standing = Standing(ROBOT, LABEL, JointTarget((0.0,) * 6))
+    standing.moved(MoveL(PoseTarget(Pose((50.0, 0.0, 0.0))), Speed(0.1)), statement)
+    with pytest.raises(
+        MotionError, match=r"^a\.txt:3:1: move 1: target cannot be reached"
+    ) as caught:
+        standing.joints()
+    assert caught.value.span == statement
 
 
 def test_joint_values_make_earlier_targets_unimportant() -> None:

@@ -376,7 +376,7 @@ REFUSED: dict[str, tuple[Change, str]] = {
     ),
     "kind of target": (
         lambda p: changed(p, 0, target=JointTarget((0.0,) * 6)),
-        "a robtarget has 4 components|another target",
+        "is a jointtarget, a robtarget is wanted|another target",
     ),
 }  # fmt: skip
 

@@ -248,7 +248,7 @@ def test_unknown_values_travel_but_drive_nothing():
         ("FOR i FROM 1 TO 2 STEP 0 DO ENDFOR", "STEP is zero"),
         ("GOTO nowhere;", "no label 'nowhere'"),
         ("RAISE 1;", "error handlers are not run"),
-        ("at 1, 2;", "at takes 1 arguments, not 2"),
+        ("at 1, 2;", "at takes 1 argument, not 2"),
         ("at 1\\q:=2;", "unknown argument of at 'q'"),
         ("at Foo(1);", "unknown function 'Foo'"),
         ("k := Offs(p,0,0);", "Offs takes 4 arguments, not 3"),

@@ -111,6 +111,26 @@ def test_the_robot_answers_with_its_kinematics(robot):
     )
 
 
+@pytest.mark.parametrize(
+    ("move", "asks", "message"),
+    [
+        ("MoveL Offs(p,9000,0,0),v100,fine,tool0;", "jNow:=CJointT();", "target cannot be reached"),
+        (
+            "MoveL p,v100,fine,tool0\\WObj:=wMoved;",
+            "now:=CRobT(\\Tool:=tGun\\WObj:=wTable);",
+            "unknown external axis",
+        ),
+    ],
+)
+def test_a_move_that_cannot_be_driven_is_named_beside_the_question(robot, move, asks, message):
+    data = 'PERS wobjdata wMoved:=[FALSE,FALSE,"STN1",[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];'
+    said = refusal(f"MoveAbsJ home,v100,fine,tool0;\n{move}\n{asks}", robot=robot, data=data)
+    first = f"MODULE M\n{DATA}{data}\nPROC main()\n".count("\n") + 1
+    assert said.startswith(f"a.mod:{first + 1}:1: move 2: {message}")
+    function = asks[asks.index("=") + 1 : asks.index("(")]
+    assert f"; {function} at a.mod:{first + 2}:" in said
+
+
 @settings(deadline=None, max_examples=15)
 @given(st.tuples(*[st.floats(-40, 40) for _ in range(4)], st.floats(20, 70), st.floats(-90, 90)))
 def test_calc_joint_undoes_calc_rob(robot, degrees):

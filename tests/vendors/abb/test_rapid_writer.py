@@ -16,15 +16,17 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Load, Tool, WorkObject
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction, Zone
+from flyby.core.source.names import Names
+from flyby.core.source.options import OpaqueStyle
 from flyby.core.spatial.pose import Pose
 from flyby.vendors.abb.configuration import AbbConfiguration
 from flyby.vendors.abb.rapid import predefined
 from flyby.vendors.abb.rapid.arcs import arc_angle
-from flyby.vendors.abb.rapid.formatting import MAX_NAME, Names
+from flyby.vendors.abb.rapid.formatting import MAX_NAME, NAME_RULES
 from flyby.vendors.abb.rapid.literals import MM
 from flyby.vendors.abb.rapid.numbers import number
 from flyby.vendors.abb.rapid.operands import predefined_within
-from flyby.vendors.abb.rapid.options import OpaqueStyle, RapidOptions, ZoneStyle
+from flyby.vendors.abb.rapid.options import RapidOptions, ZoneStyle
 from flyby.vendors.abb.rapid.reader import read
 from flyby.vendors.abb.rapid.writer import RapidWriter, write
 
@@ -237,7 +239,7 @@ def test_names_are_kept_where_legal_and_unique(
 
 @given(st.lists(st.text(max_size=40), max_size=8))
 def test_every_name_given_out_is_legal_and_unique(wanted: list[str]) -> None:
-    names = Names("main")
+    names = Names(NAME_RULES, ["main"])
     given_out = [names.claim(name, "p") for name in wanted]
     assert len({name.casefold() for name in given_out}) == len(given_out)
     for name in given_out:

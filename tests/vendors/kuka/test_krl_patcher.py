@@ -180,6 +180,25 @@ def test_a_zone_with_parts_of_its_own_is_refused_for_what_it_is(job: Program, op
         KUKA.patch(changed(job, dict.fromkeys((2, 4, 5), uneven)), ROBOT, options)
 
 
+@pytest.mark.parametrize("mm", [4, 16])
+def test_zones_grow_and_shrink_by_one_rule(job: Program, mm: int) -> None:
+    def resized(move: Move) -> Move:
+        assert isinstance(move.zone, Radius)
+        return replace(move, zone=move.zone.resized(mm / 1000))
+
+    def torn(move: Move) -> Move:
+        return replace(move, zone=replace(move.zone, tcp=mm / 1000))  # type: ignore[call-arg]
+
+    readers = (2, 4, 5)
+    src, _ = patch(job, dict.fromkeys(readers, resized))
+    assert src == SRC.replace("$APO.CDIS=10", f"$APO.CDIS={mm}")
+    unsaid = changed(job, dict.fromkeys(readers, zoned(Radius(mm / 1000))))
+    (file,) = KUKA.patch(unsaid, ROBOT).values()
+    assert file.text == src
+    with pytest.raises(FlybyError, match=r"move 3: zone: KRL's C_DIS has one .*resized"):
+        KUKA.patch(changed(job, dict.fromkeys(readers, torn)), ROBOT)
+
+
 def test_neighbours_with_settings_of_their_own_are_not_restored_between(job: Program) -> None:
     src, _ = patch(job, {4: paced(tcp=0.2), 5: paced(tcp=0.3)}, OWN)
     assert src == SRC.replace(
@@ -231,7 +250,7 @@ def test_other_changes_and_options_are_refused(job: Program) -> None:
     with pytest.raises(InputError, match="other statements"):
         KUKA.patch(more, ROBOT)
     with pytest.raises(InputError, match="unknown option"):
-        KUKA.patch(job, ROBOT, {"zones": "own"})
+        KUKA.patch(job, ROBOT, {"opaque": "keep"})
     with pytest.raises(InputError, match="refuse, own"):
         KUKA.patch(job, ROBOT, {"shared": "yes"})
     tool = replace(job.moves[0].tool, tcp=replace(job.moves[0].tool.tcp, position=(0, 0, 0.1)))

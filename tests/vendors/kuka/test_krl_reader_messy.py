@@ -140,9 +140,13 @@ def test_a_damaged_file_says_where(tmp_path, krl):
         ("DEF a( )\nGOTO nowhere\nEND", 2, "no label 'nowhere'"),
         ("DEF a( )\nEXIT\nEND", 1, "EXIT stands outside a loop"),
         ("DEF a( )\nFOR i=1 TO 5 STEP 0\nENDFOR\nEND", 2, "STEP is zero"),
-        ("DEF a( )\nx=ABS(1,2)\nEND", 2, "ABS: it takes 1 arguments, not 2"),
+        ("DEF a( )\nx=ABS(1,2)\nEND", 2, "ABS: it takes 1 argument, not 2"),
         ("DEF a( )\nx=SQRT(-1)\nEND", 2, "SQRT: there is no finite value"),
         ("DEF a( )\nBAS(#TOOL)\nEND", 2, "the number of a tool"),
+        ("DEF a( )\nASYPTP {E1 30}\nEND", 2, "ASYPTP is refused: external axes that move beside"),
+        ("DEF a( )\nASYPTP XPark\nEND", 2, "ASYPTP is refused: external axes that move beside"),
+        ("DEF a( )\nHALT\nASYSTOP(1)\nEND", 3, "ASYSTOP is refused: external axes that move"),
+        ("DEF a( )\nHALT\nASYCONT 1\nEND", 3, "ASYCONT is refused: external axes that move"),
     ):
         with pytest.raises(SourceError, match=message) as caught:
             krl(src=text)

@@ -19,12 +19,13 @@ from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Load, Tool, WorkObject
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction, Zone
 from flyby.core.registry import find_vendor
+from flyby.core.source.names import Names
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_quaternion
 from flyby.vendors.abb.configuration import AbbConfiguration
 from flyby.vendors.kuka.configuration import KukaConfiguration
 from flyby.vendors.kuka.krl.angles import angles, quaternion, written_angles
-from flyby.vendors.kuka.krl.naming import MAX_NAME, Names
+from flyby.vendors.kuka.krl.naming import MAX_NAME, NAME_RULES
 from flyby.vendors.kuka.krl.numbers import number
 from flyby.vendors.kuka.krl.writer import write
 
@@ -268,7 +269,7 @@ def test_names_are_kept_where_legal_and_unique(
 
 @given(st.lists(st.text(max_size=30), max_size=8))
 def test_every_name_given_out_is_legal_and_unique(wanted: list[str]) -> None:
-    names = Names(["main"])
+    names = Names(NAME_RULES, ["main"])
     given_out = [names.claim(name, "P") for name in wanted]
     assert len({name.casefold() for name in given_out}) == len(given_out)
     for name in given_out:
@@ -366,9 +367,7 @@ def test_what_krl_cannot_say_is_refused_by_move(move: Move, message: str) -> Non
     assert "move 2" in str(caught.value)
 
 
-@pytest.mark.parametrize(
-    "options", [{"zones": "predefined"}, {"opaque": "drop"}, {"style": "spline"}]
-)
+@pytest.mark.parametrize("options", [{"zones": "own"}, {"opaque": "drop"}, {"style": "spline"}])
 def test_unknown_options_are_refused(options: dict[str, str]) -> None:
     with pytest.raises(InputError, match=next(iter(options))):
         write(program(MoveJ(HOME, HALF)), ROBOT, options)

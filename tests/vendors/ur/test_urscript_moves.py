@@ -37,9 +37,9 @@ def within(radius: float) -> Radius:
     return Radius(radius, radius, radius)
 
 
-def refusal(text: str) -> str:
+def refusal(text: str, robot: bool = False) -> str:
     with pytest.raises(SourceError) as caught:
-        program(text)
+        program(text, robot=robot)
     return str(caught.value)
 
 
@@ -330,6 +330,17 @@ def test_a_position_before_the_first_move_is_refused_with_what_to_do() -> None:
     message = refusal("movel(pose_add(get_actual_tcp_pose(), p[0,0,0.1,0,0,0]))")
     assert "before the first move" in message
     assert "[values]" in message
+
+
+def test_a_move_that_cannot_be_driven_is_named_beside_the_question() -> None:
+    text = (
+        "movej([0,-1.5,1.5,-1.57,-1.57,0])\n"
+        f"movel(p[9, 0, 0, {DOWN}])\n"
+        "q = get_actual_joint_positions()\nmovej([q[0],0,0,0,0,0])"
+    )
+    message = refusal(text, robot=True)
+    assert "t.script:2:1: move 2: target cannot be reached" in message
+    assert "get_actual_joint_positions()" in message
 
 
 def test_unreachable_poses_are_named() -> None:

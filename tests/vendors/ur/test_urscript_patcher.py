@@ -345,3 +345,19 @@ def test_unknown_options_are_refused() -> None:
         patched(f"movel({ONE})", {0: zone(0.1)}, opaque="comment")
     with pytest.raises(InputError, match="one of refuse, own"):
         patched(f"movel({ONE})", {0: zone(0.1)}, shared="copy")
+
+
+@pytest.mark.parametrize("radius", [0.025, 0.1])
+def test_zones_grow_and_shrink_by_one_rule(radius: float) -> None:
+    def resized(move: Move) -> Move:
+        assert isinstance(move.zone, Radius)
+        return replace(move, zone=move.zone.resized(radius))
+
+    def torn(move: Move) -> Move:
+        assert isinstance(move.zone, Radius)
+        return replace(move, zone=replace(move.zone, tcp=radius))
+
+    text = f"movel({ONE}, r=0.05)\n"
+    assert patched(text, {0: resized}) == f"movel({ONE}, r={radius})\n"
+    with pytest.raises(MotionError, match=r"move 1: URScript has one radius for all: .*resized"):
+        patched(text, {0: torn})

@@ -96,12 +96,12 @@ def test_compressed_programs_say_what_to_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "place", "complaint"),
     [
-        ("def f():\n  movej(Q\nend", "3:1", "the keyword end stands where ',' or ')'"),
+        ("def f():\n  movej(Q\nend", "3:1", "the keyword 'end' stands where ',' or ')'"),
         ("def f():\n  x = 1\n", "3:1", "the file ends where 'end' of 'def f' in line 1"),
         ("if True:\n  x = 1\n", "3:1", "'end' of 'if' in line 1"),
         ("x = 1\nend", "2:1", "this 'end' closes nothing"),
         ("else:\nend", "1:1", "this 'else' closes nothing"),
-        ("def f()\nend", "1:8", "the end of the line stands where ':'"),
+        ("def f()\nend", "1:8", "the line ends where ':'"),
         ("def (x):\nend", "1:5", "stands where a name after 'def'"),
         ("while True\nend", "1:11", "where ':' after the condition"),
         ("x = [1, 2", "1:10", "',' or ']' of a list begun in line 1"),

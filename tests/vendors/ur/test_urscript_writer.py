@@ -20,11 +20,12 @@ from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedF
 from flyby.core.registry import find_vendor
 from flyby.core.robot.inertia import carried_inertia
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
+from flyby.core.source.names import Names
 from flyby.core.spatial.pose import Pose
 from flyby.vendors.ur.configuration import UrConfiguration
-from flyby.vendors.ur.urscript.formatting import Names, number
+from flyby.vendors.ur.urscript.formatting import number
 from flyby.vendors.ur.urscript.payloads import payload
-from flyby.vendors.ur.urscript.reserved import RESERVED
+from flyby.vendors.ur.urscript.reserved import NAME_RULES, RESERVED
 from flyby.vendors.ur.urscript.writer import write
 
 UR5E = find_vendor("ur").robot("ur5e")
@@ -137,7 +138,7 @@ end
             Opaque('PulseDO doGün;\nTPWrite "x";'),
             MoveL(at(0.5, 0.0, 0.2), LINEAR, events=(Event("SetDO doGlue,1;"),)),
         ),
-        {"opaque": "comment", "zones": "own"},
+        {"opaque": "comment"},
         f"""# Written by flyby.
 def job():
   # PulseDO doG\\xfcn;
@@ -188,7 +189,7 @@ def test_names_are_kept_where_legal_and_unique(names: list[str], expected: list[
 
 @given(st.lists(st.text(max_size=40), max_size=8))
 def test_every_name_given_out_is_legal_and_unique(wanted: list[str]) -> None:
-    names = Names("main")
+    names = Names(NAME_RULES, ["main"])
     given_out = [names.claim(name, "point") for name in wanted]
     assert len(set(given_out)) == len(given_out)
     for name in given_out:
@@ -381,13 +382,13 @@ def test_other_arms_are_refused() -> None:
         write(program(), UR5E.with_external_axes([track]), {})
 
 
-@pytest.mark.parametrize("options", [{"zone": "own"}, {"shared": "own"}])
+@pytest.mark.parametrize("options", [{"zones": "own"}, {"shared": "own"}])
 def test_unknown_options_are_refused(options: dict[str, str]) -> None:
     with pytest.raises(UnknownNameError, match="option of the URScript writer"):
         text(program(), **options)
 
 
-@pytest.mark.parametrize("options", [{"zones": "predefined"}, {"opaque": "drop"}])
+@pytest.mark.parametrize("options", [{"shares": "own"}, {"opaque": "drop"}])
 def test_unknown_choices_are_refused(options: dict[str, str]) -> None:
     with pytest.raises(InputError, match="one of"):
         text(program(), **options)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ....core.errors import SourceError, Span
+from ....core.source.arguments import wrong_count
 from .scope import Scope, unknown_name
 from .syntax import Expression, Invoke
 
@@ -57,6 +58,23 @@ class Bound:
         return run.number(self.required[index], scope, f"{self.text}, argument {self.names[index]}")
 
 
+def check_count(text: str, wanted: int, given: int, span: Span, names: Sequence[str] = ()) -> None:
+    """Refuse too few or too many required arguments.
+
+    Args:
+        text: name of the function, routine or instruction.
+        wanted: how many it takes.
+        given: how many the call has.
+        span: of the call.
+        names: what they are called, if that is known.
+
+    Raises:
+        SourceError: the numbers differ.
+    """
+    if given != wanted:
+        raise SourceError(f"{text} {wrong_count(wanted, given, names)}", span)
+
+
 def bind(invoke: Invoke, names: Sequence[str], options: Sequence[str]) -> Bound:
     """The arguments of ``invoke``, required ones called ``names``.
 
@@ -64,12 +82,7 @@ def bind(invoke: Invoke, names: Sequence[str], options: Sequence[str]) -> Bound:
         SourceError: there are too few or too many, or an option that the instruction has not.
     """
     required = [a.value for a in invoke.arguments if a.option is None and a.value is not None]
-    if len(required) != len(names):
-        wanted = ", ".join(names) or "none"
-        raise SourceError(
-            f"{invoke.text} takes {len(names)} arguments ({wanted}), not {len(required)}",
-            invoke.span,
-        )
+    check_count(invoke.text, len(names), len(required), invoke.span, names)
     given: dict[str, Expression | None] = {}
     spans: dict[str, Span] = {}
     for argument in invoke.arguments:

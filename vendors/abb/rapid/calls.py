@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from ....core.errors import SourceError, Span
+from .arguments import check_count
 from .evaluator import Evaluator
 from .scope import Cell, Scope, unknown_name
 from .syntax import Argument, Expression, Name, Parameter, Routine
@@ -68,10 +69,7 @@ def _matched(
     """
     required = [p for p in routine.parameters if not p.optional]
     values = [a for a in arguments if a.option is None]
-    if len(values) != len(required):
-        raise SourceError(
-            f"{routine.text} takes {len(required)} arguments, not {len(values)}", span
-        )
+    check_count(routine.text, len(required), len(values), span)
     for parameter, argument in zip(required, values, strict=True):
         if argument.parameter not in (None, parameter.name):
             raise SourceError(

@@ -1,126 +1,33 @@
-"""A place in a list of tokens, and the few moves from which the parser is made."""
+"""A place in a list of RAPID's tokens."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from typing import ClassVar
 
-from ....core.errors import SourceError, Span
-from .lexer import END, KEYWORDS, LITERAL, NAME, NUMBER, STRING, Tokens
-
-NESTING_LIMIT = 60
-"""Brackets and blocks inside each other; what goes deeper is damaged or hostile."""
+from ....core.errors import Span
+from ....core.source.cursor import TokenCursor
+from ....core.source.text import SourceText
+from .lexer import KEYWORDS, LITERAL, Tokens
 
 
-class Cursor:
+class Cursor(TokenCursor[SourceText]):
     """Reads tokens from left to right.
 
     Args:
         tokens: to be read.
+
+    Attributes:
+        values: of the tokens that are a `LITERAL`, by index.
     """
 
+    keywords: ClassVar = {word: word.upper() for word in KEYWORDS}
+    nouns: ClassVar = {LITERAL: "value"}
+
     def __init__(self, tokens: Tokens) -> None:
-        self.source = tokens.source
-        self.kinds = tokens.kinds
-        self.starts = tokens.starts
-        self.ends = tokens.ends
+        super().__init__(tokens.source, tokens, tokens.source.text)
         self.values = tokens.values
-        self.index = 0
-        self.depth = 0
-
-    @property
-    def kind(self) -> str:
-        """Kind of the token that comes next."""
-        return self.kinds[self.index]
-
-    @property
-    def start(self) -> int:
-        """Where the token that comes next begins."""
-        return self.starts[self.index]
-
-    @property
-    def text(self) -> str:
-        """The token that comes next, as it stands."""
-        return self.source.text[self.starts[self.index] : self.ends[self.index]]
-
-    def peek(self, ahead: int = 1) -> str:
-        """Kind of the token ``ahead`` places after the next one."""
-        index = self.index + ahead
-        return self.kinds[index] if index < len(self.kinds) else END
-
-    def advance(self) -> None:
-        """Go past the next token (never past the end)."""
-        if self.kinds[self.index] != END:
-            self.index += 1
-
-    def accept(self, kind: str) -> bool:
-        """Go past the next token if it is a ``kind``."""
-        if self.kinds[self.index] == kind:
-            self.index += 1
-            return True
-        return False
-
-    def expect(self, kind: str, where: str) -> None:
-        """Go past the next token, which must be a ``kind``.
-
-        Raises:
-            SourceError: it is something else; ``where`` says what it should follow or end.
-        """
-        if self.kinds[self.index] != kind:
-            raise self.unexpected(f"{_shown(kind)} {where}")
-        self.index += 1
-
-    def name(self, what: str) -> str:
-        """Go past a name and return it as it stands."""
-        if self.kinds[self.index] != NAME:
-            raise self.unexpected(what)
-        text = self.text
-        self.index += 1
-        return text
 
     def span_from(self, start: int) -> Span:
         """From ``start`` to the end of the token gone past last."""
         end = self.ends[self.index - 1] if self.index else start
         return self.source.span(start, max(start, end))
-
-    def unexpected(self, wanted: str) -> SourceError:
-        """The error that ``wanted`` should stand where the next token is."""
-        if self.kind == END:
-            message = f"the file ends where {wanted} should follow: it is cut off or incomplete"
-        else:
-            message = f"{_found(self.kind, self.text)} stands where {wanted} should"
-        return self.source.error(message, self.start, self.ends[self.index])
-
-    @contextmanager
-    def nested(self) -> Iterator[None]:
-        """Inside one more bracket or block.
-
-        Raises:
-            SourceError: more than `NESTING_LIMIT` of them.
-        """
-        self.enter()
-        yield
-        self.depth -= 1
-
-    def enter(self) -> None:
-        """Go one level deeper; the counterpart is ``depth -= 1``."""
-        self.depth += 1
-        if self.depth > NESTING_LIMIT:
-            raise self.source.error(
-                f"more than {NESTING_LIMIT} brackets and blocks inside each other", self.start
-            )
-
-
-def _shown(kind: str) -> str:
-    if kind in KEYWORDS:
-        return kind.upper()
-    return f"'{kind}'" if not kind[:1].isalpha() else f"a {kind}"
-
-
-def _found(kind: str, text: str) -> str:
-    short = text if len(text) <= 40 else text[:37] + "..."
-    if kind in KEYWORDS:
-        return f"the keyword {text.upper()}"
-    names = {NAME: "the name", NUMBER: "the number", STRING: "the string"}
-    names[LITERAL] = "the value"
-    return f"{names[kind]} {short}" if kind in names else f"'{short}'"

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import count
 
-from .formatting import Names, literal
+from ....core.source.names import Names
+from .formatting import literal
 from .literals import Record
 from .numbers import number
 

@@ -9,6 +9,7 @@ from ....core.errors import SourceError, Span
 from ....core.source.answers import Course
 from ....core.source.provenance import ELSEWHERE, Reads
 from .answering import free, like_signals, typed
+from .checks import check_known, check_type
 from .elements import (
     array_mismatch,
     check_index,
@@ -40,7 +41,7 @@ from .syntax import (
     Truth,
     Unary,
 )
-from .types import BOOL, NUM, Foreign, Type, Unknown, Value, find_unknown, interpreted, mismatch
+from .types import BOOL, NUM, Foreign, Type, Unknown, Value, interpreted
 
 CallFunction = Callable[[Routine, Call, Scope], Value]
 
@@ -152,25 +153,20 @@ class Evaluator:
         """Raises:
         SourceError: a value is not known, or not of a type.
         """
-        unknown = find_unknown(value)
-        if unknown is not None:
-            raise SourceError(
-                f"{use} depends on {unknown.reason}: what only the running controller knows "
-                f"cannot be followed; put a fixed value in its place{_answerable(unknown)}",
-                span,
-            )
-        _check_type(value, type_, use, span)
+        check_known(value, use, span)
+        check_type(value, type_, use, span)
 
     def check_located(self, found: Located, type_: Type, use: str, span: Span) -> None:
         """`check`, once for each value of a datum: moves read few data many times."""
         if found.source is not None:  # a literal, all of it known
             if found.type is not type_:
-                _check_type(found.value, type_, use, span)
+                check_type(found.value, type_, use, span, found.type, self._text_of(span))
             return
         known = self._checked.get(id(found.value))
         if known is not None and known[0] is found.value and known[1] is type_:
             return
-        self.check(found.value, type_, use, span)
+        check_known(found.value, use, span)
+        check_type(found.value, type_, use, span, found.type, self._text_of(span))
         if found.cell is not None:
             self._checked[id(found.value)] = (found.value, type_)
 
@@ -425,18 +421,6 @@ class Evaluator:
             except OperandError as error:
                 raise SourceError(str(error), operation.span) from None
         return value
-
-
-def _check_type(value: Value, type_: Type, use: str, span: Span) -> None:
-    wrong = mismatch(value, type_)
-    if wrong is not None:
-        raise SourceError(f"{use}: {wrong}", span)
-
-
-def _answerable(unknown: Unknown) -> str:
-    if not unknown.key:
-        return ""
-    return f', or answer it in a file (--io): [values] "{unknown.key}" = …'
 
 
 def _star(star: Star) -> Value:

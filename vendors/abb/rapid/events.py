@@ -17,11 +17,11 @@ from ....core.errors import InputError
 from ....core.program.event import Event, EventAnchor
 from ....core.program.move import Move, MoveJ
 from ....core.program.target import JointTarget
+from ....core.source.options import AS_COMMENTS, OpaqueStyle
 from .declarations import Datum
 from .literals import MM
 from .numbers import number
 from .operands import Operand, Operands
-from .options import OpaqueStyle
 
 MOST = 8
 """``TriggL`` takes so many events."""
@@ -131,7 +131,7 @@ def _definition(event: Event) -> str:
     else:
         raise InputError(
             f"the event {_line(event)!r} is no output and its value, as in 'doGun,1': RAPID has "
-            "no words for it; take it out, or have it written as a comment (opaque=comment)"
+            f"no words for it; take it out, or have it written as a comment ({AS_COMMENTS})"
         )
     start = "\\Start" if event.anchor is EventAnchor.START else ""
     distance = number(event.distance / MM)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ....core.errors import SourceError
 from ....core.source.text import SourceText
+from .arguments import check_count
 from .cursor import Cursor
 from .elements import array_mismatch
 from .expressions import parse_expression
@@ -95,10 +96,7 @@ class FunctionCalls:
     def _computed(self, call: Call, scope: Scope) -> Value:
         function, types, options = COMPUTED[call.name]
         required = [a.value for a in call.arguments if a.option is None and a.value is not None]
-        if len(required) != len(types):
-            raise SourceError(
-                f"{call.text} takes {len(types)} arguments, not {len(required)}", call.span
-            )
+        check_count(call.text, len(types), len(required), call.span)
         given = {a.option: a.value for a in call.arguments if a.option is not None}
         for option in given:
             if option not in options:

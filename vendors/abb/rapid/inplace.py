@@ -10,6 +10,7 @@ from ....core.errors import Span
 from ....core.program.speed import Speed
 from ....core.program.zone import Fine, Radius
 from ....core.source.patching import alike
+from ....core.source.uses import Kind, Use
 from . import predefined
 from .leaves import (
     ZONE_LEAVES,
@@ -22,7 +23,6 @@ from .leaves import (
 from .operands import refuse_speed
 from .places import Operand, Places
 from .syntax import Name
-from .uses import Kind, Use
 
 Texts = Mapping[Span, str]
 """What shall stand at a span; what is not named may say what it likes."""
@@ -49,7 +49,7 @@ class InPlace:
 
     def wanted(self, use: Use) -> Texts | None:
         """What the literal that ``use`` reads must say; None if no numbers in it can say it."""
-        key = (use.move, use.kind)
+        key = (use.index, use.kind)
         if key not in self._wanted:
             self._wanted[key] = self._texts(use)
         return self._wanted[key]
@@ -70,7 +70,7 @@ class InPlace:
             if other != text
             for move in voters
         }
-        return sorted(moves - {use.move})
+        return sorted(moves - {use.index})
 
     def _votes_on(self, span: Span) -> dict[str, list[int]]:
         if span not in self._votes:
@@ -79,7 +79,7 @@ class InPlace:
                 wanted = self.wanted(use)
                 text = "" if wanted is None else wanted.get(span)
                 if text is not None:
-                    votes[text].append(use.move)
+                    votes[text].append(use.index)
             self._votes[span] = votes
         return self._votes[span]
 

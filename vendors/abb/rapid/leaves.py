@@ -13,15 +13,14 @@ from dataclasses import dataclass, replace
 
 from ....core.errors import InputError
 from ....core.program.speed import Speed
-from ....core.program.target import Configuration, JointTarget, PoseTarget, Target
-from ....core.program.zone import Fine, Radius, Zone
+from ....core.program.target import Configuration, JointTarget, PoseTarget
+from ....core.program.zone import Fine, Radius
 from ....core.source.numerals import shortest
+from ....core.source.uses import MovePart
 from ..configuration import AbbConfiguration
 from .lexer import number_value
 from .literals import MM, UNUSED_AXIS, metres
 from .options import EXTERNAL_AXES
-
-Part = Target | Speed | Zone
 
 SPEED_LEAVES = 4
 ZONE_LEAVES = 6
@@ -63,7 +62,7 @@ class Leaf:
         return self.text
 
 
-def leaves(new: Part, old: Part | None, axis_kinds: Sequence[str]) -> tuple[Leaf, ...]:
+def leaves(new: MovePart, old: MovePart | None, axis_kinds: Sequence[str]) -> tuple[Leaf, ...]:
     """The leaves of a part.
 
     Args:
@@ -87,7 +86,7 @@ def leaves(new: Part, old: Part | None, axis_kinds: Sequence[str]) -> tuple[Leaf
     raise InputError(f"RAPID has no zone by {type(new).__name__}: give it a radius (TCP distance)")
 
 
-def record_text(new: Part, axis_kinds: Sequence[str]) -> str:
+def record_text(new: MovePart, axis_kinds: Sequence[str]) -> str:
     """The literal of a part that is declared anew."""
     if isinstance(new, Fine):
         return "[TRUE,0,0,0,0,0,0]"
@@ -186,7 +185,8 @@ def _zone_leaves(zone: Radius) -> tuple[Leaf, ...]:
         if size < zone.tcp:
             raise InputError(
                 f"Radius.{what} is {size / MM:g} mm and the TCP's {zone.tcp / MM:g} mm: the "
-                "controller makes it at least as large; say so in the program"
+                "controller makes it at least as large; say so in the program, or take "
+                "zone.resized(tcp)"
             )
 
     def widened(value: float) -> float:

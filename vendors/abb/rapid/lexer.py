@@ -17,6 +17,7 @@ import json
 import re
 from dataclasses import dataclass
 
+from ....core.source import cursor
 from ....core.source.text import SourceText
 
 
@@ -33,8 +34,8 @@ KEYWORDS = words(
 )
 """Reserved words (the attributes of a module are not: they may be used as names)."""
 
-END = "end of file"
-NAME, NUMBER, STRING, LITERAL = "name", "number", "string", "literal"
+END, NAME = cursor.END, cursor.NAME
+NUMBER, STRING, LITERAL = "number", "string", "literal"
 
 _LEAF = r"-?+[0-9][0-9.eE+-]*+\s*+"
 _ROW = rf"\[\s*+{_LEAF}(?:,\s*+{_LEAF})*+\]\s*+"

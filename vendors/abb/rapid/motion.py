@@ -323,7 +323,7 @@ def drive(
         for source in filter(None, part.sources if part is not None else ()):
             reads.by_move(source, run.out.move_index)
     run.emit_move(move, sources)
-    run.whereabouts.moved(move, sources.record)
+    run.whereabouts.moved(move, sources.statement, sources.record)
 
 
 def _plain(run: Interpreter, invoke: Invoke, scope: Scope) -> None:

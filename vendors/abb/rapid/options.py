@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from ....core.errors import InputError
+from ....core.source.options import OpaqueStyle
 
 EXTERNAL_AXES = 6
 AXIS_KINDS = ("linear", "rotating")
@@ -22,23 +23,13 @@ class ZoneStyle(StrEnum):
     larger or smaller: plan what was written, not what was asked for."""
 
 
-class OpaqueStyle(StrEnum):
-    """What becomes of statements that were kept as text."""
-
-    KEEP = "keep"
-    """They are written as they stand: for programs that were read from RAPID. The data and
-    signals that they name must exist on the controller."""
-    COMMENT = "comment"
-    """They become comments: for programs from another language."""
-
-
 @dataclass(frozen=True, slots=True)
 class RapidOptions:
     """How a module is written.
 
     Args:
         zones: see `ZoneStyle`.
-        opaque: see `OpaqueStyle`.
+        opaque: see `core.source.options.OpaqueStyle`.
         external_axes: ``"linear"`` or ``"rotating"`` for eax_a, eax_b, …, as for the reader.
 
     Raises:

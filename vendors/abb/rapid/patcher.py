@@ -21,18 +21,19 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
 from ....core.errors import InputError, Span
+from ....core.program.move import Move
 from ....core.program.origin import Ownership
 from ....core.program.program import Program
 from ....core.program.zone import Fine
 from ....core.source.options import PatchOptions, Sharing
 from ....core.source.patching import Edit, alike, listed, patched, reading_of
 from ....core.source.reading import Files
+from ....core.source.uses import Kind, Use, uses
 from .additions import Additions
 from .inplace import InPlace, Texts
 from .places import Operand, Places
 from .substitutes import Substitutes
 from .syntax import Aggregate, Name
-from .uses import Kind, Use, uses
 
 
 def patch(program: Program, options: PatchOptions, axis_kinds: Sequence[str] = ()) -> Files:
@@ -52,7 +53,7 @@ def patch(program: Program, options: PatchOptions, axis_kinds: Sequence[str] = (
     """
     reading = reading_of(program)
     before = reading.again({})
-    parts = uses(before, program)
+    parts = uses(before, program, _other_change)
     places = Places(reading.files)
 
     def attempt(in_place: tuple[Ownership, ...]) -> Files:
@@ -121,7 +122,7 @@ class _Plan:
         try:
             texts, against = self._in_literal(use)
             if texts is not None and not against and not self._stops_alone(use):
-                yield from (Edit(span, text, use.move) for span, text in texts.items())
+                yield from (Edit(span, text, use.index) for span, text in texts.items())
                 return
             operand = self._places.operand(use.statement, use.origin.span)
             self._check_allowed(use, operand, against)
@@ -129,7 +130,7 @@ class _Plan:
             text = self._substitutes.text(use, operand)
         except InputError as error:
             raise use.error(str(error)) from None
-        yield Edit(operand.span, text, use.move)
+        yield Edit(operand.span, text, use.index)
 
     def _in_literal(self, use: Use) -> tuple[Texts | None, list[int]]:
         """What its literal has to say, and the moves that are against it."""
@@ -161,7 +162,7 @@ class _Plan:
     def _dissenters(self, use: Use) -> list[int]:
         """Moves of the same instruction that are to have another value."""
         return [
-            other.move
+            other.index
             for other in self._executions[use.statement, use.kind]
             if not alike(other.new, use.new)
         ]
@@ -175,6 +176,17 @@ class _Plan:
                 f"{listed(others)} too, which is to have another value: change them all alike, or "
                 "none"
             )
+
+
+_SETTINGS = ("tcp_acceleration", "joint_acceleration_fraction", "jerk_fraction")
+"""Parts of a speed that instructions of their own set (AccSet, PathAccLim)."""
+
+
+def _other_change(old: Move, new: Move) -> str | None:
+    for name in _SETTINGS:
+        if not alike(getattr(old.speed, name), getattr(new.speed, name)):
+            return f"speed ({name.replace('_', ' ')})"
+    return None
 
 
 def _plain_stop(operand: Operand) -> bool:

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ....core.errors import InputError, Span
+from ....core.source.names import Names
 from ....core.source.reading import Files
 from ....core.source.text import SourceFile, SourceText
 from .cursor import Cursor
-from .formatting import Names
+from .formatting import NAME_RULES
 from .lexer import Tokens, tokenize
 from .parser import parse
 from .statements import parse_statement
@@ -133,7 +134,8 @@ class Places:
 
     def names(self) -> Names:
         """All words of all files, and what else is no name for a new datum."""
-        return Names(*{word for f in self._files.values() for word in _WORD.findall(f.text)})
+        words = {word for f in self._files.values() for word in _WORD.findall(f.text)}
+        return Names(NAME_RULES, words)
 
     def truth_before(self, number: Span) -> Span | None:
         """The TRUE or FALSE in front of the first number of a zonedata."""

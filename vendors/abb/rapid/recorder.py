@@ -22,10 +22,12 @@ from dataclasses import replace
 
 from ....core.errors import InputError
 from ....core.program.program import Program
-from .formatting import Names
+from ....core.source.names import Names
+from ....core.source.options import OpaqueStyle
+from .formatting import NAME_RULES
 from .numbers import number
 from .operands import ARM_AXES
-from .options import OpaqueStyle, RapidOptions
+from .options import RapidOptions
 from .writer import ENTRY, SUFFIX, Surroundings, module_name, write
 
 SHORTEST_INTERRUPT = 0.1
@@ -93,7 +95,7 @@ def _by_interrupt(program: Program, options: RapidOptions, period: str) -> Mappi
 
 def _by_task(program: Program, options: RapidOptions, period: str) -> Mapping[str, str]:
     module = module_name(program)
-    logger = Names(module, ENTRY).claim(LOGGER, LOGGER)
+    logger = Names(NAME_RULES, [module, ENTRY]).claim(LOGGER, LOGGER)
     driving = Surroundings(
         header=(
             *_header(options),

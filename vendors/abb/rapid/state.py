@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ....core.errors import FlybyError, SourceError
+from ....core.errors import FlybyError, MotionError, SourceError
 from ....core.program.tool import WORLD, Tool, WorkObject
 from ....core.spatial.pose import Pose
 from ....core.spatial.rotation import quaternion_from_matrix
+from .arguments import check_count
 from .function_calls import Special
 from .literals import Record, pose_record, tool_record, work_object_record
 from .scope import Scope
@@ -179,6 +180,14 @@ class StateFunctions:
             return ask()
         except SourceError:
             raise
+        except MotionError as error:
+            if error.span is None or error.move is None:
+                raise SourceError(f"{call.text}: {error.message}", call.span) from None
+            raise SourceError(
+                f"move {error.move + 1}: {error.message}; {call.text} at {call.span} asks where "
+                "the robot stands after it",
+                error.span,
+            ) from None
         except FlybyError as error:
             raise SourceError(f"{call.text}: {error}", call.span) from None
 
@@ -195,8 +204,7 @@ class StateFunctions:
     @staticmethod
     def _required(call: Call, count: int) -> list[Expression]:
         found = [a.value for a in call.arguments if a.option is None and a.value is not None]
-        if len(found) != count:
-            raise SourceError(f"{call.text} takes {count} arguments, not {len(found)}", call.span)
+        check_count(call.text, count, len(found), call.span)
         return found
 
     def _tool(self, given: Expression | None, scope: Scope) -> Tool | None:

@@ -10,6 +10,7 @@ from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.zone import Fine, Radius
 from ....core.source.numerals import plain
 from ....core.source.patching import alike
+from ....core.source.uses import Use
 from . import predefined
 from .additions import Additions
 from .leaves import millimetres_leaf, record_text, with_radius
@@ -17,7 +18,6 @@ from .literals import MM
 from .operands import refuse_speed
 from .places import Operand, Places
 from .syntax import Aggregate, Call, Expression, Name, Operation, Unary
-from .uses import Use
 
 TYPES = {
     PoseTarget: "robtarget",
@@ -98,7 +98,7 @@ class Substitutes:
         value = replace(use.new, duration=None) if isinstance(use.new, Speed) else use.new
         literal = record_text(value, self._axis_kinds)
         return self._additions.declare(
-            TYPES[type(value)], literal, stem, use.statement, use.move, mark
+            TYPES[type(value)], literal, stem, use.statement, use.index, mark
         )
 
 

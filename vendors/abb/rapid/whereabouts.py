@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from ....core.errors import Span
 from ....core.program.move import Move, MoveJ
 from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
@@ -45,7 +46,7 @@ class Whereabouts:
         self._last: Move | None = None
         self._record: Record = ()
         self._standing: Standing | None = None
-        self._moves: list[Move] = []
+        self._moves: list[tuple[Move, Span]] = []
 
     @property
     def tool(self) -> Tool:
@@ -57,15 +58,16 @@ class Whereabouts:
         """The work object that was moved in last."""
         return WORLD if self._last is None else self._last.work_object
 
-    def moved(self, move: Move, record: Record) -> None:
+    def moved(self, move: Move, statement: Span, record: Record) -> None:
         """The robot has driven to the target of a move.
 
         Args:
+            statement: of the move.
             record: the target as it stood in the program.
         """
         self._last, self._record = move, record
         if self._robot is not None:
-            self._moves.append(move)
+            self._moves.append((move, statement))
 
     # ---------------------------------------------------------------- what is asked
 
@@ -141,8 +143,8 @@ class Whereabouts:
         assert self._robot is not None
         if self._standing is None:
             self._standing = _standing(self._robot, None)
-        for move in self._moves:
-            self._standing.moved(move)
+        for move, statement in self._moves:
+            self._standing.moved(move, statement)
         self._moves.clear()
         return self._standing
 

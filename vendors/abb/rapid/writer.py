@@ -9,12 +9,14 @@ from dataclasses import dataclass, field
 from ....core.errors import InputError, MotionError
 from ....core.program.move import Move, MoveC, Opaque, Wait
 from ....core.program.program import Program
+from ....core.source.names import Names
+from ....core.source.options import OpaqueStyle
 from .arcs import check_arc
 from .events import Events
-from .formatting import Names
+from .formatting import NAME_RULES
 from .numbers import number
 from .operands import Operands
-from .options import OpaqueStyle, RapidOptions, ZoneStyle
+from .options import RapidOptions, ZoneStyle
 from .phrases import Line, Settings, move_line
 
 ENTRY = "main"
@@ -76,7 +78,7 @@ def write(program: Program, options: RapidOptions, around: Surroundings = Surrou
     operands = Operands(options)
     lines = _body(program, operands, options)
     module = module_name(program)
-    names = operands.declarations.names(Names(module, ENTRY, *around.names))
+    names = operands.declarations.names(Names(NAME_RULES, [module, ENTRY, *around.names]))
     texts = ["".join(p if isinstance(p, str) else names[p] for p in line) for line in lines]
     main = [*around.before, *texts, *around.after]
     return "\n".join(
@@ -97,7 +99,7 @@ def module_name(program: Program) -> str:
     """The program's name, or one near to it that RAPID takes for a module beside ``main``."""
     if program.name.casefold() == ENTRY:
         return "MainModule"
-    return Names(ENTRY).claim(program.name, "Module")
+    return Names(NAME_RULES, [ENTRY]).claim(program.name, "Module")
 
 
 def _header(options: RapidOptions) -> list[str]:

@@ -6,6 +6,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from ....core.errors import SourceError
+from ....core.source.arguments import wrong_count
 from .flow import Jump, Left, Returned
 from .functions import COMPUTED
 from .instructions import Kept, kept, refused
@@ -148,8 +149,7 @@ class Calls:
     def _hand_over(self, routine: Routine, call: Call, caller: Scope, scope: Scope) -> None:
         if len(call.arguments) > len(routine.parameters):
             raise SourceError(
-                f"{routine.text} takes {len(routine.parameters)} arguments, not "
-                f"{len(call.arguments)}",
+                f"{routine.text} {wrong_count(len(routine.parameters), len(call.arguments))}",
                 call.span,
             )
         for index, parameter in enumerate(routine.parameters):

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import count
 
-from .naming import Names
+from ....core.source.names import Names
 
 TYPES = {"FRAME": "FRAME1", "LOAD": "LOAD1", "E6AXIS": "XP", "E6POS": "XP"}
 """data type → beginning of the names of data that have none, in the order of the data list."""

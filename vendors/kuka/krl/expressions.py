@@ -136,7 +136,7 @@ def _primary(cursor: Cursor) -> Expression:
         return parse_name_or_call(cursor)
     if kind == RECORD:
         cursor.advance()
-        return Flat(cursor.source, start, cursor.ends[cursor.index - 1])
+        return Flat(cursor.source, start, cursor.end)
     if kind == "{":
         return _aggregate(cursor)
     if kind == ENUM:
@@ -169,7 +169,7 @@ def _number(cursor: Cursor) -> Number:
     negative = cursor.accept("-")
     text = cursor.text
     cursor.advance()
-    end = cursor.ends[cursor.index - 1]
+    end = cursor.end
     value = number_value(text)
     if not math.isfinite(value):
         raise cursor.source.error("this number is too large", start, end)
@@ -215,7 +215,7 @@ def _aggregate(cursor: Cursor) -> Aggregate:
         items.append((name, parse_expression(cursor)))
     cursor.expect("}", "or ',' after this value")
     cursor.depth -= 1
-    end = cursor.ends[cursor.index - 1]
+    end = cursor.end
     return Aggregate(cursor.source, start, end, type_name, tuple(items))
 
 

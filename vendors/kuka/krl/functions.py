@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ....core.errors import InputError
+from ....core.source.arguments import wrong_count
 from .frames import frame_of, pose_of
 from .operators import OperandError
 from .types import POSES
@@ -55,7 +56,7 @@ def computed(name: str, arguments: list[Value]) -> Value:
     """
     function = COMPUTED[name]
     if len(arguments) != len(function.wants):
-        raise OperandError(f"it takes {len(function.wants)} arguments, not {len(arguments)}")
+        raise OperandError(f"it {wrong_count(len(function.wants), len(arguments))}")
     for argument, kind in zip(arguments, function.wants, strict=True):
         _check(argument, kind)
     try:

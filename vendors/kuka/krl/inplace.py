@@ -15,13 +15,13 @@ from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
 from ....core.source.numerals import shortest
 from ....core.source.patching import TOLERANCE, alike
+from ....core.source.uses import Kind, Use
 from ..configuration import KukaConfiguration
 from .aggregates import EXTERNAL_AXES, MM
 from .angles import written_angles
 from .numbers import number
 from .pacing import zone_settings
 from .places import Places
-from .uses import Kind, Use
 
 Texts = Mapping[Span, str]
 

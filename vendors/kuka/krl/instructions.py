@@ -62,7 +62,14 @@ _REFUSED: tuple[tuple[str, str], ...] = (
     ),
     (r"syncstart|syncend|progsync|mot_?coop\w*|roboteam\w*", "several robots are not emulated"),
     (r"conv_\w+|tracking\w*", "conveyor tracking is not emulated"),
+    (
+        r"asy(ptp|cont|stop|cancel)",
+        "external axes that move beside the program are not emulated: give their values with the "
+        "targets of PTP, LIN and CIRC",
+    ),
 )
+ASYNCHRONOUS = frozenset({"asyptp", "asycont", "asystop", "asycancel"})
+"""First words of statements that drive axes beside the program: ``ASYPTP {E1 30}``."""
 
 
 def _compiled(pattern: str) -> re.Pattern[str]:

@@ -14,6 +14,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from ....core.source import cursor
 from ....core.source.text import SourceText
 
 
@@ -31,8 +32,8 @@ KEYWORDS = words(
 )
 """Words that a statement or a part of one begins with; other words are names."""
 
-END, NEWLINE = "end of file", "end of line"
-NAME, NUMBER, STRING, BITS, ENUM, RECORD = "name", "number", "string", "bits", "enum", "record"
+END, NEWLINE, NAME = cursor.END, cursor.END_OF_LINE, cursor.NAME
+NUMBER, STRING, BITS, ENUM, RECORD = "number", "string", "bits", "enum", "record"
 
 _NUMBER = r"(?: [0-9]++ (?: \.[0-9]*+ )? | \.[0-9]++ ) (?: [eE][+-]?[0-9]++ )?"
 _BITS = r"' [ \t]* [bBhHoO]? [ \t]* [0-9a-fA-F]++ [ \t]* '"

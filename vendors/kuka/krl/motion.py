@@ -349,7 +349,7 @@ class MotionReader:
             via,
         )
         self.run.emit_move(move, parts)
-        self.run.position.moved(move, found.complete, common.placement)
+        self.run.position.moved(move, motion.span, found.complete, common.placement)
 
 
 def _fields(common: _Common) -> tuple[Speed, Zone, Tool, WorkObject, Load | None]:

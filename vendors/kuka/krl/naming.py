@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator
-from itertools import count
+from ....core.source.names import NameRules
 
 MAX_NAME = 24
 
@@ -29,39 +27,4 @@ _DATA = """
 CONTROLLER = frozenset(_DATA.split())
 """Names that every controller's own files hold, in lower case."""
 
-_LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-_OTHER = re.compile(r"[^A-Za-z0-9_]+")
-
-
-class Names:
-    """The names that a program has given out; upper and lower case are the same."""
-
-    def __init__(self, taken: Iterable[str] = ()) -> None:
-        self._taken = {name.casefold() for name in taken} | RESERVED | CONTROLLER
-
-    def claim(self, wanted: str, fallback: str) -> str:
-        """``wanted`` if it is legal and free, else a legal and free name near to it.
-
-        Args:
-            wanted: any text; what may not stand in a name becomes ``_``.
-            fallback: a legal name, taken if nothing of ``wanted`` can stand in a name.
-        """
-        stem = _OTHER.sub("_", wanted).strip("_") or fallback
-        if not _LEGAL.fullmatch(stem):
-            stem = f"{fallback}_{stem}"
-        return self.first_free([stem[:MAX_NAME]], _numbered(stem))
-
-    def first_free(self, *candidates: Iterable[str]) -> str:
-        """The first of the candidates that is free; it is taken from now on."""
-        for names in candidates:
-            for name in names:
-                if name.casefold() not in self._taken:
-                    self._taken.add(name.casefold())
-                    return name
-        raise ValueError("no candidate is free")
-
-
-def _numbered(stem: str) -> Iterator[str]:
-    for k in count(2):
-        suffix = f"_{k}"
-        yield stem[: MAX_NAME - len(suffix)] + suffix
+NAME_RULES = NameRules(RESERVED | CONTROLLER, MAX_NAME)

@@ -78,14 +78,12 @@ def approximation(move: Move) -> str:
 
 def _check_radius(zone: Radius) -> None:
     """``C_DIS`` is one distance, of the TCP, and begins reorientation and external axes with it."""
-    for what in ("reorientation", "external"):
-        value = getattr(zone, what)
-        if value > zone.tcp * (1 + 1e-9):
-            raise InputError(
-                f"KRL's C_DIS has one distance for TCP, reorientation and external axes, but "
-                f"Radius.{what} is {value / MM:g} mm beside {zone.tcp / MM:g} mm of the TCP: make "
-                "them equal, or 0"
-            )
+    try:
+        zone.with_one_distance()
+    except InputError as error:
+        raise InputError(
+            f"KRL's C_DIS has one distance for TCP, reorientation and external axes: {error}"
+        ) from None
     for what in ("angle", "external_linear", "external_angular"):
         if getattr(zone, what) != 0:
             raise InputError(

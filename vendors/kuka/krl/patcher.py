@@ -23,21 +23,22 @@ from contextlib import suppress
 from dataclasses import replace
 
 from ....core.errors import FlybyError, InputError, Span
+from ....core.program.move import Move
 from ....core.program.origin import Ownership
 from ....core.program.program import Program
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.zone import Fine, Zone
 from ....core.robot.model import Robot
 from ....core.source.options import PatchOptions, Sharing
-from ....core.source.patching import Edit, alike, listed, patched, reading_of
+from ....core.source.patching import Edit, alike, listed, patched, reading_of, with_one_distance
 from ....core.source.reading import Files
+from ....core.source.uses import Kind, Use, uses
 from .additions import Additions, Motion, settings_of
 from .aggregates import e6axis, e6pos
 from .forms import shown_approximation, shown_velocity, words_of
 from .inplace import InPlace, Texts, Wanted, literals_of
 from .pacing import approximation, zone_settings
 from .places import Places
-from .uses import Kind, Use, uses
 
 _WORDS = re.compile(r"(?i)(?:[ \t]+C_(?:PTP|DIS|ORI|VEL|SPL))+[ \t]*$")
 
@@ -59,7 +60,8 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
     """
     chosen = PatchOptions.of(options, "KRL patcher")
     reading = reading_of(program)
-    parts = uses(reading.again({}), program)
+    program = with_one_distance(program)
+    parts = uses(reading.again({}), program, _other_change)
     places = Places(reading.files)
 
     def attempt(in_place: Sequence[Ownership]) -> Files:
@@ -293,6 +295,10 @@ class _Plan:
                 f"{listed(others)} as well: give it move data of its own on the teach pendant"
             )
         return Edit(span, standing if float(standing) == float(text) else text, use.index)
+
+
+def _other_change(old: Move, new: Move) -> str | None:
+    return None if type(old.target) is type(new.target) else "kind of target"
 
 
 def _motions(parts: Sequence[Use]) -> list[Motion]:

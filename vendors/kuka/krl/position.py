@@ -36,16 +36,16 @@ class Position:
 
     def __init__(self, robot: Robot | None) -> None:
         self._robot = robot
-        self._moves: list[Move] = []
+        self._moves: list[tuple[Move, Span]] = []
         self._told = 0
         self._standing: Standing | None = None
         self._last: Struct | None = None
         self._placement: Placement | None = None
 
-    def moved(self, move: Move, target: Struct, placement: Placement) -> None:
+    def moved(self, move: Move, statement: Span, target: Struct, placement: Placement) -> None:
         """The robot has driven to a target, whose components are all in ``target``."""
         if self._robot is not None:
-            self._moves.append(move)
+            self._moves.append((move, statement))
         self._last = target
         self._placement = placement
 
@@ -147,8 +147,8 @@ class Position:
         assert self._robot is not None
         if self._standing is None:
             self._standing = Standing(self._robot, label)
-        for move in self._moves[self._told :]:
-            self._standing.moved(move)
+        for move, statement in self._moves[self._told :]:
+            self._standing.moved(move, statement)
         self._told = len(self._moves)
         return self._standing
 

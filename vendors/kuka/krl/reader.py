@@ -33,11 +33,10 @@ from ....core.errors import Note, SourceError, Span, UnknownNameError
 from ....core.program.program import Program
 from ....core.source.collection import collection_paused
 from ....core.source.reading import Files, ReadOptions
+from ..language import COMPANIONS
 from .interpreter import Interpreter
 from .library import Library, suffix_of
 from .syntax import Routine
-
-SUFFIXES = (".src",)
 
 
 def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
@@ -53,11 +52,7 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
     """
     start = Span(main, 1, 1, 0, 0)
     if suffix_of(main) == ".dat":
-        raise SourceError(
-            "a data list drives no robot: read the .src of the same name, which takes its .dat "
-            "with it",
-            start,
-        )
+        raise SourceError(COMPANIONS[".dat"], start)
     with collection_paused():
         library = Library(files, main)
         entry, notes = _entry(library, options.entry, start)

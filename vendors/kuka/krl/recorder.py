@@ -16,8 +16,9 @@ from ....core.errors import InputError
 from ....core.program.program import Program
 from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
+from ....core.source.options import OpaqueStyle
 from .numbers import number
-from .options import KrlOptions, OpaqueStyle
+from .options import KrlOptions
 from .writer import HEADER, Surroundings, compose, source_text
 
 SHORTEST_PERIOD = 0.012

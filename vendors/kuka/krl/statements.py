@@ -8,6 +8,7 @@ from ....core.errors import Span
 from .cursor import Cursor
 from .declarations import parse_declaration, parse_enum, parse_signal, parse_struc
 from .expressions import parse_expression, parse_name, parse_name_or_call
+from .instructions import ASYNCHRONOUS
 from .lexer import END, ENUM, NAME, NEWLINE, words
 from .syntax import (
     Assign,
@@ -73,6 +74,8 @@ def parse_statement(cursor: Cursor) -> tuple[Statement, ...]:
 
 def _name_statement(cursor: Cursor) -> Statement | tuple[Statement, ...]:
     following = cursor.peek()
+    if cursor.text.lower() in ASYNCHRONOUS and following not in ("(", "="):
+        return _kept(cursor)
     if following == NAME:
         return _named(cursor)
     start = cursor.start
@@ -278,7 +281,7 @@ def _trigger(cursor: Cursor) -> Trigger:
     cursor.expect_word("do", "in TRIGGER")
     begin = cursor.start
     cursor.skip_line()
-    action = cursor.source.text[begin : cursor.ends[cursor.index - 1]]
+    action = cursor.source.text[begin : cursor.end]
     span = cursor.span_from(start)
     cursor.accept(NEWLINE)
     return Trigger(span, path, on_start, place, delay, action)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ....core.errors import InputError, SourceError
 from ....core.program.event import Event, EventAnchor
 from ....core.program.move import Wait
-from .instructions import KEYWORDS, Kept
+from .instructions import KEYWORDS, Kept, refused
 from .scope import Scope
 from .syntax import Halt, Keyword, SplineBlock, Trigger, WaitFor, WaitSec
 from .terms import Expression
@@ -92,6 +92,9 @@ class Waits:
         return float(value)
 
     def keyword(self, statement: Keyword, scope: Scope) -> None:
+        reason = refused(statement.word)
+        if reason is not None:
+            raise SourceError(f"{statement.word.upper()} is refused: {reason}", statement.span)
         why = KEYWORDS[statement.word]
         if why is not None:
             word = "INTERRUPT" if statement.word == "global" else statement.word.upper()

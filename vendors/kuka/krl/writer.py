@@ -11,12 +11,14 @@ from ....core.program.move import Move, MoveJ, Opaque, Wait
 from ....core.program.program import Program
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.model import Robot
+from ....core.source.names import Names
+from ....core.source.options import OpaqueStyle
 from ..configuration import KukaConfiguration, label
 from .aggregates import ARM_AXES
 from .datalist import DataList, Datum
-from .naming import Names
+from .naming import NAME_RULES
 from .numbers import number
-from .options import KrlOptions, OpaqueStyle
+from .options import KrlOptions
 from .pacing import check_external
 from .phrases import Line, Phrases, stated_positions, trigger
 
@@ -73,7 +75,7 @@ def write(program: Program, robot: Robot, options: Mapping[str, str]) -> dict[st
     Args:
         program: what to say.
         robot: whose external axes and configurations they are.
-        options: ``zones`` (``own``) and ``opaque`` (``keep``, ``comment``); see `KrlOptions`.
+        options: ``opaque`` (``keep``, ``comment``); see `KrlOptions`.
 
     Raises:
         InputError: an option is unknown, or the robot is no six-axis arm.
@@ -92,7 +94,7 @@ def compose(
     data = DataList()
     phrases = Phrases(robot, data, stated_positions(program, robot))
     lines = _Body(program, phrases, options).lines()
-    names = data.names(Names([module]))
+    names = data.names(Names(NAME_RULES, [module]))
     body = ["".join(names[p] if isinstance(p, Datum) else p for p in line) for line in lines]
     whole = [*around.header, *INI, "", *around.before, *body, *around.after]
     return {
@@ -103,7 +105,7 @@ def compose(
 
 def module_name(program: Program) -> str:
     """The program's name, or one near to it that KRL takes."""
-    return Names().claim(program.name, "PROG")
+    return Names(NAME_RULES).claim(program.name, "PROG")
 
 
 def source_text(routine: str, body: Sequence[str]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .formatting import Names
+from ....core.source.names import Names
 
 
 @dataclass(frozen=True, slots=True)

@@ -140,7 +140,7 @@ def _number(cursor: Cursor) -> Number:
     value = number_value(text)
     cursor.advance()
     if math.isinf(value):
-        raise cursor.texts.error(f"the number {text[:40]} is too large", start, cursor.end)
+        raise cursor.source.error(f"the number {text[:40]} is too large", start, cursor.end)
     return Number(start, cursor.end, value)
 
 
@@ -176,7 +176,7 @@ def _numbers(cursor: Cursor, *, pose: bool) -> Numbers:
     places = tuple([(start + a, start + b) for a, b in found])
     cursor.advance()
     if not all(map(math.isfinite, values)):
-        raise cursor.texts.error("a number in this list is too large", start, cursor.end)
+        raise cursor.source.error("a number in this list is too large", start, cursor.end)
     return Numbers(start, cursor.end, values, places, pose)
 
 

@@ -158,7 +158,7 @@ class Interpreter:
                 reads.by_move(source, self.move_index)
         self._statements.append(move)
         self._parts.append(parts)
-        self.position.moved(move)
+        self.position.moved(move, parts.statement)
 
     def finish(self, message: str, span: Span) -> None:
         """End the program here, with a note.

@@ -14,6 +14,7 @@ import re
 from dataclasses import dataclass
 
 from ....core.errors import SourceError
+from ....core.source import cursor
 from .texts import Texts
 
 
@@ -28,8 +29,8 @@ KEYWORDS = words(
 )
 """Reserved words. Upper and lower case differ."""
 
-END, LINE = "end of file", "end of line"
-NAME, NUMBER, NUMBERS, POSE, STRING = "name", "number", "numbers", "pose", "string"
+END, LINE, NAME = cursor.END, cursor.END_OF_LINE, cursor.NAME
+NUMBER, NUMBERS, POSE, STRING = "number", "numbers", "pose", "string"
 
 _DIGITS = r"(?: [0-9]++ (?: \.[0-9]*+ )?+ | \.[0-9]++ ) (?: [eE][+-]?[0-9]++ )?+"
 _SIGNED = rf"(?: [-+] [^\S\r\n]*+ )?+ {_DIGITS}"

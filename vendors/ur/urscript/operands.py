@@ -110,12 +110,10 @@ def blend(zone: Zone) -> str:
         )
     if zone.tcp == 0:
         raise InputError("a blend radius of 0 is a stop point in URScript: make the zone fine")
-    for what in ("reorientation", "external"):
-        if getattr(zone, what) > zone.tcp:
-            raise InputError(
-                f"Radius.{what} is {getattr(zone, what):g} m and the TCP's {zone.tcp:g} m: "
-                "URScript has one radius for all: make them equal, or 0"
-            )
+    try:
+        zone.with_one_distance()
+    except InputError as error:
+        raise InputError(f"URScript has one radius for all: {error}") from None
     for what in ("angle", "external_linear", "external_angular"):
         if getattr(zone, what) > 0:
             raise InputError(f"URScript's blend has no Radius.{what}: set it to 0")

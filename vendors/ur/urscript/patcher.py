@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping
-from dataclasses import replace
 
 from ....core.errors import FlybyError, Span
-from ....core.program.move import Move
 from ....core.program.program import Program
-from ....core.program.zone import Radius
 from ....core.robot.model import Robot
 from ....core.source.options import PatchOptions, Sharing
-from ....core.source.patching import Edit, changed_moves, patched, reading_of
+from ....core.source.patching import Edit, changed_moves, patched, reading_of, with_one_distance
 from ....core.source.reading import Files, Reading
 from .changes import Argument, arguments
 from .move_calls import MoveCall, MoveCalls
@@ -36,7 +33,7 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
     """
     chosen = PatchOptions.of(options, "URScript patcher")
     reading = reading_of(program)
-    program = program.with_moves(tuple(map(_with_one_radius, program.moves)))
+    program = with_one_distance(program)
     before = reading.again({})
     if not changed_moves(before, program):
         return {}
@@ -49,14 +46,6 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         if not again:
             raise
         return patched(program, reading, asked.edits(chosen, inline_shared=again))
-
-
-def _with_one_radius(move: Move) -> Move:
-    """The move with its zone as a script's blend is read: one radius for all."""
-    zone = move.zone
-    if not isinstance(zone, Radius) or max(zone.reorientation, zone.external) > zone.tcp:
-        return move
-    return replace(move, zone=replace(zone, reorientation=zone.tcp, external=zone.tcp))
 
 
 class Asked:

@@ -39,6 +39,7 @@ class Position:
         if robot is not None and robot.base != IDENTITY:
             self.base = WorkObject("base", user=robot.base)
         self._moves: list[Move] = []
+        self._statements: list[Span] = []
         self._fed = 0
         self._follower: Standing | None = None
         self.asked = 0
@@ -57,9 +58,10 @@ class Position:
         """Whether a value is where the robot stands now, though nobody knows where that is."""
         return isinstance(value, AtStart) and not self._moves
 
-    def moved(self, move: Move) -> None:
+    def moved(self, move: Move, statement: Span) -> None:
         """The robot has driven to the target of a move."""
         self._moves.append(move)
+        self._statements.append(statement)
 
     def joints(self, what: str, span: Span) -> Joints | Unknown:
         """The joint values, rad.
@@ -130,8 +132,8 @@ class Position:
 
             assert self._robot is not None
             self._follower = Standing(self._robot, label)
-        for move in self._moves[self._fed :]:
-            self._follower.moved(move)
+        for k in range(self._fed, len(self._moves)):
+            self._follower.moved(self._moves[k], self._statements[k])
         self._fed = len(self._moves)
         return self._follower
 

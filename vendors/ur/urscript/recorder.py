@@ -7,9 +7,10 @@ import math
 from ....core.errors import InputError
 from ....core.program.program import Program
 from ....core.robot.model import Robot
+from ....core.source.options import OpaqueStyle
 from ....core.vendor import Sources
 from .formatting import number
-from .options import OpaqueStyle, ScriptOptions
+from .options import ScriptOptions
 from .writer import SUFFIX, Script, body, indented
 
 CYCLE = 0.002

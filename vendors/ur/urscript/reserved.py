@@ -1,4 +1,4 @@
-"""Words that are no names for data of a program's own.
+"""What URScript takes for a name of a program's own data, and the words that are none.
 
 "The URScript Programming Language", chapters "Identifiers", "Flow of Control" and "Threads"; the
 functions are those of the modules motion, internals, urmath and interfaces.
@@ -6,6 +6,9 @@ functions are those of the modules motion, internals, urmath and interfaces.
 
 from __future__ import annotations
 
+import re
+
+from ....core.source.names import NameRules
 from .lexer import KEYWORDS
 
 _FUNCTIONS = """
@@ -47,3 +50,5 @@ _FUNCTIONS = """
 _OTHERS = "mod struct p pi"
 
 RESERVED = KEYWORDS | frozenset((_FUNCTIONS + _OTHERS).split())
+NAME_RULES = NameRules(RESERVED, fold=str, legal=re.compile(r"[A-Za-z_][A-Za-z0-9_]*"))
+"""Upper and lower case differ."""

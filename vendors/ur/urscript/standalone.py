@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from ....core.errors import SourceError
 from ....core.program.move import Opaque
 from ....core.program.program import Program
+from ....core.source.options import AS_COMMENTS
 from ....core.source.reading import Files, Reading
 from ....core.source.text import SourceFile
 from .lexer import NAME, Tokens, tokenize
@@ -50,8 +51,8 @@ def _check(statement: Opaque, missing: set[str]) -> set[str]:
         elif name in missing - own:
             raise SourceError(
                 f"this statement is kept as it stands, and names {name!r}, which the new script "
-                "does not have: patch the script that was read, or make such statements comments "
-                "with the option opaque=comment",
+                "does not have: patch the script that was read, or make kept statements comments "
+                f"({AS_COMMENTS})",
                 statement.span,
             )
     return own

@@ -45,7 +45,7 @@ def parse(texts: Texts, which: int) -> Block:
     cursor.skip_lines()
     while cursor.kind != END:
         if cursor.kind in _BRANCH:
-            raise cursor.texts.error(
+            raise cursor.source.error(
                 f"this '{cursor.kind}' closes nothing: there is one too many, or a 'def', 'if' or "
                 "'while' above it is missing",
                 cursor.start,
@@ -82,7 +82,7 @@ def _simple(cursor: Cursor) -> Statement:
     if cursor.kind == "=":
         return _assignment(cursor, start, expression, "")
     if cursor.kind == ":" and isinstance(expression, Name):
-        raise cursor.texts.error(
+        raise cursor.source.error(
             f"'{expression.text}' is no statement of URScript", expression.start, expression.end
         )
     return Evaluate(start, cursor.end, expression)
@@ -90,7 +90,7 @@ def _simple(cursor: Cursor) -> Statement:
 
 def _assignment(cursor: Cursor, start: int, target: Expression, storage: str) -> Assign:
     if not isinstance(target, Name | Index | Member):
-        raise cursor.texts.error(
+        raise cursor.source.error(
             "only a variable, an element of a list or a part of a struct can be assigned",
             target.start,
             target.end,
@@ -183,7 +183,7 @@ def _word(cursor: Cursor) -> Statement:
     start, word = cursor.start, cursor.kind
     cursor.advance()
     if word in ("break", "continue") and not cursor.loops:
-        raise cursor.texts.error(f"'{word}' stands outside of a loop", start, cursor.end)
+        raise cursor.source.error(f"'{word}' stands outside of a loop", start, cursor.end)
     if word == "halt" and cursor.accept("("):
         cursor.expect(")", "after 'halt('")
     return Keyword(start, cursor.end, word)

@@ -8,11 +8,14 @@ from ....core.errors import InputError, MotionError
 from ....core.program.move import Move, Opaque, Wait
 from ....core.program.program import Program
 from ....core.robot.model import Robot
+from ....core.source.names import Names
+from ....core.source.options import AS_COMMENTS, OpaqueStyle
 from ....core.vendor import Sources
 from .declarations import Line
-from .formatting import Names, comment, number
-from .options import OpaqueStyle, ScriptOptions
+from .formatting import comment, number
+from .options import ScriptOptions
 from .phrases import Phrases, Settings
+from .reserved import NAME_RULES
 from .standalone import check_kept
 
 SUFFIX = ".script"
@@ -76,7 +79,7 @@ def body(program: Program, robot: Robot, options: ScriptOptions, *taken: str) ->
     """
     phrases = Phrases(robot, program, options.shares)
     lines = _lines(program, phrases, options.opaque)
-    names = Names(*taken)
+    names = Names(NAME_RULES, taken)
     name = names.claim(program.name, "program")
     given = phrases.declarations.names(names)
     if options.opaque is OpaqueStyle.KEEP:
@@ -123,7 +126,7 @@ def _events(move: Move, style: OpaqueStyle) -> list[str]:
     if move.events and style is OpaqueStyle.KEEP:
         raise InputError(
             f"URScript has no actions along a move ({move.events[0].text!r}): take them away, or "
-            "make them comments with the option opaque=comment"
+            f"make them comments ({AS_COMMENTS})"
         )
     return [line for event in move.events for line in comment(f"on the way: {event.text}")]
 

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
 from enum import StrEnum
 
-from ....core.errors import MotionError, Span
-from ....core.program.move import Move
-from ....core.program.origin import MoveOrigin, Origin
-from ....core.program.program import Program
-from ....core.program.speed import Speed
-from ....core.program.target import Target
-from ....core.program.zone import Zone
-from ....core.source.patching import alike, changed_moves
+from ..errors import MotionError, Span
+from ..program.move import Move
+from ..program.origin import Origin
+from ..program.program import Program
+from ..program.speed import Speed
+from ..program.target import Target
+from ..program.zone import Zone
+from .patching import alike, changed_moves
 
-Part = Target | Speed | Zone
+MovePart = Target | Speed | Zone
+
+OtherChange = Callable[[Move, Move], str | None]
+"""What of an old and a new move of one kind differs that the literals of their parts do not say."""
 
 
 class Kind(StrEnum):
@@ -45,8 +48,8 @@ class Use:
     kind: Kind
     statement: Span
     origin: Origin
-    old: Part
-    new: Part
+    old: MovePart
+    new: MovePart
     move: Move
 
     @property
@@ -59,14 +62,27 @@ class Use:
         return MotionError(f"{self.kind}: {message}", self.index, self.origin.span)
 
 
-def uses(before: Program, after: Program) -> list[Use]:
+def uses(before: Program, after: Program, other_change: OtherChange) -> list[Use]:
     """All parts of all moves.
 
+    Args:
+        before: as its reader made it.
+        after: the same, changed.
+        other_change: what the language cannot change at the move, beside what none can.
+
     Raises:
-        FlybyError: something else than targets, speeds and zones has changed.
+        InputError: statements were added, removed or put in another order.
+        MotionError: something else than targets, speeds and zones has changed.
     """
     for index, old, new in changed_moves(before, after):
-        _check_rest(index, old, new)
+        what = _rest(old, new) or other_change(old, new)
+        if what is not None:
+            raise MotionError(
+                f"its {what} has changed, but a patch changes targets, speeds and zones only: "
+                "write the program as new files",
+                index,
+                None if old.origin is None else old.origin.statement,
+            )
     pairs = zip(before.moves, after.moves, strict=True)
     return [use for i, (old, new) in enumerate(pairs) for use in _uses_of(i, old, new)]
 
@@ -81,22 +97,11 @@ def _uses_of(index: int, old: Move, new: Move) -> Iterator[Use]:
             yield Use(index, kind, origin.statement, at, *parts, new)
 
 
-def _check_rest(index: int, old: Move, new: Move) -> None:
-    if type(old) is not type(new):
-        raise _elsewhere(index, old.origin, f"{type(old).__name__} → {type(new).__name__}")
+def _rest(old: Move, new: Move) -> str | None:
+    """What differs beside the parts that have a place in the text."""
     for field in fields(old):
         if field.name in {"origin", *Kind}:
             continue
         if not alike(getattr(old, field.name), getattr(new, field.name)):
-            raise _elsewhere(index, old.origin, field.name.replace("_", " "))
-    if type(old.target) is not type(new.target):
-        raise _elsewhere(index, old.origin, "kind of target")
-
-
-def _elsewhere(index: int, origin: MoveOrigin | None, what: str) -> MotionError:
-    return MotionError(
-        f"its {what} has changed, but a patch changes targets, speeds and zones only: write the "
-        "program as new files",
-        index,
-        None if origin is None else origin.statement,
-    )
+            return field.name.replace("_", " ")
+    return None
