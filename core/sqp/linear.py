@@ -12,7 +12,7 @@ BoolArray = NDArray[np.bool_]
 
 _REGULARISATION = 1e-9
 _REFINEMENTS = 4
-_EXACT = 1e-12
+_EXACT = 1e-13
 
 
 class Definiteness:
