@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from itertools import pairwise
 
-from ..errors import InputError, Note, Span
+from ..errors import InputError, Span
 from ..program.move import Move
 from ..program.program import Program
 from ..program.zone import Radius
@@ -176,11 +176,6 @@ def listed(moves: Sequence[int]) -> str:
     numbers = ", ".join(str(move + 1) for move in moves[:_SHOWN])
     more = f" and {len(moves) - _SHOWN} others" if len(moves) > _SHOWN else ""
     return f"move{'s' if len(moves) > 1 else ''} {numbers}{more}"
-
-
-def with_note(program: Program, message: str, span: Span | None = None) -> Program:
-    """The program with one more note."""
-    return replace(program, notes=(*program.notes, Note(message, span=span)))
 
 
 def _differing_part(one: Move, other: Move, tolerance: float) -> str | None:

@@ -55,7 +55,7 @@ class ConvexModel:
         q: (n,) its gradient.
         weights: (m,) ρ of the rows.
         active: the guess that they rest on.
-        curved: whether H itself is positive definite.
+        curved: whether H itself is semidefinite, and has an entry in every row.
     """
 
     P: SparseMatrix
@@ -113,11 +113,9 @@ class Convexifier:
         sizes = _sizes(H)
         slack = _SLACK * np.where(sizes > 0, sizes, scale)
         P = self._plain.of(H, None, 0.0)
-        none = np.zeros(len(active.rows))
-        if scale > 0.0 and self._plain.definite(P):
-            return ConvexModel(P, q, none, active, True)
         if scale == 0.0 or self._plain.definite(self._plain.raised(P, slack)):
-            return ConvexModel(P, q, none, active, False)
+            curved = bool((sizes > 0.0).all())
+            return ConvexModel(P, q, np.zeros(len(active.rows)), active, curved)
         for level in range(self._level, len(_WEIGHTS)):
             weights = _row_weights(J, active, _WEIGHTS[level] * scale)
             P = self._of_active(H, J, weights, active, _WEIGHTS[level] * scale, slack)

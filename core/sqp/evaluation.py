@@ -50,6 +50,7 @@ class Evaluation:
         jacobian, hessian: the patterns of its matrices.
 
     Attributes:
+        hessian_pattern: as given.
         objective_factor: scaled objective / objective.
         constraint_factors: (m,) likewise.
         counts: calls of each callable.
@@ -63,7 +64,7 @@ class Evaluation:
         self.counts: dict[str, int] = {}
         self.seconds = 0.0
         self._jacobian = jacobian
-        self.hessian = hessian
+        self.hessian_pattern = hessian
         self._residuals: tuple[bytes, FloatArray] | None = None
         self._residual_jacobian: tuple[bytes, sparse.csc_array] | None = None
         self._plain = True
@@ -119,7 +120,7 @@ class Evaluation:
         assert hessian is not None
         factors = multipliers * self.constraint_factors
         value = self._call("hessian", lambda: hessian(x, self.objective_factor, factors))
-        found = self.hessian.array(value)
+        found = self.hessian_pattern.array(value)
         _check_finite("hessian", found.data, x)
         return found
 
@@ -176,7 +177,7 @@ class Evaluation:
             if value.ndim != 1:
                 raise NlpError(f"residuals gave shape {value.shape}, expected one dimension")
             _check_finite("residuals", value, x)
-            self._residuals = key, value
+            self._residuals = key, value.copy()
         return self._residuals[1]
 
     def _residual_jacobian_at(self, x: FloatArray) -> sparse.csc_array:
@@ -185,7 +186,7 @@ class Evaluation:
         key = x.tobytes()
         if self._residual_jacobian is None or self._residual_jacobian[0] != key:
             value = sparse.csc_array(
-                self._call("residual_jacobian", lambda: jacobian(x)), dtype=np.float64
+                self._call("residual_jacobian", lambda: jacobian(x)), dtype=np.float64, copy=True
             )
             expected = (len(self._residuals_at(x)), self.nlp.n)
             if value.shape != expected:

@@ -104,7 +104,7 @@ class _GaussNewton:
         self._evaluation = evaluation
 
     def matrix(self, point: Point, multipliers: FloatArray) -> SparseMatrix:
-        return self._evaluation.hessian.array(self._evaluation.residual_hessian(point.x))
+        return self._evaluation.hessian_pattern.array(self._evaluation.residual_hessian(point.x))
 
     def moved(self, old: Point, new: Point, multipliers: FloatArray) -> None:
         pass
@@ -119,7 +119,7 @@ class _Bfgs:
         self._fresh = True
 
     def matrix(self, point: Point, multipliers: FloatArray) -> SparseMatrix:
-        return self._evaluation.hessian.array(self._B)
+        return self._evaluation.hessian_pattern.array(self._B)
 
     def moved(self, old: Point, new: Point, multipliers: FloatArray) -> None:
         s = new.x - old.x
@@ -160,7 +160,9 @@ class _Differences:
         if self._pattern is None:
             self._pattern = self._find_pattern(point)
             self._groups = colour(self._pattern)
-            self._evaluation.hessian.array(self._pattern)  # where no entry happens to be zero
+            self._evaluation.hessian_pattern.array(
+                self._pattern
+            )  # where no entry happens to be zero
         base = self._slope(point, multipliers)
         pattern = self._pattern
         data = np.zeros(pattern.nnz)
@@ -177,7 +179,7 @@ class _Differences:
             mine = inverse[columns] != 0
             data[mine] = change[pattern.indices[mine]] * inverse[columns[mine]]
         H = sparse.csc_array((data, pattern.indices, pattern.indptr), shape=pattern.shape)
-        return self._evaluation.hessian.array((H + H.T) * 0.5)
+        return self._evaluation.hessian_pattern.array((H + H.T) * 0.5)
 
     def moved(self, old: Point, new: Point, multipliers: FloatArray) -> None:
         pass

@@ -47,7 +47,7 @@ class Model:
         tolerance: violation that counts as none.
 
     Attributes:
-        radius: largest change of a variable; infinite while steps succeed.
+        radius: largest change of a variable in its own size; infinite while steps succeed.
         shift: what the last Hessian's diagonal was raised by.
     """
 

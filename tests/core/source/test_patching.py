@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flyby.core.errors import InputError, SourceError, Span
+from flyby.core.errors import InputError, SourceError
 from flyby.core.program.move import MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.origin import MoveOrigin, Origin, Ownership
 from flyby.core.program.program import Program
@@ -26,7 +26,6 @@ from flyby.core.source.patching import (
     listed,
     patched,
     reading_of,
-    with_note,
 )
 from flyby.core.source.reading import Files, ReadOptions, read_with
 from flyby.core.source.text import SourceFile, SourceText
@@ -242,12 +241,6 @@ def test_kinds_are_not_alike() -> None:
     assert not alike(None, 0.0) and not alike("1", 1.0) and not alike(Radius(0.0), FINE)
     assert not alike(Pose(), Pose((0, 0, 1e-6)))
     assert not alike(Pose(), Pose(quaternion=(0.0, 1.0, 0.0, 0.0)))
-
-
-def test_a_note_is_added() -> None:
-    place = Span("a", 1, 1, 0, 1)
-    program = with_note(with_note(Program(()), "first"), "second", place)
-    assert [str(note) for note in program.notes] == ["first", "a:1:1: second"]
 
 
 def test_moves_are_listed_by_number() -> None:

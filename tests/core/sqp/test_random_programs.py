@@ -100,7 +100,7 @@ def test_convex_programs_end_where_cvxpy_does(
     nlp = program.nlp(as_sparse)
     result = solved(nlp, np.zeros(nlp.n), qp=backend)
     assert result.status is Status.OPTIMAL
-    assert result.iterations <= 8  # of one that is convex, but flat somewhere, steps are damped
+    assert result.iterations <= 5
     assert result.objective == pytest.approx(program.optimum(), rel=1e-5, abs=1e-5)
 
 

@@ -22,9 +22,7 @@ from .lexer import number_value
 from .literals import MM, UNUSED_AXIS, metres
 from .options import EXTERNAL_AXES
 
-SPEED_LEAVES = 4
 ZONE_LEAVES = 6
-POSE_LEAVES = 17
 JOINT_LEAVES = 12
 
 

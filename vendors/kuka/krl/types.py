@@ -9,10 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from .lexer import words
 from .values import Array, Choice, Real, Struct, Unknown, Value, Whole, leaf_of, shown
 
-SCALARS = words("int real bool char")
 FRAME_FIELDS = ("x", "y", "z", "a", "b", "c")
 AXIS_FIELDS = ("a1", "a2", "a3", "a4", "a5", "a6")
 EXTERNAL_FIELDS = ("e1", "e2", "e3", "e4", "e5", "e6")
