@@ -18,8 +18,9 @@ from ..robot.joint import JointKind
 from ..robot.model import Robot
 from ..spatial.rotation import quaternion_from_matrix
 from ..vendor import Vendor
+from .arc_length import ArcLength
 from .energy import Energy, energy
-from .limits import PathLimits, SegmentLimits, path_limits
+from .limits import SegmentLimits, path_limits
 from .model import MotionModel
 from .path import Path, build_path
 from .pieces import Sampling
@@ -153,7 +154,8 @@ class Controller:
         timed = [k for k, move in enumerate(moves) if move.speed.duration is not None]
         window = self._window(program, path)
         try:
-            timing = _timing(path, limits, window)
+            along = ArcLength.of(path, self.robot.limits.acceleration)
+            timing = _timing(path, along, limits, window)
             if not timed:
                 return timing
             wanted = np.array([moves[k].speed.duration for k in timed], dtype=float)
@@ -341,8 +343,8 @@ def _carried(move: Move) -> Inertia | None:
     return total
 
 
-def _timing(path: Path, limits: SegmentLimits, settling: float) -> Timing:
-    made: PathLimits = path_limits(path.states, path.pieces, path.sigma, limits)
+def _timing(path: Path, along: ArcLength, limits: SegmentLimits, settling: float) -> Timing:
+    made = path_limits(along.states, along.spacing, path.pieces, limits)
     try:
         found = stamp(made.rows)
     except StampingError as error:
@@ -350,7 +352,7 @@ def _timing(path: Path, limits: SegmentLimits, settling: float) -> Timing:
         piece = int(np.searchsorted(path.pieces.first_interval, knot, "right")) - 1
         move = path.route.moves[int(path.pieces.segment[piece])]
         raise MotionError(f"the limits leave it no speed: {error.message}", move) from error
-    return Timing.of(path, limits, made, found, settling)
+    return Timing.of(path, limits, along, made, found, settling)
 
 
 def _hold_durations(
@@ -362,7 +364,7 @@ def _hold_durations(
     """
     factor = np.ones(len(timed))
     limits = _finite(timing, timed)
-    current = _timing(timing.path, limits, settling)
+    current = _timing(timing.path, timing.along, limits, settling)
     for _ in range(_DURATION_ROUNDS):
         spent = current.segment_durations()[timed]
         slow = spent < wanted * (1 - _DURATION_MET)
@@ -373,23 +375,23 @@ def _hold_durations(
         scaled = limits
         for segment, share in zip(timed, factor, strict=True):
             scaled = scaled.with_velocities_scaled([segment], float(share))
-        current = _timing(timing.path, scaled, settling)
+        current = _timing(timing.path, timing.along, scaled, settling)
     return current
 
 
 def _finite(timing: Timing, timed: list[int]) -> SegmentLimits:
     """Limits in which each timed segment may go just as fast as it does without its time."""
     velocity = timing.limits.velocity.copy()
-    path, stamped = timing.path, timing.stamp
+    path, stamped, states = timing.path, timing.stamp, timing.along.states
     rate = np.sqrt(np.maximum(stamped.x[:-1], stamped.x[1:]))
     top = np.zeros(len(path.route.moves))
     np.maximum.at(top, timing.interval_segments, rate)
     sample_segment = path.pieces.segment[path.pieces.sample_pieces]
     speeds = np.concatenate(
         [
-            np.abs(path.states.dq),
-            np.linalg.norm(path.states.v[:, :3], axis=1)[:, None],
-            np.linalg.norm(path.states.v[:, 3:], axis=1)[:, None],
+            np.abs(states.dq),
+            np.linalg.norm(states.v[:, :3], axis=1)[:, None],
+            np.linalg.norm(states.v[:, 3:], axis=1)[:, None],
         ],
         axis=1,
     )

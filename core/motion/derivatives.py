@@ -79,10 +79,9 @@ class ProgramGradient:
 
 @dataclass
 class _Seeds:
-    """Gradient of the wanted number with respect to the stamped path's samples."""
+    """Gradient of the wanted number with respect to the samples along ℓ and their stamp."""
 
     states: States
-    sigma: FloatArray
     x: FloatArray
     t: FloatArray
     spacing: FloatArray = field(repr=False)
@@ -149,7 +148,6 @@ class Derivatives:
         size = self._path.q.shape[1]
         return _Seeds(
             States.zeros(len(self._path.sigma), size),
-            np.zeros(len(self._path.sigma)),
             np.zeros(len(stamp.x)),
             np.zeros(len(stamp.t)),
             np.zeros(len(stamp.limits.spacing)),
@@ -160,7 +158,7 @@ class Derivatives:
         timing, path = self._timing, self._path
         k = max(int(np.searchsorted(timing.begin, t, side="right")) - 1, 0)
         s = int(interval_samples(path.pieces)[k])
-        length = float(path.sigma[s + 1] - path.sigma[s])
+        length = float(timing.along.spacing[k])
         x0, x1 = timing.stamp.x[k], timing.stamp.x[k + 1]
         tau = float(np.clip(t - timing.begin[k], 0.0, timing.end[k] - timing.begin[k]))
         u, rate = (x1 - x0) / (2 * length), np.sqrt(x0)
@@ -168,7 +166,7 @@ class Derivatives:
         basis, slope = _quintic(z)
         factors = np.array([1.0, length, length**2, 1.0, length, length**2])
         powers = np.array([0, 1, 2, 0, 1, 2])
-        states = path.states
+        states = timing.along.states
         values = [states.q[s], states.dq[s], states.ddq[s]]
         values += [states.q[s + 1], states.dq[s + 1], states.ddq[s + 1]]
         bars = seeds.states
@@ -195,16 +193,17 @@ class Derivatives:
         bar = stamp_adjoint(timing.stamp, seeds.x, seeds.t)
         bar.spacing[:] += seeds.spacing
         pull_path_limits(
-            path.states,
+            timing.along.states,
             path.pieces,
             timing.limits,
             timing.path_limits,
             bar,
             seeds.states,
-            seeds.sigma,
             speeds,
         )
-        return self._gather(pull_path(path, seeds.states, seeds.sigma), speeds)
+        sigma_bar = np.zeros(len(path.sigma))
+        states_bar = timing.along.pull(path, seeds.states, bar.spacing, sigma_bar)
+        return self._gather(pull_path(path, states_bar, sigma_bar), speeds)
 
     def _gather(self, route_bar: RouteGradient, speeds: SpeedGradient) -> ProgramGradient:
         """From segments and waypoints to the moves of the program."""

@@ -76,7 +76,7 @@ def _by_load(
 
 
 def _motion(timing: Timing) -> tuple[FloatArray, FloatArray, FloatArray]:
-    states = timing.path.states
+    states = timing.along.states
     left = interval_samples(timing.path.pieces)
     ends = np.stack([left, left + 1], -1)
     x = np.stack([timing.stamp.x[:-1], timing.stamp.x[1:]], -1)[..., None]
@@ -88,10 +88,10 @@ def _motion(timing: Timing) -> tuple[FloatArray, FloatArray, FloatArray]:
 def pull_energy(
     robot: Robot, timing: Timing, made: Energy, states_bar: States
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Gradient of the energy: adds to the states', returns those of x (K + 1,), t (K + 1,) and
-    the intervals' spacing (K,)."""
-    path, stamp = timing.path, timing.stamp
-    left = interval_samples(path.pieces)
+    """Gradient of the energy: adds to that of ``timing.along.states``, returns those of x (K + 1,),
+    t (K + 1,) and the intervals' spacing (K,)."""
+    states, stamp = timing.along.states, timing.stamp
+    left = interval_samples(timing.path.pieces)
     ends = np.stack([left, left + 1], -1)
     steps = timing.end - timing.begin
     torque_bar = steps[:, None, None] * made.torque
@@ -105,7 +105,7 @@ def pull_energy(
     x = np.stack([stamp.x[:-1], stamp.x[1:]], -1)[..., None]
     u = stamp.u[:, None, None]
     root = np.sqrt(x)
-    rates, bends = path.states.dq[ends], path.states.ddq[ends]
+    rates, bends = states.dq[ends], states.ddq[ends]
     np.add.at(states_bar.q, ends, q_bar)
     np.add.at(states_bar.dq, ends, root * rate_bar + u * rise_bar)
     np.add.at(states_bar.ddq, ends, x * rise_bar)

@@ -227,14 +227,14 @@ class PathLimits:
 
 
 def path_limits(
-    states: States, pieces: Pieces, sigma: FloatArray, limits: SegmentLimits
+    states: States, spacing: FloatArray, pieces: Pieces, limits: SegmentLimits
 ) -> PathLimits:
     """Rows and ceilings for stamping a path.
 
     Args:
-        states: (S,) samples.
+        states: (S,) samples, with respect to the parameter that is stamped.
+        spacing: (K,), of the intervals in that parameter.
         pieces: the path's pieces.
-        sigma: (S,).
         limits: of the segments.
     """
     first_sample, first_interval = pieces.first_sample, pieces.first_interval
@@ -258,8 +258,6 @@ def path_limits(
     stops = first_interval[pieces.stop]
     ceiling[stops] = 0.0
     binding[stops] = -1
-    left = interval_samples(pieces)
-    spacing = sigma[left + 1] - sigma[left]
     return PathLimits(stamping.Limits(spacing, a, b, -bound, bound, ceiling), binding)
 
 
@@ -346,10 +344,9 @@ def pull_path_limits(
     made: PathLimits,
     bar: stamping_adjoint.StampGradient,
     states_bar: States,
-    sigma_bar: FloatArray,
     speeds_bar: SpeedGradient,
 ) -> None:
-    """Reverse of `path_limits`; adds to the gradients of states, σ and speeds."""
+    """Reverse of `path_limits`; adds to the gradients of states and speeds."""
     velocity_bar = np.zeros_like(limits.velocity)
     acceleration_bar = np.zeros_like(limits.acceleration)
     _pull_fill(
@@ -368,7 +365,4 @@ def pull_path_limits(
         velocity_bar,
         acceleration_bar,
     )
-    left = interval_samples(pieces)
-    np.add.at(sigma_bar, left, -bar.spacing)
-    np.add.at(sigma_bar, left + 1, bar.spacing)
     limits.pull(velocity_bar, acceleration_bar, speeds_bar)

@@ -23,7 +23,7 @@ from .joint_curves import (
     pull_joint_legs,
 )
 from .joint_samples import pull_joint, sample_joint
-from .layout import Layout, LayoutGradient, pull_layout
+from .layout import Layout, LayoutGradient, flat_corners, pull_layout
 from .model import MotionModel
 from .pieces import Pieces, Sampling, cut
 from .segments import (
@@ -157,7 +157,8 @@ def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
         for array, part in ((edges.q, states.q), (edges.dq, states.dq), (edges.ddq, states.ddq)):
             array[run.corner, run.side] = part[-1]
     joint = make_joint_curves(layout, model, edges)
-    pieces = cut(layout, tcp.curves, joint, route.paces, sampling)
+    flat = flat_corners(layout, model)
+    pieces = cut(layout, tcp.curves, joint, route.paces, flat, sampling)
     sigma = pieces.sigma()
     states = States.zeros(len(sigma), route.ends.q.shape[2])
     conditioning = np.ones(len(sigma))

@@ -25,6 +25,8 @@ _EVEN = 1.5
 """Doublings of the rate of s(σ) along a piece below which even steps will do."""
 _MOST_LEAN = 40
 _SHARPEST = 10.0
+_FLAT = 3.0
+"""How much denser to sample zones whose law is flat at its ends, as `_sharpness`."""
 
 
 @dataclass(frozen=True)
@@ -144,6 +146,7 @@ def cut(
     tcp: TcpCurves,
     joint: Curves,
     paces: NDArray[np.bool_],
+    flat: NDArray[np.bool_],
     sampling: Sampling,
 ) -> Pieces:
     """The pieces of a path.
@@ -152,6 +155,7 @@ def cut(
         layout: the path's geometry on σ.
         tcp, joint: its curves.
         paces: (M + 1,), waypoints at which the programmed speed changes.
+        flat: (M − 1,), corners whose law is flat at its ends.
         sampling: how densely to sample.
     """
     edge, source = _boundaries(layout)
@@ -163,7 +167,9 @@ def cut(
     joint_corner = inside[:, POSITION] & (kind == JOINT_CORNER)
     joint_space = (layout.segments.ends.kind[segment] == JOINT_SEGMENT) | joint_corner
     lean = _lean(edge, curve, joint_space, tcp, joint)
-    blend = np.where(inside.any(axis=1), sampling.blend * _sharpness(curve, joint_space, tcp), 0.0)
+    fine = np.where(np.append(flat, False)[corner] & inside[:, POSITION], _FLAT, 1.0)
+    fine = sampling.blend * np.maximum(fine, _sharpness(curve, joint_space, tcp))
+    blend = np.where(inside.any(axis=1), fine, 0.0)
     even = _intervals(layout, sampling, np.diff(edge), segment, blend) + 2 * np.abs(lean)
     at_waypoint = source[:, 1] == _WAYPOINT
     inner = np.clip(source[:, 0] - 1, 0, max(last - 1, 0))

@@ -21,9 +21,9 @@ def lengths_and_speeds(run: Run) -> tuple[FloatArray, FloatArray]:
     Lengths are the trapezoidal rule with its end correction: ∫f ≈ h (f₀ + f₁) / 2 + h² (f₀' −
     f₁') / 12.
     """
-    states, stamp, segment = run.path.states, run.timing.stamp, run.timing.interval_segments
+    states, stamp, segment = run.timing.along.states, run.timing.stamp, run.timing.interval_segments
     left = interval_samples(run.path.pieces)
-    spacing = run.path.sigma[left + 1] - run.path.sigma[left]
+    spacing = run.timing.along.spacing
     velocity, acceleration = states.v[:, :3], states.a[:, :3]
     rate = np.linalg.norm(velocity, axis=1)
     moving = np.where(rate > 0.0, rate, 1.0)

@@ -135,7 +135,7 @@ def approach(
     return best, conditioning
 
 
-class _Scratch(NamedTuple):
+class Scratch(NamedTuple):
     """Arrays that the kernels reuse from sample to sample."""
 
     basis: FloatArray
@@ -154,8 +154,9 @@ class _Scratch(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def _scratch(size: int, prescribed: int) -> _Scratch:
-    return _Scratch(
+def make_scratch(size: int, prescribed: int) -> Scratch:
+    """Scratch for N = ``size`` axes, some of them prescribed."""
+    return Scratch(
         np.empty((6, 4)),
         np.empty((3, 3)),
         np.empty((3, 6)),
@@ -173,7 +174,7 @@ def _scratch(size: int, prescribed: int) -> _Scratch:
 
 
 @njit(cache=True, error_model="numpy")
-def _state(
+def state_at(
     chain: Chain,
     solved: IntArray,
     prescribed: IntArray,
@@ -183,7 +184,7 @@ def _state(
     sigma: float,
     states: States,
     row: int,
-    work: _Scratch,
+    work: Scratch,
 ) -> tuple[float, float]:
     """Write the state at ``sigma`` on the curves of sample k into ``row``, whose q is a guess.
 
@@ -268,7 +269,7 @@ def sample_tcp(
         (-1, 0), or the index of the sample that cannot be reached and the pose error left there.
     """
     size = seed.size
-    work = _scratch(size, prescribed.size)
+    work = make_scratch(size, prescribed.size)
     # Row 0 is where the walk stands, row 1 its next step.
     walk = States(
         np.empty((2, size)),
@@ -282,7 +283,7 @@ def sample_tcp(
         goal = samples.sigma[k]
         if k == 0:
             states.q[0] = seed
-            error, pivots = _state(
+            error, pivots = state_at(
                 chain, solved, prescribed, curves, samples, k, goal, states, 0, work
             )
             conditioning[0] = pivots
@@ -297,7 +298,7 @@ def sample_tcp(
             aim = goal if last else at + step
             _predict(walk, 0, aim - at, guess)
             walk.q[1] = guess
-            error, pivots = _state(
+            error, pivots = state_at(
                 chain, solved, prescribed, curves, samples, k, aim, walk, 1, work
             )
             correction = 0.0

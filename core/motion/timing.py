@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from .arc_length import ArcLength
 from .limits import PathLimits, SegmentLimits, interval_samples
 from .path import Path
 from .stamping import Stamp
@@ -24,8 +25,9 @@ class Timing:
     Args:
         path: the geometry.
         limits: of the segments.
+        along: the samples with respect to ℓ, the parameter that was stamped.
         path_limits: what was stamped.
-        stamp: x = σ̇² and times without waits.
+        stamp: x = (dℓ/dt)² and times without waits.
         begin: (K,) s, when each interval is entered, waits included.
         end: (K,) s, when it is left.
         duration: s, of everything, settling at the end included.
@@ -33,6 +35,7 @@ class Timing:
 
     path: Path
     limits: SegmentLimits
+    along: ArcLength
     path_limits: PathLimits
     stamp: Stamp
     begin: FloatArray
@@ -44,6 +47,7 @@ class Timing:
         cls,
         path: Path,
         limits: SegmentLimits,
+        along: ArcLength,
         path_limits: PathLimits,
         stamp: Stamp,
         settling: float = 0.0,
@@ -51,7 +55,7 @@ class Timing:
         """The timing of a stamp on a path.
 
         Args:
-            path, limits, path_limits, stamp: what was stamped.
+            path, limits, along, path_limits, stamp: what was stamped.
             settling: s that the commanded joints take to arrive at a stop after the stamped ones.
         """
         pieces = path.pieces
@@ -64,7 +68,8 @@ class Timing:
         # A wait at a knot comes before the interval that leaves it.
         delay = np.cumsum(wait)
         begin, end = stamp.t[:-1] + delay[:-1], stamp.t[1:] + delay[:-1]
-        return cls(path, limits, path_limits, stamp, begin, end, float(stamp.t[-1] + delay[-1]))
+        duration = float(stamp.t[-1] + delay[-1])
+        return cls(path, limits, along, path_limits, stamp, begin, end, duration)
 
     @property
     def interval_segments(self) -> IntArray:
@@ -81,7 +86,7 @@ class Timing:
     def states_at(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Configuration, velocity and acceleration (T, N) and σ (T,) at times t (T,) in s.
 
-        Between samples the path is the quintic in σ that meets both samples' derivatives.
+        Between samples the path is the quintic in ℓ that meets both samples' derivatives.
         """
         size = self.path.q.shape[1]
         q, dq, ddq = (np.empty((len(t), size)) for _ in range(3))
@@ -94,8 +99,10 @@ class Timing:
             self.end,
             interval_samples(self.path.pieces),
             self.path.sigma,
+            self.along.rate,
+            self.along.spacing,
             self.stamp.x,
-            self.path.states,
+            self.along.states,
             q,
             dq,
             ddq,
@@ -112,6 +119,8 @@ def _drive(
     end: FloatArray,
     left: IntArray,
     sigma: FloatArray,
+    ratio: FloatArray,
+    spacing: FloatArray,
     x: FloatArray,
     states: States,
     q: FloatArray,
@@ -122,7 +131,7 @@ def _drive(
     for i in range(t.size):
         k = interval[i]
         s = left[k]
-        length = sigma[s + 1] - sigma[s]
+        length = spacing[k]
         u = (x[k + 1] - x[k]) / (2 * length)
         tau = min(max(t[i] - begin[k], 0.0), end[k] - begin[k])
         rate = np.sqrt(x[k]) + u * tau
@@ -134,7 +143,10 @@ def _drive(
             step = length - left_over * (np.sqrt(x[k + 1]) - 0.5 * u * left_over)
         z = min(max(step / length, 0.0), 1.0)
         moving = begin[k] <= t[i] <= end[k]
-        at[i] = sigma[s] + z * length
+        # σ over z is the cubic with the slopes of dσ/dℓ = 1 / ratio at both samples.
+        rise = sigma[s + 1] - sigma[s]
+        lead, tail = length / ratio[s] - rise, rise - length / ratio[s + 1]
+        at[i] = sigma[s] + z * (rise + (1 - z) * ((1 - z) * lead + z * tail))
         for j in range(q.shape[1]):
             p0, v0, a0 = states.q[s, j], length * states.dq[s, j], length**2 * states.ddq[s, j]
             p1, v1 = states.q[s + 1, j], length * states.dq[s + 1, j]

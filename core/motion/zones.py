@@ -55,6 +55,19 @@ class Reach:
         return Reach(1.0 / self.value, tuple((n, i, p * slope) for n, i, p in self.parts))
 
 
+@dataclass(frozen=True, slots=True)
+class Room:
+    """How much larger the zones at a place could be before the vendor's rules cut them.
+
+    Args:
+        left: in m, or as a share of a segment; below zero where a rule cuts.
+        corner: index of the corner.
+    """
+
+    left: Reach
+    corner: int
+
+
 def _least(*reaches: Reach) -> Reach:
     return min(reaches, key=lambda reach: reach.value)
 
@@ -222,6 +235,41 @@ class ZonePlanner:
             if reach[i, POSITION].min() > _NOTHING:
                 kind[i] = self._kind(i)
         return Corners(kind, reach, wanted, overlapping, self._notes)
+
+    def rooms(self, zones: Sequence[Zone]) -> list[Room]:
+        """What room the vendor's rules on neighbouring zones leave.
+
+        Where none is below zero no zone is cut, shrunk or left out, and radii do what they say.
+
+        Args:
+            zones: as in `corners`.
+        """
+        if self._model.overlap is Overlap.HALF:
+            return [room for i, zone in enumerate(zones) for room in self._halves(i, zone)]
+        wanted = [self._reaches(i, zone)[POSITION] for i, zone in enumerate(zones)]
+        return [room for k in range(len(wanted) + 1) for room in self._shares(k, wanted)]
+
+    def _halves(self, i: int, zone: Zone) -> list[Room]:
+        """Half way to each neighbour, less the radius (m)."""
+        if not isinstance(zone, Radius) or self._stops(i):
+            return []
+        halves = [self._half(segment, i) for segment in (i, i + 1)]
+        less = Reach(-zone.tcp, (("tcp", i, -1.0),))
+        return [Room(half + less, i) for half in halves if half is not None]
+
+    def _shares(self, segment: int, wanted: Sequence[tuple[Reach, Reach]]) -> list[Room]:
+        """What two zones leave of the segment between them, as a share of it."""
+        parts = []
+        if segment > 0:
+            parts.append(wanted[segment - 1][1])
+        if segment < len(wanted):
+            parts.append(wanted[segment][0])
+        if all(part.value == 0.0 for part in parts):
+            return []
+        room = Reach(1.0)
+        for part in parts:
+            room = room + part * Reach(-1.0)
+        return [Room(room, min(segment, len(wanted) - 1))]
 
     def _kind(self, i: int) -> int:
         kinds = self._segments.ends.kind[i : i + 2]

@@ -126,11 +126,10 @@ class Peaks:
     @classmethod
     def of(cls, timing: Timing) -> Peaks:
         """The peaks of a stamped path."""
-        states, stamp, segment = timing.path.states, timing.stamp, timing.interval_segments
+        states, stamp, segment = timing.along.states, timing.stamp, timing.interval_segments
         left = interval_samples(timing.path.pieces)
         count = len(timing.path.route.moves)
-        spacing = timing.path.sigma[left + 1] - timing.path.sigma[left]
-        change = (stamp.x[1:] - stamp.x[:-1]) / (2 * spacing)
+        change = (stamp.x[1:] - stamp.x[:-1]) / (2 * timing.along.spacing)
         joint, peaks = np.zeros((count, states.dq.shape[1])), np.zeros((3, count))
         for knot, sample in ((0, left), (1, left + 1)):
             square = stamp.x[knot : len(stamp.x) - 1 + knot]
