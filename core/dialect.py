@@ -7,12 +7,13 @@ language's own terms, and lists what has no counterpart. A check searches texts 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 from .errors import InputError
 from .program.speed import Speed
-from .program.zone import Zone
+from .program.zone import Radius, Zone
 
 if TYPE_CHECKING:
     from .program.move import Move
@@ -116,6 +117,8 @@ class Dialect:
         share_step: by what step shares of joint speed and acceleration are said.
         least_acceleration_share: the least share of acceleration that is taken.
         fastest: greatest speed of the TCP that is taken, m/s.
+        zones: gives the zones that are known without a declaration, beside stops; called when
+            they are needed.
         wording: how its texts are searched; None if they are not.
     """
 
@@ -133,6 +136,7 @@ class Dialect:
     share_step: float = 0.01
     least_acceleration_share: float = 0.01
     fastest: float = 7.0
+    zones: Callable[[], tuple[Radius, ...]] = tuple
     wording: Wording | None = None
 
     def __post_init__(self) -> None:

@@ -1,9 +1,10 @@
-"""Meshes of tools and obstacles: read when they are asked for, and checked then."""
+"""Shapes of tools and obstacles; meshes are read when they are asked for, and checked then."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -23,12 +24,37 @@ PLAUSIBLE_EXTENT = (1e-3, 100.0)
 
 
 @dataclass(frozen=True)
-class Mesh:
-    """A triangle mesh in a file.
+class Triangles:
+    """The content of a mesh that code has made; equal if all numbers are.
 
     Args:
-        file: the mesh file.
-        units: of the file's numbers, a key of `MESH_UNITS`.
+        vertices: corner points (V, 3), in the mesh's units.
+        faces: (F, 3) indices of ``vertices``, anticlockwise seen from outside.
+    """
+
+    vertices: FloatArray = field(compare=False)
+    faces: NDArray[np.int64] = field(compare=False)
+    digest: str = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        vertices = np.array(self.vertices, dtype=float).reshape(-1, 3)
+        faces = np.array(self.faces, dtype=np.int64).reshape(-1, 3)
+        for array in (vertices, faces):
+            array.flags.writeable = False
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "faces", faces)
+        content = vertices.tobytes() + faces.tobytes()
+        object.__setattr__(self, "digest", sha256(content).hexdigest())
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A triangle mesh in a file, or one that code has made.
+
+    Args:
+        file: the mesh file; for a mesh made by code where it would stand, for messages.
+        units: of its numbers, a key of `MESH_UNITS`.
+        triangles: the content of a mesh made by code; None to read it from the file.
 
     Raises:
         InputError: the unit is unknown.
@@ -36,6 +62,7 @@ class Mesh:
 
     file: Path
     units: str
+    triangles: Triangles | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         if self.units not in MESH_UNITS:
@@ -62,7 +89,7 @@ class Mesh:
 
     @cached_property
     def _content(self) -> tuple[FloatArray, NDArray[np.int64], tuple[Note, ...]]:
-        mesh = _load(self.file)
+        mesh = _load(self.file) if self.triangles is None else _made(self.triangles)
         vertices = np.array(mesh.vertices, dtype=float) * MESH_UNITS[self.units]
         faces = np.array(mesh.faces, dtype=np.int64).reshape(-1, 3)
         if len(faces) == 0:
@@ -97,6 +124,13 @@ class Geometry:
 
     shape: Mesh | Shape
     placement: Pose = IDENTITY
+
+
+def _made(triangles: Triangles) -> Any:
+    """The `trimesh.Trimesh` of triangles, nothing cleaned up."""
+    import trimesh
+
+    return trimesh.Trimesh(triangles.vertices, triangles.faces, process=False)
 
 
 def _load(file: Path) -> Any:

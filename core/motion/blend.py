@@ -101,22 +101,32 @@ class Blend:
 
     def pull_coefficients(self, gradient: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The gradient (6, D) of `coefficients`, carried back to ``alpha`` and ``beta``."""
-        size = gradient.shape[1]
+        to_alpha, to_beta = self._pulls
+        flat = gradient.ravel()
+        return to_alpha @ flat, to_beta @ flat
 
-        def inner(row: int, factor: FloatArray, power: int) -> float:
-            moved = np.zeros(size + len(factor) + power)
-            moved[power : power + len(factor)] = factor
-            return float(gradient[row] @ moved[:size])
+    @cached_property
+    def _pulls(self) -> tuple[FloatArray, FloatArray]:
+        """The derivative of `coefficients`, flat, with respect to ``alpha`` and ``beta``."""
+        size = self.coefficients.shape[1]
+        alpha = np.zeros((len(self.alpha), BASIS, size))
+        beta = np.zeros((len(self.beta), BASIS, size))
 
-        alpha = np.zeros(len(self.alpha))
-        for i in range(len(alpha)):
-            alpha[i] = inner(1, np.array([1.0, -1.0]), i) + inner(2, np.array([0.0, 1.0]), i)
+        def add(row: FloatArray, factor: FloatArray, power: int) -> None:
+            part = factor[: max(size - power, 0)]
+            row[power : power + len(part)] += part
+
+        for i, table in enumerate(alpha):
+            add(table[1], np.array([1.0, -1.0]), i)
+            add(table[2], np.array([0.0, 1.0]), i)
             if self.meets_curvature:
-                alpha[i] += inner(3, np.ones(1), i)
-                alpha[i] -= inner(4, np.array([0.0, 0.0, 0.5]), i)
-                alpha[i] += inner(5, np.array([0.5, -1.0, 0.5]), i)
-        beta = np.array([inner(2, _BUMP, i) - inner(1, _BUMP, i) for i in range(len(self.beta))])
-        return alpha, beta
+                add(table[3], np.ones(1), i)
+                add(table[4], np.array([0.0, 0.0, -0.5]), i)
+                add(table[5], np.array([0.5, -1.0, 0.5]), i)
+        for i, table in enumerate(beta):
+            add(table[1], -_BUMP, i)
+            add(table[2], _BUMP, i)
+        return alpha.reshape(len(alpha), BASIS * size), beta.reshape(len(beta), BASIS * size)
 
 
 PARABOLA = Blend()

@@ -152,7 +152,7 @@ class Controller:
             self.robot, self.model, [move.speed for move in moves], path.route.ends.kind
         )
         timed = [k for k, move in enumerate(moves) if move.speed.duration is not None]
-        window = self._window(program, path)
+        window = self.smoothing_window(program, path)
         try:
             along = ArcLength.of(path, self.robot.limits.acceleration)
             timing = _timing(path, along, limits, window)
@@ -166,7 +166,7 @@ class Controller:
     def sample(self, program: Program, timing: Timing, period: float | None = None) -> Trajectory:
         """The commanded motion, smoothed in time where the vendor does, every ``period`` s."""
         period = self.model.period if period is None else period
-        window = self._window(program, timing.path)
+        window = self.smoothing_window(program, timing.path)
         t = sample_times(0.0, timing.duration, period)
         if window == 0.0:
             q, dq, ddq, sigma = timing.states_at(t)
@@ -204,7 +204,7 @@ class Controller:
     def _moves(self, program: Program, path: Path) -> list[Move]:
         return [program.moves[i] for i in path.route.moves]
 
-    def _window(self, program: Program, path: Path) -> float:
+    def smoothing_window(self, program: Program, path: Path) -> float:
         """Length in s of the moving average: the vendor's own, or what the gentlest move needs."""
         if self.model.jerk is None:
             return self.model.smoothing

@@ -107,6 +107,11 @@ class Segments:
     length: FloatArray
     scale: FloatArray
 
+    @property
+    def joint_moves_alone(self) -> bool:
+        """Whether no segment is one of the TCP."""
+        return not self.ends.kind.any()
+
 
 @dataclass
 class SegmentsGradient:
@@ -145,8 +150,9 @@ def make_segments(ends: Ends) -> Segments:
         angle[arc] = swept
         follows = ends.follows[arc]
         turn_a[arc] = np.where(follows[:, None], swept[:, None] * _into(ends, arc, normal), 0.0)
-    relative = _relative(ends, turn_a)
-    turn_b = np.where(tcp[:, None], rotation_vector(relative), 0.0)
+    turn_b = np.zeros((len(tcp), 3))
+    if tcp.any():
+        turn_b[tcp] = rotation_vector(_relative(ends, turn_a)[tcp])
     if arc.any():
         turn_b[arc] = _way_round(ends, arc, position[arc], angle[arc], turn_a[arc], turn_b[arc])
     delta_prescribed = np.where(tcp[:, None], ends.prescribed[:, 1] - ends.prescribed[:, 0], 0.0)
@@ -250,7 +256,8 @@ def pull_segments(segments: Segments, bar: SegmentsGradient, out: EndsGradient) 
     out.prescribed[:, 0] -= np.where(tcp[:, None], bar.delta_prescribed, 0.0)
     out.position[line, 0] += bar.position[line, 0] - bar.position[line, 1]
     out.position[line, 1] += bar.position[line, 1]
-    _pull_turns(segments, bar, out, tcp)
+    if tcp.any():
+        _pull_turns(segments, bar, out, tcp)
     if arc.any():
         _pull_arcs(segments, bar, out, arc)
 

@@ -115,6 +115,8 @@ class TcpGeometry:
 def make_tcp_curves(layout: Layout, model: MotionModel) -> TcpGeometry:
     """The TCP curves of a path."""
     segments, corners = layout.segments, layout.corners
+    if segments.joint_moves_alone:
+        return _no_curves(layout, model)
     count = len(segments.scale)
     reach = corners.reach
     before = _legs(segments, slice(None, -1), 1.0 - reach[:, POSITION, 0])
@@ -150,6 +152,21 @@ def make_tcp_curves(layout: Layout, model: MotionModel) -> TcpGeometry:
         part.window[count:] = blend_windows(layout, channel, slopes[channel])
     curves = TcpCurves(position, turning, np.concatenate([reference, reference[1:]]), prescribed)
     return TcpGeometry(layout, model, curves, before, after, arcs, slopes)
+
+
+def _no_curves(layout: Layout, model: MotionModel) -> TcpGeometry:
+    """Curves that stand still, for paths of joint moves, which evaluate none."""
+    count = len(layout.segments.scale)
+    rotation = layout.segments.ends.rotation[:, 0]
+    axes = layout.segments.delta_prescribed.shape[1]
+    blends = (model.tcp, model.orientation, model.orientation)
+    position, turning, prescribed = (
+        Curves.empty(2 * count - 1, dimension, blend.coefficients)
+        for dimension, blend in zip((3, 6, axes), blends, strict=True)
+    )
+    curves = TcpCurves(position, turning, np.concatenate([rotation, rotation[1:]]), prescribed)
+    none = Legs(*(np.zeros((count - 1, 3)) for _ in range(4)))
+    return TcpGeometry(layout, model, curves, none, none, None, np.ones((3, count - 1, 2)))
 
 
 def _blend_controls(blend: Blend, reach: FloatArray, before: Legs, after: Legs) -> FloatArray:
@@ -228,6 +245,8 @@ def pull_tcp_curves(
 ) -> None:
     """Reverse of `make_tcp_curves`; ``reach_bar`` (M − 1, 3, 2) and the rest are added to."""
     layout, segments = geometry.layout, geometry.layout.segments
+    if segments.joint_moves_alone:
+        return
     count = len(segments.scale)
     live = layout.corners.kind == TCP_CORNER
     for channel, curves_bar in enumerate((bar.position, bar.turning, bar.prescribed)):

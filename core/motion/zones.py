@@ -189,6 +189,40 @@ def _distance(
     return math.sqrt(square)
 
 
+@njit(cache=True, error_model="numpy")
+def _apart(
+    chain: Chain, q_wp: FloatArray, q_other: FloatArray, share: float
+) -> tuple[float, FloatArray, FloatArray]:
+    """How far the TCP is from the waypoint at a share of a joint line, and how fast that changes.
+
+    Args:
+        chain: the kinematics.
+        q_wp, q_other: (N,), the waypoint and the line's other end.
+        share: of the line.
+
+    Returns:
+        The distance, m, and its derivatives (N,) with respect to the joints there and at the
+        waypoint; zero where the distance is.
+    """
+    size = q_wp.size
+    q = (1 - share) * q_wp + share * q_other
+    R, p, J = np.empty((3, 3)), np.empty(3), np.empty((6, size))
+    p_wp, J_wp = np.empty(3), np.empty((6, size))
+    jacobian(chain, q_wp, R, p_wp, J_wp)
+    jacobian(chain, q, R, p, J)
+    square = 0.0
+    for i in range(3):
+        square += (p[i] - p_wp[i]) ** 2
+    distance = math.sqrt(square)
+    pull, pull_wp = np.zeros(size), np.zeros(size)
+    if distance > 0.0:
+        for j in range(size):
+            for i in range(3):
+                pull[j] += (p[i] - p_wp[i]) / distance * J[i, j]
+                pull_wp[j] += (p[i] - p_wp[i]) / distance * J_wp[i, j]
+    return distance, pull, pull_wp
+
+
 class ZonePlanner:
     """Applies a vendor's zone rules to the corners of a path.
 
@@ -383,15 +417,9 @@ class ZonePlanner:
         share = self._model.neighbour_fraction
         near, far = (1, 0) if segment == corner else (0, 1)
         q_wp, q_other = self._segments.ends.q[segment, near], self._segments.ends.q[segment, far]
-        q = (1 - share) * q_wp + share * q_other
-        R, p, J = np.empty((3, 3)), np.empty(3), np.empty((6, q.size))
-        p_wp, J_wp = np.empty(3), np.empty((6, q.size))
-        jacobian(self._chains[segment], q_wp, R, p_wp, J_wp)
-        jacobian(self._chains[segment], q, R, p, J)
-        distance = float(np.linalg.norm(p - p_wp))
+        distance, pull, pull_wp = _apart(self._chains[segment], q_wp, q_other, share)
         if distance < _STILL:
             return None
-        pull, pull_wp = ((p - p_wp) / distance @ part[:3] for part in (J, J_wp))
         parts: tuple[Part, ...] = (
             (f"q{near}", segment, (1 - share) * pull - pull_wp),
             (f"q{far}", segment, share * pull),
@@ -431,13 +459,7 @@ class ZonePlanner:
         share = first_exit(chain, q_wp, q_other, size.value, limit.value)
         if share < 0.0:
             return limit
-        q = (1 - share) * q_wp + share * q_other
-        R, p, J = np.empty((3, 3)), np.empty(3), np.empty((6, q.size))
-        p_wp, J_wp = np.empty(3), np.empty((6, q.size))
-        jacobian(chain, q_wp, R, p_wp, J_wp)
-        jacobian(chain, q, R, p, J)
-        outward = (p - p_wp) / size.value
-        pull, pull_wp = outward @ J[:3], outward @ J_wp[:3]
+        _, pull, pull_wp = _apart(chain, q_wp, q_other, share)
         speed = float(pull @ (q_other - q_wp))
         if speed <= 0.0:
             return Reach(share)

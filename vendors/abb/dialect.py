@@ -30,6 +30,15 @@ _WORDING = Wording(
 
 _MOVE = MoveWords((Radius,), _SPEEDS, frozenset({"tcp"}))
 
+
+def _zones() -> tuple[Radius, ...]:
+    """z0 to z200; imported late, since it takes time."""
+    from .rapid.predefined import ZONES, zone
+
+    found = (zone(name) for name in ZONES)
+    return tuple(one for one in found if isinstance(one, Radius))
+
+
 RAPID = Dialect(
     joint=_MOVE,
     line=_MOVE,
@@ -40,5 +49,6 @@ RAPID = Dialect(
     user_frames=True,
     least_acceleration_share=0.2,
     fastest=7.0,
+    zones=_zones,
     wording=_WORDING,
 )

@@ -1,0 +1,237 @@
+"""``flyby zones``: every zone of a program as large as obstacles and rules let it be."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..core.errors import InputError
+from .console import print_json, print_rich, print_table, progress, warn
+from .installed import registry
+from .loading import Source, start_of
+from .options import AnswersFile, AsJson, Entry, Force, OtherFiles, Out, ProgramFile, Start
+from .patching import Patching, check_places, write_patched
+from .places import note_json, place_json, short_place
+
+if TYPE_CHECKING:
+    from ..core.cell.cell import Cell
+    from ..core.program.program import Program
+    from ..core.program.zone import Radius, Zone
+    from ..core.vendor import Vendor
+    from ..problems.zones.maximize import ZoneSolution
+    from ..problems.zones.options import ZoneOptions
+    from ..problems.zones.table import ZoneChange
+
+COLUMNS = (
+    ("move", "right"),
+    ("line", "left"),
+    ("zone before", "right"),
+    ("after", "right"),
+    ("no larger because of", "left"),
+)
+FIGURES = (("", "left"), ("unit", "left"), ("before", "right"), ("after", "right"), ("%", "right"))
+ALL = "all"
+
+
+def zones(
+    program: ProgramFile,
+    cell: Annotated[
+        Path, typer.Option("--cell", help="Cell file: robot, tools, obstacles, clearance.")
+    ],
+    entry: Entry = None,
+    io: AnswersFile = None,
+    others: OtherFiles = None,
+    start: Start = None,
+    clearance: Annotated[
+        float | None,
+        typer.Option("--clearance", help="Clearance to keep, mm; the cell's own if unset."),
+    ] = None,
+    predefined: Annotated[
+        bool, typer.Option("--predefined", help="Choose among the vendor's predefined zones.")
+    ] = False,
+    free: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--free",
+            help="A stop that may be passed, by the number of its move, or 'all'; may be given "
+            "several times.",
+        ),
+    ] = None,
+    keep: Annotated[
+        list[int] | None,
+        typer.Option("--keep", help="A move whose zone stays; may be given several times."),
+    ] = None,
+    own: Annotated[
+        bool,
+        typer.Option(
+            "--own", help="Moves that share one datum, or compute their zone, get one of their own."
+        ),
+    ] = False,
+    out: Out = None,
+    in_place: Annotated[
+        bool, typer.Option("--in-place", help="Change the program's own files.")
+    ] = False,
+    unproven: Annotated[
+        bool,
+        typer.Option("--unproven", help="Write the program even if its clearance is not proven."),
+    ] = False,
+    json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Make zones as large as they can be without collision, and prove the new program.
+
+    The exit status is 1 if the new program is not proven to keep its clearance.
+    """
+    source = Source.of(program, entry, io, others)
+    check_places(out, in_place, source.inputs(cell), force)
+    with progress("reading the program") as say:
+        from ..core.cell.file import load_cell
+        from ..core.motion.controller import Controller
+        from ..problems.zones.maximize import maximize_zones
+
+        where = load_cell(cell, registry())
+        vendor = registry().find_vendor(where.vendor)
+        parsed = source.read(vendor, where.robot)
+        options = _options(parsed, vendor, where, clearance, predefined, free, keep, own, start)
+        patching = Patching(vendor, where.robot, own)
+        controller = Controller(vendor, where.robot)
+        made = maximize_zones(controller, parsed, where, options, patching.read_back, say)
+        written: list[Path] = []
+        if made.changed and (made.proven or unproven):
+            written = write_patched(patching.files, out, in_place, source.inputs(cell), force)
+    if json:
+        print_json(_json(made, where, written))
+    else:
+        _tell(program, made, where, written)
+        if made.changed and not (out or in_place):
+            print_rich("nothing was written: --in-place or --out FOLDER writes the new program")
+    if not made.proven:
+        raise typer.Exit(1)
+
+
+def _options(
+    program: Program,
+    vendor: Vendor,
+    cell: Cell,
+    clearance: float | None,
+    predefined: bool,
+    free: list[str] | None,
+    keep: list[int] | None,
+    own: bool,
+    start: str | None,
+) -> ZoneOptions:
+    from ..problems.zones.options import ZoneOptions
+    from ..problems.zones.sizes import pattern_for
+
+    return ZoneOptions(
+        clearance=None if clearance is None else 1e-3 * clearance,
+        freed=_freed(program, free or []),
+        pattern=pattern_for(vendor.speaks),
+        kept=[_index(program, number, "--keep") for number in keep or []],
+        apart=own,
+        predefined=_predefined(vendor) if predefined else (),
+        start=start_of(start, cell.robot),
+    )
+
+
+def _predefined(vendor: Vendor) -> tuple[Radius, ...]:
+    found = () if vendor.speaks is None else vendor.speaks.zones()
+    if not found:
+        raise InputError(f"--predefined: {vendor.name} has no predefined zones")
+    return found
+
+
+def _freed(program: Program, free: list[str]) -> list[int]:
+    from ..problems.zones.points import passable_stops
+
+    if ALL in free:
+        return passable_stops(program)
+    wrong = [text for text in free if not text.isdecimal()]
+    if wrong:
+        raise InputError(f"--free {wrong[0]}: the number of a move, or {ALL!r}")
+    return [_index(program, int(text), "--free") for text in free]
+
+
+def _index(program: Program, number: int, option: str) -> int:
+    count = len(program.moves)
+    if not 1 <= number <= count:
+        raise InputError(f"{option} {number}: the program has moves 1 to {count}")
+    return number - 1
+
+
+def _tell(program: Path, made: ZoneSolution, cell: Cell, written: list[Path]) -> None:
+    print_table(COLUMNS, [_row(program, change) for change in made.zones])
+    rows = [
+        (row.what, row.unit, _figure(row.before), _figure(row.after), _figure(row.change, 1))
+        for row in made.table(cell.robot.axis_names)
+    ]
+    print_table(FIGURES, rows)
+    for note in made.notes:
+        warn(str(note))
+    if made.certificate is not None:
+        say = print_rich if made.proven else warn
+        say(f"{program}: {made.certificate}")
+    for pair in cell.allowed:
+        print_rich(f"allowed to touch by the cell: {pair[0]} and {pair[1]}")
+    for path in written:
+        print_rich(f"wrote {path}")
+
+
+def _row(program: Path, change: ZoneChange) -> tuple[str, ...]:
+    return (
+        str(change.move + 1),
+        short_place(program, change.span),
+        zone_shown(change.before),
+        zone_shown(change.after),
+        change.limit,
+    )
+
+
+def zone_shown(zone: Zone) -> str:
+    """A zone in the units of the shop floor."""
+    from ..core.program.zone import Angle, ContourFraction, Radius
+
+    match zone:
+        case Radius(tcp):
+            return zone.name or f"{1e3 * tcp:.5g} mm"
+        case ContourFraction(fraction):
+            return f"{100 * fraction:.3g} %"
+        case Angle(angle):
+            return f"{math.degrees(angle):.4g}°"
+    return "fine"
+
+
+def _figure(value: float | None, digits: int = 4) -> str:
+    return "" if value is None else f"{value:.{digits}f}"
+
+
+def _json(made: ZoneSolution, cell: Cell, written: list[Path]) -> dict[str, Any]:
+    proof = made.certificate
+    return {
+        "robot": cell.robot.name,
+        "proven": made.proven,
+        "certificate": None if proof is None else proof.message,
+        "allowed": [list(pair) for pair in cell.allowed],
+        "figures": [
+            {"what": row.what, "unit": row.unit, "before": row.before, "after": row.after}
+            for row in made.table(cell.robot.axis_names)
+        ],
+        "zones": [_change_json(change) for change in made.zones],
+        "notes": [note_json(note) for note in made.notes],
+        "files": [str(path) for path in written],
+    }
+
+
+def _change_json(change: ZoneChange) -> dict[str, Any]:
+    return {
+        "move": change.move + 1,
+        "before": zone_shown(change.before),
+        "after": zone_shown(change.after),
+        "clear_to": change.clear,
+        "fails_at": change.fails,
+        "limit": change.limit,
+        **place_json(change.span),
+    }

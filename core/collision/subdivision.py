@@ -1,0 +1,265 @@
+"""Subdivision of a path until every pair of bodies is proven to keep a distance, or is not.
+
+All intervals of one level are asked at once. What stays open on an interval goes on to both
+halves of it, with the plane that last came between the bodies: it often closes the halves
+without another distance query.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .boxes import Boxes
+from .enclosure import Enclosure, Intervals, Span
+from .findings import Budget, Cause, Finding, Nearest
+from .items import Items, Sweeps
+from .scene import CollisionScene
+from .sweep import sweep
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+ROUNDING = 1e-6
+"""m by which measured distances may be off."""
+_LOCATED = 1e-3
+"""m of motion below which the beginning of a violation counts as found."""
+_STALLED = 1e-7
+"""m of motion below which an interval is not halved any more."""
+_NARROWEST = 1e-9
+"""Share of a piece, likewise."""
+_WIDE = 0.25
+"""m of motion above which bodies are not measured: what is far is seen from boxes, the rest is
+halved anyway."""
+
+
+@dataclass
+class Prover:
+    """Proves distances along one path in one scene.
+
+    Args:
+        enclosure: of the path.
+        scene: the bodies.
+        astray: (N,), rad or m by which joints may leave the path.
+        residual: m by which moving bodies may be elsewhere.
+        budget: shared by all provers of a certificate.
+    """
+
+    enclosure: Enclosure
+    scene: CollisionScene
+    astray: FloatArray
+    residual: float
+    budget: Budget
+
+    def __post_init__(self) -> None:
+        self.nearest = Nearest()
+        self.proven = math.inf
+        """m, the least of what was proven so far."""
+
+    def prove(self, spans: Sequence[Span], pieces: Sequence[int], wanted: float) -> Finding | None:
+        """The first stretch on which ``wanted`` m are not kept; None if they are kept.
+
+        A stretch that is too near counts before one that is merely not proven.
+        """
+        return _Search(self, wanted, None).run(spans, pieces)
+
+    def tighten(
+        self, spans: Sequence[Span], pieces: Sequence[int], resolution: float
+    ) -> Finding | None:
+        """Prove the least distance itself, to ``resolution`` m; it stands in ``proven`` then.
+
+        Where that cannot be done, ``proven`` stays what it was.
+        """
+        before, self.proven = self.proven, math.inf
+        finding = _Search(self, -math.inf, resolution).run(spans, pieces)
+        self.proven = before if finding is not None else max(before, self.proven)
+        return finding
+
+    def sweep(self, boxes: Boxes, items: Items) -> Sweeps:
+        """Lower bounds of distances on intervals with these enclosures."""
+        found = Sweeps(*(np.empty(len(items.pair)) for _ in Sweeps._fields))
+        sweep(
+            self.scene.frames,
+            self.scene.outlines,
+            self.scene.pairs,
+            boxes,
+            self.astray,
+            self.residual,
+            items,
+            found,
+        )
+        return found
+
+
+class _Search:
+    """One subdivision.
+
+    Args:
+        prover: what is known.
+        wanted: m to prove.
+        resolution: m below the least distance met that are enough instead; None to prove
+            ``wanted``.
+    """
+
+    def __init__(self, prover: Prover, wanted: float, resolution: float | None) -> None:
+        self._prover = prover
+        self._wanted = wanted
+        self._resolution = resolution
+        self._violation: Finding | None = None
+        self._unproven: Finding | None = None
+
+    def run(self, spans: Sequence[Span], pieces: Sequence[int]) -> Finding | None:
+        """The first finding."""
+        prover = self._prover
+        intervals = prover.enclosure.over(spans, pieces)
+        items = Items.every(len(intervals), len(prover.scene.pairs))
+        if self._resolution is not None:
+            self._look_around(intervals, items)
+        while len(items.pair):
+            prover.budget.take(len(intervals))
+            items = self._open(intervals, items)
+            items = items.chosen(self._worth_halving(intervals, items))
+            if not len(items.pair):
+                break
+            if prover.budget.left < 0:
+                self._keep(self._finding(intervals, items, 0, Cause.EXHAUSTED))
+                break
+            which, rows = np.unique(items.interval, return_inverse=True)
+            intervals = prover.enclosure.halves(intervals, which)
+            items = items._replace(interval=rows).on_both_halves()
+        return self._violation or self._unproven
+
+    def _look_around(self, intervals: Intervals, items: Items) -> None:
+        """Measure at the middles, so that there is a least distance to go by."""
+        if self._prover.nearest.kept == math.inf:
+            sound = items.chosen(intervals.boxes.verified[items.interval])
+            self._measured(intervals, sound, self._prover.sweep(intervals.boxes, sound))
+
+    @property
+    def _goal(self) -> float:
+        """m that every pair has to keep."""
+        if self._resolution is None:
+            return self._wanted
+        return self._prover.nearest.kept - self._resolution
+
+    def _open(self, intervals: Intervals, items: Items) -> Items:
+        """Prove what can be proven; the rest."""
+        prover = self._prover
+        verified = intervals.boxes.verified[items.interval]
+        unknown, known = items.chosen(~verified), items.chosen(verified)
+        found = prover.sweep(intervals.boxes, known)
+        left = self._left(found)
+        wide = found.motion > _WIDE
+        near = left & ~wide
+        asked = self._measured(intervals, known.chosen(near), Sweeps(*(a[near] for a in found)))
+        again = prover.sweep(intervals.boxes, asked)
+        near = self._left(again)
+        near &= self._judged(intervals, asked, again, near)
+        return Items.joined(unknown, known.chosen(left & wide), asked.chosen(near))
+
+    def _left(self, found: Sweeps) -> NDArray[np.bool_]:
+        """Which items are still open; the others count as proven."""
+        left = found.lower < self._goal
+        self._prover.proven = min(self._prover.proven, found.lower[~left].min(initial=math.inf))
+        return np.asarray(left)
+
+    def _measured(self, intervals: Intervals, items: Items, found: Sweeps) -> Items:
+        """The items with distances and planes at the middles."""
+        if not len(items.pair):
+            return items
+        prover = self._prover
+        which, rows = np.unique(items.interval, return_inverse=True)
+        q = intervals.boxes.q[which]
+        within = np.maximum(self._goal + found.motion, 0.0) + 2 * ROUNDING
+        distance, normal = prover.scene.chosen_distances(q, (rows, items.pair), within)
+        prover.budget.take(len(items.pair))
+        met = np.flatnonzero(distance < within)
+        if len(met):
+            nearest = met[np.argmin((distance - found.stray)[met])]
+            self._remember(intervals, items, int(nearest), float(distance[nearest]))
+        return items._replace(distance=distance - ROUNDING, normal=normal)
+
+    def _remember(self, intervals: Intervals, items: Items, k: int, distance: float) -> None:
+        """Keep the k-th item if it is the nearest so far."""
+        prover, row = self._prover, int(items.interval[k])
+        pair, q = items.pair[k : k + 1], intervals.boxes.q[row]
+        alone = Items(np.zeros(1, np.int64), pair, np.zeros((1, 3)), np.array([distance]))
+        kept = distance - float(prover.sweep(Boxes.at(q), alone).stray[0])
+        if kept < prover.nearest.kept:
+            sigma, piece = self._middle(intervals, row), int(intervals.piece[row])
+            prover.nearest = Nearest(kept, distance, sigma, piece, int(pair[0]), q)
+
+    def _judged(
+        self, intervals: Intervals, items: Items, found: Sweeps, near: NDArray[np.bool_]
+    ) -> NDArray[np.bool_]:
+        """Note which open items are too near; whether halving them can tell more."""
+        travel = found.motion - found.stray
+        stalled = near & (travel < _STALLED)
+        if self._resolution is not None:
+            self._note(intervals, items, stalled, Cause.STALLED)
+            return ~stalled
+        distance = items.distance + ROUNDING
+        too_near = near & (distance < self._wanted)
+        # On a wide interval the levers of the strays are not known well.
+        located = travel < _LOCATED
+        strayed = near & located & (distance - found.stray < self._wanted)
+        self._note(intervals, items, too_near, Cause.NEAR)
+        self._note(intervals, items, strayed & ~too_near, Cause.STRAY)
+        self._note(intervals, items, stalled & ~strayed, Cause.STALLED)
+        return ~(stalled | strayed)
+
+    def _note(
+        self, intervals: Intervals, items: Items, chosen: NDArray[np.bool_], cause: Cause
+    ) -> None:
+        """Keep the first of the chosen items as a finding."""
+        if chosen.any():
+            # Items come in the order of the path.
+            self._keep(self._finding(intervals, items, int(np.argmax(chosen)), cause))
+
+    def _worth_halving(self, intervals: Intervals, items: Items) -> NDArray[np.bool_]:
+        """Which items lie before the first violation and are not too narrow to be halved."""
+        row = items.interval
+        piece, begin, end = intervals.piece[row], intervals.begin[row], intervals.end[row]
+        pieces = self._prover.enclosure.path.pieces
+        whole = np.where(pieces.joint_space, 1.0, np.diff(pieces.edge))[piece]
+        narrow = end - begin < _NARROWEST * whole
+        sound = intervals.boxes.verified[row]
+        self._note(intervals, items, narrow & sound, Cause.STALLED)
+        self._note(intervals, items, narrow & ~sound, Cause.UNVERIFIED)
+        if self._violation is None:
+            return ~narrow
+        start = self._prover.enclosure.sigma(piece, begin)
+        return np.asarray(~narrow & (start < self._violation.sigma))
+
+    def _finding(self, intervals: Intervals, items: Items, k: int, cause: Cause) -> Finding:
+        row = int(items.interval[k])
+        blamed = cause not in (Cause.UNVERIFIED, Cause.EXHAUSTED)
+        enclosure, piece = self._prover.enclosure, intervals.piece[row : row + 1]
+        begin, end = (enclosure.sigma(piece, a[row : row + 1]) for a in intervals[1:3])
+        return Finding(
+            cause,
+            int(piece[0]),
+            float(begin[0]),
+            float(end[0]),
+            self._middle(intervals, row),
+            intervals.boxes.q[row],
+            int(items.pair[k]) if blamed else None,
+            float(items.distance[k]) + ROUNDING if blamed else None,
+            float(intervals.boxes.conditioning[row]),
+        )
+
+    def _middle(self, intervals: Intervals, row: int) -> float:
+        middle = 0.5 * (intervals.begin[row : row + 1] + intervals.end[row : row + 1])
+        return float(self._prover.enclosure.sigma(intervals.piece[row : row + 1], middle)[0])
+
+    def _keep(self, finding: Finding) -> None:
+        """Remember the first of each kind along the path."""
+        if finding.cause is Cause.NEAR:
+            if self._violation is None or finding.sigma < self._violation.sigma:
+                self._violation = finding
+        elif self._unproven is None or finding.begin < self._unproven.begin:
+            self._unproven = finding

@@ -1,0 +1,1 @@
+"""First paths, from start to goal round everything that stands in the way (OMPL)."""

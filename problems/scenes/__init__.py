@@ -1,0 +1,1 @@
+"""Reference scenes: one code for tests, benchmarks and examples."""

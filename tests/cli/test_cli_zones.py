@@ -1,0 +1,171 @@
+"""``flyby zones``: what it prints, what it writes where, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+from flyby.core.collision.verdict import Verdict
+from flyby.core.registry import find_robot, find_vendor
+
+ROBOT = "abb/irb6640-180-255"
+CELL = """robot = "abb/irb6640-180-255"
+clearance_mm = 5
+[tool.rod]
+tcp = { xyz_mm = [0, 0, 300] }
+capsule_mm = [50, 300]
+pose = { xyz_mm = [0, 0, 150] }
+[[obstacle]]
+name = "box"
+box_mm = [150, 1200, 830]
+pose = { xyz_mm = [1575, 0, 415] }
+[allow]
+pairs = [["J2", "J4"]]
+"""
+REST = "[9E9,9E9,9E9,9E9,9E9,9E9]"
+POINTS = ((-4.19, 69.06), (-21.07, 62.34), (-4.74, 42.65), (22.3, 18.62), (38.27, 11.47))
+HEAD = "\r\n".join(
+    (
+        "MODULE m ! keep me",
+        "  PERS tooldata rod:=[TRUE,[[0,0,300],[1,0,0,0]],[1,[0,0,100],[1,0,0,0],0,0,0]];",
+        "  PERS zonedata zz:=[FALSE,30,45,45,4.5,45,4.5];",
+        *(
+            f"  CONST jointtarget p{k}:=[[0,{a},{b},0,0,0],{REST}];"
+            for k, (a, b) in enumerate(POINTS)
+        ),
+        "  PROC main()",
+        "    MoveAbsJ p0,v1000,fine,rod;",
+        "    {moves}",
+        "    MoveAbsJ p4,v1000,fine,rod;",
+        "  ENDPROC",
+        "ENDMODULE",
+        "",
+    )
+)
+MOVES = "MoveAbsJ p1,v1000,z10,rod; MoveAbsJ p2,v1000,zz,rod; MoveAbsJ p3,v1000,zz,rod;"
+
+Flyby = Callable[..., Result]
+
+
+@pytest.fixture
+def cell(tmp_path: Path) -> Path:
+    path = tmp_path / "cell.toml"
+    path.write_text(CELL, "utf-8")
+    return path
+
+
+def _program(folder: Path, moves: str = MOVES) -> Path:
+    path = folder / "m.mod"
+    path.write_bytes(HEAD.replace("{moves}", moves).encode())
+    return path
+
+
+def _zones(path: Path) -> list[float]:
+    program = find_vendor("abb").read_file(path, robot=find_robot(ROBOT))
+    return [getattr(move.zone, "tcp", 0.0) for move in program.moves]
+
+
+def test_a_table_and_no_file_unless_one_is_asked_for(flyby: Flyby, cell: Path, tmp_path: Path):
+    path = _program(tmp_path)
+    before = path.read_bytes()
+    result = flyby("zones", path, "--cell", cell)
+    assert result.exit_code == 0, result.output
+    assert "the rules for neighbouring points" in result.stdout
+    assert "cycle time" in result.stdout and "is proven" in result.stdout
+    assert "allowed to touch by the cell: J2 and J4" in result.stdout
+    assert "nothing was written" in result.stdout
+    assert path.read_bytes() == before
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["cell.toml", "m.mod"]
+
+
+def test_files_are_changed_in_place_or_in_a_folder(flyby: Flyby, cell: Path, tmp_path: Path):
+    path, out = _program(tmp_path), tmp_path / "new"
+    result = flyby("zones", path, "--cell", cell, "--out", out, "--json")
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    assert told["files"] == [str(out / "m.mod")] and told["proven"]
+    assert told["allowed"] == [["J2", "J4"]]
+    sizes = _zones(out / "m.mod")
+    assert sizes[1] > 0.19 and sizes[2] == sizes[3] > 0.17, "one datum, one zone"
+    assert [zone["move"] for zone in told["zones"]] == [2, 3, 4]
+    again = flyby("zones", path, "--cell", cell, "--out", out)
+    assert again.exit_code == 1 and "--force" in again.stderr
+    both = flyby("zones", path, "--cell", cell, "--out", out, "--in-place")
+    assert both.exit_code == 1 and "one place or the other" in both.stderr
+    assert flyby("zones", path, "--cell", cell, "--in-place").exit_code == 0
+    assert path.read_bytes() == (out / "m.mod").read_bytes()
+    assert path.read_bytes().startswith(b"MODULE m ! keep me\r\n")
+    third = flyby("zones", path, "--cell", cell, "--json")
+    assert json.loads(third.stdout)["files"] == []
+
+
+def test_own_data_part_what_the_text_has_in_one(flyby: Flyby, cell: Path, tmp_path: Path):
+    path = _program(tmp_path)
+    assert flyby("zones", path, "--cell", cell, "--own", "--in-place").exit_code == 0
+    sizes = _zones(path)
+    assert sizes[2] > sizes[3] > 0.17
+
+
+def test_predefined_zones_are_named_in_the_text(flyby: Flyby, cell: Path, tmp_path: Path):
+    path = _program(tmp_path, MOVES.replace("zz", "z1"))
+    words = ("zones", path, "--cell", cell, "--predefined", "--in-place")
+    assert flyby(*words).exit_code == 0
+    assert path.read_bytes().count(b"z150,rod") == 3
+    kuka = tmp_path / "kuka.toml"
+    kuka.write_text('robot = "kuka/kr30-3"\n', "utf-8")
+    source = tmp_path / "k.src"
+    source.write_text("DEF k()\nPTP {A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0}\nEND\n", "utf-8")
+    result = flyby("zones", source, "--cell", kuka, "--predefined")
+    assert result.exit_code == 1 and "has no predefined zones" in result.stderr
+
+
+def test_stops_are_freed_by_number_or_all(flyby: Flyby, cell: Path, tmp_path: Path):
+    moves = MOVES.replace("zz", "fine").replace("z10", "fine")
+    path = _program(tmp_path, moves)
+    refused = flyby("zones", path, "--cell", cell)
+    assert refused.exit_code == 1 and "stops at every point" in refused.stderr
+    assert flyby("zones", path, "--cell", cell, "--free", "3", "--in-place").exit_code == 0
+    assert [size > 0 for size in _zones(path)] == [False, False, True, False, False]
+    assert flyby("zones", path, "--cell", cell, "--free", "all", "--in-place").exit_code == 0
+    assert [size > 0 for size in _zones(path)] == [False, True, True, True, False]
+    for option, text, message in (
+        ("--free", "x", "the number of a move, or 'all'"),
+        ("--free", "9", "moves 1 to 5"),
+        ("--keep", "0", "moves 1 to 5"),
+    ):
+        result = flyby("zones", path, "--cell", cell, option, text)
+        assert result.exit_code == 1 and message in result.stderr
+
+
+def test_what_is_not_proven_is_not_written_unless_by_name(
+    flyby: Flyby, cell: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    import flyby.problems.zones.maximize as module
+
+    certify = module.certify
+
+    def doubtful(*args, **words):
+        return replace(certify(*args, **words), verdict=Verdict.UNPROVEN, message="in doubt")
+
+    monkeypatch.setattr(module, "certify", doubtful)
+    path = _program(tmp_path)
+    before = path.read_bytes()
+    result = flyby("zones", path, "--cell", cell, "--in-place")
+    assert result.exit_code == 1 and "in doubt" in result.stderr
+    assert path.read_bytes() == before
+    words = ("zones", path, "--cell", cell, "--in-place", "--unproven")
+    assert flyby(*words).exit_code == 1
+    assert path.read_bytes() != before
+
+
+def test_a_collision_is_told_with_its_line(flyby: Flyby, cell: Path, tmp_path: Path):
+    cell.write_text(CELL.replace("1200, 830", "1200, 930").replace("415", "465"), "utf-8")
+    result = flyby("zones", _program(tmp_path), "--cell", cell)
+    assert result.exit_code == 1
+    assert "m.mod:11:" in result.stderr and "move 3" in result.stderr
+    assert "rod and box overlap by up to" in result.stderr
