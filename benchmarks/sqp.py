@@ -1,6 +1,7 @@
 """The SQP solver beside IPOPT: CPU time, iterations, objective, violation.
 
-    python benchmarks/sqp.py [--json] [--case double-integrator-400] [--qp clarabel|osqp|piqp]
+    python benchmarks/sqp.py [--json] [--case double-integrator-400]
+                             [--qp clarabel|osqp|piqp|interior_point]
 
 Without ``--case``, those that take a few minutes together.
 
@@ -47,7 +48,7 @@ from ipopt import Ipopt, IpoptResult, warm_options
 from numpy.typing import NDArray
 from report import Figure, main
 
-from flyby.core.sqp import NLP, Result, solve
+from flyby.core.sqp import NLP, BackendKind, Result, solve
 from flyby.problems.textbook import (
     CUBIC_START,
     GARDEN,
@@ -332,7 +333,7 @@ def _measure(qp: str) -> Callable[[str], Iterator[Figure]]:
 def _qp_option() -> str:
     """Takes ``--qp`` out of the command line, whose rest all benchmarks share."""
     parser = argparse.ArgumentParser(add_help=False)
-    parser.add_argument("--qp", default="clarabel", choices=("clarabel", "osqp", "piqp"))
+    parser.add_argument("--qp", default="clarabel", choices=tuple(BackendKind))
     options, sys.argv[1:] = parser.parse_known_args()
     return str(options.qp)
 

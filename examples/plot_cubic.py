@@ -99,4 +99,6 @@ def levels(axes: Axes, function, values: FloatArray) -> None:  # type: ignore[no
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("usage: python examples/plot_cubic.py FILE.png")
     main(sys.argv[1])

@@ -80,4 +80,6 @@ def draw_error(axes: Axes, exact: float) -> None:
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("usage: python examples/plot_double_integrator.py FILE.png")
     main(sys.argv[1])

@@ -3,7 +3,8 @@
 After figures 3.5 and 3.6 of the thesis that `flyby.problems.textbook` names. Above: circles avoided
 at the nodes only, from the straight line (dotted): whatever the number of nodes, the wall is passed
 between two of them. Below: the thesis's remedy, a guess along a free way (dotted); and rows that
-hold all along each interval. A cross marks where the proof found the motion in a circle.
+hold all along each interval. "Proven free" is to a depth of 1e-4. A cross marks where the proof
+found the motion deeper in a circle.
 
 Run it as ``python examples/plot_point_mass.py docs/point_mass.png``.
 """
@@ -52,7 +53,9 @@ def main(file: str, counts: Sequence[int] = (20, 40, 100)) -> None:
         axes.plot(*problem.places(result.x).T, "o", color="tab:blue", ms=3)
         if not proof.free:
             axes.plot(*proof.place, "kx", ms=10, mew=2.5)
-        outcome = "proven free" if proof.free else f"hits, {-proof.clearance:.2g} deep"
+        outcome = (
+            f"proven free to {TOUCH:g}" if proof.free else f"hits, {-proof.clearance:.2g} deep"
+        )
         axes.set_title(f"{name}, n = {nodes}\nT = {result.objective:.3f}, {outcome}", fontsize=9)
         print(f"{name}, n = {nodes}: {result.status}, T = {result.objective:.4f}, {outcome}")
     figure.savefig(file, dpi=110)
@@ -72,4 +75,6 @@ def draw_scene(axes: Axes, scene: Scene) -> None:
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("usage: python examples/plot_point_mass.py FILE.png")
     main(sys.argv[1])

@@ -12,13 +12,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .arrays import BoolArray, FloatArray, IntArray
 from .linear import Definiteness
-from .matrices import IntArray, SparseMatrix, Sparsity
-from .nlp import FloatArray
-
-BoolArray = NDArray[np.bool_]
+from .matrices import SparseMatrix, Sparsity
 
 _SLACK = 1e-9
 """Share of a row's size by which a Hessian may fall short of being semidefinite."""
@@ -110,11 +107,11 @@ class Convexifier:
         """
         scale = H.largest()
         self.shift = 0.0
-        sizes = _sizes(H)
-        slack = _SLACK * np.where(sizes > 0, sizes, scale)
+        sums = _row_sums(H)
+        slack = _SLACK * np.where(sums > 0, sums, scale)
         P = self._plain.of(H, None, 0.0)
         if scale == 0.0 or self._plain.definite(self._plain.raised(P, slack)):
-            curved = bool((sizes > 0.0).all())
+            curved = bool((sums > 0.0).all())
             return ConvexModel(P, q, np.zeros(len(active.rows)), active, curved)
         for level in range(self._level, len(_WEIGHTS)):
             weights = _row_weights(J, active, _WEIGHTS[level] * scale)
@@ -123,7 +120,7 @@ class Convexifier:
                 self._level = level
                 return _model(P, q, J, weights, active)
         self._level = 0
-        return _model(self._raised(self._weighted, P, sizes), q, J, weights, active)
+        return _model(self._raised(self._weighted, P, sums), q, J, weights, active)
 
     def cautious(self, H: SparseMatrix, q: FloatArray, active: ActiveSet) -> ConvexModel:
         """A convex model by the diagonal alone, which expects nothing to be active: its step
@@ -134,7 +131,7 @@ class Convexifier:
             q: (n,) gradient of the objective.
             active: the guess that is not to count.
         """
-        P = self._raised(self._plain, self._plain.of(H, None, 0.0), _sizes(H))
+        P = self._raised(self._plain, self._plain.of(H, None, 0.0), _row_sums(H))
         return ConvexModel(P, q, np.zeros(len(active.rows)), active, False)
 
     def _of_active(
@@ -149,29 +146,29 @@ class Convexifier:
         diagonal = np.where(active.variables, weight, 0.0) + slack
         return self._weighted.of(H, J, diagonal, weights)
 
-    def _raised(self, total: _Sum, P: SparseMatrix, sizes: FloatArray) -> SparseMatrix:
+    def _raised(self, total: _Sum, P: SparseMatrix, sums: FloatArray) -> SparseMatrix:
         """P with a raised diagonal, each entry in proportion to the size of its row of H.
 
         A Hessian whose negative curvature sits in the coupling of one variable with many others (a
-        final time, say) would need a large multiple of the identity; of its rows' sizes a share
+        final time, say) would need a large multiple of the identity; of its rows' sums a share
         of one is always enough.
         """
         share = max(_FIRST_SHARE, self._last_share / _SHRINK)
         while True:
-            found = total.raised(P, share * sizes)
+            found = total.raised(P, share * sums)
             if share >= 1.0 or total.definite(found):
                 break
             share = min(1.0, share * _GROW)
         self._last_share = share
-        self.shift = share * float(sizes.max())
+        self.shift = share * float(sums.max())
         return found
 
 
-def _sizes(H: SparseMatrix) -> FloatArray:
+def _row_sums(H: SparseMatrix) -> FloatArray:
     """Sum of the sizes of each row's entries (n,)."""
-    sizes = np.zeros(H.shape[0])
-    np.add.at(sizes, H.pattern.rows, np.abs(H.data))
-    return sizes
+    sums = np.zeros(H.shape[0])
+    np.add.at(sums, H.pattern.rows, np.abs(H.data))
+    return sums
 
 
 def _row_weights(J: SparseMatrix, active: ActiveSet, weight: float) -> FloatArray:

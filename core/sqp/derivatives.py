@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import sparse
 
-from .nlp import NLP, FloatArray, Matrix, NlpError
+from .arrays import FloatArray, matrix, numbers, scalar, vector
+from .nlp import NLP
+from .options import start_point
 
 _STEP = 6e-6
 """About the cube root of the rounding unit: best for central differences."""
+_LEAST_SIZE = 1e-3
+"""Share of a value below which its derivatives count as small: differences of rounded values
+scatter so much."""
+
+Function = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +30,8 @@ class Mismatch:
         row, column: of the entry; a gradient has row 0.
         claimed: by the callable.
         differences: of the values.
-        error: their difference, relative to the larger of the two and 1.
+        error: their difference, relative to the largest entry of the row, claimed or by
+            differences; but at least to 1e-3 of the value that is differentiated, or 1e-3.
     """
 
     derivative: str
@@ -62,82 +70,111 @@ class DerivativeCheck:
 
 
 def check_derivatives(nlp: NLP, x: ArrayLike, tolerance: float = 1e-5) -> DerivativeCheck:
-    """Hold every derivative of a problem at x (n,) against central differences.
+    """Hold every derivative of a problem at x (n,) against differences of second order.
 
-    The Hessian is checked for the objective and all constraints together, with multipliers between
-    1 and 2.
+    x is moved into the bounds, and differences stay within them. A variable that they fix is left
+    out. The Hessian is checked for the objective and all constraints together, with multipliers
+    between 1 and 2.
 
     Raises:
-        NlpError: x has the wrong size.
+        NlpError: x is no point, or a callable gives what `solve` would not take.
     """
-    at = np.array(x, dtype=np.float64)
-    if at.shape != (nlp.n,):
-        raise NlpError(f"x has shape {at.shape}, expected ({nlp.n},)")
-    found: list[Mismatch] = []
+    x_lower, x_upper, *_ = nlp.bounds
+    differences = _Differences(np.clip(start_point("x", nlp, x), x_lower, x_upper), nlp)
+    return DerivativeCheck(tuple(_checks(nlp, differences)), scalar("tolerance", tolerance))
+
+
+def _checks(nlp: NLP, differences: _Differences) -> Iterator[Mismatch]:
+    """The worst entry of each derivative."""
+    at, n, m = differences.at, nlp.n, nlp.m
     objective, gradient = nlp.objective, nlp.gradient
     if objective is not None and gradient is not None:
-        slope = _differences(lambda p: np.array([float(objective(p))]), at)
-        found.append(_worst("gradient", np.atleast_2d(gradient(at)), slope))
-    pairs = (
-        ("jacobian", nlp.constraints, nlp.jacobian),
-        ("residual_jacobian", nlp.residuals, nlp.residual_jacobian),
-    )
-    for name, values, derivative in pairs:
-        if values is not None and derivative is not None:
-            found.append(_worst(name, _dense(derivative(at)), _differences(values, at)))
+        claimed = vector("gradient", gradient(at.copy()), n)[None, :]
+        yield differences.worst("gradient", claimed, lambda p: _one(objective(p)))
+    constraints, jacobian = nlp.constraints, nlp.jacobian
+    if constraints is not None and jacobian is not None:
+        claimed = _dense("jacobian", jacobian(at.copy()), (m, n))
+        yield differences.worst(
+            "jacobian", claimed, lambda p: vector("constraints", constraints(p), m)
+        )
+    residuals, slopes = nlp.residuals, nlp.residual_jacobian
+    if residuals is not None and slopes is not None:
+        size = numbers("residuals", residuals(at.copy())).size
+        claimed = _dense("residual_jacobian", slopes(at.copy()), (size, n))
+        yield differences.worst(
+            "residual_jacobian", claimed, lambda p: vector("residuals", residuals(p), size)
+        )
     if nlp.hessian is not None:
-        found.append(_worst("hessian", *_hessians(nlp, at)))
-    return DerivativeCheck(tuple(found), tolerance)
+        factor, multipliers = 1.5, 1.0 + np.arange(m) / max(1, m)
+        claimed = _dense("hessian", nlp.hessian(at.copy(), factor, multipliers), (n, n))
+        yield differences.worst("hessian", claimed, _slope(nlp, factor, multipliers.copy()))
 
 
-def _hessians(nlp: NLP, at: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The Lagrangian's Hessian as claimed, and by differences of its gradient."""
-    multipliers = 1.0 + np.arange(nlp.m) / max(1, nlp.m)
-    factor = 1.5
+def _slope(nlp: NLP, factor: float, multipliers: FloatArray) -> Function:
+    """The gradient of the Lagrangian, as the problem's own derivatives have it."""
 
     def slope(x: FloatArray) -> FloatArray:
         total = np.zeros(nlp.n)
         if nlp.gradient is not None:
-            total = total + factor * np.asarray(nlp.gradient(x), dtype=np.float64)
+            total = total + factor * vector("gradient", nlp.gradient(x.copy()), nlp.n)
         if nlp.jacobian is not None:
-            total = total + _dense(nlp.jacobian(x)).T @ multipliers
+            J = _dense("jacobian", nlp.jacobian(x.copy()), (nlp.m, nlp.n))
+            total = total + J.T @ multipliers
         return total
 
-    assert nlp.hessian is not None
-    return _dense(nlp.hessian(at, factor, multipliers)), _differences(slope, at)
+    return slope
 
 
-def _differences(function, at: FloatArray) -> FloatArray:  # type: ignore[no-untyped-def]
-    """Central differences (k, n) of a function into (k,)."""
-    columns = []
-    for j in range(len(at)):
-        step = _STEP * max(1.0, abs(float(at[j])))
-        ahead, behind = at.copy(), at.copy()
-        ahead[j] += step
-        behind[j] -= step
-        change = np.array(function(ahead), dtype=np.float64) - np.array(function(behind))
-        columns.append(change / (ahead[j] - behind[j]))
-    return np.array(columns).T
+class _Differences:
+    """Differences at a point that stay within bounds.
+
+    Args:
+        at: (n,) within the bounds.
+        nlp: whose bounds.
+    """
+
+    def __init__(self, at: FloatArray, nlp: NLP) -> None:
+        self.at = at
+        self._lower, self._upper, *_ = nlp.bounds
+
+    def worst(self, name: str, claimed: FloatArray, function: Function) -> Mismatch:
+        """The worst entry of a derivative (k, n) of a function into (k,)."""
+        value = function(self.at.copy())
+        found = claimed.copy()  # of variables that cannot move
+        for j in np.flatnonzero(self._upper > self._lower):
+            found[:, j] = self._column(function, value, int(j))
+        rows = np.maximum(np.abs(claimed), np.abs(found)).max(axis=1, initial=0.0)
+        size = np.maximum(rows, _LEAST_SIZE * np.maximum(1.0, np.abs(value)))
+        error = np.abs(claimed - found) / size[:, None]
+        error = np.where(np.isnan(error), np.inf, error)
+        row, column = (int(i) for i in np.unravel_index(int(np.argmax(error)), error.shape))
+        at = row, column
+        return Mismatch(name, row, column, float(claimed[at]), float(found[at]), float(error[at]))
+
+    def _column(self, function: Function, value: FloatArray, j: int) -> FloatArray:
+        """The derivative (k,) by one variable: central, or from one side near a bound."""
+        x = float(self.at[j])
+        step = _STEP * max(1.0, abs(x))
+        above, below = self._upper[j] - x, x - self._lower[j]
+        if above >= step and below >= step:
+            ahead, behind = self._moved(j, step), self._moved(j, -step)
+            change = function(ahead) - function(behind)
+            return np.asarray(change / (ahead[j] - behind[j]))
+        side = min(step, 0.5 * above) if above >= below else -min(step, 0.5 * below)
+        near, far = self._moved(j, side), self._moved(j, 2.0 * side)
+        change = 4.0 * (function(near) - value) - (function(far) - value)
+        return np.asarray(change / (2.0 * (near[j] - x)))
+
+    def _moved(self, j: int, step: float) -> FloatArray:
+        x = self.at.copy()
+        x[j] += step
+        return x
 
 
-def _dense(matrix: Matrix) -> FloatArray:
-    if isinstance(matrix, sparse.sparray | sparse.spmatrix):
-        return np.array(sparse.csc_array(matrix, dtype=np.float64).toarray())
-    return np.array(matrix, dtype=np.float64)
+def _one(value: object) -> FloatArray:
+    return np.array([scalar("objective", value)])
 
 
-def _worst(name: str, claimed: FloatArray, differences: FloatArray) -> Mismatch:
-    if claimed.shape != differences.shape:
-        raise NlpError(f"{name} gave shape {claimed.shape}, expected {differences.shape}")
-    size = np.maximum(1.0, np.maximum(np.abs(claimed), np.abs(differences)))
-    error = np.abs(claimed - differences) / size
-    error = np.where(np.isnan(error), np.inf, error)
-    row, column = (int(i) for i in np.unravel_index(int(np.argmax(error)), error.shape))
-    return Mismatch(
-        name,
-        row,
-        column,
-        float(claimed[row, column]),
-        float(differences[row, column]),
-        float(error[row, column]),
-    )
+def _dense(name: str, value: object, shape: tuple[int, int]) -> FloatArray:
+    found = matrix(name, value, shape)
+    return found if isinstance(found, np.ndarray) else found.toarray()

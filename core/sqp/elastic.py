@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from .matrices import SparseMatrix, Sparsity
-from .nlp import FloatArray
 from .qp.problem import QpSolution, QpStatus, QuadraticProgram
 from .qp.subproblems import Subproblems
 
@@ -56,8 +55,3 @@ class Elastic:
         rows = np.concatenate([A.rows, slacks, slacks])
         starts = np.concatenate([A.starts, A.size + 1 + np.arange(2 * m)])
         self._whole_A = Sparsity((m, n + 2 * m), rows, starts)
-
-
-def violation(value: FloatArray, lower: FloatArray, upper: FloatArray) -> float:
-    """Sum of the violations of ``lower ≤ value ≤ upper``."""
-    return float(np.maximum(np.maximum(lower - value, value - upper), 0.0).sum())

@@ -10,19 +10,18 @@ from typing import TypeVar
 import numpy as np
 from scipy import sparse
 
+from .arrays import FloatArray, matrix, numbers, scalar, vector
+from .errors import CallableError, NlpError
 from .matrices import SparseMatrix, empty
-from .nlp import NLP, FloatArray, NlpError
+from .nlp import NLP
 from .patterns import Pattern
+from .symmetry import Symmetry
 
 GRADIENT_SIZE = 100.0
 """Functions are scaled down so that no gradient entry at the start is larger (Wächter and Biegler,
 "On the implementation of an interior-point filter line-search algorithm", section 3.8)."""
 _LEAST_FACTOR = 1e-8
 T = TypeVar("T")
-
-
-class CallableError(ArithmeticError):
-    """A callable gave NaN or infinity; the message names it."""
 
 
 @dataclass(slots=True)
@@ -67,6 +66,8 @@ class Evaluation:
         self.hessian_pattern = hessian
         self._residuals: tuple[bytes, FloatArray] | None = None
         self._residual_jacobian: tuple[bytes, sparse.csc_array] | None = None
+        self._symmetry = Symmetry()
+        self._have_given: set[str] = set()
         self._plain = True
 
     def scale(self, point: Point) -> None:
@@ -116,12 +117,24 @@ class Evaluation:
         Raises:
             CallableError: an entry is not finite.
         """
+        return self._hessian_at(x, self.objective_factor, multipliers)
+
+    def constraint_hessian(self, x: FloatArray, multipliers: FloatArray) -> SparseMatrix:
+        """Hessian of multipliers·c, both scaled.
+
+        Raises:
+            CallableError: an entry is not finite.
+        """
+        return self._hessian_at(x, 0.0, multipliers)
+
+    def _hessian_at(self, x: FloatArray, factor: float, multipliers: FloatArray) -> SparseMatrix:
         hessian = self.nlp.hessian
         assert hessian is not None
-        factors = multipliers * self.constraint_factors
-        value = self._call("hessian", lambda: hessian(x, self.objective_factor, factors))
+        given, factors = x.copy(), multipliers * self.constraint_factors
+        value = self._call("hessian", lambda: hessian(given, factor, factors))
         found = self.hessian_pattern.array(value)
-        _check_finite("hessian", found.data, x)
+        self._check_finite("hessian", found.data)
+        self._symmetry.check("hessian", found)
         return found
 
     def residual_hessian(self, x: FloatArray) -> sparse.csc_array:
@@ -135,37 +148,29 @@ class Evaluation:
         if self.nlp.residuals is not None:
             r = self._residuals_at(x)
             return 0.5 * float(r @ r)
-        objective = self.nlp.objective
-        if objective is None:
+        if self.nlp.objective is None:
             return 0.0
-        value = self._call("objective", lambda: objective(x))
-        array = np.asarray(value, dtype=np.float64)
-        if array.size != 1:
-            raise NlpError(f"objective gave shape {array.shape}, expected one number")
-        number = float(array.reshape(()))
-        _check_finite("objective", np.array([number]), x)
+        number = scalar("objective", self._at("objective", self.nlp.objective, x))
+        self._check_finite("objective", np.array([number]))
         return number
 
     def _gradient(self, x: FloatArray) -> FloatArray:
         if self.nlp.residuals is not None:
             return np.asarray(self._residual_jacobian_at(x).T @ self._residuals_at(x))
-        gradient = self.nlp.gradient
-        if gradient is None:
+        if self.nlp.gradient is None:
             return np.zeros(self.nlp.n)
-        return self._vector("gradient", lambda: gradient(x), self.nlp.n, x)
+        return self._vector_at("gradient", self.nlp.gradient, self.nlp.n, x)
 
     def _constraints(self, x: FloatArray) -> FloatArray:
-        constraints = self.nlp.constraints
-        if constraints is None:
+        if self.nlp.constraints is None:
             return np.zeros(0)
-        return self._vector("constraints", lambda: constraints(x), self.nlp.m, x)
+        return self._vector_at("constraints", self.nlp.constraints, self.nlp.m, x)
 
     def _jacobian_at(self, x: FloatArray) -> SparseMatrix:
-        jacobian = self.nlp.jacobian
-        if jacobian is None:
+        if self.nlp.jacobian is None:
             return empty(self.nlp.n)
-        found = self._jacobian.array(self._call("jacobian", lambda: jacobian(x)))
-        _check_finite("jacobian", found.data, x)
+        found = self._jacobian.array(self._at("jacobian", self.nlp.jacobian, x))
+        self._check_finite("jacobian", found.data)
         return found
 
     def _residuals_at(self, x: FloatArray) -> FloatArray:
@@ -173,11 +178,11 @@ class Evaluation:
         assert residuals is not None
         key = x.tobytes()
         if self._residuals is None or self._residuals[0] != key:
-            value = np.asarray(self._call("residuals", lambda: residuals(x)), dtype=np.float64)
+            value = numbers("residuals", self._at("residuals", residuals, x))
             if value.ndim != 1:
                 raise NlpError(f"residuals gave shape {value.shape}, expected one dimension")
-            _check_finite("residuals", value, x)
-            self._residuals = key, value.copy()
+            self._check_finite("residuals", value)
+            self._residuals = key, value
         return self._residuals[1]
 
     def _residual_jacobian_at(self, x: FloatArray) -> sparse.csc_array:
@@ -185,51 +190,58 @@ class Evaluation:
         assert jacobian is not None
         key = x.tobytes()
         if self._residual_jacobian is None or self._residual_jacobian[0] != key:
-            value = sparse.csc_array(
-                self._call("residual_jacobian", lambda: jacobian(x)), dtype=np.float64, copy=True
-            )
-            expected = (len(self._residuals_at(x)), self.nlp.n)
-            if value.shape != expected:
-                raise NlpError(f"residual_jacobian gave shape {value.shape}, expected {expected}")
-            _check_finite("residual_jacobian", value.data, x)
-            self._residual_jacobian = key, value
+            shape = (len(self._residuals_at(x)), self.nlp.n)
+            value = self._at("residual_jacobian", jacobian, x)
+            found = sparse.csc_array(matrix("residual_jacobian", value, shape))
+            self._check_finite("residual_jacobian", found.data)
+            self._residual_jacobian = key, found
         return self._residual_jacobian[1]
 
-    def _vector(
-        self, name: str, function: Callable[[], object], size: int, x: FloatArray
+    def _vector_at(
+        self, name: str, function: Callable[[FloatArray], object], size: int, x: FloatArray
     ) -> FloatArray:
-        value = np.asarray(self._call(name, function), dtype=np.float64)
-        if value.shape != (size,):
-            if value.size != size or value.ndim > 2:
-                raise NlpError(f"{name} gave shape {value.shape}, expected ({size},)")
-            value = value.reshape(size)
-        _check_finite(name, value, x)
-        return value.copy()  # a callable may fill one array again and again
+        value = vector(name, self._at(name, function, x), size)
+        self._check_finite(name, value)
+        return value
+
+    def _at(self, name: str, function: Callable[[FloatArray], T], x: FloatArray) -> T:
+        """What a callable gives at x, of which it gets a copy that it may do with as it likes."""
+        given = x.copy()
+        return self._call(name, lambda: function(given))
 
     def _call(self, name: str, function: Callable[[], T]) -> T:
+        """What a callable gives.
+
+        Raises:
+            CallableError: it raised an error of arithmetic or, having given values before, one that
+                tells of a value without meaning. Others pass, as those of a first call do: they
+                are rather mistakes than points outside of a function's domain.
+        """
         self.counts[name] = self.counts.get(name, 0) + 1
         begin = time.perf_counter()
         try:
             with np.errstate(all="ignore"):
                 return function()
-        except (FloatingPointError, ZeroDivisionError, OverflowError, ValueError) as error:
-            if isinstance(error, NlpError):
-                raise
-            if isinstance(error, ValueError) and "math domain" not in str(error):
+        except NlpError:
+            raise
+        except ArithmeticError as error:
+            raise CallableError(f"{name} has no value: {error}") from error
+        except ValueError as error:  # LinAlgError is one
+            if name not in self._have_given:
                 raise
             raise CallableError(f"{name} has no value: {error}") from error
         finally:
             self.seconds += time.perf_counter() - begin
 
+    def _check_finite(self, name: str, values: FloatArray) -> None:
+        self._have_given.add(name)
+        if np.isfinite(values.sum()):  # one pass where nothing is wrong
+            return
+        bad = np.flatnonzero(~np.isfinite(values))
+        if len(bad):
+            raise CallableError(f"{name} gave {values[bad[0]]} (entry {int(bad[0])})")
+
     def _scaled_rows(self, J: SparseMatrix) -> SparseMatrix:
         if self._plain or not self.nlp.m:
             return J
         return SparseMatrix(J.pattern, J.data * self.constraint_factors[J.pattern.rows])
-
-
-def _check_finite(name: str, values: FloatArray, x: FloatArray) -> None:
-    if np.isfinite(values.sum()):  # one pass where nothing is wrong
-        return
-    bad = np.flatnonzero(~np.isfinite(values))
-    if len(bad):
-        raise CallableError(f"{name} gave {values[bad[0]]} (entry {int(bad[0])})")

@@ -7,6 +7,7 @@ condition and constants after Wächter and Biegler (2005, 2006).
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import log
 
 GAMMA_VIOLATION = 1e-5
 GAMMA_OBJECTIVE = 1e-5
@@ -67,10 +68,17 @@ class Filter:
         if not self.admits(v_new, f_new):
             return None
         slack = _ROUNDING * max(1.0, abs(f))
-        descends = slope < 0 and (length * (-slope) ** SWITCH_OBJECTIVE > v**SWITCH_VIOLATION)
+        descends = slope < 0 and _outweighs(length, -slope, v)
         if descends and v <= self.small:
             return True if f_new - f - slack <= ARMIJO * length * slope else None
         better = v > NO_VIOLATION and v_new <= (1.0 - GAMMA_VIOLATION) * v
         if better or f_new - slack <= f - GAMMA_OBJECTIVE * v:
             return False
         return None
+
+
+def _outweighs(length: float, fall: float, violation: float) -> bool:
+    """The switching condition, length fall^2.3 > violation^1.1, whose powers may overflow."""
+    if violation == 0.0:
+        return True
+    return log(length) + SWITCH_OBJECTIVE * log(fall) > SWITCH_VIOLATION * log(violation)

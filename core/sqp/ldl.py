@@ -7,6 +7,8 @@ are done once.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -19,6 +21,27 @@ IntArray = NDArray[np.int64]
 _LEAST_PIVOT = 1e-300
 
 
+class Factors(NamedTuple):
+    """A factorisation as compiled code takes it; `factorise` overwrites the last three.
+
+    Args:
+        order: (n,) the variable that is eliminated first, second, …
+        starts, rows: (n + 1,), (k,) the permuted upper triangle by columns.
+        parents: (n,) elimination tree.
+        l_starts, l_rows, l_data: (n + 1,), (e,), (e,) L by columns, without its diagonal.
+        inverses: (n,) reciprocal pivots.
+    """
+
+    order: IntArray
+    starts: IntArray
+    rows: IntArray
+    parents: IntArray
+    l_starts: IntArray
+    l_rows: IntArray
+    l_data: FloatArray
+    inverses: FloatArray
+
+
 class Ldl:
     """Factorisations of matrices (n, n) that have entries at the same places.
 
@@ -29,46 +52,39 @@ class Ldl:
 
     Attributes:
         positive: number of positive pivots of the last factorisation.
+        factors: the last factorisation.
+        places: (k,) where each entry goes in the data that `factorise` takes.
     """
 
     def __init__(self, n: int, rows: IntArray, columns: IntArray) -> None:
         self.positive = 0
-        self._order = _ordering(n, rows, columns)
+        order = _ordering(n, rows, columns)
         inverse = np.empty(n, dtype=np.int64)
-        inverse[self._order] = np.arange(n)
+        inverse[order] = np.arange(n)
         first, second = inverse[rows], inverse[columns]
         upper, right = np.minimum(first, second), np.maximum(first, second)
         self._take = np.lexsort((upper, right))
-        self._rows = upper[self._take]
-        self._starts = np.searchsorted(right[self._take], np.arange(n + 1)).astype(np.int64)
-        self._parents, counts = _tree(n, self._starts, self._rows)
-        self._l_starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
-        entries = int(self._l_starts[-1])
-        self._l_rows = np.zeros(entries, dtype=np.int64)
-        self._l_data = np.zeros(entries)
-        self._pivots = np.ones(n)
+        self.places: IntArray = np.empty(len(rows), dtype=np.int64)
+        self.places[self._take] = np.arange(len(rows))
+        inner = upper[self._take]
+        starts = np.searchsorted(right[self._take], np.arange(n + 1)).astype(np.int64)
+        parents, counts = _tree(n, starts, inner)
+        l_starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+        entries = int(l_starts[-1])
+        l_rows = np.zeros(entries, dtype=np.int64)
+        self.factors = Factors(
+            order, starts, inner, parents, l_starts, l_rows, np.zeros(entries), np.ones(n)
+        )
 
     def factorise(self, data: FloatArray) -> bool:
         """Factorise the matrix with these entries (k,); False if a pivot is zero or not finite."""
-        found = _factorise(
-            self._starts,
-            self._rows,
-            data[self._take],
-            self._parents,
-            self._l_starts,
-            self._l_rows,
-            self._l_data,
-            self._pivots,
-        )
-        self.positive = int(found)
+        self.positive = int(factorise(self.factors, data[self._take]))
         return self.positive >= 0
 
     def solve(self, right: FloatArray) -> FloatArray:
         """The solution (n,) of the system factorised last."""
-        inner = right[self._order]
-        _substitute(self._l_starts, self._l_rows, self._l_data, self._pivots, inner)
-        found = np.empty_like(inner)
-        found[self._order] = inner
+        found = np.empty_like(right)
+        substitute(self.factors, right, found, np.empty_like(right))
         return found
 
 
@@ -108,18 +124,17 @@ def _tree(n: int, starts: IntArray, rows: IntArray) -> tuple[IntArray, IntArray]
 
 
 @njit(cache=True, error_model="numpy")
-def _factorise(
-    starts: IntArray,
-    rows: IntArray,
-    data: FloatArray,
-    parents: IntArray,
-    l_starts: IntArray,
-    l_rows: IntArray,
-    l_data: FloatArray,
-    pivots: FloatArray,
-) -> int:
-    """Fill L and the pivots; the number of positive pivots, -1 where one is zero or not finite."""
-    n = len(pivots)
+def factorise(factors: Factors, data: FloatArray) -> int:
+    """Fill L and the pivots; the number of positive pivots, -1 where one is zero or not finite.
+
+    Args:
+        factors: of the pattern.
+        data: (k,) the permuted upper triangle's entries by columns.
+    """
+    starts, rows, parents = factors.starts, factors.rows, factors.parents
+    l_starts, l_rows, l_data = factors.l_starts, factors.l_rows, factors.l_data
+    inverses = factors.inverses
+    n = len(inverses)
     row = np.zeros(n)
     filled = l_starts[:-1].copy()
     seen = np.full(n, -1, dtype=np.int64)
@@ -152,33 +167,41 @@ def _factorise(
             row[i] = 0.0
             for p in range(l_starts[i], filled[i]):
                 row[l_rows[p]] -= l_data[p] * value
-            share = value / pivots[i]
+            share = value / inverses[i]
             pivot -= share * value
             l_rows[filled[i]] = j
             l_data[filled[i]] = share
             filled[i] += 1
         if not (abs(pivot) > _LEAST_PIVOT and np.isfinite(pivot)):
             return -1
-        pivots[j] = pivot
+        inverses[j] = pivot
         if pivot > 0.0:
             positive += 1
     return positive
 
 
 @njit(cache=True, error_model="numpy")
-def _substitute(
-    starts: IntArray, rows: IntArray, data: FloatArray, pivots: FloatArray, x: FloatArray
-) -> None:
-    """Solve L D Lᵀ x = x in place."""
-    n = len(pivots)
+def substitute(factors: Factors, right: FloatArray, found: FloatArray, work: FloatArray) -> None:
+    """Solve the system factorised last.
+
+    Args:
+        factors: of the matrix.
+        right: (n,).
+        found: (n,) the solution is written there; may be ``right`` itself.
+        work: (n,) overwritten.
+    """
+    order, starts, rows, data = factors.order, factors.l_starts, factors.l_rows, factors.l_data
+    inverses = factors.inverses
+    n = len(order)
     for j in range(n):
-        value = x[j]
+        work[j] = right[order[j]]
+    for j in range(n):
+        value = work[j]
         for k in range(starts[j], starts[j + 1]):
-            x[rows[k]] -= data[k] * value
-    for j in range(n):
-        x[j] /= pivots[j]
+            work[rows[k]] -= data[k] * value
     for j in range(n - 1, -1, -1):
-        value = x[j]
+        value = work[j] / inverses[j]
         for k in range(starts[j], starts[j + 1]):
-            value -= data[k] * x[rows[k]]
-        x[j] = value
+            value -= data[k] * work[rows[k]]
+        work[j] = value
+        found[order[j]] = value

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from .ldl import Ldl
+from .ldl import Factors, Ldl, factorise, substitute
 from .matrices import FloatArray, IntArray, SparseMatrix, Sparsity
 
 BoolArray = NDArray[np.bool_]
@@ -13,6 +16,7 @@ BoolArray = NDArray[np.bool_]
 _REGULARISATION = 1e-9
 _REFINEMENTS = 4
 _EXACT = 1e-13
+_KEPT = 3
 
 
 class Definiteness:
@@ -34,16 +38,76 @@ class Definiteness:
         )
 
 
+class Places(NamedTuple):
+    """Where entries of [P, Aᵀ; A, D] go in the data that `factorise` takes.
+
+    Args:
+        P: (entries of P,) of the upper triangle without its diagonal; -1 elsewhere.
+        A: (entries of A,).
+        diagonal: (n + m,) of the whole.
+    """
+
+    P: IntArray
+    A: IntArray
+    diagonal: IntArray
+
+
+class SaddlePattern:
+    """What is worked out once for matrices [P, Aᵀ; A, D] of two patterns.
+
+    Args:
+        P: (n, n), both triangles.
+        A: (m, n).
+
+    Attributes:
+        factors: of the last such matrix.
+        places: where entries go.
+    """
+
+    def __init__(self, P: Sparsity, A: Sparsity) -> None:
+        self._P, self._A = P, A
+        m, n = A.shape
+        upper = np.flatnonzero(P.rows < P.columns)
+        diagonal = np.arange(n + m)
+        rows = np.concatenate([P.rows[upper], A.columns, diagonal])
+        columns = np.concatenate([P.columns[upper], A.rows + n, diagonal])
+        ldl = Ldl(n + m, rows, columns)
+        self.factors = ldl.factors
+        ends = np.cumsum([len(upper), A.size])
+        of_P, of_A, of_diagonal = np.split(ldl.places, ends)
+        places = np.full(P.size, -1)
+        places[upper] = of_P
+        self.places = Places(places, of_A, of_diagonal)
+
+    def is_of(self, P: Sparsity, A: Sparsity) -> bool:
+        """Whether it is of these patterns."""
+        return self._P is P and self._A is A
+
+
+class SaddlePatterns:
+    """The patterns used last: those of subproblems, of elastic ones and of restoration."""
+
+    def __init__(self) -> None:
+        self._known: list[SaddlePattern] = []
+
+    def of(self, P: Sparsity, A: Sparsity) -> SaddlePattern:
+        """What belongs to these patterns."""
+        for known in self._known:
+            if known.is_of(P, A):
+                return known
+        self._known = [SaddlePattern(P, A), *self._known[: _KEPT - 1]]
+        return self._known[0]
+
+
 class Saddle:
-    """Solves equality-constrained quadratic programs of one pattern.
+    """Solves equality-constrained quadratic programs.
 
     Rows and variables that do not take part are switched off in place, so that the pattern, and
     with it the symbolic factorisation, stays.
     """
 
     def __init__(self) -> None:
-        self._P: Sparsity | None = None
-        self._A: Sparsity | None = None
+        self._patterns = SaddlePatterns()
 
     def solve(
         self,
@@ -70,61 +134,149 @@ class Saddle:
             d (n,) and the multipliers of the rows (m,), zero on inactive ones; None if the
             factorisation breaks down.
         """
-        if self._P is not P.pattern or self._A is not A.pattern:
-            self._remember(P.pattern, A.pattern)
+        pattern = self._patterns.of(P.pattern, A.pattern)
+        matrices = _Matrices(
+            P.pattern.starts,
+            P.pattern.rows,
+            P.data.copy(),
+            A.pattern.starts,
+            A.pattern.rows,
+            A.data.copy(),
+        )
         n = len(q)
-        pinned = np.where(fixed, values, 0.0)
-        free = (~fixed).astype(np.float64)
-        active = rows.astype(np.float64)
-        p = SparseMatrix(P.pattern, P.data * free[P.pattern.rows] * free[P.pattern.columns])
-        a = SparseMatrix(A.pattern, A.data * active[A.pattern.rows] * free[A.pattern.columns])
-        upper = pinned - free * (q + P @ pinned)
-        lower = active * (np.where(rows, target, 0.0) - A @ pinned)
-        delta = _REGULARISATION * max(1.0, P.largest())
-        exact = np.concatenate([1.0 - free, active - 1.0])
-        diagonal = exact + np.concatenate([free * delta, -active * delta])
-        diagonal[self._p_rows] += p.data[self._p_diagonal]
-        data = np.concatenate([p.data[self._p_upper], a.data, diagonal])
-        if not self._ldl.factorise(data):
-            return None
-
-        def times(b: FloatArray) -> FloatArray:
-            found = exact * b
-            found[:n] += p @ b[:n] + a.transposed_times(b[n:])
-            found[n:] += a @ b[:n]
-            return found
-
-        found = _refined(times, self._ldl.solve, np.concatenate([upper, lower]))
-        return None if found is None else (found[:n], found[n:])
-
-    def _remember(self, P: Sparsity, A: Sparsity) -> None:
-        """Where the entries of P and A go in the upper triangle of the whole matrix."""
-        self._P, self._A = P, A
-        m, n = A.shape
-        self._p_upper: IntArray = np.flatnonzero(P.rows < P.columns)
-        self._p_diagonal: IntArray = np.flatnonzero(P.rows == P.columns)
-        self._p_rows: IntArray = P.rows[self._p_diagonal]
-        diagonal = np.arange(n + m)
-        rows = np.concatenate([P.rows[self._p_upper], A.columns, diagonal])
-        columns = np.concatenate([P.columns[self._p_upper], A.rows + n, diagonal])
-        self._ldl = Ldl(n + m, rows, columns)
+        right = np.concatenate([q, target])
+        active = np.concatenate([~fixed, rows])
+        found = np.zeros(n + len(target))
+        solved = _solve(matrices, pattern.factors, pattern.places, right, active, values, found)
+        return (found[:n], found[n:]) if solved else None
 
 
-def _refined(times, solve, right: FloatArray) -> FloatArray | None:  # type: ignore[no-untyped-def]
-    """The solution of the exact system by those of the shifted one."""
-    found = solve(right)
-    error = right - times(found)
-    size = float(np.abs(error).max(initial=0.0))
-    enough = _EXACT * max(1.0, float(np.abs(right).max(initial=0.0)))
-    for _ in range(_REFINEMENTS):
-        if not np.isfinite(size):
-            return None
+class _Matrices(NamedTuple):
+    """P and A by columns."""
+
+    P_starts: IntArray
+    P_rows: IntArray
+    P: FloatArray
+    A_starts: IntArray
+    A_rows: IntArray
+    A: FloatArray
+
+
+@njit(cache=True, error_model="numpy")
+def _solve(
+    matrices: _Matrices,
+    factors: Factors,
+    places: Places,
+    right: FloatArray,
+    active: BoolArray,
+    values: FloatArray,
+    found: FloatArray,
+) -> bool:
+    """See `Saddle.solve`; works in place.
+
+    Args:
+        matrices: overwritten.
+        factors, places: of their pattern.
+        right: (n + m,) q and the rows' targets; overwritten.
+        active: (n + m,) free variables and active rows.
+        values: (n,) of the variables that are not free.
+        found: (n + m,) the solution is written there.
+    """
+    n = len(values)
+    largest = 1.0
+    for k in range(len(matrices.P)):
+        largest = max(largest, abs(matrices.P[k]))
+    delta = _REGULARISATION * largest
+    _switch_off(matrices, right, active, values)
+    exact = np.where(active, 0.0, 1.0)
+    data = np.zeros(len(factors.rows))
+    for i in range(len(exact)):
+        if i >= n:
+            exact[i] = -exact[i]
+        shift = delta if i < n else -delta
+        data[places.diagonal[i]] = exact[i] + (shift if active[i] else 0.0)
+    for j in range(n):
+        for k in range(matrices.P_starts[j], matrices.P_starts[j + 1]):
+            if places.P[k] >= 0:
+                data[places.P[k]] = matrices.P[k]
+            elif matrices.P_rows[k] == j:
+                data[places.diagonal[j]] += matrices.P[k]
+    for k in range(len(matrices.A)):
+        data[places.A[k]] = matrices.A[k]
+    if factorise(factors, data) < 0:
+        return False
+    return bool(_refined(matrices, factors, exact, right, found))
+
+
+@njit(cache=True, error_model="numpy")
+def _switch_off(
+    matrices: _Matrices, right: FloatArray, active: BoolArray, values: FloatArray
+) -> None:
+    """Take what is not active out of the matrices; q and targets become the right side."""
+    n = len(values)
+    taken = np.zeros(len(right))
+    for j in range(n):
+        value = 0.0 if active[j] else values[j]
+        for k in range(matrices.P_starts[j], matrices.P_starts[j + 1]):
+            i = matrices.P_rows[k]
+            taken[i] += matrices.P[k] * value
+            if not (active[i] and active[j]):
+                matrices.P[k] = 0.0
+        for k in range(matrices.A_starts[j], matrices.A_starts[j + 1]):
+            i = n + matrices.A_rows[k]
+            taken[i] += matrices.A[k] * value
+            if not (active[i] and active[j]):
+                matrices.A[k] = 0.0
+    for j in range(n):
+        right[j] = -(right[j] + taken[j]) if active[j] else values[j]
+    for i in range(n, len(right)):
+        right[i] = right[i] - taken[i] if active[i] else 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def _refined(
+    matrices: _Matrices, factors: Factors, exact: FloatArray, right: FloatArray, found: FloatArray
+) -> bool:
+    """The solution of the exact system by those of the shifted one; False if it is not finite."""
+    if not len(right):
+        return True
+    work, better = np.empty_like(right), np.empty_like(right)
+    left, step = np.empty_like(right), np.empty_like(right)
+    enough = _EXACT * max(1.0, np.abs(right).max())
+    substitute(factors, right, better, work)
+    before = np.inf
+    for count in range(_REFINEMENTS + 1):
+        _left(matrices, exact, right, better, left)
+        size = np.abs(left).max()
+        if count == 0 and not np.isfinite(size):
+            return False
+        if not size < before:
+            break
+        found[:] = better
+        before = size
         if size <= enough:
             break
-        better = found + solve(error)
-        left = right - times(better)
-        left_size = float(np.abs(left).max(initial=0.0))
-        if not left_size < size:
-            break
-        found, error, size = better, left, left_size
-    return np.asarray(found) if np.isfinite(found).all() else None
+        substitute(factors, left, step, work)
+        better += step
+    return bool(np.isfinite(found).all())
+
+
+@njit(cache=True, error_model="numpy")
+def _left(
+    matrices: _Matrices, exact: FloatArray, right: FloatArray, found: FloatArray, left: FloatArray
+) -> None:
+    """What is left of the right side, written to ``left``."""
+    n = len(matrices.P_starts) - 1
+    left[:] = 0.0
+    for j in range(n):
+        for k in range(matrices.P_starts[j], matrices.P_starts[j + 1]):
+            left[matrices.P_rows[k]] += matrices.P[k] * found[j]
+    for j in range(n):
+        total = 0.0
+        for k in range(matrices.A_starts[j], matrices.A_starts[j + 1]):
+            i = n + matrices.A_rows[k]
+            total += matrices.A[k] * found[i]
+            left[i] += matrices.A[k] * found[j]
+        left[j] += total
+    for i in range(len(right)):
+        left[i] = right[i] - (exact[i] * found[i] + left[i])

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import sparse
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from .arrays import FloatArray as FloatArray
+from .arrays import IntArray as IntArray
 
 
 class Sparsity:
@@ -76,6 +76,10 @@ class SparseMatrix:
         """The product of the transposed matrix with a vector (rows,): (columns,)."""
         p = self.pattern
         return np.asarray(_transposed_times(p.starts, p.rows, self.data, y))
+
+    def absolute(self) -> SparseMatrix:
+        """The sizes of the entries."""
+        return SparseMatrix(self.pattern, np.abs(self.data))
 
     def largest(self) -> float:
         """Size of the largest entry."""

@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from . import violation
+from .arrays import FloatArray
 from .convexify import ActiveSet, ConvexModel, raised
 from .damping import Damping
-from .elastic import violation
 from .evaluation import Point
 from .filter import NO_VIOLATION
 from .hessians import HessianSource
-from .kkt import bound_multipliers
-from .nlp import FloatArray, NlpError
+from .kkt import at_bounds, bound_multipliers, lagrangian_slope
+from .options import StepBox, box_limits
 from .qp.problem import QpSolution, QpStatus, QuadraticProgram, in_units
 from .scaled import ScaledProblem
 from .workspace import Workspace
 
-StepBox = Callable[[int, FloatArray], tuple[ArrayLike, ArrayLike]]
-
 _FIRST_RADIUS = 1e3
 _DROP_RADIUS = 1e30
+_ABSURD = 1e8
 _GROWTH = 8.0
 _FIRST_PRICE, _PRICE_GROWTH, _LARGEST_PRICE = 10.0, 10.0, 1e8
 _SMALL_STEP = 1e-5
@@ -112,9 +110,9 @@ class Model:
     ) -> QpSolution:
         """The model's solution within the bounds; where it is unbounded or too hard, within a
         region or with a raised diagonal."""
-        problem, sizes = self._problem, _sizes(point.x)
+        problem, sizes = self._problem, _magnitudes(point.x)
         P = convex.P
-        if not (convex.curved and self._hessian.faithful):
+        if not (convex.curved and self._hessian.measured):
             P = raised(P, self._damping.diagonal(self._slope(point, multipliers), sizes))
         box = self._box(point.x, number)
         qp = QuadraticProgram(
@@ -124,17 +122,23 @@ class Model:
             QpStatus.SOLVED, np.zeros(len(sizes)), multipliers, self._bound_multipliers
         )
         found = self._solve(qp, guess)
-        if found.status is QpStatus.UNBOUNDED:
+        if found.status is QpStatus.UNBOUNDED or self._absurd(found, sizes):
             self.radius = min(self.radius, _FIRST_RADIUS)
             lower, upper = self._box(point.x, number)
             qp = replace(qp, d_lower=lower, d_upper=upper)
             found = self._solve(qp, None)
-        if found.status is QpStatus.FAILED:
+        if found.status in (QpStatus.FAILED, QpStatus.UNBOUNDED):
             shift = 1e-6 * max(1.0, P.largest())
             qp = replace(qp, P=raised(P, np.full(len(sizes), shift)))
             found = self._solve(qp, None)
         self._last_qp = qp
         return found
+
+    def _absurd(self, found: QpSolution, sizes: FloatArray) -> bool:
+        """Whether a step leads further than anything that is known here can tell."""
+        if found.status is not QpStatus.SOLVED or np.isfinite(self.radius):
+            return False
+        return float((np.abs(found.d) / sizes).max()) > _ABSURD
 
     def _misled(self, found: QpSolution, point: Point) -> bool:
         """Whether a step from a feasible point climbs, towards what was wrongly expected to be
@@ -164,7 +168,7 @@ class Model:
             d: (n,) the model's step.
             length: the share of it that was taken.
         """
-        step = float((np.abs(d) / _sizes(point.x)).max())
+        step = float((np.abs(d) / _magnitudes(point.x)).max())
         small = length * step <= _SMALL_STEP and self.shift > 0
         self._small_steps = self._small_steps + 1 if small else 0
         self._damping.taken(length)
@@ -178,7 +182,7 @@ class Model:
 
     def shrink(self, point: Point, d: FloatArray) -> float:
         """No share of a step d (n,) was taken: look nearer by. Returns the step's size."""
-        step = float((np.abs(d) / _sizes(point.x)).max())
+        step = float((np.abs(d) / _magnitudes(point.x)).max())
         self.radius = 0.1 * min(self.radius, step)
         return step
 
@@ -192,12 +196,12 @@ class Model:
         self._bound_multipliers = bound_multipliers
 
     def _solve(self, qp: QuadraticProgram, warm: QpSolution | None) -> QpSolution:
-        """The subproblem, in units of its region where that is large."""
-        if not np.isfinite(self.radius) or self.radius <= _FIRST_RADIUS:
+        """The subproblem, in units of its limits where they are finite and far."""
+        unit = float(np.maximum(qp.d_upper, -qp.d_lower).max())
+        if not np.isfinite(self.radius) or unit <= _FIRST_RADIUS:
             return self._subproblems.solve(qp, warm)
-        unit = self.radius
         found = self._subproblems.solve(in_units(qp, unit))
-        return replace(found, d=found.d * unit, y=found.y, z=found.z)
+        return replace(found, d=found.d * unit)
 
     def _curvature_multipliers(self, y: FloatArray) -> FloatArray:
         """The multipliers; cut down where they have blown up the Hessian so far (rows that nearly
@@ -219,7 +223,7 @@ class Model:
             found = self._elastic.solve(qp, self._price)
             if found.status is not QpStatus.SOLVED:
                 return None
-            left = violation(qp.A @ found.d, qp.lower, qp.upper)
+            left = violation.total(qp.A @ found.d, qp.lower, qp.upper)
             if left <= 0.5 * theta or left <= self._tolerance:
                 return found
             if left <= 0.9 * theta and self._price >= 1e4:
@@ -245,19 +249,15 @@ class Model:
         target = np.where(equal, problem.c_lower, target)
         rows &= np.isfinite(target)
         change = np.where(rows, target - point.c, 0.0)
-        x = point.x
-        near = 1e-8 * np.maximum(1.0, np.abs(x))
-        slope = point.g + point.J.transposed_times(y) if len(y) else point.g
-        at_lower = (x - problem.x_lower <= near) & (slope > 0)
-        at_upper = (problem.x_upper - x <= near) & (slope < 0)
+        slope = lagrangian_slope(point.g, point.J, y)
+        at_lower, at_upper = at_bounds(point.x, problem.x_lower, problem.x_upper)
+        held = (at_lower & (slope > 0)) | (at_upper & (slope < 0))
         fixed = problem.x_lower == problem.x_upper
-        return ActiveSet(
-            rows, change, np.where(equal, 0.0, np.sign(y)), at_lower | at_upper | fixed
-        )
+        return ActiveSet(rows, change, np.where(equal, 0.0, np.sign(y)), held | fixed)
 
     def _slope(self, point: Point, y: FloatArray) -> FloatArray:
         """Slope (n,) of the Lagrangian, less what bounds hold."""
-        slope = point.g + point.J.transposed_times(y) if len(y) else point.g
+        slope = lagrangian_slope(point.g, point.J, y)
         problem = self._problem
         return slope + bound_multipliers(point.x, slope, problem.x_lower, problem.x_upper)
 
@@ -269,14 +269,11 @@ class Model:
             number: of the iteration.
 
         Raises:
-            NlpError: the user's box does not enclose zero.
+            NlpError: see `box_limits`.
         """
         lower, upper = self._problem.x_lower - x, self._problem.x_upper - x
         if self._step_box is not None:
-            wanted = self._step_box(number, x.copy())
-            low, high = (np.asarray(w, dtype=np.float64) for w in wanted)
-            if (low > 0).any() or (high < 0).any() or np.isnan(low).any() or np.isnan(high).any():
-                raise NlpError("step_box: limits of a step enclose zero")
+            low, high = box_limits(self._step_box, number, x)
             lower, upper = np.maximum(lower, low), np.minimum(upper, high)
         return np.minimum(lower, 0.0), np.maximum(upper, 0.0)
 
@@ -285,10 +282,10 @@ class Model:
         lower, upper = self.limits(x, number)
         if not np.isfinite(self.radius):
             return lower, upper
-        reach = self.radius * _sizes(x)
+        reach = self.radius * _magnitudes(x)
         return np.maximum(lower, -reach), np.minimum(upper, reach)
 
 
-def _sizes(x: FloatArray) -> FloatArray:
-    """What changes of variables are measured by."""
+def _magnitudes(x: FloatArray) -> FloatArray:
+    """Sizes (n,) of variables, by which changes of them are measured."""
     return np.maximum(1.0, np.abs(x))

@@ -14,7 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .nlp import NLP, FloatArray, NlpError
+from .arrays import FloatArray, numbers, whole_number
+from .errors import NlpError
+from .nlp import NLP
+from .options import start_point
 from .result import Result
 from .solver import solve
 
@@ -25,17 +28,20 @@ class MultiStart:
 
     Args:
         results: in the order of the starts.
-        best: index of the best: a success before any failure, then the lowest objective, then the
-            least violation.
+        accepted: whether each is a success that the caller's certificate, if there is one, lets
+            pass.
+        best: index of the lowest accepted one. Where none is accepted: the least violated failure,
+            or None if there is a certificate.
     """
 
     results: tuple[Result, ...]
-    best: int
+    accepted: tuple[bool, ...]
+    best: int | None
 
     @property
-    def result(self) -> Result:
-        """The best result."""
-        return self.results[self.best]
+    def result(self) -> Result | None:
+        """The best result; None where a certificate lets none pass."""
+        return None if self.best is None else self.results[self.best]
 
 
 def solve_from(
@@ -53,23 +59,27 @@ def solve_from(
         starts: each (n,).
         workers: processes; more than one needs an operating system that can fork, as the problem's
             callables go to the workers by inheritance.
-        accept: whether a result may be the best: a certificate of the caller's, say.
+        accept: whether a success may be the best: a certificate of the caller's, say. Failures are
+            not shown to it.
         options: of `solve`.
 
     Raises:
-        NlpError: there is no start, or no worker.
+        NlpError: there is no start or no worker, or a start is no point.
     """
-    points = [np.array(start, dtype=np.float64) for start in starts]
+    try:
+        points = [start_point("starts", nlp, start) for start in starts]
+    except TypeError:
+        raise NlpError(f"starts are points, one after the other, not {starts!r}") from None
     if not points:
         raise NlpError("starts is empty")
-    if workers < 1:
-        raise NlpError(f"workers is one or more, not {workers}")
+    whole_number("workers", workers, 1)
     results = (
         [_bare(solve(nlp, point, **options)) for point in points]
         if workers == 1
         else _in_processes(nlp, points, workers, options)
     )
-    return MultiStart(tuple(results), _best(results, accept))
+    accepted = tuple(r.success and (accept is None or bool(accept(r))) for r in results)
+    return MultiStart(tuple(results), accepted, _best(results, accepted, accept is not None))
 
 
 def scattered_starts(
@@ -84,30 +94,28 @@ def scattered_starts(
         seed: of the random numbers: the same seed gives the same starts.
 
     Raises:
-        NlpError: x0 or spread has the wrong shape, or count is below one.
+        NlpError: an argument is wrong; the message names it.
     """
-    centre, widths = np.array(x0, dtype=np.float64), np.asarray(spread, dtype=np.float64)
-    if centre.shape != (nlp.n,):
-        raise NlpError(f"x0 has shape {centre.shape}, expected ({nlp.n},)")
+    centre, widths = start_point("x0", nlp, x0), numbers("spread", spread)
     if widths.shape not in ((), (nlp.n,)):
         raise NlpError(f"spread has shape {widths.shape}, expected a number or ({nlp.n},)")
-    if count < 1:
-        raise NlpError(f"count is one or more, not {count}")
+    if not (np.isfinite(widths).all() and (widths >= 0).all()):
+        raise NlpError(f"spread is zero or more, not {spread!r}")
+    whole_number("count", count, 1)
+    whole_number("seed", seed, 0)
     lower, upper, *_ = nlp.bounds
     random = np.random.default_rng(seed)
     noise = random.standard_normal((count - 1, nlp.n)) * widths
     return [np.clip(centre, lower, upper), *(np.clip(centre + row, lower, upper) for row in noise)]
 
 
-def _best(results: Sequence[Result], accept: Callable[[Result], bool] | None) -> int:
-    def rank(index: int) -> tuple[bool, bool, float, float]:
-        result = results[index]
-        refused = accept is not None and not accept(result)
-        if result.success:
-            return refused, False, result.objective, result.constraint_violation
-        return refused, True, result.constraint_violation, result.objective
-
-    return min(range(len(results)), key=rank)
+def _best(results: Sequence[Result], accepted: Sequence[bool], certified: bool) -> int | None:
+    indices = range(len(results))
+    if any(accepted):
+        return min((i for i in indices if accepted[i]), key=lambda i: results[i].objective)
+    if certified:
+        return None
+    return min(indices, key=lambda i: (results[i].constraint_violation, results[i].objective))
 
 
 _inherited: tuple[NLP, dict[str, Any]] | None = None

@@ -6,22 +6,19 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import sparse
 
-from ..errors import InputError
+from .arrays import FloatArray as FloatArray
+from .arrays import numbers, whole_number
+from .errors import NlpError as NlpError
 
-FloatArray = NDArray[np.float64]
 Matrix = FloatArray | sparse.sparray | sparse.spmatrix
 
 Objective = Callable[[FloatArray], float]
 Vector = Callable[[FloatArray], FloatArray]
 MatrixOf = Callable[[FloatArray], Matrix]
 Hessian = Callable[[FloatArray, float, FloatArray], Matrix]
-
-
-class NlpError(InputError, ValueError):
-    """A problem that is not well posed; the message names the argument."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,8 +63,8 @@ class NLP:
     residual_jacobian: MatrixOf | None = None
 
     def __post_init__(self) -> None:
-        _check_size("n", self.n, 1)
-        _check_size("m", self.m, 0)
+        whole_number("n", self.n, 1)
+        whole_number("m", self.m, 0)
         _check_partners(self)
         for kind, size in (("x", self.n), ("c", self.m)):
             lower = _bound(getattr(self, f"{kind}_lower"), f"{kind}_lower", size, -np.inf)
@@ -87,11 +84,6 @@ class NLP:
         arrays = (self.x_lower, self.x_upper, self.c_lower, self.c_upper)
         x_lower, x_upper, c_lower, c_upper = (np.asarray(a, dtype=np.float64) for a in arrays)
         return x_lower, x_upper, c_lower, c_upper
-
-
-def _check_size(name: str, value: object, least: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
-        raise NlpError(f"{name} is a whole number of at least {least}, not {value!r}")
 
 
 def _check_partners(nlp: NLP) -> None:
@@ -116,10 +108,7 @@ def _check_partners(nlp: NLP) -> None:
 
 
 def _bound(value: ArrayLike | None, name: str, size: int, missing: float) -> FloatArray:
-    try:
-        array = np.asarray(missing if value is None else value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise NlpError(f"{name} is no array of numbers: {error}") from None
+    array = numbers(name, missing if value is None else value)
     if array.ndim == 0:
         array = np.full(size, float(array))
     if array.shape != (size,):
@@ -129,6 +118,5 @@ def _bound(value: ArrayLike | None, name: str, size: int, missing: float) -> Flo
     wrong = np.flatnonzero(array == -missing)
     if len(wrong):
         raise NlpError(f"{name}[{int(wrong[0])}] is {-missing}: nothing can satisfy it")
-    array = array.copy()
     array.flags.writeable = False
     return array

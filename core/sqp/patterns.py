@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
+from .arrays import FloatArray, matrix
+from .errors import NlpError
 from .matrices import SparseMatrix, Sparsity, from_scipy
-from .nlp import FloatArray, NlpError
 
 
 class Pattern:
@@ -30,30 +31,29 @@ class Pattern:
         """Let the next matrix have a pattern of its own."""
         self._open = True
 
-    def array(self, matrix: object) -> SparseMatrix:
-        """The matrix with this pattern; the first one makes it.
+    def array(self, value: object) -> SparseMatrix:
+        """The matrix ``value`` with this pattern; the first one makes it.
 
         Raises:
-            NlpError: it has another shape, or entries outside the pattern.
+            NlpError: it is no matrix of real numbers, has another shape, or entries outside the
+                pattern.
         """
-        if not isinstance(matrix, sparse.sparray | sparse.spmatrix):
-            return self._from_dense(matrix)
-        csc = sparse.csc_array(matrix, dtype=np.float64)
-        if csc.shape != self._shape:
-            raise self._wrong_shape(csc.shape)
+        found = matrix(self._name, value, self._shape)
+        if isinstance(found, np.ndarray):
+            return self._from_dense(found)
+        return self._from_sparse(found)
+
+    def _from_sparse(self, csc: sparse.csc_array) -> SparseMatrix:
         if self._known is not None and self._known.equals(csc.indices, csc.indptr):
             self._open = False
-            return SparseMatrix(self._known, np.array(csc.data))
+            return SparseMatrix(self._known, csc.data)
         found = from_scipy(csc)
         if self._known is None or self._open:
             self._known, self._dense, self._open = found.pattern, False, False
             return found
         return self._placed(self._known, found)
 
-    def _from_dense(self, matrix: object) -> SparseMatrix:
-        array = np.asarray(matrix, dtype=np.float64)
-        if array.shape != self._shape:
-            raise self._wrong_shape(array.shape)
+    def _from_dense(self, array: FloatArray) -> SparseMatrix:
         if self._known is None or (self._open and not self._dense):
             rows, columns = self._shape
             self._dense = True
@@ -93,6 +93,3 @@ class Pattern:
         ]
         self._known = from_scipy(ones[0] + ones[1]).pattern
         return self._placed(self._known, found)
-
-    def _wrong_shape(self, shape: tuple[int, ...]) -> NlpError:
-        return NlpError(f"{self._name} gave shape {shape}, expected {self._shape}")

@@ -6,13 +6,10 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
+from .arrays import FloatArray
 
 if TYPE_CHECKING:
     from .workspace import Workspace
-
-FloatArray = NDArray[np.float64]
 
 
 class Status(StrEnum):
@@ -21,14 +18,17 @@ class Status(StrEnum):
     OPTIMAL = "optimal"
     """KKT residual and constraint violation are within the tolerance."""
     ACCEPTABLE = "acceptable"
-    """Rounding, or multipliers too large for the tolerance, allow no better point: residuals are
-    within the tolerance relative to the multipliers, or within a thousand times the tolerance."""
+    """Rounding stopped the iteration short of the tolerance: every residual is within it beside the
+    size of what it is the difference of, violations are within it or rounding themselves, and
+    steepest descent promises nothing more."""
     INFEASIBLE = "infeasible"
-    """The violation cannot be made smaller from here; the least violated point is given."""
+    """The sum of violations is stationary, and nothing near by is less violated: the point is
+    given. Another start may do better, unless the problem is convex."""
     UNBOUNDED = "unbounded"
     """The objective falls without end along feasible points."""
     ITERATION_LIMIT = "iteration_limit"
-    """The iterations ran out, or no step helps any more; the best point seen is given."""
+    """The iterations ran out, no step helps any more, or no back end solves a subproblem, which may
+    be so at once; the best point seen is given."""
     INTERRUPTED = "interrupted"
     """The callback or the keyboard ended it; the best point seen is given."""
     CALLABLE_ERROR = "callable_error"
@@ -47,8 +47,9 @@ class Iteration:
         kkt_residual: see `Result`.
         step: largest change of a variable in the step that led here.
         step_length: share of the subproblem's step that was taken.
-        regularisation: what was added to the Hessian's diagonal.
-        kind: of step: ``normal``, ``corrected`` (second order), ``elastic``, ``restoration``.
+        shift: the most by which an entry of the Hessian's diagonal was raised, to make it convex.
+        kind: of step: ``normal``, ``corrected`` (second order), ``elastic``, ``restoration``,
+            ``descent`` (the steepest, where no model's step helped).
     """
 
     number: int
@@ -58,7 +59,7 @@ class Iteration:
     kkt_residual: float
     step: float = 0.0
     step_length: float = 0.0
-    regularisation: float = 0.0
+    shift: float = 0.0
     kind: str = ""
 
 
@@ -77,7 +78,7 @@ class Timings:
     subproblems: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Result:
     """A solution.
 
@@ -92,13 +93,14 @@ class Result:
         multipliers: (m,) of the constraints.
         bound_multipliers: (n,) of the bounds.
         kkt_residual: largest of |∇f + Jᵀλ + ν|, of a multiplier's wrong sign and of multiplier
-            times distance from its bound; unscaled, from the user's own callables at x.
+            times distance from its bound, where a distance beyond 1 counts as 1; unscaled, from
+            the user's own callables at x.
         constraint_violation: largest violation of a constraint or bound, likewise.
         iterations: number of them.
         evaluations: calls of each callable.
         timings: where the time went.
         backend: the QP back end that solved the last subproblem.
-        workspace: what a warm start reuses.
+        workspace: what a warm start reuses; it stays behind where a result is copied or pickled.
     """
 
     x: FloatArray
@@ -113,7 +115,10 @@ class Result:
     evaluations: dict[str, int] = field(repr=False)
     timings: Timings = field(repr=False)
     backend: str = ""
-    workspace: Workspace | None = field(default=None, repr=False, compare=False)
+    workspace: Workspace | None = field(default=None, repr=False)
+
+    def __getstate__(self) -> dict[str, object]:
+        return {**self.__dict__, "workspace": None}
 
     @property
     def success(self) -> bool:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from .elastic import violation
+from . import violation
+from .arrays import FloatArray
 from .evaluation import Evaluation, Point
-from .kkt import Residuals, residuals
-from .nlp import NLP, FloatArray
+from .kkt import Residuals, lagrangian_slope, residuals, row_terms, slope_terms
+from .nlp import NLP
 from .patterns import Pattern
 
 
@@ -21,6 +22,7 @@ class ScaledProblem:
     Attributes:
         evaluation: the callables.
         x_lower, x_upper: (n,).
+        closed: whether every variable has two finite bounds.
         c_lower, c_upper: (m,), scaled.
     """
 
@@ -28,6 +30,7 @@ class ScaledProblem:
         self.nlp = nlp
         self.evaluation = Evaluation(nlp, jacobian, hessian)
         self.x_lower, self.x_upper, self.c_lower, self.c_upper = nlp.bounds
+        self.closed = bool(np.isfinite(self.x_lower).all() and np.isfinite(self.x_upper).all())
 
     def first_point(self, x0: FloatArray) -> Point:
         """The start within the bounds, with derivatives; it decides the scale.
@@ -44,13 +47,12 @@ class ScaledProblem:
 
     def theta(self, c: FloatArray) -> float:
         """Sum of the scaled violations."""
-        return violation(c, self.c_lower, self.c_upper)
+        return violation.total(c, self.c_lower, self.c_upper)
 
     def violation(self, point: Point) -> float:
         """Largest violation of a constraint, unscaled."""
-        c = point.c / self.evaluation.constraint_factors
         _, _, lower, upper = self.nlp.bounds
-        return float(np.maximum(lower - c, c - upper).max(initial=0.0))
+        return violation.largest(point.c / self.evaluation.constraint_factors, lower, upper)
 
     def objective(self, point: Point) -> float:
         """The objective, unscaled."""
@@ -69,15 +71,21 @@ class ScaledProblem:
 
     def residuals(self, point: Point, multipliers: FloatArray) -> Residuals:
         """How far a point is from a solution, unscaled; multipliers are the scaled ones."""
-        factor, factors = self.evaluation.objective_factor, self.evaluation.constraint_factors
-        bounds = (self.x_lower, self.x_upper, self.c_lower, self.c_upper)
-        found = residuals(point.x, point.c, point.g, point.J, multipliers, bounds)
-        found.stationarity /= factor
-        found.complementarity /= factor
-        found.violation = self.violation(point)
-        found.bound_multipliers = found.bound_multipliers / factor
-        if factor != 1.0 or (factors != 1.0).any():
-            total = np.abs(multipliers * factors).sum() / factor
-            total += np.abs(found.bound_multipliers).sum()
-            found.size = max(1.0, float(total) / (len(multipliers) + self.nlp.n) / 100.0)
-        return found
+        evaluation, factor = self.evaluation, self.evaluation.objective_factor
+        return residuals(
+            point.x,
+            point.c / evaluation.constraint_factors,
+            lagrangian_slope(point.g, point.J, multipliers) / factor,
+            slope_terms(point.g, point.J, multipliers) / factor,
+            row_terms(point.x, point.c, point.J) / evaluation.constraint_factors,
+            self.to_user(multipliers),
+            self.nlp.bounds,
+        )
+
+    def result_residuals(self, x: FloatArray, multipliers: FloatArray) -> tuple[float, Residuals]:
+        """Objective and residuals at x, computed anew from the callables; multipliers (m,) are the
+        unscaled ones."""
+        f, c, g, J = self.evaluation.unscaled(x)
+        slope, terms = lagrangian_slope(g, J, multipliers), slope_terms(g, J, multipliers)
+        rows = row_terms(x, c, J)
+        return f, residuals(x, c, slope, terms, rows, multipliers, self.nlp.bounds)

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .evaluation import CallableError, Point
+from .arrays import FloatArray
+from .errors import CallableError
+from .evaluation import Point
 from .filter import Filter
 from .model import Model
-from .nlp import FloatArray
 from .qp.problem import QpSolution
 from .scaled import ScaledProblem
 
@@ -26,7 +27,7 @@ class Step:
     """A step that the filter took.
 
     Args:
-        point: where it leads; values only.
+        point: where it leads, with derivatives.
         length: share of the model's step.
         multipliers: (m,) there.
         kind: see `Iteration`.
@@ -68,17 +69,22 @@ class Search:
         problem: the problem.
         model: gives second-order corrections, and learns how far its steps were taken.
         filter_: which points count as progress.
+
+    Attributes:
+        trouble: of the callables at the shortest step tried last; None where they had values.
     """
 
     def __init__(self, problem: ScaledProblem, model: Model, filter_: Filter) -> None:
         self._problem = problem
         self._model = model
         self._filter = filter_
+        self.trouble: CallableError | None = None
 
     def along(
         self, point: Point, found: QpSolution, multipliers: FloatArray, kind: str
     ) -> Step | None:
         """As much of a step as the filter takes; None if it takes nothing."""
+        self.trouble = None
         attempt = _Attempt(point, self._problem.theta(point.c), found, multipliers, kind)
         size = float(np.abs(found.d).max())
         tiny = _ROUNDING * max(1.0, float(np.abs(point.x).max()))
@@ -101,9 +107,11 @@ class Search:
     def _trial(self, point: Point, d: FloatArray, length: float) -> Point | None:
         """Values there; None where a callable has none."""
         x = np.clip(point.x + length * d, self._problem.x_lower, self._problem.x_upper)
+        self.trouble = None
         try:
             return self._problem.evaluation.point(x)
-        except CallableError:
+        except CallableError as error:
+            self.trouble = error
             return None
 
     def _judged(
@@ -113,7 +121,7 @@ class Search:
         before = (attempt.theta, attempt.origin.f)
         after = (self._problem.theta(trial.c), trial.f)
         descends = self._filter.judge(before, after, attempt.slope, length)
-        if descends is None:
+        if descends is None or not self._differentiable(trial):
             return None
         if not descends:
             self._filter.add(*before)
@@ -121,6 +129,15 @@ class Search:
         multipliers = attempt.multipliers + length * (found.y - attempt.multipliers)
         kind = attempt.kind if found is attempt.found else "corrected"
         return Step(trial, length, multipliers, kind)
+
+    def _differentiable(self, trial: Point) -> bool:
+        """Whether a trial point has derivatives, which it has from then on."""
+        try:
+            self._problem.evaluation.differentiate(trial)
+        except CallableError as error:
+            self.trouble = error
+            return False
+        return True
 
     def _corrected(self, attempt: _Attempt, trial: Point) -> Step | None:
         """Second-order correction: the same model, with the constraints' values after the step."""

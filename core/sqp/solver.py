@@ -13,36 +13,37 @@ Biegler (2006).
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .evaluation import CallableError, Point
+from .arrays import FloatArray
+from .best import Best
+from .errors import CallableError
+from .evaluation import Point
+from .feasibility import Feasibility, NowhereError
 from .filter import Filter
 from .hessians import HessianKind, choose_kind, make_source
-from .kkt import Residuals, residuals
-from .model import Model, NoSubproblemError, StepBox
-from .multipliers import first_multipliers, last_multipliers
-from .nlp import NLP, FloatArray, NlpError
+from .kkt import Residuals
+from .model import Model, NoSubproblemError
+from .multipliers import first_multipliers, own_curvature, steepest_descent
+from .nlp import NLP
+from .options import Callback, Options, StepBox, start_point
 from .qp.backends import BackendKind, make_backends
 from .qp.problem import QpSolution
-from .restoration import Outcome, restore
+from .restoration import Outcome, Restoration
 from .result import Iteration, Result, Status, Timings
 from .scaled import ScaledProblem
 from .search import Search, Step
+from .verdict import Ending, Evidence, is_far, near, nothing_to_gain, verdict
 from .workspace import Workspace, make_workspace
 
-Callback = Callable[[Iteration], bool | None]
-
-_UNBOUNDED = 1e20
-_FAR = 1e8
-_ACCEPTABLE = 1e3
 _LEAP, _MODEST = 10.0, 10.0
 _STALLS = 4
 _FAILURES = 8
 _RESTARTS = 3
+_DESCENTS = 20
+_LESS = 1e-3
 _ROUNDING = 1e-12
 
 
@@ -65,85 +66,46 @@ def solve(
         nlp: the problem.
         x0: (n,) start; it is moved into the bounds.
         tolerance: on KKT residual and constraint violation, unscaled.
-        max_iterations: of the outer iteration.
+        max_iterations: of the outer iteration, those of restorations included.
         qp: back end for the subproblems: see `BackendKind`.
         fallback: whether another back end takes over where this one fails.
         hessian_kind: where the Hessian comes from; None for what suits the problem.
-        callback: is called before each iteration; True ends the solution (`Status.INTERRUPTED`),
-            as the keyboard's interrupt does.
+        callback: is told of the start and of the point after each iteration; True ends the
+            solution (`Status.INTERRUPTED`), as the keyboard's interrupt does.
         warm_start: a result of this problem or one near to it, whose multipliers and workspace
             are taken over.
-        step_box: number of the iteration and x (n,) → lower and upper limits (n,) of the step,
-            which enclose zero: for models that hold nearby only.
+        step_box: number of the iteration and x (n,) → lower and upper limits of the step, each (n,)
+            or a number, which enclose zero: for models that hold nearby only.
 
     Returns:
         The result; it never claims more than its residuals show.
 
     Raises:
-        NlpError: x0, an option or a callable's shape is wrong; the message names it.
+        NlpError: x0, an option, or what a callable returns is wrong; the message names it.
     """
-    options = _Options(tolerance, max_iterations, callback, step_box)
-    _check_options(options)
-    start = _start(nlp, x0)
+    options = Options(tolerance, max_iterations, callback, step_box, warm_start)
+    start = start_point("x0", nlp, x0)
     kind = choose_kind(nlp, hessian_kind)
     before = None if warm_start is None else warm_start.workspace
     workspace = make_workspace(nlp, make_backends(qp, fallback), before)
-    return _Solver(nlp, options, kind, workspace).run(start, warm_start)
-
-
-@dataclass(frozen=True, slots=True)
-class _Options:
-    tolerance: float
-    max_iterations: int
-    callback: Callback | None
-    step_box: StepBox | None
-
-
-@dataclass(slots=True)
-class _Best:
-    """The best point seen: the least violated one; of those within the tolerance the nearest to
-    a solution, or the lowest where none is near to one.
-
-    Args:
-        acceptable: whether it may count as a solution where no better one is found.
-    """
-
-    point: Point
-    multipliers: FloatArray
-    violation: float
-    objective: float
-    kkt: float
-    acceptable: bool
-
-    def beaten_by(self, other: _Best, tolerance: float) -> bool:
-        mine, its = self.violation <= tolerance, other.violation <= tolerance
-        if mine != its:
-            return its
-        if not its:
-            return other.violation < self.violation
-        if self.acceptable != other.acceptable:
-            return other.acceptable
-        noise = 1e-12 * max(1.0, abs(other.objective))
-        if self.acceptable or abs(other.objective - self.objective) <= noise:
-            return other.kkt < self.kkt
-        return other.objective < self.objective
+    try:
+        return _Solver(nlp, options, kind, workspace).run(start)
+    finally:
+        workspace.busy.release()
 
 
 class _End(Exception):
     """The solution ends."""
 
-    def __init__(self, status: Status, message: str) -> None:
-        super().__init__(message)
-        self.status = status
-        self.message = message
+    def __init__(self, ending: Ending) -> None:
+        super().__init__(ending)
+        self.ending = ending
 
 
 class _Solver:
     """One solution."""
 
-    def __init__(
-        self, nlp: NLP, options: _Options, kind: HessianKind, workspace: Workspace
-    ) -> None:
+    def __init__(self, nlp: NLP, options: Options, kind: HessianKind, workspace: Workspace) -> None:
         self.nlp = nlp
         self.options = options
         self.workspace = workspace
@@ -156,67 +118,144 @@ class _Solver:
         self.stalls = 0
         self.failures = 0
         self.restarts = 0
+        self.descents = 0
+        self.gain = np.inf
+        self.trouble: CallableError | None = None
 
     # ------------------------------------------------------------------------ the run
 
-    def run(self, x0: FloatArray, warm: Result | None) -> Result:
+    def run(self, x0: FloatArray) -> Result:
         begin = time.perf_counter()
         try:
             point = self.problem.first_point(x0)
         except CallableError as error:
             return self._nothing(x0, str(error), begin)
-        if warm is not None and len(warm.multipliers) == self.nlp.m:
-            self.multipliers = self.problem.from_user(warm.multipliers)
-            if len(warm.bound_multipliers) == self.nlp.n:
-                self.model.expect(warm.bound_multipliers * self.problem.evaluation.objective_factor)
-        else:
-            self.multipliers = first_multipliers(point, self.problem)
-        theta = max(1.0, self.problem.theta(point.c))
-        self.filter = Filter(10.0 * theta, 1e-4 * theta)
-        self.search = Search(self.problem, self.model, self.filter)
-        at = self.problem.residuals(point, self.multipliers)
-        self.best = self._best(point, self.multipliers, at)
-        self.first_objective = self.best.objective
+        self._prepare(point)
         try:
             self._iterate(point)
         except _End as end:
-            return self._result(end.status, end.message, begin)
-        except CallableError as error:
-            return self._result(Status.CALLABLE_ERROR, str(error), begin)
-        except NoSubproblemError as error:
-            last = self._no_progress()
-            told = str(error) if last.status is Status.ITERATION_LIMIT else last.message
-            return self._result(last.status, told, begin)
+            ending = end.ending
+        except CallableError as error:  # of the Hessian: nothing shorter can be tried
+            ending, self.trouble = Ending.NO_STEP, error
+        except NoSubproblemError:
+            ending = Ending.NO_MODEL
         except KeyboardInterrupt:
-            return self._result(Status.INTERRUPTED, "interrupted from the keyboard", begin)
-        raise AssertionError("the iteration ends by an exception")
+            ending = Ending.KEYBOARD
+        return self._result(ending, begin)
+
+    def _prepare(self, point: Point) -> None:
+        """What the iteration begins with."""
+        problem, workspace = self.problem, self.workspace
+        self.multipliers = self._first_multipliers(point)
+        theta = max(1.0, problem.theta(point.c))
+        self.filter = Filter(10.0 * theta, 1e-4 * theta)
+        self.search = Search(problem, self.model, self.filter)
+
+        def limits(x: FloatArray) -> tuple[FloatArray, FloatArray]:
+            return self.model.limits(x, self.iterations)
+
+        restoration = Restoration(
+            problem,
+            point,
+            workspace.elastic,
+            workspace.identity,
+            limits,
+            self._moved,
+            1e-2 * self.options.tolerance,
+        )
+        self.feasibility = Feasibility(
+            problem,
+            self.model,
+            self.search,
+            self.filter,
+            restoration,
+            limits,
+            self._moved,
+            self.options.tolerance,
+        )
+        at = problem.residuals(point, self.multipliers)
+        self.best = self._best(point, self.multipliers, at)
+        self.first_farthest = float(np.abs(point.x).max())
+        self.first_feasible: float | None = None
+        self.last_x = point.x
+
+    def _first_multipliers(self, point: Point) -> FloatArray:
+        warm = self.options.warm_start
+        if warm is None or len(warm.multipliers) != self.nlp.m:
+            return first_multipliers(point, self.problem, self.workspace.identity)
+        if len(warm.bound_multipliers) == self.nlp.n:
+            self.model.expect(warm.bound_multipliers * self.problem.evaluation.objective_factor)
+        return self.problem.from_user(warm.multipliers)
 
     def _iterate(self, point: Point) -> None:
-        size, length, kind = 0.0, 0.0, ""
+        """Steps until the solution ends by an exception."""
+        length, kind = 0.0, ""
         while True:
-            at = self.problem.residuals(point, self.multipliers)
-            self._remember(point, at)
-            self._report(point, at, size, length, kind)
-            self._check_end(point, at)
+            at = self._visit(point, length, kind)
             step = self._step(point, at)
             old, point = point, step.point
             length, kind = step.length, step.kind
-            size = float(np.abs(point.x - old.x).max())
-            if point is not old:
-                self.problem.evaluation.differentiate(point)
             self.multipliers = self._sober(step.multipliers, point)
             self.hessian.moved(old, point, self.multipliers)
+            size = float(np.abs(point.x - old.x).max())
             still = size <= _ROUNDING * max(1.0, float(np.abs(point.x).max()))
             self.stalls = self.stalls + 1 if still else 0
             self.iterations += 1
 
+    def _visit(self, point: Point, length: float, kind: str) -> Residuals:
+        """Take note of a point at the beginning of an iteration.
+
+        Raises:
+            _End: nothing is left to do.
+        """
+        at = self.problem.residuals(point, self.multipliers)
+        self._remember(point, at)
+        self._report(point, at, length, kind)
+        self.last_x = point.x
+        if at.within(self.options.tolerance):
+            raise self._optimal(point, self.multipliers, at)
+        if self._evidence(self.best.at, self.best.objective).away or self._is_away(point):
+            raise _End(Ending.AWAY)
+        if self.iterations >= self.options.max_iterations:
+            raise _End(Ending.LIMIT)
+        return at
+
+    def _is_away(self, point: Point) -> bool:
+        return is_far(float(np.abs(point.x).max()), self.first_farthest) and not self.problem.closed
+
+    def _moved(self, point: Point, length: float) -> None:
+        """An iteration of a restoration is over."""
+        self.iterations += 1
+        self._visit(point, length, "restoration")
+
+    def _report(self, point: Point, at: Residuals, length: float, kind: str) -> None:
+        if self.options.callback is None:
+            return
+        seen = Iteration(
+            self.iterations,
+            point.x.copy(),
+            self.problem.objective(point),
+            at.violation,
+            at.kkt,
+            float(np.abs(point.x - self.last_x).max()),
+            length,
+            self.model.shift,
+            kind,
+        )
+        if self.options.callback(seen):
+            raise _End(Ending.CALLBACK)
+
+    # ------------------------------------------------------------------------- a step
+
     def _step(self, point: Point, at: Residuals) -> Step:
         """The next step, whatever it takes."""
+        if self.stalls >= _STALLS:
+            return self._last_step(point)
         found, kind = self.model.step(point, self.multipliers, self.iterations)
         if found is None:
             return self._restored(point)
         refined = self.problem.residuals(point, found.y)
-        if refined.kkt < at.kkt and self._done(refined):
+        if refined.kkt < at.kkt and refined.within(self.options.tolerance):
             raise self._optimal(point, found.y, refined)
         step = self.search.along(point, found, self.multipliers, kind)
         return self._after_failure(point, found) if step is None else step
@@ -228,165 +267,157 @@ class _Solver:
         size = float(np.abs(multipliers).max(initial=0.0))
         if size <= _LEAP * max(_MODEST, before):
             return multipliers
-        others = last_multipliers(point, self.problem, self.workspace.subproblems)
-        if others is None or float(np.abs(others).max(initial=0.0)) >= size:
+        found = self._descent(point, np.ones(len(point.x)))
+        if found is None or float(np.abs(found.y).max(initial=0.0)) >= size:
             return multipliers
-        return others
-
-    # ---------------------------------------------------------------------- the end
-
-    def _done(self, at: Residuals) -> bool:
-        return at.kkt <= self.options.tolerance and at.violation <= self.options.tolerance
-
-    def _check_end(self, point: Point, at: Residuals) -> None:
-        tolerance = self.options.tolerance
-        if self._done(at):
-            raise self._optimal(point, self.multipliers, at)
-        if self.stalls >= _STALLS:
-            raise self._no_progress()
-        feasible = at.violation <= tolerance
-        if feasible and self.problem.objective(point) < -_UNBOUNDED:
-            raise _End(Status.UNBOUNDED, "the objective falls below -1e20 at a feasible point")
-        if np.abs(point.x).max() > _UNBOUNDED:
-            raise _End(Status.UNBOUNDED, "a variable grows beyond 1e20")
-        if self.iterations >= self.options.max_iterations:
-            raise _End(
-                Status.ITERATION_LIMIT, f"{self.iterations} iterations did not reach the tolerance"
-            )
-
-    def _optimal(self, point: Point, multipliers: FloatArray, at: Residuals) -> _End:
-        self.best = self._best(point, multipliers, at)
-        return _End(Status.OPTIMAL, "residuals are within the tolerance")
-
-    def _no_progress(self) -> _End:
-        """No step helps any more: by rounding, or because the model is wrong."""
-        best, tolerance = self.best, self.options.tolerance
-        at = self.problem.residuals(best.point, best.multipliers)
-        others = last_multipliers(best.point, self.problem, self.workspace.subproblems)
-        if others is not None:
-            other = self.problem.residuals(best.point, others)
-            if other.kkt < at.kkt:
-                at = other
-                self.best = self._best(best.point, others, other)
-        if self._done(at):
-            return self._optimal(best.point, self.best.multipliers, at)
-        if at.violation <= tolerance and self._fell_far(best):
-            return _End(
-                Status.UNBOUNDED,
-                f"the objective falls to {best.objective:.3g}, where models fail",
-            )
-        if at.violation <= tolerance and self._near(at):
-            return _End(
-                Status.ACCEPTABLE,
-                f"no step helps any more at a KKT residual of {at.kkt:.2g} (multipliers of "
-                f"size {at.size:.2g})",
-            )
-        return _End(Status.ITERATION_LIMIT, "no step makes progress: are the derivatives right?")
-
-    def _fell_far(self, best: _Best) -> bool:
-        """Whether the objective has fallen as far as arithmetic goes."""
-        far = float(np.abs(best.point.x).max()) > _FAR
-        return far and best.objective < -_FAR * max(1.0, abs(self.first_objective))
-
-    def _report(self, point: Point, at: Residuals, step: float, length: float, kind: str) -> None:
-        if self.options.callback is None:
-            return
-        seen = Iteration(
-            self.iterations,
-            point.x.copy(),
-            self.problem.objective(point),
-            at.violation,
-            at.kkt,
-            step,
-            length,
-            self.model.shift,
-            kind,
-        )
-        if self.options.callback(seen):
-            raise _End(Status.INTERRUPTED, "interrupted by the callback")
-
-    # ------------------------------------------------------------ where nothing is taken
+        return found.y
 
     def _after_failure(self, point: Point, found: QpSolution) -> Step:
         """The model is wrong nearby: feasibility first, or a smaller region."""
         if self.problem.violation(point) > self.options.tolerance:
             return self._restored(point)
+        self.trouble = self.search.trouble
         size = self.model.shrink(point, found.d)
         self.failures += 1
         if self.failures > _FAILURES or size < 1e-10:
-            raise self._no_progress()
+            return self._last_step(point)
         return Step(point, 0.0, found.y, "normal")
 
     def _restored(self, point: Point) -> Step:
-        """Feasibility restored as far as the filter wants it."""
+        """A step to where feasibility is restored as far as the filter wants it.
+
+        Raises:
+            _End: there is none.
+        """
         if not self.nlp.m:
-            raise self._no_progress()
-        self.filter.add(self.problem.theta(point.c), point.f)
-        limit = self.options.max_iterations - self.iterations
-        found = restore(
-            point,
-            self.problem.evaluation,
-            (self.problem.c_lower, self.problem.c_upper),
-            self.workspace.elastic,
-            lambda p, theta: self.filter.admits(theta, p.f),
-            lambda x: self.model.limits(x, self.iterations),
-            max(1, limit),
-            1e-2 * self.options.tolerance,
-        )
-        self.iterations += found.iterations - 1
-        if found.outcome is Outcome.RESTORED:
-            self.model.forget()
-            return Step(found.point, 1.0, np.zeros(self.nlp.m), "restoration")
+            return self._last_step(point)
+        try:
+            return self.feasibility.restored(point)
+        except NowhereError as nowhere:
+            found = nowhere.found
+        self.trouble = found.trouble
+        stationary = found.outcome is Outcome.STATIONARY
         at = self.problem.residuals(found.point, self.multipliers)
-        self._remember(found.point, at)
         if at.violation <= self.options.tolerance:
-            # Feasible, but the filter wants a better objective, which no step here gives.
-            self.filter.entries.clear()
-            self.restarts += 1
-            if self.restarts > _RESTARTS:
-                raise self._no_progress()
-            return Step(found.point, 1.0, np.zeros(self.nlp.m), "restoration")
-        if found.outcome is Outcome.STATIONARY:
-            aside = self._aside(point) if found.point is point else None
-            if aside is not None:
-                return aside
-            raise _End(
-                Status.INFEASIBLE,
-                f"the violation cannot be made smaller than {at.violation:.3g} from here",
-            )
-        raise _End(Status.ITERATION_LIMIT, "restoration of feasibility did not come to an end")
+            raise _End(Ending.NO_STEP)
+        theta = self.problem.theta(self.best.point.c)
+        if theta >= (1.0 - _LESS) * self.problem.theta(found.point.c):
+            if stationary:
+                self.best = self._best(found.point, self.multipliers, at)
+            raise _End(Ending.STATIONARY_VIOLATION if stationary else Ending.NO_STEP)
+        self.restarts += 1  # points seen on the way were less violated
+        if self.options.step_box is not None or self.restarts > _RESTARTS:
+            raise _End(Ending.NO_STEP)
+        self.filter.entries.clear()
+        return Step(self.best.point, 1.0, self.best.multipliers, "restoration")
 
-    def _aside(self, point: Point) -> Step | None:
-        """A step that lowers the objective at a point where the violation is stationary: its
-        gradient may only be zero by chance there."""
-        found = self.model.sideways()
-        return None if found is None else self.search.along(point, found, found.y, "elastic")
+    # ---------------------------------------------------------------------- the end
 
-    # ----------------------------------------------------------------------- the result
+    def _last_step(self, point: Point) -> Step:
+        """Steepest descent, where no model's step helps any more and it promises to gain something.
 
-    def _best(self, point: Point, multipliers: FloatArray, at: Residuals) -> _Best:
-        objective = self.problem.objective(point)
-        return _Best(point, multipliers, at.violation, objective, at.kkt, self._near(at))
-
-    def _near(self, at: Residuals) -> bool:
-        """Whether a point is as near to a solution as arithmetic may allow."""
+        Raises:
+            _End: it does not help either.
+        """
+        self._refine_best()
         tolerance = self.options.tolerance
-        return at.kkt <= max(_ACCEPTABLE * tolerance, tolerance * at.size)
+        idle = nothing_to_gain(self.gain, self.best.objective, tolerance)
+        self.descents += 1
+        if idle or self.descents > _DESCENTS or self.problem.violation(point) > tolerance:
+            raise _End(Ending.NO_STEP)
+        diagonal = own_curvature(point, self.problem, self.multipliers)
+        found = self._descent(point, diagonal, self.model.limits(point.x, self.iterations))
+        step = None if found is None else self.search.along(point, found, found.y, "descent")
+        if step is None or step.point is point:
+            self.trouble = self.search.trouble or self.trouble
+            raise _End(Ending.NO_STEP)
+        self.hessian.restart(diagonal)
+        self.model.forget()
+        self.failures = self.stalls = 0
+        return step
+
+    def _descent(
+        self,
+        point: Point,
+        diagonal: FloatArray,
+        limits: tuple[FloatArray, FloatArray] | None = None,
+    ) -> QpSolution | None:
+        workspace = self.workspace
+        return steepest_descent(
+            point, self.problem, workspace.subproblems, workspace.identity, diagonal, limits
+        )
+
+    def _refine_best(self) -> None:
+        """The multipliers that leave least of the slope at the best point, and what is left to be
+        gained there.
+
+        Raises:
+            _End: with them it is a solution.
+        """
+        best = self.best
+        own = own_curvature(best.point, self.problem, best.multipliers)
+        for diagonal in (np.ones(self.nlp.n), own):
+            found = self._descent(best.point, diagonal)
+            if found is None:
+                continue
+            at = self.problem.residuals(best.point, found.y)
+            if at.kkt < self.best.at.kkt:
+                self.best = self._best(best.point, found.y, at)
+            if diagonal is own:
+                fall = -float(best.point.g @ found.d + 0.5 * (own * found.d) @ found.d)
+                self.gain = fall / self.problem.evaluation.objective_factor
+        if self.best.at.within(self.options.tolerance):
+            raise _End(Ending.CONVERGED)
+
+    def _optimal(self, point: Point, multipliers: FloatArray, at: Residuals) -> _End:
+        self.best = self._best(point, multipliers, at)
+        return _End(Ending.CONVERGED)
+
+    def _best(self, point: Point, multipliers: FloatArray, at: Residuals) -> Best:
+        likely = near(at, self.options.tolerance)
+        return Best(point, multipliers, self.problem.objective(point), at, likely)
 
     def _remember(self, point: Point, at: Residuals) -> None:
         seen = self._best(point, self.multipliers, at)
+        if self.first_feasible is None and at.violation <= self.options.tolerance:
+            self.first_feasible = seen.objective
         if self.best.beaten_by(seen, self.options.tolerance):
             self.best = seen
 
-    def _result(self, status: Status, message: str, begin: float) -> Result:
-        """The best point, with residuals from the callables in the user's own scale."""
-        point, evaluation = self.best.point, self.problem.evaluation
+    def _evidence(self, at: Residuals, objective: float) -> Evidence:
+        """What is known of the best point.
+
+        Args:
+            at, objective: there.
+        """
+        first = self.first_feasible
+        return Evidence(
+            at=at,
+            tolerance=self.options.tolerance,
+            objective=objective,
+            first_objective=objective if first is None else first,
+            farthest=float(np.abs(self.best.point.x).max()),
+            first_farthest=self.first_farthest,
+            closed=self.problem.closed,
+            gain=self.gain,
+            trouble="" if self.trouble is None else str(self.trouble),
+            boxed=self.options.step_box is not None,
+            iterations=self.iterations,
+        )
+
+    def _result(self, ending: Ending, begin: float) -> Result:
+        """The best point, judged by residuals from the callables in the user's own scale."""
+        x, evaluation, subproblems = (
+            self.best.point.x,
+            self.problem.evaluation,
+            self.workspace.subproblems,
+        )
         y = self.problem.to_user(self.best.multipliers)
-        f, c, g, J = evaluation.unscaled(point.x)
-        at = residuals(point.x, c, g, J, y, self.nlp.bounds)
+        objective, at = self.problem.result_residuals(x, y)
+        status, message = verdict(ending, self._evidence(at, objective))
         return Result(
-            point.x.copy(),
-            f,
+            x.copy(),
+            objective,
             status,
             message,
             y,
@@ -395,50 +426,25 @@ class _Solver:
             at.violation,
             self.iterations,
             dict(evaluation.counts),
-            Timings(
-                time.perf_counter() - begin, evaluation.seconds, self.workspace.subproblems.seconds
-            ),
-            self.workspace.subproblems.used,
+            Timings(time.perf_counter() - begin, evaluation.seconds, subproblems.seconds),
+            subproblems.used,
             self.workspace,
         )
 
     def _nothing(self, x0: FloatArray, message: str, begin: float) -> Result:
         """The result where not even the start could be evaluated."""
-        nlp = self.nlp
+        evaluation, subproblems = self.problem.evaluation, self.workspace.subproblems
         return Result(
             x0,
             np.nan,
             Status.CALLABLE_ERROR,
             f"at the start: {message}",
-            np.zeros(nlp.m),
-            np.zeros(nlp.n),
+            np.zeros(self.nlp.m),
+            np.zeros(self.nlp.n),
             np.inf,
             np.inf,
             0,
-            dict(self.problem.evaluation.counts),
-            Timings(time.perf_counter() - begin, self.problem.evaluation.seconds, 0.0),
-            self.workspace.subproblems.used,
+            dict(evaluation.counts),
+            Timings(time.perf_counter() - begin, evaluation.seconds, 0.0),
+            subproblems.used,
         )
-
-
-def _start(nlp: NLP, x0: ArrayLike) -> FloatArray:
-    try:
-        x = np.array(x0, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise NlpError(f"x0 is no array of numbers: {error}") from None
-    if x.shape != (nlp.n,):
-        raise NlpError(f"x0 has shape {x.shape}, expected ({nlp.n},)")
-    if not np.isfinite(x).all():
-        raise NlpError(f"x0[{int(np.flatnonzero(~np.isfinite(x))[0])}] is not finite")
-    return x
-
-
-def _check_options(options: _Options) -> None:
-    if not (np.isfinite(options.tolerance) and options.tolerance > 0):
-        raise NlpError(f"tolerance is above zero, not {options.tolerance}")
-    if options.max_iterations < 0:
-        raise NlpError(f"max_iterations is zero or more, not {options.max_iterations}")
-    for name in ("callback", "step_box"):
-        value = getattr(options, name)
-        if value is not None and not callable(value):
-            raise NlpError(f"{name} is a callable, not {value!r}")

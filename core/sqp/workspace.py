@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from threading import Lock
 
 from .convexify import Convexifier
 from .elastic import Elastic
+from .matrices import Sparsity, identity
 from .nlp import NLP
 from .patterns import Pattern
 from .qp.problem import Backend
@@ -16,7 +18,7 @@ from .qp.subproblems import Subproblems
 class Workspace:
     """Patterns, and everything that is worked out from them once.
 
-    It serves one solution at a time.
+    It serves one solution at a time, which holds its lock.
 
     Args:
         size: n and m of the problem.
@@ -24,6 +26,8 @@ class Workspace:
         convexifier: makes Hessians convex.
         subproblems: the back ends, set up.
         elastic: elastic subproblems.
+        identity: pattern of a diagonal (n, n).
+        busy: is held while a solution uses it.
     """
 
     size: tuple[int, int]
@@ -32,25 +36,31 @@ class Workspace:
     convexifier: Convexifier
     subproblems: Subproblems
     elastic: Elastic
+    identity: Sparsity
+    busy: Lock = field(default_factory=Lock)
 
 
 def make_workspace(
     nlp: NLP, backends: tuple[Backend, ...], before: Workspace | None = None
 ) -> Workspace:
-    """A new workspace, or the one before where the problem has the same size."""
+    """A new workspace, or the one before where the problem has the same size and no other solution
+    uses it; the caller holds it and lets go of ``busy`` when done."""
     size = (nlp.n, nlp.m)
-    if before is not None and before.size == size:
+    if before is not None and before.size == size and before.busy.acquire(blocking=False):
         before.jacobian.reopen()
         before.hessian.reopen()
         before.convexifier.forget()
         before.subproblems.use(backends)
         return before
     subproblems = Subproblems(backends)
-    return Workspace(
+    made = Workspace(
         size,
         Pattern("jacobian", (nlp.m, nlp.n)),
         Pattern("hessian", (nlp.n, nlp.n), growing=True),
         Convexifier(),
         subproblems,
         Elastic(subproblems),
+        identity(nlp.n),
     )
+    made.busy.acquire()
+    return made

@@ -16,6 +16,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.errors import InputError
 from ...core.sqp import NLP, solve
 
 FloatArray = NDArray[np.float64]
@@ -85,10 +86,13 @@ def barrier_path(weights: Iterable[float], x0: FloatArray = CUBIC_START) -> list
     """Minimisers (2,) of the barrier function, each from the one before (figure 2.4).
 
     Raises:
+        InputError: a weight is not above zero.
         ArithmeticError: a minimiser was not reached.
     """
     path = [np.array(x0, dtype=np.float64)]
     for weight in weights:
+        if not weight > 0:
+            raise InputError(f"weights are numbers above zero, not {weight!r}")
         path.append(_barrier_minimum(path[-1], weight))
     return path[1:]
 

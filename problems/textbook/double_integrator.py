@@ -31,8 +31,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from ...core.errors import InputError
 from ...core.sqp import NLP
 from .entries import Entries
+from .ranges import check_force, check_nodes
 
 FloatArray = NDArray[np.float64]
 
@@ -77,7 +79,11 @@ def minimum_time(x1: float, x2: float, force: float = 1.0) -> Exact:
     The first force points away from the side of the curve x₁ = −x₂|x₂|/(2 force) on which the start
     lies; by symmetry let it be −force. With the speed at the switch −v, the way back to rest takes
     v/force and covers v²/(2 force), and v² = force x₁ + x₂²/2.
+
+    Raises:
+        InputError: the force is not above zero.
     """
+    check_force(force)
     side = 1.0 if x1 + x2 * abs(x2) / (2.0 * force) >= 0.0 else -1.0
     v = np.sqrt(max(0.0, force * side * x1 + x2 * x2 / 2.0))
     switch = max(0.0, (v + side * x2) / force)
@@ -91,7 +97,10 @@ class DoubleIntegrator:
         nodes: N, at least 2.
         scheme: of the force.
         start: (x₁, x₂).
-        force: greatest |u|.
+        force: greatest |u|, above zero.
+
+    Raises:
+        InputError: an argument is out of its range.
     """
 
     def __init__(
@@ -101,6 +110,10 @@ class DoubleIntegrator:
         start: tuple[float, float] = (4.0, 1.0),
         force: float = 1.0,
     ) -> None:
+        check_nodes(nodes, 2)
+        check_force(force)
+        if not np.isfinite(start).all():
+            raise InputError(f"start is two finite numbers, not {start}")
         self.nodes = nodes
         self.scheme = Scheme(scheme)
         self.start = start

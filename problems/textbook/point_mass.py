@@ -24,10 +24,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from ...core.errors import InputError
 from ...core.sqp import NLP
 from .arcs import Arcs
 from .avoidance import STRIDE, AvoidanceRows, Bernstein, Chords, Samples, State, columns
 from .entries import Entries
+from .ranges import check_force, check_nodes
 from .scenes import Place, Scene
 
 FloatArray = NDArray[np.float64]
@@ -52,7 +54,10 @@ class PointMass:
         scene: circles, start and goal.
         nodes: N, at least 3.
         avoidance: how the circles are avoided.
-        force: u_max.
+        force: u_max, above zero.
+
+    Raises:
+        InputError: an argument is out of its range.
     """
 
     def __init__(
@@ -62,6 +67,8 @@ class PointMass:
         avoidance: Avoidance = Avoidance.SAMPLES,
         force: float = 1.0,
     ) -> None:
+        check_nodes(nodes, 3)
+        check_force(force)
         self.scene = scene
         self.nodes = nodes
         self.avoidance = Avoidance(avoidance)
@@ -126,8 +133,13 @@ class PointMass:
         """A guess (n,) along a polyline, in the time that stops at every corner would need.
 
         Places are evenly spaced and have the speeds that go with them; no forces.
+
+        Raises:
+            InputError: there are no two corners.
         """
-        points = np.array(corners)
+        points = np.array(corners, dtype=np.float64)
+        if points.ndim != 2 or len(points) < 2 or points.shape[1] != 2:
+            raise InputError(f"corners are two places in the plane or more, not {corners!r}")
         lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
         along = np.concatenate([[0.0], np.cumsum(lengths)])
         at = np.linspace(0.0, along[-1], self.nodes)

@@ -18,9 +18,12 @@ class BackendKind(StrEnum):
     OSQP = "osqp"
     PIQP = "piqp"
     """Needs the optional package ``piqp``."""
+    INTERIOR_POINT = "interior_point"
+    """Our own."""
 
 
 _FALLBACK = {
+    BackendKind.INTERIOR_POINT: BackendKind.CLARABEL,
     BackendKind.CLARABEL: BackendKind.OSQP,
     BackendKind.OSQP: BackendKind.CLARABEL,
     BackendKind.PIQP: BackendKind.CLARABEL,
@@ -42,6 +45,10 @@ def make_backends(kind: BackendKind | str, fallback: bool) -> tuple[Backend, ...
 
 
 def _make(kind: BackendKind) -> Backend:
+    if kind is BackendKind.INTERIOR_POINT:
+        from .interior_point import InteriorPointBackend
+
+        return InteriorPointBackend()
     if kind is BackendKind.CLARABEL:
         from .clarabel_backend import ClarabelBackend
 

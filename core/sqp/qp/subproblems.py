@@ -10,6 +10,7 @@ import numpy as np
 
 from ..linear import Saddle
 from . import active_set
+from .equilibration import units_of
 from .problem import Backend, QpSolution, QpStatus, QuadraticProgram
 
 _POLISHING = 1
@@ -46,8 +47,11 @@ class Subproblems:
     def solve(self, qp: QuadraticProgram, warm: QpSolution | None = None) -> QpSolution:
         """The solution of ``qp``; what the last back end says if none solves it."""
         begin = time.perf_counter()
+        units = units_of(qp)
         try:
-            return self._solve(qp, warm)
+            if units is None:
+                return self._solve(qp, warm)
+            return units.unscaled(self._solve(units.scaled(qp), units.scaled_guess(warm)))
         finally:
             self.seconds += time.perf_counter() - begin
 
@@ -60,7 +64,7 @@ class Subproblems:
                 return found
         found = None
         for backend in self._backends:
-            found = backend.solve(qp, warm)
+            found = _doubted(qp, backend.solve(qp, warm))
             self.used = backend.name
             if found.status is QpStatus.SOLVED:
                 return self._polished(qp, found)
@@ -110,3 +114,19 @@ class Subproblems:
         if better is None or active_set.error(qp, better) >= active_set.error(qp, found):
             return found
         return replace(better, status=found.status)
+
+
+def _doubted(qp: QuadraticProgram, found: QpSolution) -> QpSolution:
+    """A back end's answer; a failure where it claims what cannot be: unbounded steps within bounds,
+    or that nothing is feasible where d = 0 is."""
+    unbounded = found.status is QpStatus.UNBOUNDED
+    if unbounded and np.isfinite(qp.d_lower).all() and np.isfinite(qp.d_upper).all():
+        return replace(found, status=QpStatus.FAILED)
+    if found.status is QpStatus.INFEASIBLE and _holds_at_zero(qp):
+        return replace(found, status=QpStatus.FAILED)
+    return found
+
+
+def _holds_at_zero(qp: QuadraticProgram) -> bool:
+    rows = (qp.lower <= 0.0).all() and (qp.upper >= 0.0).all()
+    return bool(rows and (qp.d_lower <= 0.0).all() and (qp.d_upper >= 0.0).all())

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import sparse
 
 from flyby.core.sqp import NLP
-from flyby.core.sqp.nlp import FloatArray
+from flyby.core.sqp.arrays import FloatArray
 
 
 @dataclass(frozen=True)

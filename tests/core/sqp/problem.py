@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flyby.core.sqp import NLP
-from flyby.core.sqp.nlp import FloatArray
+from flyby.core.sqp.arrays import FloatArray
 
 from .jets import Jet, variables
 

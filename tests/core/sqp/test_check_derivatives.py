@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flyby.core.sqp import NLP, check_derivatives
+from flyby.core.sqp import NLP, NlpError, check_derivatives
 
 from .known_points import known_point
 
@@ -96,3 +96,54 @@ def test_the_tolerance_is_the_callers() -> None:
 def test_nothing_to_check_passes() -> None:
     found = check_derivatives(NLP(n=2), [0, 0])
     assert found.passed and found.worst == ()
+
+
+def test_small_derivatives_count_too() -> None:
+    nlp = NLP(n=1, objective=lambda x: 1e-4 * x[0] ** 2, gradient=lambda x: -7e-4 * x)
+    assert not check_derivatives(nlp, [1.0]).passed
+    cubic = NLP(n=1, objective=lambda x: x[0] ** 3, gradient=lambda x: 3 * x**2)
+    assert check_derivatives(cubic, [0.0]).passed  # differences are never quite zero
+
+
+@pytest.mark.parametrize("x", [0.0, 1e-7, 1.0, 1.0 - 1e-7, 0.5, -3.0])
+def test_differences_stay_within_bounds(x: float) -> None:
+    asked: list[float] = []
+
+    def objective(p: np.ndarray) -> float:
+        asked.append(float(p[0]))
+        return float(p[0] ** 3)
+
+    nlp = NLP(n=1, objective=objective, gradient=lambda p: 3 * p**2, x_lower=0, x_upper=1)
+    assert check_derivatives(nlp, [x]).passed
+    assert min(asked) >= 0 and max(asked) <= 1
+
+
+def test_fixed_variables_are_left_out() -> None:
+    nlp = NLP(
+        n=2,
+        objective=lambda x: x[0] ** 2 + np.sqrt(x[1]),
+        gradient=lambda x: np.array([2 * x[0], 77.0]),
+        x_lower=[-1, 0],
+        x_upper=[1, 0],
+    )
+    assert check_derivatives(nlp, [0.3, 0.0]).passed
+
+
+def test_what_solve_accepts_is_accepted() -> None:
+    nlp = NLP(
+        n=2,
+        m=2,
+        objective=lambda x: np.array([[x @ x]]),
+        gradient=lambda x: (2 * x)[:, None],
+        constraints=lambda x: (x**2)[:, None],
+        jacobian=lambda x: np.diag(2 * x),
+    )
+    assert check_derivatives(nlp, [1.0, 2.0]).passed
+    one = NLP(n=2, m=1, constraints=lambda x: x @ x, jacobian=lambda x: 2 * x[None, :])
+    assert check_derivatives(one, [1.0, 2.0]).passed
+
+
+@pytest.mark.parametrize("x", [[np.nan, 1.0], ["a", 1.0], [1.0]])
+def test_wrong_points_are_refused(x: list) -> None:
+    with pytest.raises(NlpError, match=r"^x"):
+        check_derivatives(NLP(n=2), x)

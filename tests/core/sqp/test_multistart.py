@@ -8,7 +8,7 @@ import pytest
 from flyby.core.sqp import NLP, Result, Status, scattered_starts, solve_from
 
 from .honesty import assert_honest
-from .jets import cos
+from .jets import cos, log
 from .problem import at_least, at_most, nlp_from
 
 
@@ -87,6 +87,21 @@ def test_a_certificate_may_refuse_results() -> None:
     assert found.result.x[0] > 1
     right = [r.objective for r in found.results if on_the_right(r)]
     assert found.result.objective == min(right)
+
+
+def test_what_a_certificate_refuses_is_not_handed_out() -> None:
+    shown: list[Result] = []
+
+    def refuse(result: Result) -> bool:
+        shown.append(result)
+        return False
+
+    nlp = nlp_from(lambda x: (x - log(x), []), 1)
+    found = solve_from(nlp, [[-1.0], [3.0]], accept=refuse)
+    assert found.best is None and found.result is None
+    assert found.accepted == (False, False)
+    assert [r.success for r in shown] == [True]  # failures are not asked about
+    assert solve_from(nlp, [[-1.0], [3.0]], accept=lambda r: True).accepted == (False, True)
 
 
 def test_the_same_seed_gives_the_same_starts() -> None:

@@ -7,7 +7,7 @@ import pytest
 from scipy import sparse
 
 from flyby.core.sqp import NLP, BackendKind, HessianKind, NlpError, Status
-from flyby.core.sqp.nlp import FloatArray
+from flyby.core.sqp.arrays import FloatArray
 
 from .honesty import solved
 from .jets import exp, log, sqrt
@@ -242,7 +242,7 @@ def test_complementarity() -> None:
 # ---------------------------------------------------------------------------------- scales
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(60))
 def test_variables_of_very_different_size(seed: int) -> None:
     unit = 10.0 ** np.random.default_rng(seed).uniform(-6, 6, 4)
 
@@ -254,11 +254,10 @@ def test_variables_of_very_different_size(seed: int) -> None:
         ]
 
     nlp = nlp_from(formula, 4)
-    plain = nlp_from(lambda *x: formula(*(v * u for v, u in zip(x, unit, strict=True))), 4)
-    wanted = solved(plain, [1, 1, 1, 1], tolerance=1e-9).objective
-    result = solved(nlp, unit)
-    assert result.success
-    assert result.objective == pytest.approx(wanted, rel=1e-5)
+    for start in (unit, 0 * unit):
+        result = solved(nlp, start)
+        assert result.success
+        assert result.objective == pytest.approx(5.070963, rel=1e-5)
 
 
 def test_huge_multipliers() -> None:

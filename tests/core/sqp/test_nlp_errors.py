@@ -95,7 +95,15 @@ WRONG_CALLS = [
     ({"tolerance": 0}, "tolerance"),
     ({"tolerance": -1e-6}, "tolerance"),
     ({"tolerance": NAN}, "tolerance"),
+    ({"tolerance": "a"}, "tolerance"),
+    ({"tolerance": None}, "tolerance"),
+    ({"tolerance": [1e-6, 1]}, "tolerance"),
     ({"max_iterations": -1}, "max_iterations"),
+    ({"max_iterations": "5"}, "max_iterations"),
+    ({"max_iterations": None}, "max_iterations"),
+    ({"max_iterations": INF}, "max_iterations"),
+    ({"max_iterations": 50.0}, "max_iterations"),
+    ({"warm_start": 5}, "warm_start"),
     ({"qp": "gurobi"}, "qp: one of clarabel, osqp"),
     ({"hessian_kind": "newton"}, "hessian_kind: one of exact"),
     ({"hessian_kind": "gauss_newton"}, "gauss_newton.*residuals"),
@@ -121,9 +129,13 @@ def test_the_exact_kind_needs_a_hessian() -> None:
         lambda k, x: ([0.1, -1], [1, 1]),
         lambda k, x: ([-1, -1], [1, -0.1]),
         lambda k, x: ([-1, NAN], [1, 1]),
+        lambda k, x: (-np.ones(3), np.ones(3)),
+        lambda k, x: None,
+        lambda k, x: ("a", 1),
+        lambda k, x: (None, None),
     ],
 )
-def test_step_boxes_enclose_zero(box) -> None:
+def test_step_boxes_are_limits_that_enclose_zero(box) -> None:
     with pytest.raises(NlpError, match="step_box"):
         solve(NLP(**parts()), [1, 1], step_box=box)
 
@@ -134,8 +146,14 @@ def test_wrong_multistarts_and_checks() -> None:
         solve_from(nlp, [])
     with pytest.raises(NlpError, match="workers"):
         solve_from(nlp, [[0, 0]], workers=0)
-    with pytest.raises(NlpError, match="x0"):
+    with pytest.raises(NlpError, match="starts has shape"):
         solve_from(nlp, [[0, 0, 0]])
+    for starts in (5, [["a", "b"]], [[NAN, 0]]):
+        with pytest.raises(NlpError, match="starts"):
+            solve_from(nlp, starts)
+    for workers in ("2", 1.5, True, None):
+        with pytest.raises(NlpError, match="workers"):
+            solve_from(nlp, [[0, 0]], workers=workers)
     with pytest.raises(NlpError, match="x has shape"):
         check_derivatives(nlp, [0, 0, 0])
     with pytest.raises(NlpError, match="gradient gave shape"):
@@ -154,3 +172,21 @@ def test_bounds_are_copied_and_frozen() -> None:
 def test_scattered_starts_need_a_start_of_the_right_size() -> None:
     with pytest.raises(NlpError, match="x0"):
         scattered_starts(NLP(**parts()), [0, 0, 0], 3)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"count": 2.5}, "count"),
+        ({"count": 0}, "count"),
+        ({"spread": "a"}, "spread"),
+        ({"spread": NAN}, "spread"),
+        ({"spread": -1}, "spread"),
+        ({"spread": [1, 2, 3]}, "spread has shape"),
+        ({"seed": -1}, "seed"),
+        ({"x0": ["q", "r"]}, "x0"),
+    ],
+)
+def test_wrong_scattered_starts(changes: dict, message: str) -> None:
+    with pytest.raises(NlpError, match=message):
+        scattered_starts(**{"nlp": NLP(**parts()), "x0": [0, 0], "count": 3, **changes})

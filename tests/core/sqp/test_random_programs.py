@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 from scipy import sparse
 
 from flyby.core.sqp import NLP, BackendKind, HessianKind, Status
-from flyby.core.sqp.nlp import FloatArray
+from flyby.core.sqp.arrays import FloatArray
 
 from .honesty import solved
 from .known_points import KnownPoint, known_point
 
 seeds = st.integers(0, 2**32 - 1)
-backends = st.sampled_from((BackendKind.CLARABEL, BackendKind.OSQP))
+backends = st.sampled_from((BackendKind.INTERIOR_POINT, BackendKind.CLARABEL, BackendKind.OSQP))
 
 
 # ------------------------------------------------------------------------------- convex QPs
@@ -259,3 +259,36 @@ def test_dense_and_sparse_matrices_give_the_same(seed: int, size: tuple[int, int
     thin = solved(known.nlp(as_sparse=True), start)
     assert thin.status is dense.status
     np.testing.assert_allclose(thin.x, dense.x, atol=1e-6)
+
+
+def _in_units(program: QuadraticProgram, x_unit: FloatArray, c_unit: FloatArray) -> NLP:
+    """The program with x = x_unit z and its rows times c_unit."""
+    x_lower, x_upper, c_lower, c_upper = program.bounds
+    A = c_unit[:, None] * program.A * x_unit
+    bounds = (x_lower / x_unit, x_upper / x_unit, c_unit * c_lower, c_unit * c_upper)
+    P = program.P * np.outer(x_unit, x_unit)
+    return QuadraticProgram(P, program.q * x_unit, A, bounds).nlp(as_sparse=False)
+
+
+@settings(max_examples=60)
+@given(program=convex_programs(), seed=seeds, exact=st.booleans())
+def test_in_far_apart_units_nothing_false_is_claimed(
+    program: QuadraticProgram, seed: int, exact: bool
+) -> None:
+    """Feasible, bounded and convex: there is one optimum, which need not be reached."""
+    random = np.random.default_rng(seed)
+    m, n = program.A.shape
+    x_unit = 10.0 ** random.uniform(-6, 6, n)
+    nlp = _in_units(program, x_unit, 10.0 ** random.uniform(-3, 3, m))
+    kind = HessianKind.EXACT if exact else HessianKind.BFGS
+    start = random.standard_normal(n) / x_unit
+    result = solved(nlp, start, hessian_kind=kind, max_iterations=60)
+    assert result.status in (Status.OPTIMAL, Status.ACCEPTABLE, Status.ITERATION_LIMIT)
+    if result.success:
+        # By convexity a slope of the Lagrangian loses at most its product with the distance.
+        x_lower, x_upper, *_ = nlp.bounds
+        size = np.abs(program.P * np.outer(x_unit, x_unit)) @ np.abs(result.x)
+        size += np.abs(program.q * x_unit) + np.abs(result.multipliers).sum()
+        slope = 1e-5 * np.maximum(1.0, size)
+        lost = float(slope @ (x_upper - x_lower)) + 1e-4 * np.abs(result.multipliers).sum()
+        assert result.objective <= program.optimum() + lost + 1e-5

@@ -1,0 +1,93 @@
+"""Subproblems in units that make their matrices' rows alike.
+
+Variables and rows of sizes far apart cost back ends and the regularised systems of `linear` their
+accuracy. Ruiz's scaling ("A scaling algorithm to equilibrate both rows and columns norms in
+matrices", 2001) of [P, Aᵀ; A, 0] brings the largest entry of every row and column near to 1; its
+factors are rounded to powers of two, so that no number is rounded by it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..matrices import FloatArray, SparseMatrix
+from .problem import QpSolution, QuadraticProgram
+
+_SWEEPS = 4
+_FAR_APART = 1e4
+"""Ratio of rows' sizes up to which a subproblem stays as it is."""
+
+
+@dataclass(slots=True)
+class Units:
+    """Units of a subproblem.
+
+    Args:
+        variables: (n,) d = variables times the scaled one.
+        rows: (m,) likewise of the multipliers; the scaled rows are rows times the unscaled ones.
+    """
+
+    variables: FloatArray
+    rows: FloatArray
+
+    def scaled(self, qp: QuadraticProgram) -> QuadraticProgram:
+        """The subproblem in these units."""
+        d, e, P, A = self.variables, self.rows, qp.P, qp.A
+        return QuadraticProgram(
+            SparseMatrix(P.pattern, P.data * d[P.pattern.rows] * d[P.pattern.columns]),
+            qp.q * d,
+            SparseMatrix(A.pattern, A.data * e[A.pattern.rows] * d[A.pattern.columns]),
+            qp.lower * e,
+            qp.upper * e,
+            qp.d_lower / d,
+            qp.d_upper / d,
+        )
+
+    def scaled_guess(self, warm: QpSolution | None) -> QpSolution | None:
+        """A guess in these units."""
+        if warm is None:
+            return None
+        d, e = self.variables, self.rows
+        return replace(warm, d=warm.d / d, y=warm.y / e, z=warm.z * d)
+
+    def unscaled(self, found: QpSolution) -> QpSolution:
+        """A solution in these units, as one of the subproblem itself."""
+        d, e = self.variables, self.rows
+        return replace(found, d=found.d * d, y=found.y * e, z=found.z / d)
+
+
+def units_of(qp: QuadraticProgram) -> Units | None:
+    """Units that make rows alike; None where they are already."""
+    P, A = np.abs(qp.P.data), np.abs(qp.A.data)
+    d, e = np.ones(len(qp.q)), np.ones(len(qp.lower))
+    for sweep in range(_SWEEPS):
+        columns, rows = _largest(qp, P, A, d, e)
+        if sweep == 0 and _alike(np.concatenate([columns, rows])):
+            return None
+        d *= _roots(columns)
+        e *= _roots(rows)
+    return Units(np.exp2(np.rint(np.log2(d))), np.exp2(np.rint(np.log2(e))))
+
+
+def _largest(
+    qp: QuadraticProgram, P: FloatArray, A: FloatArray, d: FloatArray, e: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """The largest entries of the columns of P and A (n,) and of the rows of A (m,), scaled."""
+    of_P, of_A = qp.P.pattern, qp.A.pattern
+    scaled_P, scaled_A = P * d[of_P.rows] * d[of_P.columns], A * e[of_A.rows] * d[of_A.columns]
+    columns, rows = np.zeros(len(d)), np.zeros(len(e))
+    np.maximum.at(columns, of_P.columns, scaled_P)
+    np.maximum.at(columns, of_A.columns, scaled_A)
+    np.maximum.at(rows, of_A.rows, scaled_A)
+    return columns, rows
+
+
+def _alike(sizes: FloatArray) -> bool:
+    there = sizes[sizes > 0]
+    return len(there) == 0 or float(there.max()) <= _FAR_APART * float(there.min())
+
+
+def _roots(sizes: FloatArray) -> FloatArray:
+    return 1.0 / np.sqrt(np.where(sizes > 0, sizes, 1.0))
