@@ -13,8 +13,10 @@ from .check import check
 from .console import fail
 from .emulate import emulate
 from .kinematics import fk, ik
+from .optimize import optimize
 from .record import record
 from .translate import translate
+from .zones import zones
 
 NUMBERS_MAY_BE_NEGATIVE = {"ignore_unknown_options": True}
 
@@ -42,6 +44,8 @@ app.command()(emulate)
 app.command()(check)
 app.command()(translate)
 app.command()(record)
+app.command()(zones)
+app.command()(optimize)
 app.command()(robots)
 app.command()(vendors)
 app.command(context_settings=NUMBERS_MAY_BE_NEGATIVE)(fk)

@@ -25,6 +25,9 @@ from .zones import POSITION, STOP, Reach
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+_GRID, _ZOOMS = 41, 3
+"""Shares that are looked at, and how often more closely."""
+
 
 @dataclass(frozen=True)
 class Places:
@@ -37,6 +40,12 @@ class Places:
 
     part: IntArray
     share: FloatArray
+
+    def with_more(self, others: Places) -> Places:
+        """These, then others."""
+        return Places(
+            np.concatenate([self.part, others.part]), np.concatenate([self.share, others.share])
+        )
 
 
 @dataclass(frozen=True)
@@ -61,6 +70,20 @@ def sigma_of(path: Path, places: Places) -> FloatArray:
     """(L,), σ of the places."""
     begin, end = _parts(path)
     return np.asarray(begin[places.part] + places.share * (end - begin)[places.part])
+
+
+def place_near(path: Path, sigma: float, q: FloatArray) -> Places:
+    """The place on a path nearest to a configuration (N,), in the part that σ lies in."""
+    begin, end = _parts(path)
+    inside = (begin <= sigma) & (sigma <= end)
+    part = int(np.argmax(inside)) if inside.any() else int(np.argmin(np.abs(begin - sigma)))
+    lower, upper = 0.0, 1.0
+    for _ in range(_ZOOMS):
+        shares = np.linspace(lower, upper, _GRID)
+        places = Places(np.full(_GRID, part), shares)
+        k = int(np.argmin(np.linalg.norm(configurations(path, places) - q, axis=1)))
+        lower, upper = shares[max(k - 1, 0)], shares[min(k + 1, _GRID - 1)]
+    return Places(np.array([part]), shares[k : k + 1])
 
 
 def configurations(path: Path, places: Places) -> FloatArray:

@@ -1,0 +1,247 @@
+"""Programs made faster: time, proven clearance, energy, and the time it takes to find them.
+
+    python benchmarks/waypoints.py [--json] [--case 2dof] [--starts 12]
+
+Without ``--case`` all of them, which takes some minutes.
+
+``2dof``, ``stud`` and ``clutter`` are the reference scenes of `flyby.problems.scenes` with blends
+of second order, ``2dof-parabola`` and ``stud-with-panel`` the same with parabolas and with the
+panel as an obstacle. Times of a scene with several programs are sums.
+
+- ``stop_time_s``: as given, with a stop at every via point.
+- ``zones_time_s``: with the best zones found, all points where they are.
+- ``optimized_time_s``: with the best via points and zones found.
+- ``clearance_mm``: what the optimised programs are proven to keep.
+- ``wall_s``: of the search for via points and zones, with its proof, on all processors; compiled
+  code is loaded beforehand.
+- ``energy_change_percent_joint1`` … ``6``: change of ∫ τ² dt from the given to the optimised
+  program; joints that need no torque are left out.
+
+``2dof-transcription`` holds the search through the emulator, from one start and in one process,
+against IPOPT on the papers' transcription of the same problem (`flyby.problems.transcription`).
+
+- ``time_s``: of the motion found; IPOPT's as its own transcription says.
+- ``emulated_time_s``: by one emulator, densely sampled.
+- ``wall_s``: IPOPT's with our callables, exact Hessian included, until its motion keeps the
+  clearance between nodes too; the better of several barrier parameters at the start, by time of
+  the motion, is what is compared.
+- ``callables_s``: how much of IPOPT's is spent in the callables.
+- ``sqp_time_s``, ``sqp_wall_s``: the transcription solved by flyby.core.sqp.
+
+``zone-maximization-100``, ``wall_s``: all zones of a program of a hundred waypoints maximised.
+
+The peer: pip install flyby[benchmarks]
+"""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from importlib.metadata import version
+
+import numpy as np
+from ipopt import Ipopt, IpoptResult
+from numpy.typing import NDArray
+from report import Figure, main
+
+from flyby.core.collision.certificate import certify, scenes_of
+from flyby.core.motion.model import MotionModel
+from flyby.core.motion.pieces import Sampling
+from flyby.core.program.program import Program
+from flyby.core.program.target import JointTarget
+from flyby.core.sqp import NLP
+from flyby.problems.scenes.clutter import clutter, clutter_100
+from flyby.problems.scenes.scene import PARABOLAS, SECOND_ORDER, SECOND_ORDER_BLENDS, Scene
+from flyby.problems.scenes.stud_welding import stud_welding, stud_welding_with_panel
+from flyby.problems.scenes.two_joints import two_joints
+from flyby.problems.solution import Solution, measure
+from flyby.problems.transcription import Grid, Optimum, optimize
+from flyby.problems.transcription import Task as TranscriptionTask
+from flyby.problems.waypoints import Effort, Task, optimize_waypoints, optimize_zones
+from flyby.problems.zones.maximize import maximize_zones
+from flyby.problems.zones.options import ZoneOptions
+from flyby.problems.zones.points import passable_stops
+
+FloatArray = NDArray[np.float64]
+
+SCENES: dict[str, tuple[Callable[[], Scene], MotionModel]] = {
+    "2dof": (two_joints, SECOND_ORDER_BLENDS),
+    "2dof-parabola": (two_joints, PARABOLAS),
+    "stud": (stud_welding, SECOND_ORDER_BLENDS),
+    "stud-with-panel": (stud_welding_with_panel, SECOND_ORDER_BLENDS),
+    "clutter": (clutter, SECOND_ORDER_BLENDS),
+}
+TRANSCRIPTION, MAXIMIZATION = "2dof-transcription", "zone-maximization-100"
+RESOLUTION = 1e-5
+"""m, of proven clearances."""
+DENSE = Sampling(blend=64, joint=0.02)
+GRID = Grid(5, 10)
+FREEDOM = 0.35
+"""rad, how far via points of the transcription may move: farther, IPOPT loses its way."""
+START = 0.9
+"""Share of the largest zones that the transcription's start has."""
+BARRIERS = (1e-1, 1e-2, 1e-3)
+PLAIN = Effort(starts=1, generations=0, workers=1)
+ONCE = replace(PLAIN, iterations=2)
+
+
+# ------------------------------------------------------------------------- scenes
+
+
+def measure_scene(case: str, effort: Effort) -> Iterator[Figure]:
+    """Figures of one scene."""
+    make, model = SCENES[case]
+    scene = make()
+    zones = [_solved(optimize_zones, scene, model, program, effort) for program in scene.programs]
+    _solved(optimize_waypoints, scene, model, scene.programs[0], ONCE)
+    begin = time.perf_counter()
+    free = [
+        _solved(optimize_waypoints, scene, model, program, effort) for program in scene.programs
+    ]
+    wall = time.perf_counter() - begin
+    yield Figure(case, "stop_time_s", sum(s.before.time for s in free), "s")
+    yield Figure(case, "zones_time_s", sum(s.after.time for s in zones), "s")
+    yield Figure(case, "optimized_time_s", sum(s.after.time for s in free), "s")
+    kept = [s.after.clearance for s in free]
+    proven = [c for c in kept if c is not None]
+    least = min(proven) if len(proven) == len(kept) else float("nan")
+    yield Figure(case, "clearance_mm", 1e3 * least, "mm")
+    yield Figure(case, "wall_s", wall, "s")
+    yield from _energy_figures(case, free)
+
+
+def _solved(
+    solver: Callable[..., Solution],
+    scene: Scene,
+    model: MotionModel,
+    program: Program,
+    effort: Effort,
+) -> Solution:
+    """A program bettered; one without via points as it is, with its proof."""
+    controller = scene.controller(model)
+    freed = [i for i in passable_stops(program) if i not in scene.process]
+    if not freed:
+        run = controller.run(program)
+        proof = certify(
+            controller, run, scenes_of(scene.cell), scene.cell.clearance, resolution=RESOLUTION
+        )
+        held = measure(controller, run, proof)
+        return Solution(program, program, held, held, proof)
+    task = Task(axes=scene.free, freed=freed, keep=scene.process)
+    return solver(controller, program, scene.cell, task, effort)
+
+
+def _energy_figures(case: str, solutions: Sequence[Solution]) -> Iterator[Figure]:
+    if any(s.before.energy is None or s.after.energy is None for s in solutions):
+        return
+    before = np.sum([s.before.energy for s in solutions], axis=0)
+    after = np.sum([s.after.energy for s in solutions], axis=0)
+    for joint, (was, now) in enumerate(zip(before, after, strict=True), start=1):
+        if was > 0.0:
+            figure = f"energy_change_percent_joint{joint}"
+            yield Figure(case, figure, float(100.0 * (now - was) / was), "%")
+
+
+# ------------------------------------------------------------------------- transcription
+
+
+@dataclass
+class Clock:
+    """Seconds spent in something."""
+
+    spent: float = 0.0
+
+    def timed(self, call: Callable[..., object]) -> Callable[..., object]:
+        """The same call, timed."""
+
+        def timed(*arguments: object) -> object:
+            begin = time.perf_counter()
+            answer = call(*arguments)
+            self.spent += time.perf_counter() - begin
+            return answer
+
+        return timed
+
+
+_CALLABLES = ("objective", "gradient", "constraints", "jacobian", "hessian")
+
+
+def _ipopt(barrier: float, clock: Clock, nlp: NLP, x0: FloatArray) -> IpoptResult:
+    """IPOPT on the callables of a problem."""
+    timed = replace(nlp, **{name: clock.timed(getattr(nlp, name)) for name in _CALLABLES})
+    options: dict[str, str | float | int] = {"tol": 1e-6, "constr_viol_tol": 1e-6}
+    return Ipopt(timed, x0, {**options, "max_iter": 500, "mu_init": barrier}).solve(x0)
+
+
+def measure_transcription(case: str) -> Iterator[Figure]:
+    """The search through the emulator beside both solvers of the transcription."""
+    scene = two_joints()
+    program = scene.programs[0]
+    task = TranscriptionTask(scene.cell, _waypoints(program), SECOND_ORDER, scene.tool)
+    solve = partial(optimize, task, GRID, FREEDOM, START)
+    begin = time.perf_counter()
+    transcribed = solve()
+    sqp_wall = time.perf_counter() - begin
+    its, wall, callables = min(
+        map(partial(_peer, solve), BARRIERS), key=lambda found: found[0].time
+    )
+    _solved(optimize_waypoints, scene, SECOND_ORDER_BLENDS, program, ONCE)
+    begin = time.perf_counter()
+    ours = _solved(optimize_waypoints, scene, SECOND_ORDER_BLENDS, program, PLAIN)
+    spent = time.perf_counter() - begin
+    dense = scene.controller(sampling=DENSE)
+    peer = f"ipopt (casadi {version('casadi')}), transcription"
+    yield Figure(case, "time_s", ours.after.time, "s", peer, its.time)
+    emulated = [dense.run(p).duration for p in (ours.program, its.program)]
+    yield Figure(case, "emulated_time_s", emulated[0], "s", peer, emulated[1])
+    yield Figure(case, "wall_s", spent, "s", peer, wall)
+    yield Figure(case, "callables_s", callables, "s", peer)
+    yield Figure(case, "sqp_time_s", transcribed.time, "s", peer, its.time)
+    yield Figure(case, "sqp_wall_s", sqp_wall, "s", peer, wall)
+
+
+def _peer(solve: Callable[..., Optimum], barrier: float) -> tuple[Optimum, float, float]:
+    """IPOPT's optimum, and its seconds in all and in the callables."""
+    clock = Clock()
+    begin = time.perf_counter()
+    found = solve(solver=partial(_ipopt, barrier, clock))
+    return found, time.perf_counter() - begin, clock.spent
+
+
+def _waypoints(program: Program) -> FloatArray:
+    """Start and targets (M + 1, N)."""
+    targets = [program.start, *(move.target for move in program.moves)]  # type: ignore[union-attr]
+    return np.array([t.joints for t in targets if isinstance(t, JointTarget)])
+
+
+# ------------------------------------------------------------------------- maximisation
+
+
+def measure_maximization(case: str) -> Iterator[Figure]:
+    """Zones of the long program among meshes, as large as they can be."""
+    warm, scene = clutter(), clutter_100()
+    for run in (warm, scene):
+        program = run.programs[0]
+        options = ZoneOptions(freed=tuple(passable_stops(program)))
+        begin = time.perf_counter()
+        maximize_zones(run.controller(), program, run.cell, options)
+        wall = time.perf_counter() - begin
+    yield Figure(case, "wall_s", wall, "s")
+
+
+def _measure(case: str, starts: int) -> Iterator[Figure]:
+    if case == TRANSCRIPTION:
+        return measure_transcription(case)
+    if case == MAXIMIZATION:
+        return measure_maximization(case)
+    return measure_scene(case, Effort(starts=starts))
+
+
+if __name__ == "__main__":
+    main(__doc__ or "", _measure, (*SCENES, TRANSCRIPTION, MAXIMIZATION), starts=Effort().starts)

@@ -1,0 +1,303 @@
+"""Programs made faster, or less hungry, without a collision."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from ...core.cell.cell import Cell
+from ...core.collision.certificate import SceneOf, certify, scenes_of
+from ...core.collision.verdict import Certificate
+from ...core.errors import InputError, MotionError, Note
+from ...core.motion.controller import Controller, Run
+from ...core.program.move import Move
+from ...core.program.program import Program
+from ...core.program.zone import Fine
+from ..solution import Solution, measure
+from ..zones.points import passable_stops
+from ..zones.refusal import check_start
+from .blocks import Block, cut
+from .counting import Counted, change_count, idle_points
+from .improving import Report, improve
+from .options import Effort, Freedom, Task, ViaCount
+from .selection import Selection, select
+from .variables import make_variables
+from .workshop import Answer, Workshop
+
+ReadBack = Callable[[Program], Program]
+"""Writes a program and reads what was written."""
+
+RESOLUTION = 1e-5
+"""m to which the clearance that there is is proven, for the report."""
+_FREED = 0.01
+"""m, radius that a freed stop begins with."""
+_GAIN = 1e-6
+"""Share of the objective below which nothing has been gained."""
+
+
+def optimize_zones(
+    controller: Controller,
+    program: Program,
+    cell: Cell,
+    task: Task | None = None,
+    effort: Effort | None = None,
+    read_back: ReadBack = lambda program: program,
+    report: Report | None = None,
+) -> Solution:
+    """The program with the zones that make it fastest; all points stay.
+
+    Args:
+        controller: drives the program.
+        program: that is to become faster; it keeps the clearance.
+        cell: what stands around, and the clearance to keep.
+        task: what is wanted, and what must stay.
+        effort: how hard to search.
+        read_back: makes of a program what a controller would read: written and read again. It is
+            this program that is proven and returned.
+        report: is told of progress; True, or the keyboard's interrupt, ends the search with the
+            best proven result so far.
+
+    Returns:
+        Never a slower program: the input comes back where nothing better was proven.
+
+    Raises:
+        InputError: the program has no move, or an option does not fit it.
+        MotionError: the program collides, keeps less clearance than is asked for, or cannot be
+            driven; the message names the move.
+    """
+    made = _Optimization(
+        controller, cell, task or Task(), effort or Effort(), Freedom.ZONES, report
+    )
+    return made.solution(program, read_back)
+
+
+def optimize_waypoints(
+    controller: Controller,
+    program: Program,
+    cell: Cell,
+    task: Task | None = None,
+    effort: Effort | None = None,
+    read_back: ReadBack = lambda program: program,
+    report: Report | None = None,
+) -> Solution:
+    """The program with the via points and zones that make it fastest.
+
+    Tasks stay: stop points, and moves that the process fixes. Arguments, result and errors are
+    those of `optimize_zones`.
+    """
+    made = _Optimization(
+        controller, cell, task or Task(), effort or Effort(), Freedom.WAYPOINTS_AND_ZONES, report
+    )
+    return made.solution(program, read_back)
+
+
+@dataclass(frozen=True)
+class _Optimization:
+    """One optimisation; arguments as above."""
+
+    controller: Controller
+    cell: Cell
+    task: Task
+    effort: Effort
+    freedom: Freedom
+    report: Report | None
+
+    def solution(self, program: Program, read_back: ReadBack) -> Solution:
+        """All of it."""
+        scenes = scenes_of(self.cell)
+        given = self.controller.run(program, self.task.start)
+        proof = self._proof(given, scenes)
+        check_start(self.controller, given, scenes, proof, self.task.residual)
+        notes: list[Note] = []
+        base = self._freed(program)
+        found = self._improved(base, self.task, self.effort, scenes, notes)
+        if found is not None and self.task.vias is ViaCount.CHANGE:
+            found = self._counted(found, scenes)
+        if found is not None:
+            found = self._as_read(found, scenes, read_back, notes)
+        before = measure(self.controller, given, proof)
+        if found is None or found.cost >= self._cost(given):
+            notes.append(Note("nothing better was found: this is the program as it was given"))
+            return Solution(program, program, before, before, proof, tuple(notes))
+        if self.task.vias is ViaCount.KEEP:
+            notes += self._idle(found, scenes)
+        after = measure(self.controller, found.run, found.certificate)
+        return Solution(program, found.run.program, before, after, found.certificate, tuple(notes))
+
+    @property
+    def _clearance(self) -> float:
+        wanted = self.task.clearance
+        return self.cell.clearance if wanted is None else wanted
+
+    def _freed(self, program: Program) -> Program:
+        """The program with small zones at stops that may be passed."""
+        passable = passable_stops(program)
+        moves = list(program.moves)
+        for i in self.task.freed:
+            if not 0 <= i < len(moves) or i not in passable:
+                raise InputError(
+                    f"move {i + 1} cannot be passed: it is no stop, or one for a reason (the "
+                    "last move, a wait, something that is switched there)"
+                )
+            moves[i] = replace(moves[i], zone=self.task.pattern.resized(_FREED))
+        return program.with_moves(tuple(moves))
+
+    def _improved(
+        self,
+        program: Program,
+        task: Task,
+        effort: Effort,
+        scenes: SceneOf,
+        notes: list[Note],
+    ) -> Counted | None:
+        """The best proven program; None where the input is not bettered."""
+        run = self.controller.run(program, task.start)
+        selection = select(program, run.path, task, self.freedom)
+        arm_size = self.controller.robot.arm_size
+        variables = make_variables(program, self.controller.robot, selection, task)
+        blocks = cut(program, run.path, variables, arm_size)
+        notes += _stays(program, selection, self.freedom)
+        if not blocks:
+            return None
+        shop = Workshop(self.controller, scenes, task, effort, self._clearance, blocks)
+        answers = improve(shop, self.report)
+        chosen = [a if a is not None and a.objective < 1.0 - _GAIN else None for a in answers]
+        return self._together(program, task, blocks, chosen, scenes, notes)
+
+    def _together(
+        self,
+        program: Program,
+        task: Task,
+        blocks: Sequence[Block],
+        chosen: list[Answer | None],
+        scenes: SceneOf,
+        notes: list[Note],
+    ) -> Counted | None:
+        """The blocks put together; one that does not hold in the whole is left as it was."""
+        while any(answer is not None for answer in chosen):
+            run = self._driven(_assembled(program, blocks, chosen), task)
+            proof = None if run is None else self._proof(run, scenes)
+            if run is not None and proof is not None and proof.proven:
+                return Counted(run, proof, self._cost(run), task)
+            culprit = _culprit(blocks, chosen, proof)
+            why = proof.message if proof is not None else "it cannot be driven"
+            notes.append(
+                Note(
+                    f"what was found from here on was given up, as the whole is not proven: {why}",
+                    blocks[culprit].first,
+                )
+            )
+            chosen[culprit] = None
+        return None
+
+    def _as_read(
+        self, found: Counted, scenes: SceneOf, read_back: ReadBack, notes: list[Note]
+    ) -> Counted | None:
+        """The program as it is read from its new text, proven again; None if it is not."""
+        run = self._driven(read_back(found.run.program), found.task)
+        proof = None if run is None else self._proof(run, scenes)
+        if run is None or proof is None or not proof.proven:
+            why = "it cannot be driven" if proof is None else proof.message
+            notes.append(Note(f"given up, as the program read from the new text fails: {why}"))
+            return None
+        return replace(found, run=run, certificate=proof, cost=self._cost(run))
+
+    def _counted(self, found: Counted, scenes: SceneOf) -> Counted:
+        """With via points left out that serve nothing, and new ones that pay."""
+
+        def improved(program: Program, task: Task, effort: Effort) -> Counted | None:
+            try:
+                return self._improved(program, task, effort, scenes, [])
+            except MotionError:
+                return None
+
+        def selected(counted: Counted) -> Selection:
+            return select(counted.run.program, counted.run.path, counted.task, self.freedom)
+
+        return change_count(found, improved, selected, self.effort)
+
+    def _idle(self, found: Counted, scenes: SceneOf) -> list[Note]:
+        """An offer to leave out via points that serve nothing."""
+
+        def judged(program: Program) -> float | None:
+            run = self._driven(program, found.task)
+            if run is None or not self._proof(run, scenes).proven:
+                return None
+            return self._cost(run)
+
+        selection = select(found.run.program, found.run.path, found.task, self.freedom)
+        return [
+            Note("serves nothing any more: without it the program is as fast and as safe", i)
+            for i in idle_points(found, selection, judged)
+        ]
+
+    def _driven(self, program: Program, task: Task) -> Run | None:
+        try:
+            return self.controller.run(program, task.start)
+        except MotionError:
+            return None
+
+    def _proof(self, run: Run, scenes: SceneOf) -> Certificate:
+        return certify(
+            self.controller,
+            run,
+            scenes,
+            self._clearance,
+            self.task.residual,
+            resolution=RESOLUTION,
+        )
+
+    def _cost(self, run: Run) -> float:
+        """The objective, of programs that are compared with each other."""
+        weight = self.task.time_weight
+        if weight == 1.0:
+            return run.duration
+        energy = self.controller.energy(run.program, run.timing).value
+        return weight * run.duration + (1.0 - weight) * energy
+
+
+def _assembled(
+    program: Program, blocks: Sequence[Block], answers: Sequence[Answer | None]
+) -> Program:
+    """The program with what has changed in every block; moves keep their places in the source."""
+    moves: list[Move] = list(program.moves)
+    for block, answer in zip(blocks, answers, strict=True):
+        if answer is None:
+            continue
+        changed = block.variables.applied(answer.x).moves
+        for k, move in enumerate(changed):
+            old = moves[block.first + k]
+            moves[block.first + k] = replace(old, target=move.target, zone=move.zone)
+    return program.with_moves(tuple(moves))
+
+
+def _culprit(
+    blocks: Sequence[Block], answers: Sequence[Answer | None], proof: Certificate | None
+) -> int:
+    """The block whose change is to be given up."""
+    live = [k for k, answer in enumerate(answers) if answer is not None]
+    if proof is not None and proof.move is not None:
+        for k in live:
+            if blocks[k].first <= proof.move <= blocks[k].last:
+                return k
+    return live[-1]
+
+
+def _stays(program: Program, selection: Selection, freedom: Freedom) -> list[Note]:
+    """What does not change, and why."""
+    if not selection.passed:
+        stops = "stops at every point" if _all_stop(program) else "has no zone that counts"
+        return [
+            Note(
+                f"the program {stops}: there is no via point and no zone to change; free the "
+                "stops that the robot may pass"
+            )
+        ]
+    notes = [Note(f"stays as it is: {why}", move) for move, why in selection.reasons.items()]
+    if freedom is Freedom.WAYPOINTS_AND_ZONES and not selection.points:
+        notes.append(Note("no via point may move: only zones are optimised"))
+    return notes
+
+
+def _all_stop(program: Program) -> bool:
+    return all(isinstance(move.zone, Fine) for move in program.moves)

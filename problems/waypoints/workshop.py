@@ -1,0 +1,229 @@
+"""What one search does: from a start at few places, refined at many, and proven between them."""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import dataclass, replace
+from enum import Enum, auto
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.collision.certificate import SceneOf, certify
+from ...core.collision.verdict import Certificate, Verdict
+from ...core.errors import MotionError
+from ...core.motion.controller import Controller, Run
+from ...core.motion.sensitivity import Places
+from .blocks import Block
+from .driving import crowd
+from .evaluation import BlockProblem
+from .options import Effort, Task
+from .search import Memory, Settings, search, violation
+
+FloatArray = NDArray[np.float64]
+
+FINE_BOX = 0.2
+"""First trust box of a refinement."""
+_FINE_ITERATIONS = 25
+_AGAIN_ITERATIONS, _AGAIN_BOX = 10, 0.05
+"""Of a refinement with a wider margin, which begins near its end."""
+_COARSE, _FINE = 2, 4
+"""Density of places of a search and of a refinement."""
+_WIDER, _AMPLE = 1.3, 1.15
+FEASIBLE = 1e-4
+"""m of violation that a refinement mends."""
+
+
+@dataclass(frozen=True)
+class Workshop:
+    """What all searches share.
+
+    Args:
+        controller, scenes, task, effort: see `optimize`.
+        clearance: m to keep.
+        blocks: the problems.
+    """
+
+    controller: Controller
+    scenes: SceneOf
+    task: Task
+    effort: Effort
+    clearance: float
+    blocks: tuple[Block, ...]
+
+    @cached_property
+    def searching(self) -> Controller:
+        """The controller with the sampling of searches."""
+        other = copy(self.controller)
+        other.sampling = self.effort.sampling
+        return other
+
+
+class Stage(Enum):
+    """What is to be done."""
+
+    SEARCH = auto()
+    REFINE = auto()
+    PROVE = auto()
+
+
+@dataclass(frozen=True)
+class Job:
+    """One search.
+
+    Args:
+        block: index of the block.
+        memory: where to begin, and with what.
+        iterations: of a search, at most.
+        stage: what is to be done.
+    """
+
+    block: int
+    memory: Memory
+    iterations: int = _FINE_ITERATIONS
+    stage: Stage = Stage.SEARCH
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What came of a search.
+
+    Args:
+        block: index of the block.
+        x: the best values.
+        objective: there, in shares of the input's.
+        violation: largest one there.
+        finished: whether the search came to its end.
+        memory: to go on with.
+        certificate: of the driven block, if it was to be proven.
+    """
+
+    block: int
+    x: FloatArray
+    objective: float
+    violation: float
+    finished: bool
+    memory: Memory
+    certificate: Certificate | None = None
+
+    @property
+    def proven(self) -> bool:
+        """Whether the values keep the clearance."""
+        return self.certificate is not None and self.certificate.proven
+
+    def rank(self) -> tuple[float, float]:
+        """Smaller is better: feasible ones first."""
+        return (0.0 if self.violation < FEASIBLE else self.violation), self.objective
+
+
+def work(shop: Workshop, job: Job) -> Answer:
+    """Do a job."""
+    if job.stage is Stage.SEARCH:
+        return _searched(shop, job, _Manner(shop.searching, Settings(job.iterations), _COARSE))
+    if job.stage is Stage.REFINE:
+        settings = Settings(_FINE_ITERATIONS, FINE_BOX)
+        return _searched(shop, job, _Manner(shop.controller, settings, _FINE))
+    return _proven(shop, job)
+
+
+@dataclass(frozen=True)
+class _Manner:
+    """How to search.
+
+    Args:
+        controller: that drives.
+        settings: how long.
+        density: of places.
+        margin: m that comes to that of the effort.
+        more: places.
+    """
+
+    controller: Controller
+    settings: Settings
+    density: int
+    margin: float = 0.0
+    more: Places | None = None
+
+
+def _searched(shop: Workshop, job: Job, manner: _Manner) -> Answer:
+    """The best values near a start."""
+    problem = BlockProblem(
+        manner.controller,
+        shop.blocks[job.block],
+        shop.scenes,
+        shop.task,
+        shop.clearance + shop.effort.margin + manner.margin,
+        shop.clearance,
+        manner.density,
+        manner.more,
+    )
+    memory = job.memory
+    start = problem.point(memory.x)
+    if start is None:
+        return Answer(job.block, memory.x, np.inf, np.inf, True, memory)
+    try:
+        found = search(problem, start, manner.settings, memory)
+    except MotionError:
+        # A pose target is singular where the search stands: no derivatives, no way on.
+        return Answer(job.block, start.x, start.objective, violation(start), True, memory)
+    point = found.point
+    return Answer(
+        job.block, point.x, point.objective, found.violation, found.finished, found.memory
+    )
+
+
+def _proven(shop: Workshop, job: Job) -> Answer:
+    """Refined values with their certificate.
+
+    Where the proof fails, the search is told to look there more closely, and aims wider.
+    """
+    manner = _Manner(shop.controller, Settings(_AGAIN_ITERATIONS, _AGAIN_BOX), _FINE)
+    for _ in range(shop.effort.proofs + 1):
+        job = replace(job, memory=Memory(job.memory.x, _AGAIN_BOX))
+        answer = _searched(shop, job, manner)
+        answer = replace(answer, x=shop.blocks[job.block].variables.rounded(answer.x))
+        run = _driven(shop, answer)
+        if run is None:
+            return answer
+        certificate = certify(shop.controller, run, shop.scenes, shop.clearance, shop.task.residual)
+        answer = replace(answer, certificate=certificate)
+        if answer.proven:
+            return answer
+        wider = _wider(shop.effort.margin + manner.margin, shop.clearance, certificate)
+        manner = replace(
+            manner, margin=wider - shop.effort.margin, more=_more(manner.more, run, certificate)
+        )
+        job = replace(job, memory=answer.memory)
+    return answer
+
+
+def _driven(shop: Workshop, answer: Answer) -> Run | None:
+    if not np.isfinite(answer.objective):
+        return None
+    try:
+        return shop.controller.run(shop.blocks[answer.block].variables.applied(answer.x))
+    except MotionError:
+        return None
+
+
+def _more(known: Places | None, run: Run, certificate: Certificate) -> Places | None:
+    """Places where a proof has failed, beside those known."""
+    if certificate.sigma is None or certificate.configuration is None:
+        return known
+    q = np.array(certificate.configuration)
+    found = crowd(run.path, 0.5 * sum(certificate.sigma), q, _FINE)
+    return found if known is None else known.with_more(found)
+
+
+def _wider(margin: float, clearance: float, certificate: Certificate) -> float:
+    """The margin to aim at after a proof has failed.
+
+    Where the path keeps the clearance and the proof fails all the same, for what smoothing in time
+    and the model's residual may do, that takes more than the path had to spare there.
+    """
+    distance = certificate.clearance if certificate.distance is None else certificate.distance
+    short = clearance - distance
+    if certificate.verdict is Verdict.UNPROVEN:
+        return max(_WIDER * margin, -_AMPLE * short)
+    return max(_WIDER * margin, margin + _WIDER * short)

@@ -1,0 +1,189 @@
+"""``flyby optimize``: what it prints, what it writes where, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+from flyby.cli.emission import Emission
+from flyby.cli.installed import registry
+from flyby.core.cell.file import load_cell
+from flyby.core.collision.certificate import certify, scenes_of
+from flyby.core.motion.controller import Controller
+from flyby.core.program.zone import Radius
+from flyby.core.registry import find_robot, find_vendor
+
+CELL = """robot = "abb/irb6640-180-255"
+clearance_mm = 5
+[tool.rod]
+tcp = { xyz_mm = [0, 0, 300] }
+capsule_mm = [50, 300]
+pose = { xyz_mm = [0, 0, 150] }
+[[obstacle]]
+name = "box"
+box_mm = [150, 1200, 830]
+pose = { xyz_mm = [1575, 0, 415] }
+[allow]
+pairs = [["J2", "J4"]]
+"""
+REST = "[9E9,9E9,9E9,9E9,9E9,9E9]"
+POINTS = ((-4.19, 69.06), (-21.07, 62.34), (-4.74, 42.65), (22.3, 18.62), (38.27, 11.47))
+PROGRAM = "\r\n".join(
+    (
+        "MODULE m ! keep me",
+        "  PERS tooldata rod:=[TRUE,[[0,0,300],[1,0,0,0]],[1,[0,0,100],[1,0,0,0],0,0,0]];",
+        "  PERS zonedata zz:=[FALSE,30,45,45,4.5,45,4.5];",
+        *(
+            f"  CONST jointtarget p{k}:=[[0,{a},{b},0,0,0],{REST}];"
+            for k, (a, b) in enumerate(POINTS)
+        ),
+        "  PROC main()",
+        "    MoveAbsJ p0,v1000,fine,rod;",
+        "    MoveAbsJ p1,v1000,z10,rod;",
+        "    MoveAbsJ p2,v1000,zz,rod;",
+        "    MoveAbsJ p3,v500,zz,rod; ! keep this too",
+        "    MoveAbsJ p4,v1000,fine,rod;",
+        "  ENDPROC",
+        "ENDMODULE",
+        "",
+    )
+)
+QUICK = ("--starts", "1", "--generations", "0", "--axes", "2,3")
+
+Flyby = Callable[..., Result]
+
+
+@pytest.fixture
+def cell(tmp_path: Path) -> Path:
+    path = tmp_path / "cell.toml"
+    path.write_text(CELL, "utf-8")
+    return path
+
+
+@pytest.fixture
+def program(tmp_path: Path) -> Path:
+    path = tmp_path / "m.mod"
+    path.write_bytes(PROGRAM.encode())
+    return path
+
+
+def duration(path: Path) -> float:
+    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-180-255")
+    return Controller(vendor, robot).run(vendor.read_file(path, robot=robot)).duration
+
+
+def test_the_program_beside_is_faster_and_proven(
+    flyby: Flyby, cell: Path, program: Path, tmp_path: Path
+) -> None:
+    out, picture = tmp_path / "out", tmp_path / "cell.svg"
+    result = flyby(
+        "optimize", program, "--cell", cell, *QUICK, "--out", out, "--plot", picture, "--json"
+    )
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    assert told["changed"] and told["proven"] and told["allowed"] == [["J2", "J4"]]
+    assert told["files"] == [str(out / "m.mod"), str(picture)]
+    assert picture.read_text("utf-8").startswith("<?xml")
+    assert program.read_bytes() == PROGRAM.encode()
+    new = (out / "m.mod").read_bytes().decode()
+    assert "! keep me\r\n" in new and "! keep this too\r\n" in new
+    assert duration(out / "m.mod") < 0.85 * duration(program)
+    assert f"p0:=[[0,{POINTS[0][0]},{POINTS[0][1]},0,0,0]" in new
+    # What is on disk is what was proven.
+    where = load_cell(cell, registry())
+    vendor = registry().find_vendor("abb")
+    controller = Controller(vendor, where.robot)
+    run = controller.run(vendor.read_file(out / "m.mod", robot=where.robot))
+    assert certify(controller, run, scenes_of(where), 0.005).proven
+
+
+def test_the_files_own_place(flyby: Flyby, cell: Path, program: Path) -> None:
+    before = duration(program)
+    result = flyby("optimize", program, "--cell", cell, *QUICK, "--zones-only", "--in-place")
+    assert result.exit_code == 0, result.output
+    text = program.read_bytes().decode()
+    assert duration(program) < before
+    for k, (a, b) in enumerate(POINTS):
+        assert f"p{k}:=[[0,{a},{b},0,0,0]" in text
+    assert "cycle time" in result.stdout and "is proven" in result.stdout
+
+
+def test_what_is_kept_stays(flyby: Flyby, cell: Path, program: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    result = flyby(
+        "optimize", program, "--cell", cell, *QUICK, "--keep", "v500", "--keep", "2", "--out", out
+    )
+    # Move 2 leads to p1, the move at v500 to p3: all zones lie at their ends.
+    assert result.exit_code == 0, result.output
+    assert not out.exists() and "nothing better was found" in result.stderr.replace("\n", " ")
+
+
+@pytest.mark.parametrize(
+    ("options", "word"),
+    [
+        (("--objective", "speed"), "--objective speed"),
+        (("--objective", "1.5"), "--objective 1.5"),
+        (("--keep", "9"), "--keep 9"),
+        (("--keep", "vglue"), "vglue"),
+        (("--free", "5"), "move 5"),
+        (("--limit", "2=ball:3"), "--limit 2=ball:3"),
+        (("--limit", "2=cone:190"), "Cone"),
+        (("--axes", "7"), "--axes 7"),
+        (("--vias", "some"), "--vias some"),
+        (("--clearance", "200"), "clearance"),
+        (("--starts", "0"), "starts"),
+        (("--plot", "cell.txt"), "--plot"),
+        (("--in-place", "--out", "x"), "--out"),
+    ],
+)
+def test_refusals_name_the_option(
+    flyby: Flyby, cell: Path, program: Path, options: tuple[str, ...], word: str
+) -> None:
+    result = flyby("optimize", program, "--cell", cell, *options)
+    assert result.exit_code == 1
+    assert word in result.stderr.replace("\n", " ")
+    assert program.read_bytes() == PROGRAM.encode()
+
+
+def test_a_limit_for_all_holds_every_point(
+    flyby: Flyby, cell: Path, program: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    result = flyby(
+        "optimize", program, "--cell", cell, *QUICK, "--limit", "all=joints:2", "--out", out
+    )
+    assert result.exit_code == 0, result.output
+    new = Controller(find_vendor("abb"), find_robot("abb/irb6640-180-255"))
+    read = find_vendor("abb").read_file(out / "m.mod", robot=new.robot)
+    for move, (a, b) in zip(read.moves, POINTS, strict=True):
+        q = [value * 180 / 3.141592653589793 for value in move.target.joints]  # type: ignore[union-attr]
+        assert abs(q[1] - a) <= 2.0001 and abs(q[2] - b) <= 2.0001
+
+
+def test_other_moves_are_no_patch(flyby: Flyby, cell: Path, program: Path) -> None:
+    """Without anything in the way the via point goes, which no patch can say."""
+    cell.write_text(CELL.split("[[obstacle]]")[0] + CELL[CELL.index("[allow]") :], "utf-8")
+    lines = [line for line in PROGRAM.split("\r\n") if " p2," not in line and " p3," not in line]
+    text = "\r\n".join(lines)
+    program.write_bytes(text.encode())
+    result = flyby("optimize", program, "--cell", cell, *QUICK, "--vias", "change", "--in-place")
+    assert result.exit_code == 1 and "--vias keep" in result.stderr.replace("\n", " ")
+    assert program.read_bytes() == text.encode()
+
+
+def test_other_moves_are_written_anew(program: Path) -> None:
+    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-180-255")
+    read = vendor.read_file(program, robot=robot)
+    fewer = replace(read, statements=(*read.statements[:2], *read.statements[3:]))
+    emission = Emission(vendor, robot, read, False)
+    again = emission.read_back(fewer)
+    assert emission.anew and len(again.moves) == len(read.moves) - 1
+    for one, other in zip(fewer.moves, again.moves, strict=True):
+        assert isinstance(one.zone, Radius) == isinstance(other.zone, Radius)
+        assert one.target.joints == pytest.approx(other.target.joints)  # type: ignore[union-attr]
+    assert emission.read_back(read).moves == read.moves and not emission.anew
