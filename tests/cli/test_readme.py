@@ -74,7 +74,18 @@ def test_links_lead_somewhere(document: Path) -> None:
 
 def test_the_command_line_is_documented(flyby: Callable[..., Result]) -> None:
     text = (ROOT / "docs" / "cli.md").read_text("utf-8")
-    for command in ("emulate", "check", "translate", "record", "robots", "vendors", "fk", "ik"):
+    for command in (
+        "emulate",
+        "check",
+        "translate",
+        "zones",
+        "optimize",
+        "record",
+        "robots",
+        "vendors",
+        "fk",
+        "ik",
+    ):
         assert f"## flyby {command}" in text
         shown = set(re.findall(r"--[a-z]+", flyby(command, "--help").stdout)) - {"--help"}
         assert shown <= set(re.findall(r"--[a-z]+", text)), command
