@@ -154,7 +154,7 @@ def optimize(
         )
         written: list[Path] = []
         if made.changed:
-            written = _write(emission, out, in_place, inputs, force)
+            written = _write(emission, parsed, out, in_place, inputs, force)
         if plot is not None:
             say("drawing")
             written += _draw(plot, where, controller, made, task)
@@ -164,6 +164,8 @@ def optimize(
         _tell(program, made, where, written)
         if made.changed and not (out or in_place):
             print_rich("nothing was written: --in-place or --out FOLDER writes the new program")
+    if not made.proven:
+        raise typer.Exit(1)
 
 
 def _optimized(
@@ -193,14 +195,21 @@ def _check_plot(path: Path | None, inputs: list[Path], replace_existing: bool) -
 
 
 def _write(
-    emission: Emission, out: Path | None, in_place: bool, inputs: list[Path], force: bool
+    emission: Emission,
+    original: Program,
+    out: Path | None,
+    in_place: bool,
+    inputs: list[Path],
+    force: bool,
 ) -> list[Path]:
+    from ..core.source.patching import reading_of
+
     if emission.anew and in_place:
         raise InputError(
             "--in-place: the number of via points has changed, so that the program is written "
             "anew: name a folder by --out, or let the number stay (--vias keep)"
         )
-    return write_patched(emission.files, out, in_place, inputs, force)
+    return write_patched(emission.files, reading_of(original).files, out, in_place, inputs, force)
 
 
 def _draw(plot: Path, cell: Cell, controller: Controller, made: Solution, task: Task) -> list[Path]:

@@ -68,12 +68,18 @@ def check_places(
 
 
 def write_patched(
-    files: Files, out: Path | None, in_place: bool, inputs: Iterable[Path], replace_existing: bool
+    files: Files,
+    read: Files,
+    out: Path | None,
+    in_place: bool,
+    inputs: Iterable[Path],
+    replace_existing: bool,
 ) -> list[Path]:
     """Write patched files.
 
     Args:
         files: by the names they were read by.
+        read: the files as they were read.
         out: folder for them; it is made if it is missing.
         in_place: whether they take the place of what was read.
         inputs, replace_existing: see `check_outputs`; with ``in_place`` inputs are replaced.
@@ -82,7 +88,8 @@ def write_patched(
         The files that were written; none if neither place is given.
 
     Raises:
-        InputError: one of them must not be written; then none is.
+        InputError: one of them must not be written, cannot be encoded, or has changed since it was
+            read; then none is.
     """
     from ..core.motion.trajectory import write_whole
 
@@ -97,10 +104,27 @@ def write_patched(
         check_outputs(
             {f"{option}: {path.name}": path for path in paths.values()}, inputs, replace_existing
         )
-    for name, path in paths.items():
+    else:
+        _check_unchanged(paths, read)
+    encoded = {path: files[name].data for name, path in paths.items()}
+    for path, data in encoded.items():
         with writing(option, path):
-            write_whole(path, files[name].data)
+            write_whole(path, data)
     return list(paths.values())
+
+
+def _check_unchanged(paths: Mapping[str, Path], read: Files) -> None:
+    """Refuse to write over what somebody has saved since the files were read."""
+    for name, path in paths.items():
+        try:
+            now = path.read_bytes()
+        except OSError as error:
+            raise InputError(f"--in-place: {path} cannot be read any more: {error}") from error
+        if name in read and now != read[name].data:
+            raise InputError(
+                f"--in-place: {path} has changed since it was read, and stays as it is: run again, "
+                "or name a folder by --out"
+            )
 
 
 def _check_apart(paths: Mapping[str, Path]) -> None:

@@ -101,7 +101,16 @@ def zones(
         made = maximize_zones(controller, parsed, where, options, patching.read_back, say)
         written: list[Path] = []
         if made.changed and (made.proven or unproven):
-            written = write_patched(patching.files, out, in_place, source.inputs(cell), force)
+            from ..core.source.patching import reading_of
+
+            written = write_patched(
+                patching.files,
+                reading_of(parsed).files,
+                out,
+                in_place,
+                source.inputs(cell),
+                force,
+            )
     if json:
         print_json(_json(made, where, written))
     else:

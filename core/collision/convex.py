@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cell.geometry import Mesh
-from ..errors import Note
+from ..errors import InputError, Note
 from .solid import FloatArray, Polytope, Solid, TriangleMesh, connected_parts
 
 FILLED = 1e-6
@@ -136,14 +136,23 @@ def _volume(vertices: FloatArray, faces: NDArray[np.int64]) -> float:
 
 
 def hull(points: FloatArray) -> Polytope:
-    """The convex hull of points (V, 3); flat ones are given a thickness."""
+    """The convex hull of points (V, 3); flat ones are given a thickness.
+
+    Raises:
+        InputError: all points coincide.
+    """
     from scipy.spatial import ConvexHull, QhullError
 
     try:
         found = ConvexHull(points)
     except QhullError:
         points = _thickened(points)
-        found = ConvexHull(points)
+        try:
+            found = ConvexHull(points)
+        except QhullError as error:
+            raise InputError(
+                "a mesh, or a part of one, has no extent: all its corner points coincide"
+            ) from error
     used, index = np.unique(found.simplices, return_inverse=True)
     vertices = np.ascontiguousarray(points[used])
     faces = index.reshape(-1, 3).astype(np.int64)

@@ -7,6 +7,7 @@ import io
 import math
 import os
 import secrets
+import shutil
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -236,11 +237,17 @@ def sample_times(start: float, end: float, period: float) -> FloatArray:
 
 
 def write_whole(path: Path, data: bytes) -> None:
-    """Write a file so that it is there whole or not at all."""
+    """Write a file so that it is there whole or not at all.
+
+    A link stays a link to the file that is written, and a file keeps its permissions.
+    """
+    path = path.resolve()
     draft = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
     try:
         with draft.open("xb") as file:
             file.write(data)
+        if path.exists():
+            shutil.copymode(path, draft)
         os.replace(draft, path)
     except BaseException:
         draft.unlink(missing_ok=True)

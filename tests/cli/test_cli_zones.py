@@ -10,8 +10,12 @@ from pathlib import Path
 import pytest
 from typer.testing import Result
 
+from flyby.cli.patching import write_patched
 from flyby.core.collision.verdict import Verdict
+from flyby.core.errors import InputError
+from flyby.core.motion.trajectory import write_whole
 from flyby.core.registry import find_robot, find_vendor
+from flyby.core.source.text import SourceFile
 
 ROBOT = "abb/irb6640-180-255"
 CELL = """robot = "abb/irb6640-180-255"
@@ -169,3 +173,38 @@ def test_a_collision_is_told_with_its_line(flyby: Flyby, cell: Path, tmp_path: P
     assert result.exit_code == 1
     assert "m.mod:11:" in result.stderr and "move 3" in result.stderr
     assert "rod and box overlap by up to" in result.stderr
+
+
+def test_an_edit_saved_meanwhile_is_not_lost(tmp_path: Path) -> None:
+    path = tmp_path / "a.mod"
+    read = {str(path): SourceFile(str(path), "old")}
+    new = {str(path): SourceFile(str(path), "new")}
+    path.write_bytes(b"edited")
+    with pytest.raises(InputError, match="has changed since it was read"):
+        write_patched(new, read, None, True, [], False)
+    assert path.read_bytes() == b"edited"
+    path.write_bytes(b"old")
+    assert write_patched(new, read, None, True, [], False) == [path]
+    assert path.read_bytes() == b"new"
+
+
+def test_files_that_cannot_be_encoded_leave_the_others_alone(tmp_path: Path) -> None:
+    names = [str(tmp_path / name) for name in ("a.mod", "b.mod")]
+    read = {name: SourceFile(name, "old") for name in names}
+    for name in names:
+        Path(name).write_bytes(b"old")
+    new = {names[0]: SourceFile(names[0], "new"), names[1]: SourceFile(names[1], "ne中", "cp1252")}
+    with pytest.raises(InputError, match="cannot be written"):
+        write_patched(new, read, None, True, [], False)
+    assert [Path(name).read_bytes() for name in names] == [b"old", b"old"]
+
+
+def test_a_link_stays_one_and_permissions_are_kept(tmp_path: Path) -> None:
+    real, link = tmp_path / "real.mod", tmp_path / "link.mod"
+    real.write_bytes(b"old")
+    real.chmod(0o600)
+    link.symlink_to(real)
+    write_whole(link, b"new")
+    assert link.is_symlink()
+    assert real.read_bytes() == b"new"
+    assert real.stat().st_mode & 0o777 == 0o600

@@ -242,3 +242,8 @@ def test_bodies_are_named_once(robot) -> None:
         body.name for body in bodies_of(cell_of(robot, obstacles=(Obstacle("a", BALL),)), FLANGE)[0]
     ]
     assert len(set(names)) == len(names)
+
+
+def test_points_that_coincide_have_no_hull() -> None:
+    with pytest.raises(InputError, match="no extent"):
+        hull(np.ones((3, 3)))
