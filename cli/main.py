@@ -10,6 +10,7 @@ from typer.core import TyperGroup
 from ..core.errors import FlybyError
 from .catalogue import robots, vendors
 from .check import check
+from .compare import compare
 from .console import fail
 from .emulate import emulate
 from .kinematics import fk, ik
@@ -44,6 +45,7 @@ app.command()(emulate)
 app.command()(check)
 app.command()(translate)
 app.command()(record)
+app.command()(compare)
 app.command()(zones)
 app.command()(optimize)
 app.command()(robots)

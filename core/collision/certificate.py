@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ..cell.cell import Cell
 from ..errors import InputError
 from ..motion.controller import Controller, Run
+from ..motion.elasticity import RIGID
 from ..motion.timing import Timing
 from ..program.tool import Tool
 from .enclosure import Enclosure, Span
@@ -155,17 +156,23 @@ def _owners(
 def smoothing_strays(controller: Controller, run: Run) -> FloatArray:
     """(N,) rad or m by which smoothing in time moves the joints off the path at most.
 
-    A mean over a window T of a motion with accelerations within ±a is at most a T² / 24 from the
-    motion at the window's middle. No override drives faster than the program's own limits; where
-    the stamp exceeds them between samples, what it reaches counts.
+    A mean with a symmetric kernel of variance s² over a motion with accelerations within ±a is at
+    most a s² / 2 from the motion at the kernel's middle; see `motion.smoothing`. What commanded
+    joints lead their links by comes on top. No override drives faster than the program's own
+    limits; where the stamp exceeds them between samples, what it reaches counts.
     """
-    window = controller.smoothing_window(run.program, run.path)
+    smoothing = controller.smoothing(run.program, run.path)
+    elasticity = controller.model.elasticity
     size = run.path.q.shape[1]
-    if window == 0.0:
+    if smoothing.window == 0.0 and elasticity == RIGID:
         return np.zeros(size)
-    reached = np.abs(run.timing.states_at(_instants(run.timing))[2]).max(axis=0)
-    limit = run.timing.limits.acceleration[:, :size].max(axis=0)
-    return np.asarray(np.maximum(limit, reached) * window**2 / 24)
+    _, dq, ddq, _ = run.timing.states_at(_instants(run.timing))
+    limits = run.timing.limits
+    velocity = np.maximum(limits.velocity[:, :size].max(axis=0), np.abs(dq).max(axis=0))
+    bound = np.maximum(limits.acceleration[:, :size].max(axis=0), np.abs(ddq).max(axis=0))
+    strays = bound * smoothing.stray
+    leads = elasticity.most(controller.robot, run.path.q, velocity, bound, strays)
+    return np.asarray(strays + leads)
 
 
 def _instants(timing: Timing) -> FloatArray:

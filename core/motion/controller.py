@@ -19,15 +19,16 @@ from ..robot.model import Robot
 from ..spatial.rotation import quaternion_from_matrix
 from ..vendor import Vendor
 from .arc_length import ArcLength
+from .elasticity import LEAD_STEP, RIGID, derivatives_of
 from .energy import Energy, energy
 from .limits import SegmentLimits, path_limits
 from .model import MotionModel
 from .path import Path, build_path
 from .pieces import Sampling
 from .route import RouteFinder
-from .smoothing import moving_average, window_for_jerk
+from .smoothing import Motion, Smoothing, States
 from .stamping import StampingError, stamp
-from .timing import Timing
+from .timing import Settling, Timing
 from .trajectory import Trajectory, sample_times
 
 FloatArray = NDArray[np.float64]
@@ -110,7 +111,7 @@ class Controller:
             *path.notes,
             *self._duration_notes(program, timing),
             *self._jerk_notes(program),
-            *self._excess_notes(trajectory),
+            *self._excess_notes(timing, trajectory),
         )
         return Run(program, path, timing, trajectory, notes)
 
@@ -152,29 +153,28 @@ class Controller:
             self.robot, self.model, [move.speed for move in moves], path.route.ends.kind
         )
         timed = [k for k, move in enumerate(moves) if move.speed.duration is not None]
-        window = self.smoothing_window(program, path)
+        settling = self._settling(program, path)
         try:
             along = ArcLength.of(path, self.robot.limits.acceleration)
-            timing = _timing(path, along, limits, window)
+            timing = _timing(path, along, limits, settling)
             if not timed:
                 return timing
             wanted = np.array([moves[k].speed.duration for k in timed], dtype=float)
-            return _hold_durations(timing, timed, wanted, window)
+            return _hold_durations(timing, timed, wanted, settling)
         except MotionError as error:
             raise _located(error, program) from error
 
     def sample(self, program: Program, timing: Timing, period: float | None = None) -> Trajectory:
         """The commanded motion, smoothed in time where the vendor does, every ``period`` s."""
         period = self.model.period if period is None else period
-        window = self.smoothing_window(program, timing.path)
+        smoothing = self.smoothing(program, timing.path)
         t = sample_times(0.0, timing.duration, period)
-        if window == 0.0:
+        if smoothing.window == 0.0 and self.model.elasticity == RIGID:
             q, dq, ddq, sigma = timing.states_at(t)
         else:
-            dense = np.unique(np.concatenate([_dense(timing), timing.begin, timing.end]))
-            q, dq, _, _ = timing.states_at(dense)
-            q, dq, ddq = moving_average(dense, q, dq, window, t)
-            sigma = timing.states_at(np.clip(t - 0.5 * window, 0.0, timing.duration))[3]
+            q, dq, ddq = self._commanded(smoothing, stamped_motion(timing), t)
+            middle = np.clip(t - 0.5 * smoothing.window, 0.0, timing.duration)
+            sigma = timing.states_at(middle)[3]
         path = timing.path
         last = len(path.route.moves) - 1
         segment = np.clip(np.searchsorted(path.layout.waypoint, sigma, "right") - 1, 0, last)
@@ -204,12 +204,29 @@ class Controller:
     def _moves(self, program: Program, path: Path) -> list[Move]:
         return [program.moves[i] for i in path.route.moves]
 
-    def smoothing_window(self, program: Program, path: Path) -> float:
-        """Length in s of the moving average: the vendor's own, or what the gentlest move needs."""
-        if self.model.jerk is None:
-            return self.model.smoothing
+    def smoothing(self, program: Program, path: Path) -> Smoothing:
+        """What is done to the commanded joints in time: as the gentlest move's jerk needs it."""
         gentlest = min(move.speed.jerk_fraction for move in self._moves(program, path))
-        return max(self.model.smoothing, window_for_jerk(self.model.jerk * gentlest))
+        return self.model.smoothing_at(gentlest)
+
+    def smoothing_window(self, program: Program, path: Path) -> float:
+        """Length in s of what one commanded sample depends on."""
+        return self.smoothing(program, path).window
+
+    def _settling(self, program: Program, path: Path) -> Settling:
+        window = self.smoothing_window(program, path)
+        wait = self.model.settling
+        return Settling(window if wait is None else min(wait, window), window)
+
+    def _commanded(self, smoothing: Smoothing, stamped: Motion, t: FloatArray) -> States:
+        """The smoothed joints and what they lead their links by."""
+        q, dq, ddq = smoothing.command(stamped, t)
+        if self.model.elasticity == RIGID:
+            return q, dq, ddq
+        even = sample_times(0.0, float(stamped.t[-1]), LEAD_STEP)
+        lead = self.model.elasticity.leads(self.robot, *smoothing.command(stamped, even))
+        more = derivatives_of(even, lead, t)
+        return q + more[0], dq + more[1], ddq + more[2]
 
     def _tcp(
         self, moves: Sequence[Move], segment: IntArray, q: FloatArray
@@ -252,13 +269,22 @@ class Controller:
             "move the target"
         )
 
-    def _excess_notes(self, trajectory: Trajectory) -> list[Note]:
-        """Moves on which the samples of the commanded motion exceed the robot's own limits."""
+    def _excess_notes(self, timing: Timing, trajectory: Trajectory) -> list[Note]:
+        """Moves on which the samples of the commanded motion exceed the robot's own limits.
+
+        Where joints are elastic, limits are those of the links, which are driven as stamped.
+        """
         limits = self.robot.limits
+        scale = [self.model.acceleration_scale(j) for j in range(self.robot.arm_size)]
+        most = limits.acceleration.copy()
+        most[: len(scale)] *= scale
+        dq, ddq = trajectory.dq, trajectory.ddq
+        if self.model.elasticity != RIGID:
+            _, dq, ddq, _ = timing.states_at(trajectory.t)
         notes = []
         for name, values, bound in (
-            ("velocity", trajectory.dq, limits.velocity),
-            ("acceleration", trajectory.ddq, limits.acceleration),
+            ("velocity", dq, limits.velocity),
+            ("acceleration", ddq, most),
         ):
             share = np.abs(values) / bound
             for move in np.unique(trajectory.move[share.max(axis=1) > _EXCESS]):
@@ -343,7 +369,7 @@ def _carried(move: Move) -> Inertia | None:
     return total
 
 
-def _timing(path: Path, along: ArcLength, limits: SegmentLimits, settling: float) -> Timing:
+def _timing(path: Path, along: ArcLength, limits: SegmentLimits, settling: Settling) -> Timing:
     made = path_limits(along.states, along.spacing, path.pieces, limits)
     try:
         found = stamp(made.rows)
@@ -356,7 +382,7 @@ def _timing(path: Path, along: ArcLength, limits: SegmentLimits, settling: float
 
 
 def _hold_durations(
-    timing: Timing, timed: list[int], wanted: FloatArray, settling: float
+    timing: Timing, timed: list[int], wanted: FloatArray, settling: Settling
 ) -> Timing:
     """Slow segments down until they take the time that was programmed.
 
@@ -401,6 +427,9 @@ def _finite(timing: Timing, timed: list[int]) -> SegmentLimits:
     return replace(timing.limits, velocity=velocity)
 
 
-def _dense(timing: Timing) -> FloatArray:
-    """Times fine enough that cubics in time between them stand for the stamped motion."""
-    return sample_times(0.0, timing.duration, 0.002)
+def stamped_motion(timing: Timing) -> Motion:
+    """The stamped motion, by knots fine enough that cubics in time between them stand for it."""
+    even = sample_times(0.0, timing.duration, 0.002)
+    t = np.unique(np.concatenate([even, timing.begin, timing.end]))
+    q, dq, _, _ = timing.states_at(t)
+    return Motion(t, q, dq)

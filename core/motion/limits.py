@@ -134,8 +134,11 @@ def _limits(
         else:
             limits.append(_given(speed.external_angular, "external_angular"))
         velocity.append(_least(*limits))
-        own = speed.joint_acceleration_fraction * joint.acceleration
-        limits = [(own, ("joint_acceleration_fraction", joint.acceleration))]
+        most = joint.acceleration
+        if index < robot.arm_size:
+            most *= model.acceleration_scale(index)
+        own = speed.joint_acceleration_fraction * most
+        limits = [(own, ("joint_acceleration_fraction", most))]
         if kind == JOINT_SEGMENT:
             limits.append(_given(speed.joint_acceleration, "joint_acceleration"))
         acceleration.append(_least(*limits))

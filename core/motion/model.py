@@ -15,6 +15,8 @@ from typing import Any
 
 from ..errors import InputError, UnknownNameError
 from .blend import PARABOLA, Blend
+from .elasticity import RIGID, Elasticity, elasticity
+from .smoothing import Smoothing, window_for_jerk
 
 
 class Overlap(StrEnum):
@@ -73,9 +75,15 @@ class MotionModel:
         stops_at_pure_reorientation: no zone between a TCP move and a mere reorientation.
         tcp_acceleration: m/s² along the path where the program states none; None for no limit.
         reorientation_acceleration: rad/s², likewise.
-        smoothing: length in s of the moving average over the commanded joints.
+        joint_acceleration_scale: what the robot's own acceleration limits are multiplied by, from
+            the first joint of the arm on; joints beyond the last keep theirs.
+        smoothing: lengths in s of the moving averages, one after the other, over the commanded
+            joints; see `smoothing.Smoothing`.
+        settling: s that the stamped motion waits at stops on the way; None waits until the
+            commanded motion has come to rest, which takes the whole window.
+        elasticity: how far the commanded joints lead their links; see `Elasticity`.
         jerk: joint jerk limit as a multiple of each joint's acceleration limit per second, held
-            by lengthening the moving average; None for no limit.
+            by lengthening the longest moving average; None for no limit.
         provenance: of every figure, by its dotted key.
     """
 
@@ -90,7 +98,10 @@ class MotionModel:
     stops_at_pure_reorientation: bool = False
     tcp_acceleration: float | None = None
     reorientation_acceleration: float | None = None
-    smoothing: float = 0.0
+    joint_acceleration_scale: tuple[float, ...] = ()
+    smoothing: tuple[float, ...] = ()
+    settling: float | None = None
+    elasticity: Elasticity = RIGID
     jerk: float | None = None
     provenance: Mapping[str, Provenance] = field(default_factory=dict)
 
@@ -104,30 +115,54 @@ class MotionModel:
                 f"zone.neighbour_fraction lies in (0, 0.5], not {self.neighbour_fraction}: "
                 "beyond a half, neighbouring zones would overlap"
             )
-        if not 0 <= self.smoothing < math.inf:
-            raise InputError(
-                f"time.smoothing_s must be finite and zero or more, not {self.smoothing}"
-            )
+        for key, durations in (
+            ("time.smoothing_s", self.smoothing),
+            ("time.settling_s", () if self.settling is None else (self.settling,)),
+        ):
+            for value in durations:
+                if not 0 <= value < math.inf:
+                    raise InputError(f"{key} must be finite and zero or more, not {value}")
         for key, value in (
             ("time.jerk", self.jerk),
             *((f"limit.{name}", getattr(self, name)) for name in _LIMITS),
         ):
             if value is not None and not 0 < value < math.inf:
                 raise InputError(f"{key} must be finite and above zero, not {value}")
+        if not all(0 < value < math.inf for value in self.joint_acceleration_scale):
+            raise InputError(
+                "limit.joint_acceleration_scale must be finite and above zero, not "
+                f"{list(self.joint_acceleration_scale)}"
+            )
         if not isinstance(self.stops_at_pure_reorientation, bool):
             raise InputError(
                 "zone.stops_at_pure_reorientation is true or false, not "
                 f"{self.stops_at_pure_reorientation!r}"
             )
 
+    def smoothing_at(self, jerk_fraction: float) -> Smoothing:
+        """What is done to the commanded joints where a share of the jerk limit is programmed."""
+        made = Smoothing(tuple(width for width in self.smoothing if width > 0))
+        if self.jerk is None:
+            return made
+        return made.lengthened_to(window_for_jerk(self.jerk * jerk_fraction))
+
+    def acceleration_scale(self, joint: int) -> float:
+        """What the acceleration limit of a joint, counted from zero, is multiplied by."""
+        scales = self.joint_acceleration_scale
+        return scales[joint] if joint < len(scales) else 1.0
+
     @property
     def figures(self) -> frozenset[str]:
         """The dotted keys of all that the model states; each of them needs a provenance."""
         blends = (f"blend.{name}.{key}" for name in _BLENDS for key in ("kind", "alpha", "beta"))
         limits = (f"limit.{name}" for name in _LIMITS if getattr(self, name) is not None)
-        return frozenset((*_SINGLE_FIGURES, *blends, *limits))
+        settling = () if self.settling is None else ("time.settling_s",)
+        elasticity = self.elasticity.figures
+        scale = ("limit.joint_acceleration_scale",) if self.joint_acceleration_scale else ()
+        return frozenset((*_SINGLE_FIGURES, *blends, *limits, *scale, *settling, *elasticity))
 
 
+_TABLES = ("blend", "zone", "time", "limit", "elasticity", "provenance")
 _BLENDS = ("tcp", "joint", "orientation")
 _LIMITS = ("tcp_acceleration", "reorientation_acceleration")
 _SINGLE_FIGURES = (
@@ -160,11 +195,9 @@ def load_motion_model(path: Path) -> MotionModel:
 
 
 def _model(data: dict[str, Any]) -> MotionModel:
-    blend, zone, time, limit, origins = (
-        _table(k, data.pop(k, {})) for k in ("blend", "zone", "time", "limit", "provenance")
-    )
+    blend, zone, time, limit, lead, origins = (_table(k, data.pop(k, {})) for k in _TABLES)
     provenance = {key: _provenance(f"provenance.{key}", entry) for key, entry in origins.items()}
-    values: dict[str, Any] = {"provenance": provenance}
+    values: dict[str, Any] = {"provenance": provenance, "elasticity": elasticity(lead)}
     _take(data, values, "", {"period_s": ("period", _number)})
     _take(blend, values, "blend.", {name: (name, _blend) for name in _BLENDS})
     _take(
@@ -184,7 +217,8 @@ def _model(data: dict[str, Any]) -> MotionModel:
         values,
         "time.",
         {
-            "smoothing_s": ("smoothing", _number),
+            "smoothing_s": ("smoothing", _numbers),
+            "settling_s": ("settling", _number),
             "jerk": ("jerk", lambda v: None if v == "none" else _number(v)),
         },
     )
@@ -195,6 +229,7 @@ def _model(data: dict[str, Any]) -> MotionModel:
         {
             "tcp_acceleration": ("tcp_acceleration", _number),
             "reorientation_acceleration": ("reorientation_acceleration", _number),
+            "joint_acceleration_scale": ("joint_acceleration_scale", _row),
         },
     )
     return MotionModel(**values)
@@ -242,6 +277,20 @@ def _number(entry: Any) -> float:
     if isinstance(entry, bool) or not isinstance(entry, int | float):
         raise InputError(f"a number is expected, not {entry!r}")
     return float(entry)
+
+
+def _row(entry: Any) -> tuple[float, ...]:
+    if not isinstance(entry, list):
+        raise InputError(f"a list of numbers is expected, not {entry!r}")
+    return tuple(map(_number, entry))
+
+
+def _numbers(entry: Any) -> tuple[float, ...]:
+    """Several numbers, or one; a single zero means none."""
+    if isinstance(entry, list):
+        return _row(entry)
+    value = _number(entry)
+    return () if value == 0.0 else (value,)
 
 
 def _truth(entry: Any) -> bool:

@@ -19,6 +19,19 @@ IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
+class Settling:
+    """How long the stamped motion rests for what follows it in time.
+
+    Args:
+        stop: s, at each stop on the way.
+        end: s, after the last.
+    """
+
+    stop: float = 0.0
+    end: float = 0.0
+
+
+@dataclass(frozen=True)
 class Timing:
     """The stamp of a path.
 
@@ -50,21 +63,22 @@ class Timing:
         along: ArcLength,
         path_limits: PathLimits,
         stamp: Stamp,
-        settling: float = 0.0,
+        settling: Settling = Settling(),
     ) -> Timing:
         """The timing of a stamp on a path.
 
         Args:
             path, limits, along, path_limits, stamp: what was stamped.
-            settling: s that the commanded joints take to arrive at a stop after the stamped ones.
+            settling: rests that smoothing in time needs.
         """
         pieces = path.pieces
         waypoint_edge = np.flatnonzero(pieces.source[:, 1] < 0)
         first = pieces.first_interval
         wait = np.zeros(first[-1] + 1)
         wait[first[waypoint_edge]] = path.route.dwell[pieces.source[waypoint_edge, 0]]
-        wait[first[path.pieces.stop]] += settling
-        wait[0] -= settling
+        wait[first[path.pieces.stop]] += settling.stop
+        wait[0] -= settling.stop
+        wait[-1] += settling.end - settling.stop
         # A wait at a knot comes before the interval that leaves it.
         delay = np.cumsum(wait)
         begin, end = stamp.t[:-1] + delay[:-1], stamp.t[1:] + delay[:-1]

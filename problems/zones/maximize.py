@@ -191,10 +191,13 @@ class _Maximization:
         return looks
 
     def _deviation(self, run: Run) -> FloatArray:
-        """How far (N,) smoothing in time takes the joints off the path: a T² / 24."""
-        window = self._controller.smoothing_window(self._program, run.path)
+        """How far (N,) smoothing in time, and leads of elastic joints, take them off the path."""
+        smoothing = self._controller.smoothing(self._program, run.path)
         size = run.path.q.shape[1]
-        if window == 0.0:
-            return np.zeros(size)
-        limit = run.timing.limits.acceleration[:, :size].max(axis=0)
-        return np.asarray(_EXCESS * limit * window**2 / 24)
+        limits, controller = run.timing.limits, self._controller
+        velocity = _EXCESS * limits.velocity[:, :size].max(axis=0)
+        bound = _EXCESS * limits.acceleration[:, :size].max(axis=0)
+        strays = bound * smoothing.stray
+        elasticity = controller.model.elasticity
+        leads = elasticity.most(controller.robot, run.path.q, velocity, bound, strays)
+        return np.asarray(strays + leads)

@@ -132,7 +132,7 @@ class EmulationChecks(Subject):
         coast = 1e-3 * PERIOD * robot.limits.acceleration
         assert (np.abs(made.dq[[0, -1]]) <= coast).all()
         waits = sum(s.duration for s in run.program.statements if isinstance(s, Wait))
-        assert run.duration >= waits + self.vendor.motion().smoothing
+        assert run.duration >= waits + sum(self.vendor.motion().smoothing)
 
     @DRIVES
     @given(data=st.data(), factor=st.floats(0.1, 0.9))

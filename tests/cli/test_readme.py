@@ -81,6 +81,7 @@ def test_the_command_line_is_documented(flyby: Callable[..., Result]) -> None:
         "zones",
         "optimize",
         "record",
+        "compare",
         "robots",
         "vendors",
         "fk",

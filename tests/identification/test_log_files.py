@@ -1,4 +1,4 @@
-"""Reading logged runs, on files made here."""
+"""Reading records of runs and their logs, on files made here."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from flyby.core.errors import InputError
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot
-from flyby.identification.logs import load_run, load_samples
+from flyby.identification.logs import load_run, read_samples
 
 HOME = [0.2, -1.4, -1.8, -1.4, 1.5, 0.3]
 HEADER = "t,q1,q2,q3,q4,q5,q6"
@@ -58,7 +58,8 @@ def test_a_run_is_read_as_it_stands(tmp_path) -> None:
     assert arc.via.pose.position == arc.target.pose.position
     assert joint.zone == FINE
     assert run.program.start.joints == tuple(HOME)
-    assert (run.robot, run.real, run.note, run.name) == ("ur/ur10e", False, "made up", "run")
+    assert (run.robot, run.real, run.name) == ("ur/ur10e", False, "run")
+    assert run.notes == ("made up",)
     assert run.q.shape == (2, 6)
 
 
@@ -102,28 +103,79 @@ def test_no_json_and_no_file_are_refused(tmp_path) -> None:
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "[]",
+        "3",
+        '"x"',
+        "{}",
+        '{"robot": 3, "log": 4}',
+        "[" * 100_000,
+        '{"log": {"file": "run.csv"}}',
+    ],
+)
+def test_hostile_records_are_refused_by_name(tmp_path, text) -> None:
+    path = write(tmp_path)
+    path.write_text(text, "utf-8")
+    with pytest.raises(InputError, match=r"run\.json"):
+        load_run(path, find_robot)
+
+
+def test_a_record_may_name_the_catalogue_robot(tmp_path) -> None:
+    assert load_run(write(tmp_path, {"robot": "ur/ur10e"}), find_robot).robot == "ur/ur10e"
+
+
+@pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", r"log\.csv:1"),
+        ("", r"log\.csv: an empty log"),
         ("a,b\n1,2\n", r"log\.csv:1"),
-        ("t,q1\n0,0\n0.1,x\n", r"log\.csv:3"),
-        ("t,q1\n0,0\n0.1\n", r"log\.csv:3"),
-        ("t,q1\n0,0\n0.1,nan\n", r"log\.csv:3"),
-        ("t,q1\n0,0\n", "two samples"),
+        (
+            f"{HEADER}\n0,0,0,0,0,0,0\n0.1,0,0,x,0,0,0\n",
+            r"log\.csv:3: column 'q3': 'x' is no number",
+        ),
+        (f"{HEADER}\n0,0\n0.1,0,0,0,0,0,0\n", r"log\.csv:2: the line has no column 'q2'"),
+        (f"{HEADER}\n0,0,0,0,0,0,0\n0.1,0,nan,0,0,0,0\n", r"log\.csv:3: column 'q2'.*not finite"),
+        (f"{HEADER}\n0,0,0,0,0,0,0\n", "two samples"),
+        (f"{HEADER}\n", "two samples"),
+        (f"{HEADER}\n" + "1,0,0,0,0,0,0\n" * 9, "time stands still"),
+        ("t,q1,q2,q4\n0,0,0,0\n1,0,0,0\n", r"column 'q3' is missing"),
+        ("t,q1,q2,q2,q3\n0,0,0,0,0\n1,0,0,0,0\n", r"column 'q2' stands 2 times"),
+        ("t,q1,q2\n0,0,0\n1,0,0\n", r"2 joints are logged, but ur/ur10e has 6 axes"),
     ],
 )
 def test_broken_samples_name_file_and_line(tmp_path, text, message) -> None:
     path = tmp_path / "log.csv"
     path.write_text(text, "utf-8")
     with pytest.raises(InputError, match=message):
-        load_samples(path)
+        read_samples(path, find_robot("ur/ur10e"))
 
 
-def test_samples_whose_time_does_not_increase_are_left_out(tmp_path) -> None:
+def samples_at(times) -> str:
+    return "\n".join([HEADER, *(f"{t},{k},0,0,0,0,0" for k, t in enumerate(times)), ""])
+
+
+def test_single_samples_whose_time_does_not_increase_are_left_out(tmp_path) -> None:
     path = tmp_path / "log.csv"
-    path.write_text("t,q1\n0,0\n0.2,1\n0.1,2\n0.2,3\n0.3,4\n", "utf-8")
-    t, q = load_samples(path)
-    assert t.tolist() == [0, 0.2, 0.3] and q[:, 0].tolist() == [0, 1, 4]
+    path.write_text(samples_at([0, 0.1, 0.2, 0.15, 0.3, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]), "utf-8")
+    samples = read_samples(path, find_robot("ur/ur10e"))
+    assert samples.t.tolist() == [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8]
+    assert samples.q[:, 0].tolist() == [0, 1, 2, 4, 6, 7, 8, 9, 10]
+    assert samples.notes == ("2 samples whose time does not increase are left out",)
+
+
+@pytest.mark.parametrize(
+    ("times", "message"),
+    [
+        ([*np.arange(0, 3, 0.1), *np.arange(0, 3, 0.1)], r"log\.csv:32: time runs back by 2\.9"),
+        (np.repeat(np.arange(0, 3, 0.1), 2), "30 of 60 samples does not increase"),
+    ],
+)
+def test_time_that_is_none_is_refused(tmp_path, times, message) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(samples_at(times), "utf-8")
+    with pytest.raises(InputError, match=message):
+        read_samples(path, find_robot("ur/ur10e"))
 
 
 def test_a_joint_move_whose_end_was_moved_goes_where_the_log_ends(tmp_path) -> None:

@@ -49,7 +49,7 @@ def test_the_vendors_table_states_their_rules() -> None:
         assert stops == model.stops_at_pure_reorientation
         assert cells("period")[k].startswith(f"{1e3 * model.period:g} ms")
         assert ("arc" in cells("blend of the TCP")[k]) == (model.tcp.kind == "arc")
-        assert model.smoothing == 0 and model.jerk is None
+        assert model.smoothing == () and model.jerk is None
 
 
 def test_all_laws_of_the_table_pass_the_same_apex() -> None:

@@ -21,6 +21,7 @@ from flyby.core.collision.certificate import (
 from flyby.core.collision.verdict import Certificate, Verdict
 from flyby.core.errors import InputError, MotionError
 from flyby.core.motion.controller import Controller, Run
+from flyby.core.motion.elasticity import RIGID, Carried, Elasticity
 from flyby.core.motion.model import MotionModel
 from flyby.core.motion.pieces import Sampling
 from flyby.core.program.move import MoveC, MoveJ, MoveL
@@ -291,7 +292,7 @@ def test_smoothed_motions_keep_what_is_proven_at_every_override(data, window) ->
     robot = find_robot(ARM)
     cell = cell_with(*data.draw(random_obstacles(robot)))
     program = data.draw(random_moves(robot))
-    model = MotionModel(smoothing=window)
+    model = MotionModel(smoothing=(window,))
     run = planned(cell, program, model)
     assume(dense_least(cell, program) > 0.03)
     controller = controller_of(cell, model)
@@ -310,17 +311,21 @@ def test_smoothed_motions_keep_what_is_proven_at_every_override(data, window) ->
 @given(st.data(), st.floats(0.01, 0.08))
 def test_smoothing_strays_from_the_path_by_no_more_than_is_reckoned(data, window) -> None:
     program = data.draw(random_moves(find_robot(ARM)))
-    cell, model = cell_with(), MotionModel(smoothing=window)
+    gears = Elasticity((1e-4, 2e-4, 5e-5), (Carried(3, (2e-4, 1e-4)), Carried(5, (5e-5,) * 3)))
+    model = MotionModel(
+        smoothing=(window, 0.5 * window), elasticity=data.draw(st.sampled_from([RIGID, gears]))
+    )
+    cell = cell_with()
     run = planned(cell, program, model)
     strays = smoothing_strays(controller_of(cell, model), run)
-    middle = np.clip(run.trajectory.t - 0.5 * window, 0.0, None)
+    middle = np.clip(run.trajectory.t - 0.75 * window, 0.0, None)
     off = np.abs(run.trajectory.q - run.timing.states_at(middle)[0]).max(axis=0)
     assert (off <= strays * (1 + 1e-6) + 1e-9).all()
 
 
 def test_smoothing_of_a_steady_acceleration_strays_just_that_far() -> None:
     cell, window = cell_with(), 0.04
-    model = MotionModel(smoothing=window)
+    model = MotionModel(smoothing=(window,))
     run = controller_of(cell, model).run(swing(turned(1, 1.0) - HOME, speed=Speed(tcp=50.0)))
     strays = smoothing_strays(controller_of(cell, model), run)
     assert strays[0] == pytest.approx(cell.robot.limits.acceleration[0] * window**2 / 24, rel=0.02)
@@ -461,7 +466,7 @@ def test_a_budget_that_does_not_reach_says_so() -> None:
 
 def test_smoothing_that_takes_the_clearance_leaves_it_unproven() -> None:
     cell, program = trap()
-    controller = controller_of(cell, MotionModel(smoothing=0.05))
+    controller = controller_of(cell, MotionModel(smoothing=(0.05,)))
     found = certify(controller, controller.run(program), scenes_of(cell), 0.0048)
     assert found.verdict is Verdict.UNPROVEN
     assert "smoothing" in found.message and set(found.pair) == {"rod", "ball"}

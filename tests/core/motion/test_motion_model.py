@@ -7,13 +7,29 @@ import math
 import pytest
 
 from flyby.core.errors import InputError
+from flyby.core.motion.elasticity import Carried, Elasticity
 from flyby.core.motion.model import MotionModel, load_motion_model
+from flyby.core.motion.smoothing import Smoothing
 
 BROKEN = {
     'period_s = "fast"': "period_s",
     "period_s = inf": "period_s",
     "[time]\nsmoothing_s = nan": "time.smoothing_s",
+    "[time]\nsmoothing_s = [0.04, -1]": "time.smoothing_s",
+    "[time]\nsmoothing_s = [0.04, 'a']": "time.smoothing_s",
+    "[time]\nsettling_s = nan": "time.settling_s",
     "[time]\njerk = nan": "time.jerk",
+    "elasticity = 1": "elasticity",
+    "[limit]\njoint_acceleration_scale = 2": "limit.joint_acceleration_scale",
+    "[limit]\njoint_acceleration_scale = [1, 0]": "limit.joint_acceleration_scale",
+    "[elasticity]\nown = [1]": "elasticity.own",
+    "[elasticity]\nown_s2 = 1": "elasticity.own_s2",
+    "[elasticity]\nown_s2 = [nan]": "elasticity.own_s2",
+    "[elasticity]\ncarried = 3": "elasticity.carried",
+    "[elasticity]\ncarried = [{ joint = 3 }]": "elasticity.carried",
+    "[elasticity]\ncarried = [{ joint = 3.5, lead_s2_per_m2 = [] }]": "elasticity.carried",
+    "[elasticity]\ncarried = [{ joint = 2, lead_s2_per_m2 = [0, 1] }]": "elasticity.carried",
+    "[elasticity]\ncarried = [{ joint = 2, lead_s2_per_m2 = [nan] }]": "elasticity.carried",
     "[limit]\ntcp_acceleration = -1": "limit.tcp_acceleration",
     "[limit]\nreorientation_acceleration = nan": "limit.reorientation_acceleration",
     '[zone]\nstops_at_pure_reorientation = "false"': "zone.stops_at_pure_reorientation",
@@ -41,7 +57,8 @@ def test_a_broken_file_is_named_with_the_key(text, tmp_path) -> None:
     [
         {"period": 0.0},
         {"period": math.inf},
-        {"smoothing": math.nan},
+        {"smoothing": (math.nan,)},
+        {"settling": -0.1},
         {"jerk": math.nan},
         {"jerk": 0.0},
         {"tcp_acceleration": -1.0},
@@ -65,3 +82,27 @@ def test_a_sound_file_is_read(tmp_path) -> None:
     assert (model.period, model.jerk, model.stops_at_pure_reorientation) == (0.002, None, True)
     assert model.tcp.alpha == (0.0, 1.0)
     assert model.provenance["period_s"].details == {"runs": 3}
+
+
+def test_what_is_done_in_time_is_read(tmp_path) -> None:
+    path = tmp_path / "motion.toml"
+    path.write_text(
+        "[time]\nsmoothing_s = [0.04, 0, 0.02]\nsettling_s = 0.1\n"
+        "[elasticity]\nown_s2 = [1e-4, 0]\n"
+        "carried = [{ joint = 3, lead_s2_per_m2 = [2e-4, 1e-4] }]\n"
+        "[limit]\njoint_acceleration_scale = [1.5, 0.5]\n",
+        "utf-8",
+    )
+    model = load_motion_model(path)
+    assert model.smoothing_at(1.0) == Smoothing((0.04, 0.02)) and model.settling == 0.1
+    assert model.elasticity == Elasticity((1e-4, 0.0), (Carried(3, (2e-4, 1e-4)),))
+    assert [model.acceleration_scale(j) for j in range(3)] == [1.5, 0.5, 1.0]
+    keys = {
+        "limit.joint_acceleration_scale",
+        "time.settling_s",
+        "elasticity.own_s2",
+        "elasticity.carried",
+    }
+    assert keys <= model.figures and not keys & MotionModel().figures
+    path.write_text("[time]\nsmoothing_s = 0.06\n", "utf-8")
+    assert load_motion_model(path).smoothing == (0.06,)

@@ -1,6 +1,6 @@
-"""Reads logged runs: a JSON file with the exact program and a CSV file with joint samples.
+"""Reads records of runs: a JSON file with the exact program, and the log that it names.
 
-The CSV has a header, ``t`` in s and ``q1 … qn`` in rad; the JSON names robot, tool, start and
+The log is a file as `read_samples` takes it; the JSON names robot, tool, start and
 moves in SI units (``target_pose`` as ``xyz_m`` with ``quat_wxyz`` or ``rotvec``, or
 ``target_joints_rad``; ``zone.radius_m`` or ``rule_radius_m``; speeds in ``speed`` or, for
 URScript, ``params``).
@@ -8,26 +8,26 @@ URScript, ``params``).
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import InputError
-from ..core.program.move import Move, MoveC, MoveJ, MoveL
-from ..core.program.program import Program
-from ..core.program.speed import Speed
-from ..core.program.target import JointTarget, PoseTarget
-from ..core.program.tool import FLANGE, Tool
-from ..core.program.zone import FINE, Radius, Zone
-from ..core.robot.model import Robot
-from ..core.spatial.pose import Pose
-from ..core.spatial.rotation import matrix_from_rotation_vector, quaternion_from_matrix
+from ...core.errors import InputError
+from ...core.program.move import Move, MoveC, MoveJ, MoveL
+from ...core.program.program import Program
+from ...core.program.speed import Speed
+from ...core.program.target import JointTarget, PoseTarget
+from ...core.program.tool import FLANGE, Tool
+from ...core.program.zone import FINE, Radius, Zone
+from ...core.robot.model import Robot
+from ...core.spatial.pose import Pose
+from ...core.spatial.rotation import matrix_from_rotation_vector, quaternion_from_matrix
+from .reading import read_samples
+from .run import LoggedRun
 
 FloatArray = NDArray[np.float64]
 
@@ -44,31 +44,8 @@ _LINEAR_MOVES = {"MoveL", "LIN"}
 _ARC_MOVES = {"MoveC", "CIRC"}
 
 
-@dataclass(frozen=True, eq=False)
-class LoggedRun:
-    """One run.
-
-    Args:
-        name: of the file.
-        robot: name in the catalogues.
-        real: whether a robot moved, not a virtual controller.
-        program: what it was told.
-        t: (T,) s, increasing.
-        q: (T, n) rad.
-        note: what the record says of its own uncertainties.
-    """
-
-    name: str
-    robot: str
-    real: bool
-    program: Program
-    t: FloatArray
-    q: FloatArray
-    note: str
-
-
 def load_run(path: Path, robots: Callable[[str], Robot]) -> LoggedRun:
-    """Read a run from its JSON file; the CSV is the one that it names, beside it.
+    """Read a run from its JSON file; the log is the one that it names, beside it.
 
     Where the record gives a target's position alone, its orientation is that of the logged
     sample nearest to it; where it says that the first or last point was moved before the run, the
@@ -83,54 +60,25 @@ def load_run(path: Path, robots: Callable[[str], Robot]) -> LoggedRun:
     """
     try:
         data = json.loads(path.read_text("utf-8"))
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise InputError(f"{path}: not a readable run: {error}") from error
     try:
         log = path.parent / data["log"]["file"]
         robot = _robot(str(data["robot"]))
-        real = bool(data.get("real", False))
-        t, q = load_samples(log)
-        data = _completed(data, robots(robot), q)
+        real = data.get("real")
+        samples = read_samples(log, robots(robot))
+        data = _completed(data, robots(robot), samples.q)
         moves = tuple(_move(entry, data) for entry in data["moves"])
-        start = JointTarget(tuple(map(float, _start(data, q))))
-    except (KeyError, TypeError, ValueError) as error:
+        start = JointTarget(tuple(map(float, _start(data, samples.q))))
+    except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as error:
         raise InputError(f"{path}: not a run: missing or misshapen {error}") from error
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     program = Program(moves, path.stem, start)
-    return LoggedRun(path.stem, robot, real, program, t, q, str(data.get("note", "")))
-
-
-def load_samples(path: Path) -> tuple[FloatArray, FloatArray]:
-    """Times (T,) s and joints (T, n) rad of a log; samples whose time does not increase are left
-    out.
-
-    Raises:
-        InputError: naming file and line.
-    """
-    try:
-        rows = list(csv.reader(path.read_text("utf-8").splitlines()))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: not a readable log: {error}") from error
-    header = rows[0] if rows else []
-    joints = [i for i, name in enumerate(header) if name[:1] == "q" and name[1:].isdigit()]
-    if "t" not in header or not joints:
-        raise InputError(f"{path}:1: a log needs columns t, q1, q2, …")
-    columns = [header.index("t"), *joints]
-    data = np.empty((len(rows) - 1, len(columns)))
-    for line, row in enumerate(rows[1:], start=2):
-        try:
-            data[line - 2] = [float(row[i]) for i in columns]
-        except (ValueError, IndexError) as error:
-            raise InputError(f"{path}:{line}: a number is missing or broken") from error
-    if not np.isfinite(data).all():
-        line = int(np.argwhere(~np.isfinite(data))[0, 0]) + 2
-        raise InputError(f"{path}:{line}: a number is not finite")
-    if len(data) < 2:
-        raise InputError(f"{path}: a log needs at least two samples")
-    latest = np.maximum.accumulate(data[:, 0])
-    keep = np.concatenate([[True], data[1:, 0] > latest[:-1]])
-    return data[keep, 0], data[keep, 1:]
+    said = (str(data["note"]),) if data.get("note") else ()
+    real = None if real is None else bool(real)
+    notes = (*said, *samples.notes)
+    return LoggedRun(path.stem, robot, real, program, samples.t, samples.q, notes)
 
 
 def _start(data: dict[str, Any], q: FloatArray) -> Sequence[float]:
@@ -163,6 +111,8 @@ def _completed(data: dict[str, Any], robot: Robot, q: FloatArray) -> dict[str, A
 
 
 def _robot(name: str) -> str:
+    if "/" in name and " " not in name:
+        return name
     for known, catalogue in _ROBOTS.items():
         if name.casefold().startswith(known):
             return catalogue

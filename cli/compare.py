@@ -1,0 +1,242 @@
+"""``flyby compare``: how well the emulator predicts a log."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..core.errors import InputError
+from .console import print_json, print_rich, print_table, progress, warn
+from .emulate import PLOT_FORMATS
+from .installed import registry
+from .loading import Source, robot_of, start_of
+from .options import (
+    AnswersFile,
+    AsJson,
+    CellFile,
+    Entry,
+    Force,
+    OtherFiles,
+    RobotName,
+    Start,
+)
+from .outputs import check_outputs, writing
+
+if TYPE_CHECKING:
+    from ..core.motion.controller import Run
+    from ..core.program.target import JointTarget
+    from ..core.robot.model import Robot
+    from ..core.vendor import Vendor
+    from ..identification.alignment import Alignment
+    from ..identification.logs import CleanLog, LoggedRun
+    from ..identification.residuals import Figures, Residuals
+
+PERIOD = 5e-4
+"""s between samples of the emulation. At 1 m/s round a radius of 10 mm, chords are 3 µm off."""
+RECORD = ".json"
+COLUMNS = (("", "left"), ("greatest", "right"), ("99 %", "right"), ("RMS", "right"))
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """A log beside its emulation, and what came of it."""
+
+    robot: Robot
+    run: Run
+    log: CleanLog
+    alignment: Alignment
+    residuals: Residuals
+    figures: Figures
+
+
+def compare(
+    program: Annotated[
+        Path,
+        typer.Argument(
+            help="Program file in its vendor's language, or the record of a run (JSON)."
+        ),
+    ],
+    log: Annotated[
+        Path | None, typer.Argument(help="Log of a run; of a record it is the one that it names.")
+    ] = None,
+    robot: RobotName = None,
+    cell: CellFile = None,
+    entry: Entry = None,
+    io: AnswersFile = None,
+    others: OtherFiles = None,
+    start: Start = None,
+    columns: Annotated[
+        Path | None, typer.Option(help="Names the log's columns and their units (TOML).")
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="Draw corners, deviation and speed: PNG, PDF or SVG.")
+    ] = None,
+    json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Hold a controller's log against the emulation of its program: in space and in time."""
+    if plot is not None and plot.suffix.lower() not in PLOT_FORMATS:
+        raise InputError(f"--plot {plot}: the name must end in {', '.join(PLOT_FORMATS)}")
+    source = Source.of(program, entry, io, others)
+    check_outputs({"--plot": plot}, source.inputs(cell, log, columns), replace_existing=force)
+    with progress("reading program and log") as say:
+        vendor, arm, run = _load(source, log, robot, cell, columns)
+        stand = start_of(start, arm) or _first(run, arm)
+        say(f"emulating {len(run.program.moves)} moves")
+        compared = _compare(vendor, arm, run, stand)
+        if plot is not None:
+            _draw(compared, plot)
+    for note in (*run.notes, *compared.log.notes[len(run.notes) :]):
+        warn(f"{program if log is None else log}: {note}")
+    _tell(compared, run, as_json=json)
+    if plot is not None and not json:
+        print_rich(f"wrote {plot}")
+
+
+def _load(
+    source: Source, log: Path | None, name: str | None, cell: Path | None, columns: Path | None
+) -> tuple[Vendor, Robot, LoggedRun]:
+    """The robot with its vendor, and the run."""
+    from ..identification.logs import LoggedRun, load_columns, load_run, read_samples
+
+    mapped = None if columns is None else load_columns(columns)
+    if source.file.suffix.lower() == RECORD:
+        if log is not None or mapped is not None:
+            raise InputError(f"{source.file}: a record of a run names its log; give no other")
+        run = load_run(source.file, registry().find_robot)
+        vendor, arm = robot_of(run.robot if cell is None and name is None else name, cell)
+        if arm.name != run.robot:
+            raise InputError(f"{source.file}: the run is one of {run.robot}, not of {arm.name}")
+        return vendor, arm, run
+    if log is None:
+        raise InputError(f"which log? Name it behind {source.file}")
+    vendor, arm = robot_of(name, cell)
+    program = source.read(vendor, arm)
+    samples = read_samples(log, arm, mapped)
+    found = LoggedRun(log.stem, arm.name, None, program, samples.t, samples.q, samples.notes)
+    return vendor, arm, found
+
+
+def _first(run: LoggedRun, robot: Robot) -> JointTarget | None:
+    """Where the log begins, if the program does not say where the robot stands."""
+    from ..core.program.target import JointTarget
+
+    if run.program.start is not None:
+        return None
+    values = tuple(map(float, run.q[0]))
+    return JointTarget(values[: robot.arm_size], values[robot.arm_size :])
+
+
+def _compare(vendor: Vendor, robot: Robot, run: LoggedRun, start: JointTarget | None) -> Compared:
+    from ..core.motion.controller import Controller
+    from ..identification.alignment import align
+    from ..identification.belonging import check_limits
+    from ..identification.logs import clean
+    from ..identification.residuals import figures, residuals
+
+    try:
+        log = clean(run)
+        check_limits(robot, run.q)
+        driven = Controller(vendor, robot).run(run.program, start, PERIOD)
+        aligned = align(robot, driven.trajectory, log)
+    except InputError as error:
+        raise InputError(f"{run.name}: {error}") from error
+    tool = run.program.moves[0].tool
+    found = residuals(robot, tool, driven.trajectory, log, aligned)
+    return Compared(robot, driven, log, aligned, found, figures(robot, found, aligned))
+
+
+def _draw(compared: Compared, plot: Path) -> None:
+    from ..core.motion.trajectory import write_whole
+    from .plot_comparison import draw_comparison
+
+    data = draw_comparison(
+        compared.run,
+        compared.robot,
+        compared.log,
+        compared.alignment,
+        compared.residuals,
+        plot.suffix.lower()[1:],
+    )
+    with writing("--plot", plot):
+        write_whole(plot, data)
+
+
+def _tell(compared: Compared, run: LoggedRun, *, as_json: bool) -> None:
+    if as_json:
+        print_json(_json(compared, run))
+        return
+    import numpy as np
+
+    f, log, aligned = compared.figures, compared.log, compared.alignment
+    rows = [
+        (
+            "path of the TCP, mm",
+            f"{1e3 * f.path_max:.3f}",
+            f"{1e3 * f.path_p99:.3f}",
+            f"{1e3 * f.path_rms:.3f}",
+        ),
+        (
+            "path of the joints, °",
+            f"{np.degrees(f.joint_path_max):.4f}",
+            f"{np.degrees(f.joint_path_p99):.4f}",
+            "",
+        ),
+        (
+            "joints at their time, °",
+            f"{np.degrees(f.joint_time_max):.4f}",
+            f"{np.degrees(f.joint_time_p99):.4f}",
+            "",
+        ),
+    ]
+    print_rich(f"{run.name} on {compared.robot.name}: log less emulation")
+    print_table(COLUMNS, rows)
+    print_rich(
+        f"cycle time {aligned.moving:.3f} s emulated, {aligned.logged_moving:.3f} s logged: "
+        f"ratio {f.cycle_time_ratio:.4f}",
+        f"the log's clock is {f.offset:+.4f} s off, and {1e3 * f.drift:+.1f} ms more at the end "
+        "than at the start",
+        f"{len(aligned.rows)} of {len(log.t)} samples compared, every {1e3 * log.period:.3g} ms "
+        f"(jitter {1e3 * log.jitter:.2g} ms); {len(log.torn)} off the path, {len(log.held)} held, "
+        f"{len(log.holes)} holes",
+    )
+
+
+def _json(compared: Compared, run: LoggedRun) -> dict[str, Any]:
+    """SI units, in the keys."""
+    import numpy as np
+
+    f, log, aligned = compared.figures, compared.log, compared.alignment
+    place = np.abs(compared.residuals.joint_path).max(axis=0)
+    moment = np.abs(compared.residuals.joint_time).max(axis=0)
+    return {
+        "run": run.name,
+        "robot": compared.robot.name,
+        "path_max_m": f.path_max,
+        "path_p99_m": f.path_p99,
+        "path_rms_m": f.path_rms,
+        "joint_path_max_rad": f.joint_path_max,
+        "joint_path_p99_rad": f.joint_path_p99,
+        "joint_time_max_rad": f.joint_time_max,
+        "joint_time_p99_rad": f.joint_time_p99,
+        "offset_s": f.offset,
+        "drift_s": f.drift,
+        "cycle_time_s": aligned.moving,
+        "logged_cycle_time_s": aligned.logged_moving,
+        "cycle_time_ratio": f.cycle_time_ratio,
+        "axes": [
+            {"name": name, "path_max": float(a), "time_max": float(b)}
+            for name, a, b in zip(compared.robot.axis_names, place, moment, strict=True)
+        ],
+        "samples": len(log.t),
+        "compared": len(aligned.rows),
+        "torn": len(log.torn),
+        "held": len(log.held),
+        "holes": [{"begin_s": hole.begin, "end_s": hole.end} for hole in log.holes],
+        "period_s": log.period,
+        "jitter_s": log.jitter,
+        "notes": list(log.notes),
+    }

@@ -1,0 +1,214 @@
+"""How far commanded joints lead the links that they drive through elastic gears.
+
+A controller that wants its links on the path commands the motors ahead of them by what the gears
+give way under the inertial torque τ: q_motor = q + K⁻¹ τ(q, q̇, q̈) (Spong, "Modeling and control
+of elastic joint robots", J. Dyn. Sys., Meas., Control 109, 1987; De Luca, "Feedforward/feedback
+laws for the control of flexible robots", ICRA 2000). Logs show the motors. K⁻¹ τ is taken as
+
+    diag(own) q̈ + Σ_b diag(carried_b) J_bᵀ p̈_b,
+
+each b a point mass on the axis of one of the arm's joints, at p_b with Jacobian J_b; p̈_b contains
+the centrifugal and Coriolis terms. Gravity is left out: logs meet their targets at rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..robot.chain import Chain
+from ..robot.chain_kernels import jacobians, motions
+from ..robot.model import Robot
+
+FloatArray = NDArray[np.float64]
+
+LEAD_STEP = 1e-3
+"""s between the times at which leads are worked out; between them they are cubic."""
+
+
+@dataclass(frozen=True)
+class Carried:
+    """A mass on the axis of a joint, as the gears before it feel it.
+
+    Args:
+        joint: of the arm, counted from one.
+        lead: s²/m² (rad of lead per N m, times kg) of each joint before it, first to last. A rigid
+            mass has none below zero; what is fitted may, as joints also bend each other.
+    """
+
+    joint: int
+    lead: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Elasticity:
+    """What commanded joints lead their links by.
+
+    Args:
+        own: s², lead per acceleration of the joint itself that does not depend on the posture;
+            joints beyond the last have none.
+        carried: masses on the arm.
+    """
+
+    own: tuple[float, ...] = ()
+    carried: tuple[Carried, ...] = ()
+
+    def __post_init__(self) -> None:
+        for key, values in (
+            ("own_s2", self.own),
+            *(("carried.lead_s2_per_m2", mass.lead) for mass in self.carried),
+        ):
+            for value in values:
+                if not math.isfinite(value):
+                    raise InputError(f"elasticity.{key} must be finite, not {value}")
+        for mass in self.carried:
+            if mass.joint < 1 or len(mass.lead) >= mass.joint:
+                raise InputError(
+                    "elasticity.carried: a mass on the axis of joint b (counted from one) is "
+                    f"carried by the joints before it; joint {mass.joint} has {mass.joint - 1}, "
+                    f"lead_s2_per_m2 has {len(mass.lead)}"
+                )
+
+    @property
+    def figures(self) -> tuple[str, ...]:
+        """The dotted keys of what is stated."""
+        stated = (("own_s2", self.own), ("carried", self.carried))
+        return tuple(f"elasticity.{name}" for name, value in stated if value)
+
+    def leads(self, robot: Robot, q: FloatArray, dq: FloatArray, ddq: FloatArray) -> FloatArray:
+        """Lead (T, N) in rad or m at configurations, velocities and accelerations (T, N)."""
+        out = _filled(self.own, q.shape[1]) * ddq
+        q, dq, ddq = (np.ascontiguousarray(array) for array in (q, dq, ddq))
+        for mass in self.carried:
+            chain = _up_to(robot, mass)
+            J = jacobians(chain, q)[:, :3]
+            pull = motions(chain, q, dq, ddq)[1][:, :3]
+            out += _filled(mass.lead, q.shape[1]) * np.einsum("tij,ti->tj", J, pull)
+        return np.asarray(out)
+
+    def most(
+        self,
+        robot: Robot,
+        q: FloatArray,
+        velocity: FloatArray,
+        acceleration: FloatArray,
+        strays: FloatArray,
+    ) -> FloatArray:
+        """(N,), what no lead on a path exceeds.
+
+        Args:
+            robot: that drives it.
+            q: (S, N), samples of the path.
+            velocity, acceleration: (N,), bounds of the links'.
+            strays: (N,), how far the links may be from the path.
+        """
+        size = q.shape[1]
+        out = np.abs(_filled(self.own, size)) * acceleration
+        # No lever is longer than the chain, and none turns by more than the joints do.
+        between = np.abs(np.diff(q, axis=0, append=q[-1:])).max(axis=0)
+        turned = float(np.sum(strays + between))
+        for mass in self.carried:
+            chain = _up_to(robot, mass)
+            longest = float(np.linalg.norm(chain.translation, axis=1).sum())
+            longest += float(np.linalg.norm(chain.end_translation))
+            moving = np.isin(np.arange(size), chain.joint)
+            J = jacobians(chain, np.ascontiguousarray(q))[:, :3]
+            lever = np.linalg.norm(J, axis=1)
+            more = longest * turned * moving
+            product = np.abs(np.einsum("tij,tik->tjk", J, J))
+            product += lever[:, :, None] * more + more[:, None] * lever[:, None, :]
+            product += more[:, None] * more
+            centrifugal = longest * float(velocity[moving].sum()) ** 2
+            torque = (product @ acceleration + (lever + more) * centrifugal).max(axis=0)
+            out = out + np.abs(_filled(mass.lead, size)) * torque
+        return np.asarray(out)
+
+
+RIGID = Elasticity()
+
+
+def elasticity(table: dict[str, Any]) -> Elasticity:
+    """Elasticity from the table of a motion model's file.
+
+    Raises:
+        InputError: a key is unknown or a value has the wrong type or range.
+    """
+    unknown = set(table) - {"own_s2", "carried"}
+    if unknown:
+        raise InputError(f"elasticity.{min(unknown)}: no such key; there are own_s2 and carried")
+    own = _row("elasticity.own_s2", table.get("own_s2", []))
+    entries = table.get("carried", [])
+    if not isinstance(entries, list):
+        raise InputError(f"elasticity.carried: a list of tables is expected, not {entries!r}")
+    return Elasticity(own, tuple(_carried(entry) for entry in entries))
+
+
+def derivatives_of(
+    t: FloatArray, values: FloatArray, at: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Values (T, N) and two derivatives, at rest outside, of the cubic spline through samples."""
+    # Imported here: it takes longer than all else that a start of the command line needs.
+    from scipy.interpolate import CubicSpline
+
+    if len(t) < 2:
+        zero = np.zeros((len(at), values.shape[1]))
+        return zero, zero, zero
+    spline = CubicSpline(t, values, bc_type="clamped")
+    inside = np.clip(at, t[0], t[-1])
+    return np.asarray(spline(inside)), np.asarray(spline(inside, 1)), np.asarray(spline(inside, 2))
+
+
+def _up_to(robot: Robot, mass: Carried) -> Chain:
+    """The chain from the world to the origin of the mass's joint.
+
+    Raises:
+        InputError: the arm has no such joint.
+    """
+    if mass.joint > robot.arm_size:
+        raise InputError(
+            f"elasticity.carried: {robot.name} has {robot.arm_size} joints, no joint {mass.joint}"
+        )
+    chain = robot.chain
+    k = int(np.flatnonzero(chain.joint == mass.joint - 1)[0])
+    return Chain(
+        chain.rotation[:k],
+        chain.translation[:k],
+        chain.axis[:k],
+        chain.prismatic[:k],
+        chain.joint[:k],
+        chain.sign[:k],
+        np.eye(3),
+        chain.translation[k],
+    )
+
+
+def _filled(values: tuple[float, ...], size: int) -> FloatArray:
+    out = np.zeros(size)
+    out[: len(values)] = values[:size]
+    return out
+
+
+def _carried(entry: Any) -> Carried:
+    if not isinstance(entry, Mapping) or set(entry) != {"joint", "lead_s2_per_m2"}:
+        raise InputError(
+            f"elasticity.carried: tables of joint and lead_s2_per_m2 are expected, not {entry!r}"
+        )
+    joint = entry["joint"]
+    if isinstance(joint, bool) or not isinstance(joint, int):
+        raise InputError(f"elasticity.carried.joint: a whole number is expected, not {joint!r}")
+    return Carried(joint, _row("elasticity.carried.lead_s2_per_m2", entry["lead_s2_per_m2"]))
+
+
+def _row(key: str, entry: Any) -> tuple[float, ...]:
+    numbers = isinstance(entry, list) and all(
+        isinstance(value, int | float) and not isinstance(value, bool) for value in entry
+    )
+    if not numbers:
+        raise InputError(f"{key}: a list of numbers is expected, not {entry!r}")
+    return tuple(map(float, entry))

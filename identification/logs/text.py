@@ -1,0 +1,48 @@
+"""Files of samples as text, in the encodings that controllers write."""
+
+from __future__ import annotations
+
+import codecs
+import re
+from pathlib import Path
+
+from ...core.errors import InputError
+
+MOST_BYTES = 500_000_000
+"""Six joints for a day at 250 Hz."""
+_LINE_END = re.compile(r"\r\n|\n|\r")
+
+
+def read_text(path: Path) -> str:
+    """The text of a file: UTF-8, UTF-16 with its mark, else Latin-1 (degree signs of controllers).
+
+    Raises:
+        InputError: it cannot be read, or is no text.
+    """
+    try:
+        size = path.stat().st_size
+        if size > MOST_BYTES:
+            raise InputError(f"{path}: {size} bytes are too many for a log; cut it into runs")
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: not a readable log: {error.strerror or error}") from error
+    except ValueError as error:
+        raise InputError(f"{path}: not a readable log: {error}") from error
+    text = _decoded(data)
+    if "\0" in text:
+        raise InputError(f"{path}: not a readable log: a binary file; export it as text")
+    return text
+
+
+def lines_of(text: str) -> list[str]:
+    """Lines, without their ends; only line feeds and carriage returns end one."""
+    return _LINE_END.split(text)
+
+
+def _decoded(data: bytes) -> str:
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return data.decode("utf-16", "replace")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")

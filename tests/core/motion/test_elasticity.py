@@ -1,0 +1,128 @@
+"""How far commanded joints lead their links."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flyby.core.errors import InputError
+from flyby.core.motion.elasticity import RIGID, Carried, Elasticity
+from flyby.core.motion.model import MotionModel
+from flyby.core.program.move import MoveJ, MoveL
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.zone import FINE, Radius
+from flyby.core.registry import find_robot
+
+GEARS = Elasticity(
+    (0.0, 2e-4, 1e-4, 1e-5), (Carried(3, (1.5e-4, 1e-4)), Carried(5, (1e-4, 1e-4, 5e-5)))
+)
+WIDTHS = (0.04, 0.04, 0.04)
+SPEED = Speed(tcp=0.8, reorientation=5.0)
+
+
+def program(arm) -> Program:
+    zone = Radius(0.2 * arm.leg)
+    moves = (
+        MoveL(arm.target((1, 0, 0)), SPEED, zone),
+        MoveL(arm.target((1, 1, 0)), SPEED, zone),
+        MoveJ(arm.target((0, 1, 0.4)), SPEED, FINE),
+    )
+    return Program(moves, start=arm.start)
+
+
+def states(size: int, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    rng = np.random.default_rng(seed)
+    return rng.uniform(-1.5, 1.5, (4, size)), *rng.normal(size=(2, 4, size))
+
+
+@settings(max_examples=20, deadline=None)
+@given(seed=st.integers(0, 1000))
+def test_a_mass_on_the_wrist_leads_by_its_own_inertial_torque(seed) -> None:
+    """Jᵀ p̈ with J and p̈ from difference quotients of where the wrist is."""
+    arm = find_robot("abb/irb6640-180-255")
+    q, dq, ddq = states(arm.size, seed)
+    wrist = Elasticity((), (Carried(5, (1.0, 1.0, 1.0, 1.0)),))
+    # The wrist lies on the tool flange's axis, 0.2 m behind it.
+    back = np.array([0.0, 0.0, -0.2])
+
+    def point(q):
+        rotation, position = arm.forward(q)
+        return position + rotation @ back
+
+    h = 1e-4
+    J = np.stack([(point(q + h * e) - point(q - h * e)) / (2 * h) for e in np.eye(6)], -1)
+
+    def at(t):
+        return point(q + t * dq + 0.5 * t**2 * ddq)
+
+    pull = (at(h) - 2 * at(0.0) + at(-h)) / h**2
+    expected = np.einsum("tij,ti->tj", J, pull)
+    np.testing.assert_allclose(wrist.leads(arm, q, dq, ddq), expected, rtol=1e-5, atol=1e-5)
+
+
+@settings(max_examples=20, deadline=None)
+@given(seed=st.integers(0, 1000), factor=st.floats(-3, 3))
+def test_leads_at_a_share_of_the_speed_are_its_square(seed, factor) -> None:
+    arm = find_robot("ur/ur10e")
+    q, dq, ddq = states(arm.size, seed)
+    slower = GEARS.leads(arm, q, factor * dq, factor**2 * ddq)
+    np.testing.assert_allclose(slower, factor**2 * GEARS.leads(arm, q, dq, ddq), atol=1e-12)
+    assert not RIGID.leads(arm, q, dq, ddq).any()
+
+
+@settings(max_examples=6, deadline=None)
+@given(data=st.data())
+def test_commands_lead_the_links_and_meet_them_at_rest(arm, data) -> None:
+    scale = data.draw(st.floats(0.1, 2.0))
+    own = tuple(scale * value for value in GEARS.own)
+    gears = Elasticity(own, GEARS.carried)
+    links = arm.controller(MotionModel(smoothing=WIDTHS)).run(program(arm), period=0.002)
+    motors = arm.controller(MotionModel(smoothing=WIDTHS, elasticity=gears)).run(
+        program(arm), period=0.002
+    )
+    assert motors.duration == links.duration
+    ends = [0, -1]
+    np.testing.assert_allclose(motors.trajectory.q[ends], links.trajectory.q[ends], atol=1e-9)
+    made = links.trajectory
+    lead = gears.leads(arm.robot, made.q, made.dq, made.ddq)
+    np.testing.assert_allclose(motors.trajectory.q - links.trajectory.q, lead, atol=2e-6)
+    assert np.abs(lead).max() > 1e-5
+    made = motors.trajectory
+    speed = np.gradient(made.q, made.t, axis=0)[2:-2]
+    scale = np.abs(made.dq).max()
+    assert np.abs(speed - made.dq[2:-2]).max() < 0.02 * scale
+
+
+def test_leads_and_higher_limits_are_no_excess(arm) -> None:
+    """Motors may be asked for more than the links' limits; a scaled limit is the limit."""
+    model = MotionModel(
+        smoothing=WIDTHS, elasticity=GEARS, joint_acceleration_scale=(1.5,) * arm.robot.arm_size
+    )
+    fast = Speed(tcp=50.0, reorientation=50.0)
+    moves = (MoveJ(arm.joints([0.4, 0.2, -0.3, 0.3, 0.2, 0.5]), fast, FINE),)
+    made = arm.controller(model).run(Program(moves, start=arm.start), period=0.001)
+    ddq = made.timing.states_at(made.trajectory.t)[2]
+    assert np.abs(ddq / arm.robot.limits.acceleration).max() == pytest.approx(1.5, rel=0.02)
+    assert not [note for note in made.notes if "acceleration" in note.message]
+
+
+@settings(max_examples=6, deadline=None)
+@given(share=st.floats(0.2, 1.0))
+def test_no_lead_is_greater_than_its_bound(arm, share) -> None:
+    model = MotionModel(smoothing=WIDTHS, elasticity=GEARS)
+    run = arm.controller(model).run(program(arm), period=0.002)
+    links = arm.controller(MotionModel(smoothing=WIDTHS)).run(program(arm), period=0.002).trajectory
+    velocity, acceleration = np.abs(links.dq).max(axis=0), np.abs(links.ddq).max(axis=0)
+    strays = acceleration * 0.04**2 / 8
+    most = GEARS.most(arm.robot, run.path.q, velocity, acceleration, strays)
+    lead = GEARS.leads(arm.robot, links.q, share * links.dq, share**2 * links.ddq)
+    assert (np.abs(lead).max(axis=0) <= most + 1e-12).all()
+
+
+def test_a_joint_that_an_arm_does_not_have_is_refused() -> None:
+    arm = find_robot("ur/ur10e")
+    with pytest.raises(InputError, match="no joint 9"):
+        Elasticity((), (Carried(9, (1e-4,)),)).leads(arm, *np.zeros((3, 1, 6)))
