@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -121,7 +123,7 @@ def test_places_begin_and_end_where_zones_do(angles: list[list[float]], radii: l
     sigma, found = sigma_of(path, ends), configurations(path, ends)
     # In order along the path, each part begins where the one before ends.
     order = [k for i in range(count - 1) for k in (i, count + i)] + [count - 1]
-    for one, other in zip(order, order[1:], strict=False):
+    for one, other in itertools.pairwise(order):
         assert sigma[2 * one + 1] == pytest.approx(sigma[2 * other], abs=1e-12)
         assert found[2 * one + 1] == pytest.approx(found[2 * other], abs=1e-9)
     assert found[0] == pytest.approx(q[0])
