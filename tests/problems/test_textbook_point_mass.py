@@ -36,7 +36,9 @@ def solved(
 ) -> tuple[PointMass, Result]:
     problem = PointMass(scene, nodes, avoidance)
     guess = problem.through(scene.way) if guided else problem.straight_line()
-    return problem, solve(problem.nlp(), guess, max_iterations=limit)
+    # The interior point of our own, since a hundred nodes would take Clarabel a minute.
+    qp = "interior_point" if nodes > 50 else "clarabel"
+    return problem, solve(problem.nlp(), guess, max_iterations=limit, qp=qp)
 
 
 def free(problem: PointMass, result: Result) -> bool:
