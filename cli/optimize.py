@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.errors import InputError
-from .console import print_json, print_rich, print_table, progress, warn
+from .console import print_json, print_rich, print_table, progress
 from .emission import Emission
 from .installed import registry
 from .loading import Source, start_of
 from .options import AnswersFile, AsJson, Entry, Force, OtherFiles, Out, ProgramFile, Start
 from .outputs import check_outputs, writing
 from .patching import check_places, write_patched
-from .places import note_json, place_json, short_place
+from .places import place_json, short_place
+from .solution_report import solution_json, tell_solution
 from .task_options import effort_of, task_of
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from ..problems.waypoints import Effort, Progress, Task
 
 COLUMNS = (("move", "right"), ("line", "left"), ("target", "left"), ("zone", "left"))
-FIGURES = (("", "left"), ("unit", "left"), ("before", "right"), ("after", "right"), ("%", "right"))
+CHANGE = "change"
 PLOT_FORMATS = (".png", ".pdf", ".svg")
 
 
@@ -120,6 +121,11 @@ def optimize(
     inputs = source.inputs(cell)
     check_places(out, in_place, inputs, force)
     _check_plot(plot, inputs, force)
+    if in_place and vias == CHANGE:
+        raise InputError(
+            "--in-place and --vias change: with other via points the program is written anew: name "
+            "a folder by --out"
+        )
     with progress("reading the program") as say:
         from ..core.cell.file import load_cell
         from ..core.motion.controller import Controller
@@ -154,7 +160,10 @@ def optimize(
         )
         written: list[Path] = []
         if made.changed:
-            written = _write(emission, parsed, out, in_place, inputs, force)
+            from ..core.source.patching import reading_of
+
+            read = reading_of(parsed).files
+            written = write_patched(emission.files, read, out, in_place, inputs, force)
         if plot is not None:
             say("drawing")
             written += _draw(plot, where, controller, made, task)
@@ -194,24 +203,6 @@ def _check_plot(path: Path | None, inputs: list[Path], replace_existing: bool) -
     check_outputs({"--plot": path}, inputs, replace_existing)
 
 
-def _write(
-    emission: Emission,
-    original: Program,
-    out: Path | None,
-    in_place: bool,
-    inputs: list[Path],
-    force: bool,
-) -> list[Path]:
-    from ..core.source.patching import reading_of
-
-    if emission.anew and in_place:
-        raise InputError(
-            "--in-place: the number of via points has changed, so that the program is written "
-            "anew: name a folder by --out, or let the number stay (--vias keep)"
-        )
-    return write_patched(emission.files, reading_of(original).files, out, in_place, inputs, force)
-
-
 def _draw(plot: Path, cell: Cell, controller: Controller, made: Solution, task: Task) -> list[Path]:
     from ..core.motion.trajectory import write_whole
     from .plot_cell import draw_cell
@@ -227,20 +218,7 @@ def _draw(plot: Path, cell: Cell, controller: Controller, made: Solution, task: 
 
 def _tell(program: Path, made: Solution, cell: Cell, written: list[Path]) -> None:
     print_table(COLUMNS, _rows(program, made))
-    figures = [
-        (row.what, row.unit, _figure(row.before), _figure(row.after), _figure(row.change, 1))
-        for row in made.table(cell.robot.axis_names)
-    ]
-    print_table(FIGURES, figures)
-    for note in made.notes:
-        warn(str(note))
-    if made.certificate is not None:
-        say = print_rich if made.proven else warn
-        say(f"{program}: {made.certificate}")
-    for pair in cell.allowed:
-        print_rich(f"allowed to touch by the cell: {pair[0]} and {pair[1]}")
-    for path in written:
-        print_rich(f"wrote {path}")
+    tell_solution(program, made, cell, written)
 
 
 def _rows(program: Path, made: Solution) -> list[tuple[str, ...]]:
@@ -292,26 +270,9 @@ def _zone(before: Move | None, move: Move) -> str:
     return f"{shown(before.zone)} → {new}"
 
 
-def _figure(value: float | None, digits: int = 4) -> str:
-    return "" if value is None else f"{value:.{digits}f}"
-
-
 def _json(made: Solution, cell: Cell, written: list[Path]) -> dict[str, Any]:
-    proof = made.certificate
-    return {
-        "robot": cell.robot.name,
-        "changed": made.changed,
-        "proven": made.proven,
-        "certificate": None if proof is None else proof.message,
-        "allowed": [list(pair) for pair in cell.allowed],
-        "figures": [
-            {"what": row.what, "unit": row.unit, "before": row.before, "after": row.after}
-            for row in made.table(cell.robot.axis_names)
-        ],
-        "moves": [_move_json(index, move) for index, move in enumerate(made.program.moves)],
-        "notes": [note_json(note) for note in made.notes],
-        "files": [str(path) for path in written],
-    }
+    moves = [_move_json(index, move) for index, move in enumerate(made.program.moves)]
+    return {**solution_json(made, cell, written), "moves": moves}
 
 
 def _move_json(index: int, move: Move) -> dict[str, Any]:

@@ -51,7 +51,7 @@ def task_of(
         limit=for_all or Free(),
         axes=None if axes is None else _axes(axes, cell.robot.arm_size),
         clearance=None if clearance is None else 1e-3 * clearance,
-        freed=_freed(program, free),
+        freed=freed_stops(program, free),
         pattern=pattern_for(vendor.speaks),
         vias=_vias(vias),
         start=start,
@@ -116,11 +116,19 @@ def _axes(text: str, count: int) -> list[int]:
     return [int(word) - 1 for word in words]
 
 
-def _freed(program: Program, free: Sequence[str]) -> list[int]:
+def freed_stops(program: Program, free: Sequence[str]) -> list[int]:
+    """Indices of the stops that may be passed.
+
+    Raises:
+        InputError: naming the option.
+    """
     from ..problems.zones.points import passable_stops
 
     if ALL in free:
         return passable_stops(program)
+    wrong = [text for text in free if not text.isdecimal()]
+    if wrong:
+        raise InputError(f"--free {wrong[0]}: the number of a move, or {ALL!r}")
     return [move_index(program, text, "--free") for text in free]
 
 

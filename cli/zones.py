@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.errors import InputError
-from .console import print_json, print_rich, print_table, progress, warn
+from .console import print_json, print_rich, print_table, progress
 from .installed import registry
 from .loading import Source, start_of
 from .options import AnswersFile, AsJson, Entry, Force, OtherFiles, Out, ProgramFile, Start
 from .patching import Patching, check_places, write_patched
-from .places import note_json, place_json, short_place
+from .places import place_json, short_place
+from .solution_report import solution_json, tell_solution
+from .task_options import freed_stops, move_index
 
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell
@@ -32,8 +34,6 @@ COLUMNS = (
     ("after", "right"),
     ("no larger because of", "left"),
 )
-FIGURES = (("", "left"), ("unit", "left"), ("before", "right"), ("after", "right"), ("%", "right"))
-ALL = "all"
 
 
 def zones(
@@ -137,9 +137,9 @@ def _options(
 
     return ZoneOptions(
         clearance=None if clearance is None else 1e-3 * clearance,
-        freed=_freed(program, free or []),
+        freed=freed_stops(program, free or []),
         pattern=pattern_for(vendor.speaks),
-        kept=[_index(program, number, "--keep") for number in keep or []],
+        kept=[move_index(program, str(number), "--keep") for number in keep or []],
         apart=own,
         predefined=_predefined(vendor) if predefined else (),
         start=start_of(start, cell.robot),
@@ -153,40 +153,9 @@ def _predefined(vendor: Vendor) -> tuple[Radius, ...]:
     return found
 
 
-def _freed(program: Program, free: list[str]) -> list[int]:
-    from ..problems.zones.points import passable_stops
-
-    if ALL in free:
-        return passable_stops(program)
-    wrong = [text for text in free if not text.isdecimal()]
-    if wrong:
-        raise InputError(f"--free {wrong[0]}: the number of a move, or {ALL!r}")
-    return [_index(program, int(text), "--free") for text in free]
-
-
-def _index(program: Program, number: int, option: str) -> int:
-    count = len(program.moves)
-    if not 1 <= number <= count:
-        raise InputError(f"{option} {number}: the program has moves 1 to {count}")
-    return number - 1
-
-
 def _tell(program: Path, made: ZoneSolution, cell: Cell, written: list[Path]) -> None:
     print_table(COLUMNS, [_row(program, change) for change in made.zones])
-    rows = [
-        (row.what, row.unit, _figure(row.before), _figure(row.after), _figure(row.change, 1))
-        for row in made.table(cell.robot.axis_names)
-    ]
-    print_table(FIGURES, rows)
-    for note in made.notes:
-        warn(str(note))
-    if made.certificate is not None:
-        say = print_rich if made.proven else warn
-        say(f"{program}: {made.certificate}")
-    for pair in cell.allowed:
-        print_rich(f"allowed to touch by the cell: {pair[0]} and {pair[1]}")
-    for path in written:
-        print_rich(f"wrote {path}")
+    tell_solution(program, made, cell, written)
 
 
 def _row(program: Path, change: ZoneChange) -> tuple[str, ...]:
@@ -213,25 +182,9 @@ def zone_shown(zone: Zone) -> str:
     return "fine"
 
 
-def _figure(value: float | None, digits: int = 4) -> str:
-    return "" if value is None else f"{value:.{digits}f}"
-
-
 def _json(made: ZoneSolution, cell: Cell, written: list[Path]) -> dict[str, Any]:
-    proof = made.certificate
-    return {
-        "robot": cell.robot.name,
-        "proven": made.proven,
-        "certificate": None if proof is None else proof.message,
-        "allowed": [list(pair) for pair in cell.allowed],
-        "figures": [
-            {"what": row.what, "unit": row.unit, "before": row.before, "after": row.after}
-            for row in made.table(cell.robot.axis_names)
-        ],
-        "zones": [_change_json(change) for change in made.zones],
-        "notes": [note_json(note) for note in made.notes],
-        "files": [str(path) for path in written],
-    }
+    zones = [_change_json(change) for change in made.zones]
+    return {**solution_json(made, cell, written), "zones": zones}
 
 
 def _change_json(change: ZoneChange) -> dict[str, Any]:

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
+RESOLUTION = 1e-5
+"""m to which the clearance that there is is proven, for the table before and after."""
+
 
 @dataclass(frozen=True)
 class Measures:
@@ -39,27 +42,6 @@ class Measures:
     peak_acceleration: float
     energy: FloatArray | None = None
     clearance: float | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Violation:
-    """A constraint that the new program does not hold.
-
-    Args:
-        what: the constraint, in words.
-        amount: by how much, in ``unit``.
-        unit: of the amount.
-        move: index of the move concerned, from 0.
-    """
-
-    what: str
-    amount: float
-    unit: str
-    move: int | None = None
-
-    def __str__(self) -> str:
-        where = "" if self.move is None else f"move {self.move + 1}: "
-        return f"{where}{self.what} by {self.amount:.3g} {self.unit}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +77,6 @@ class Solution:
         before, after: their figures.
         certificate: of the new program; None where no proof was asked for.
         notes: what was found on the way.
-        violations: constraints that the new program does not hold; empty unless no program was
-            found that holds them all.
     """
 
     original: Program
@@ -105,7 +85,6 @@ class Solution:
     after: Measures
     certificate: Certificate | None = None
     notes: tuple[Note, ...] = ()
-    violations: tuple[Violation, ...] = ()
 
     @property
     def changed(self) -> bool:

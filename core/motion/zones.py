@@ -12,13 +12,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from ..errors import MotionError, Note
 from ..program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction, Zone
 from ..robot.chain import Chain
-from ..robot.chain_kernels import jacobian, pose
+from .joint_lines import first_exit, tcp_apart
 from .model import MotionModel, OrientationZone, Overlap, Space
 from .segments import ARC_SEGMENT, JOINT_SEGMENT, EndsGradient, Segments, SegmentsGradient
 
@@ -105,122 +104,6 @@ class ZoneGradient:
     def zeros(cls, count: int) -> ZoneGradient:
         """A gradient to add to."""
         return cls(*(np.zeros(count) for _ in range(4)))
-
-
-@njit(cache=True, error_model="numpy")
-def first_exit(
-    chain: Chain, q_wp: FloatArray, q_other: FloatArray, radius: float, limit: float
-) -> float:
-    """The smallest share of a joint line at which the TCP is ``radius`` from where it began.
-
-    A bound on the TCP's speed makes each step of the search safe down to steps of 1e-4 of the
-    line; bisection then finds the exit to rounding.
-
-    Args:
-        chain: the kinematics.
-        q_wp, q_other: (N,), the waypoint and the line's other end.
-        radius: m.
-        limit: share at which the search ends.
-
-    Returns:
-        The share, or -1 if the TCP stays inside up to ``limit``.
-    """
-    size = q_wp.size
-    R, p0, p, q = np.empty((3, 3)), np.empty(3), np.empty(3), np.empty(size)
-    pose(chain, q_wp, R, p0)
-    arm, fastest = 0.0, 0.0
-    # No joint carries the TCP further than the chain's links and slides are long together.
-    for i in range(3):
-        arm += chain.end_translation[i] ** 2
-    arm = math.sqrt(arm)
-    for k in range(chain.joint.size - 1, -1, -1):
-        j = chain.joint[k]
-        change = abs(q_other[j] - q_wp[j])
-        if chain.prismatic[k]:
-            arm += max(abs(q_wp[j]), abs(q_other[j]))
-            fastest += change
-        else:
-            fastest += change * arm
-        square = 0.0
-        for i in range(3):
-            square += chain.translation[k, i] ** 2
-        arm += math.sqrt(square)
-    if fastest == 0.0:
-        return -1.0
-    low, share, gap = 0.0, 0.0, radius
-    while gap > 0.0:
-        if share >= limit:
-            return -1.0
-        low = share
-        share = min(limit, share + max(gap / fastest, 1e-4))
-        gap = radius - _distance(chain, q_wp, q_other, share, q, R, p, p0)
-        if share >= limit and gap > 0.0:
-            return -1.0
-    high = share
-    for _ in range(100):
-        middle = 0.5 * (low + high)
-        gap = radius - _distance(chain, q_wp, q_other, middle, q, R, p, p0)
-        if gap > 0.0:
-            low = middle
-        else:
-            high = middle
-        if high - low < 1e-15:
-            break
-    return 0.5 * (low + high)
-
-
-@njit(cache=True, error_model="numpy")
-def _distance(
-    chain: Chain,
-    q_wp: FloatArray,
-    q_other: FloatArray,
-    share: float,
-    q: FloatArray,
-    R: FloatArray,
-    p: FloatArray,
-    p0: FloatArray,
-) -> float:
-    for j in range(q.size):
-        q[j] = (1 - share) * q_wp[j] + share * q_other[j]
-    pose(chain, q, R, p)
-    square = 0.0
-    for i in range(3):
-        square += (p[i] - p0[i]) ** 2
-    return math.sqrt(square)
-
-
-@njit(cache=True, error_model="numpy")
-def _apart(
-    chain: Chain, q_wp: FloatArray, q_other: FloatArray, share: float
-) -> tuple[float, FloatArray, FloatArray]:
-    """How far the TCP is from the waypoint at a share of a joint line, and how fast that changes.
-
-    Args:
-        chain: the kinematics.
-        q_wp, q_other: (N,), the waypoint and the line's other end.
-        share: of the line.
-
-    Returns:
-        The distance, m, and its derivatives (N,) with respect to the joints there and at the
-        waypoint; zero where the distance is.
-    """
-    size = q_wp.size
-    q = (1 - share) * q_wp + share * q_other
-    R, p, J = np.empty((3, 3)), np.empty(3), np.empty((6, size))
-    p_wp, J_wp = np.empty(3), np.empty((6, size))
-    jacobian(chain, q_wp, R, p_wp, J_wp)
-    jacobian(chain, q, R, p, J)
-    square = 0.0
-    for i in range(3):
-        square += (p[i] - p_wp[i]) ** 2
-    distance = math.sqrt(square)
-    pull, pull_wp = np.zeros(size), np.zeros(size)
-    if distance > 0.0:
-        for j in range(size):
-            for i in range(3):
-                pull[j] += (p[i] - p_wp[i]) / distance * J[i, j]
-                pull_wp[j] += (p[i] - p_wp[i]) / distance * J_wp[i, j]
-    return distance, pull, pull_wp
 
 
 class ZonePlanner:
@@ -417,7 +300,7 @@ class ZonePlanner:
         share = self._model.neighbour_fraction
         near, far = (1, 0) if segment == corner else (0, 1)
         q_wp, q_other = self._segments.ends.q[segment, near], self._segments.ends.q[segment, far]
-        distance, pull, pull_wp = _apart(self._chains[segment], q_wp, q_other, share)
+        distance, pull, pull_wp = tcp_apart(self._chains[segment], q_wp, q_other, share)
         if distance < _STILL:
             return None
         parts: tuple[Part, ...] = (
@@ -459,7 +342,7 @@ class ZonePlanner:
         share = first_exit(chain, q_wp, q_other, size.value, limit.value)
         if share < 0.0:
             return limit
-        _, pull, pull_wp = _apart(chain, q_wp, q_other, share)
+        _, pull, pull_wp = tcp_apart(chain, q_wp, q_other, share)
         speed = float(pull @ (q_other - q_wp))
         if speed <= 0.0:
             return Reach(share)

@@ -56,26 +56,15 @@ class Factor:
 
 
 class Law(Protocol):
-    """How κ₁ and κ₂ follow from the variables of time.
-
-    Attributes:
-        curved: whether κ₂ is not zero.
-    """
-
-    @property
-    def curved(self) -> bool:
-        """Whether κ₂ is not zero."""
-        ...
+    """How κ₁ and κ₂ follow from the variables of time."""
 
     def factors(self, y: FloatArray) -> tuple[Factor, ...]:
-        """κ₁, and κ₂ if ``curved``, of variables y (R, Y)."""
+        """κ₁, and κ₂ where it is not zero, of variables y (R, Y)."""
         ...
 
 
 class Velocity:
     """κ₁ = w/t of y = (w, t)."""
-
-    curved = False
 
     def factors(self, y: FloatArray) -> tuple[Factor, ...]:
         """See `Law`."""
@@ -85,8 +74,6 @@ class Velocity:
 class StraightAcceleration:
     """κ₁ = z/t of y = (z, t), where q″ = 0."""
 
-    curved = False
-
     def factors(self, y: FloatArray) -> tuple[Factor, ...]:
         """See `Law`."""
         return (_ratio(y, 0, 1),)
@@ -94,8 +81,6 @@ class StraightAcceleration:
 
 class Acceleration:
     """κ₁ = z/t and κ₂ = (w/t)² of y = (w, z, t)."""
-
-    curved = True
 
     def factors(self, y: FloatArray) -> tuple[Factor, ...]:
         """See `Law`."""

@@ -13,7 +13,7 @@ from ...core.motion.controller import Controller, Run
 from ...core.program.move import Move
 from ...core.program.program import Program
 from ...core.program.zone import Fine
-from ..solution import Solution, measure
+from ..solution import RESOLUTION, Solution, measure
 from ..zones.points import passable_stops
 from ..zones.refusal import check_start
 from .blocks import Block, cut
@@ -27,8 +27,6 @@ from .workshop import Answer, Workshop
 ReadBack = Callable[[Program], Program]
 """Writes a program and reads what was written."""
 
-RESOLUTION = 1e-5
-"""m to which the clearance that there is is proven, for the report."""
 _FREED = 0.01
 """m, radius that a freed stop begins with."""
 _GAIN = 1e-6

@@ -20,7 +20,7 @@ from ...core.errors import MotionError, Note
 from ...core.motion.controller import Controller, Run
 from ...core.program.program import Program
 from ...core.program.zone import Radius, Zone
-from ..solution import Solution, measure
+from ..solution import RESOLUTION, Solution, measure
 from .clearing import Clearing
 from .driving import ZoneOf, drive
 from .neighbourhood import Neighbourhoods
@@ -151,7 +151,14 @@ class _Maximization:
         return Rules(points.route, self._controller.model)
 
     def _certified(self, run: Run) -> Certificate:
-        return certify(self._controller, run, self._scenes, self._wanted, self._options.residual)
+        return certify(
+            self._controller,
+            run,
+            self._scenes,
+            self._wanted,
+            self._options.residual,
+            resolution=RESOLUTION,
+        )
 
     def _search(self, points: Points, trials: Neighbourhoods, run: Run) -> dict[int, Found]:
         """Every zone for itself."""

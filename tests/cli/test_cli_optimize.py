@@ -166,14 +166,26 @@ def test_a_limit_for_all_holds_every_point(
 
 
 def test_other_moves_are_no_patch(flyby: Flyby, cell: Path, program: Path) -> None:
-    """Without anything in the way the via point goes, which no patch can say."""
+    result = flyby("optimize", program, "--cell", cell, "--vias", "change", "--in-place")
+    assert result.exit_code == 1 and "name a folder by --out" in result.stderr.replace("\n", " ")
+    assert program.read_bytes() == PROGRAM.encode()
+
+
+def test_other_via_points_are_written_beside(
+    flyby: Flyby, cell: Path, program: Path, tmp_path: Path
+) -> None:
+    """With nothing in the way, where the programmed speed of the TCP makes more of them pay."""
     cell.write_text(CELL.split("[[obstacle]]")[0] + CELL[CELL.index("[allow]") :], "utf-8")
     lines = [line for line in PROGRAM.split("\r\n") if " p2," not in line and " p3," not in line]
-    text = "\r\n".join(lines)
-    program.write_bytes(text.encode())
-    result = flyby("optimize", program, "--cell", cell, *QUICK, "--vias", "change", "--in-place")
-    assert result.exit_code == 1 and "--vias keep" in result.stderr.replace("\n", " ")
-    assert program.read_bytes() == text.encode()
+    program.write_bytes("\r\n".join(lines).encode())
+    out = tmp_path / "out"
+    result = flyby("optimize", program, "--cell", cell, *QUICK, "--vias", "change", "--out", out)
+    assert result.exit_code == 0, result.output
+    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-180-255")
+    (file,) = out.iterdir()
+    old, new = (vendor.read_file(path, robot=robot) for path in (program, file))
+    assert len(new.moves) > len(old.moves)
+    assert duration(file) < duration(program)
 
 
 def test_other_moves_are_written_anew(program: Path) -> None:

@@ -1,0 +1,56 @@
+"""What commands that change a program say of the solution: figures, proof, files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .console import print_rich, print_table, warn
+from .places import note_json
+
+if TYPE_CHECKING:
+    from ..core.cell.cell import Cell
+    from ..problems.solution import Solution
+
+_FIGURES = (("", "left"), ("unit", "left"), ("before", "right"), ("after", "right"), ("%", "right"))
+
+
+def tell_solution(program: Path, made: Solution, cell: Cell, written: Sequence[Path]) -> None:
+    """Print figures before and after, notes, the proof and what was written."""
+    rows = [
+        (row.what, row.unit, _figure(row.before), _figure(row.after), _figure(row.change, 1))
+        for row in made.table(cell.robot.axis_names)
+    ]
+    print_table(_FIGURES, rows)
+    for note in made.notes:
+        warn(str(note))
+    if made.certificate is not None:
+        say = print_rich if made.proven else warn
+        say(f"{program}: {made.certificate}")
+    for pair in cell.allowed:
+        print_rich(f"allowed to touch by the cell: {pair[0]} and {pair[1]}")
+    for path in written:
+        print_rich(f"wrote {path}")
+
+
+def solution_json(made: Solution, cell: Cell, written: Sequence[Path]) -> dict[str, Any]:
+    """The same for ``--json``."""
+    proof = made.certificate
+    return {
+        "robot": cell.robot.name,
+        "changed": made.changed,
+        "proven": made.proven,
+        "certificate": None if proof is None else proof.message,
+        "allowed": [list(pair) for pair in cell.allowed],
+        "figures": [
+            {"what": row.what, "unit": row.unit, "before": row.before, "after": row.after}
+            for row in made.table(cell.robot.axis_names)
+        ],
+        "notes": [note_json(note) for note in made.notes],
+        "files": [str(path) for path in written],
+    }
+
+
+def _figure(value: float | None, digits: int = 4) -> str:
+    return "" if value is None else f"{value:.{digits}f}"
