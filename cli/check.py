@@ -14,6 +14,7 @@ from .options import (
     AsJson,
     CellFile,
     Entry,
+    MotionFile,
     OtherFiles,
     ProgramFile,
     RobotName,
@@ -41,6 +42,7 @@ def check(
     program: ProgramFile,
     robot: RobotName = None,
     cell: CellFile = None,
+    motion: MotionFile = None,
     entry: Entry = None,
     io: AnswersFile = None,
     others: OtherFiles = None,
@@ -54,7 +56,7 @@ def check(
     from ..core.lint.finding import Severity
 
     with progress("checking the program"):
-        vendor, arm = robot_of(robot, cell)
+        vendor, arm = robot_of(robot, cell, motion)
         found = _findings(Source.of(program, entry, io, others), vendor, arm, start)
     if json:
         print_json({"robot": arm.name, "findings": [_json(finding) for finding in found]})

@@ -19,6 +19,7 @@ from .options import (
     CellFile,
     Entry,
     Force,
+    MotionFile,
     OtherFiles,
     RobotName,
     Start,
@@ -64,6 +65,7 @@ def compare(
     ] = None,
     robot: RobotName = None,
     cell: CellFile = None,
+    motion: MotionFile = None,
     entry: Entry = None,
     io: AnswersFile = None,
     others: OtherFiles = None,
@@ -81,9 +83,11 @@ def compare(
     if plot is not None and plot.suffix.lower() not in PLOT_FORMATS:
         raise InputError(f"--plot {plot}: the name must end in {', '.join(PLOT_FORMATS)}")
     source = Source.of(program, entry, io, others)
-    check_outputs({"--plot": plot}, source.inputs(cell, log, columns), replace_existing=force)
+    check_outputs(
+        {"--plot": plot}, source.inputs(cell, log, columns, motion), replace_existing=force
+    )
     with progress("reading program and log") as say:
-        vendor, arm, run = _load(source, log, robot, cell, columns)
+        vendor, arm, run = _load(source, log, _Driven(robot, cell, motion), columns)
         stand = start_of(start, arm) or _first(run, arm)
         say(f"emulating {len(run.program.moves)} moves")
         compared = _compare(vendor, arm, run, stand)
@@ -96,8 +100,21 @@ def compare(
         print_rich(f"wrote {plot}")
 
 
+@dataclass(frozen=True)
+class _Driven:
+    """The robot, as the options name it."""
+
+    robot: str | None
+    cell: Path | None
+    motion: Path | None
+
+    def find(self, of_record: str | None = None) -> tuple[Vendor, Robot]:
+        name = of_record if self.robot is None and self.cell is None else self.robot
+        return robot_of(name, self.cell, self.motion)
+
+
 def _load(
-    source: Source, log: Path | None, name: str | None, cell: Path | None, columns: Path | None
+    source: Source, log: Path | None, driven: _Driven, columns: Path | None
 ) -> tuple[Vendor, Robot, LoggedRun]:
     """The robot with its vendor, and the run."""
     from ..identification.logs import LoggedRun, load_columns, load_run, read_samples
@@ -107,13 +124,13 @@ def _load(
         if log is not None or mapped is not None:
             raise InputError(f"{source.file}: a record of a run names its log; give no other")
         run = load_run(source.file, registry().find_robot)
-        vendor, arm = robot_of(run.robot if cell is None and name is None else name, cell)
+        vendor, arm = driven.find(run.robot)
         if arm.name != run.robot:
             raise InputError(f"{source.file}: the run is one of {run.robot}, not of {arm.name}")
         return vendor, arm, run
     if log is None:
         raise InputError(f"which log? Name it behind {source.file}")
-    vendor, arm = robot_of(name, cell)
+    vendor, arm = driven.find()
     program = source.read(vendor, arm)
     samples = read_samples(log, arm, mapped)
     found = LoggedRun(log.stem, arm.name, None, program, samples.t, samples.q, samples.notes)

@@ -19,6 +19,7 @@ from .options import (
     CellFile,
     Entry,
     Force,
+    MotionFile,
     OtherFiles,
     ProgramFile,
     RobotName,
@@ -56,6 +57,7 @@ def emulate(
     program: ProgramFile,
     robot: RobotName = None,
     cell: CellFile = None,
+    motion: MotionFile = None,
     entry: Entry = None,
     io: AnswersFile = None,
     others: OtherFiles = None,
@@ -93,12 +95,12 @@ def emulate(
     outputs = files.by_option()
     if write is not None and write.is_dir():
         del outputs["--write"]
-    inputs = source.inputs(cell)
+    inputs = source.inputs(cell, motion)
     check_outputs(outputs, inputs, replace_existing=force)
     if period is not None and not LEAST_PERIOD <= period < float("inf"):
         raise InputError(f"--period must be at least {LEAST_PERIOD:g} s, not {period}")
     with progress("reading the program") as say:
-        vendor, arm = robot_of(robot, cell)
+        vendor, arm = robot_of(robot, cell, motion)
         parsed = source.read(vendor, arm)
         stand = start_of(start, arm)
         say(f"emulating {len(parsed.moves)} moves")

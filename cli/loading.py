@@ -63,12 +63,24 @@ class Source:
         return load_answers(self.answers)
 
 
-def robot_of(name: str | None, cell: Path | None) -> tuple[Vendor, Robot]:
+def robot_of(
+    name: str | None, cell: Path | None, motion: Path | None = None
+) -> tuple[Vendor, Robot]:
     """The robot that ``--robot`` or ``--cell`` names, with its vendor.
 
+    Args:
+        name, cell: as the options give them.
+        motion: file of how the robot is driven; None for what cell and vendor state.
+
     Raises:
-        InputError: neither is given, or they contradict each other.
+        InputError: no robot is given, name and cell contradict each other, or the motion file is
+            unusable.
     """
+    vendor, robot = _stated(name, cell)
+    return (vendor if motion is None else vendor.driven_by(motion, robot)), robot
+
+
+def _stated(name: str | None, cell: Path | None) -> tuple[Vendor, Robot]:
     if cell is None:
         if name is None:
             raise InputError("which robot? Give --robot ('flyby robots' lists them) or --cell")
@@ -78,7 +90,7 @@ def robot_of(name: str | None, cell: Path | None) -> tuple[Vendor, Robot]:
     loaded = load_cell(cell, registry())
     if name is not None and name != loaded.robot.name:
         raise InputError(f"--robot {name}: the cell {cell} has a {loaded.robot.name}")
-    return registry().find_vendor(loaded.vendor), loaded.robot
+    return loaded.find_vendor(registry()), loaded.robot
 
 
 def start_of(text: str | None, robot: Robot) -> JointTarget | None:

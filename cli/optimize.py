@@ -131,7 +131,7 @@ def optimize(
         from ..core.motion.controller import Controller
 
         where = load_cell(cell, registry())
-        vendor = registry().find_vendor(where.vendor)
+        vendor = where.find_vendor(registry())
         parsed = source.read(vendor, where.robot)
         task = task_of(
             parsed,

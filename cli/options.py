@@ -15,6 +15,10 @@ RobotName = Annotated[
 CellFile = Annotated[
     Path | None, typer.Option("--cell", help="Cell file: robot, base and external axes.")
 ]
+MotionFile = Annotated[
+    Path | None,
+    typer.Option("--motion", help="How the robot is driven, as 'flyby identify' writes it (TOML)."),
+]
 Entry = Annotated[str | None, typer.Option("--entry", help="Routine to run.")]
 AnswersFile = Annotated[
     Path | None,

@@ -93,7 +93,7 @@ def zones(
         from ..problems.zones.maximize import maximize_zones
 
         where = load_cell(cell, registry())
-        vendor = registry().find_vendor(where.vendor)
+        vendor = where.find_vendor(registry())
         parsed = source.read(vendor, where.robot)
         options = _options(parsed, vendor, where, clearance, predefined, free, keep, own, start)
         patching = Patching(vendor, where.robot, own)

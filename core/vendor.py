@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
@@ -28,6 +28,8 @@ NAME = re.compile(r"[a-z0-9][a-z0-9_.-]*")
 LANGUAGE_PARTS = ("reader", "writer", "patcher", "recorder")
 
 Part = TypeVar("Part")
+MotionLayer = Callable[["MotionModel"], "MotionModel"]
+"""Lays what is known of one robot on the motion model of its vendor's controllers."""
 Sources = Mapping[str, str]
 """Texts of a program's source files by file name."""
 
@@ -107,7 +109,9 @@ class Vendor:
     Args:
         name: lower case, the first part of its robots' names (``abb`` in ``abb/irb1200-5-090``).
         robots: each robot's name and what loads it.
-        motion: loads the motion model: the parameters of blending and stamping.
+        motion: loads the motion model of the vendor's controllers: the parameters of blending and
+            stamping.
+        robot_motion: what lays on top of it what is known of single robots, by their names.
         label: the configuration label of joint values (N,) rad of a robot, None where the vendor
             labels none.
         reader, writer, patcher, recorder: of the vendor's language; None if there is none.
@@ -132,6 +136,7 @@ class Vendor:
     recorder: Recorder | None = None
     suffixes: tuple[str, ...] = ()
     companions: Mapping[str, str] = field(default_factory=dict)
+    robot_motion: Mapping[str, MotionLayer] = field(default_factory=dict)
     emulation_only: Mapping[str, str] = field(default_factory=dict)
     speaks: Dialect | None = None
 
@@ -142,6 +147,7 @@ class Vendor:
         object.__setattr__(self, "companions", MappingProxyType({**self.companions}))
         object.__setattr__(self, "emulation_only", MappingProxyType({**self.emulation_only}))
         object.__setattr__(self, "motion", cache(self.motion))
+        object.__setattr__(self, "robot_motion", MappingProxyType({**self.robot_motion}))
 
     def robot(self, name: str) -> Robot:
         """The robot ``name``, with or without the vendor's own name before it.
@@ -153,6 +159,23 @@ class Vendor:
         if own not in self.robots:
             raise UnknownNameError(f"robot of {self.name}", own, self.robots)
         return self.robots[own]()
+
+    def motion_of(self, robot: Robot) -> MotionModel:
+        """How the vendor's controller drives this robot."""
+        layer = self.robot_motion.get(robot.name.removeprefix(f"{self.name}/"))
+        return self.motion() if layer is None else layer(self.motion())
+
+    def driven_by(self, file: Path, robot: Robot) -> Vendor:
+        """The same vendor with a motion file of the user's on top of what it states of a robot.
+
+        Raises:
+            InputError: the file cannot be read, states nonsense, or is another robot's.
+        """
+        from .motion.model import load_motion_model
+
+        model = load_motion_model(file, self.motion_of(robot), robot.name)
+        own = robot.name.removeprefix(f"{self.name}/")
+        return replace(self, robot_motion={**self.robot_motion, own: lambda _: model})
 
     def read(
         self,
@@ -260,6 +283,24 @@ def lazy_robots(files: Iterable[Path]) -> dict[str, Callable[[], Robot]]:
     return {path.stem: _once(path) for path in sorted(files)}
 
 
+def motion_layers(files: Iterable[Path]) -> dict[str, MotionLayer]:
+    """What is known of how single robots are driven, each read when it is asked for.
+
+    Args:
+        files: TOML files (`core.motion.model`); a robot is called as its file, without suffix.
+    """
+    return {path.stem: _layer(path) for path in sorted(files)}
+
+
+def _layer(path: Path) -> MotionLayer:
+    def lay(base: MotionModel) -> MotionModel:
+        from .motion.model import load_motion_model
+
+        return load_motion_model(path, base)
+
+    return lay
+
+
 def lazy_motion(path: Path) -> Callable[[], MotionModel]:
     """The motion model of a TOML file, read when it is asked for."""
 
@@ -304,9 +345,13 @@ def _check_parts(vendor: Vendor) -> None:
         if value is not None and not isinstance(value, kind):
             raise InputError(f"vendor {vendor.name!r}: {part!r} is no {kind.__name__}: {value!r}")
     _check_suffixes(vendor)
-    for name in vendor.emulation_only:
-        if name not in vendor.robots:
-            raise UnknownNameError(f"emulation-only robot of {vendor.name}", name, vendor.robots)
+    for what, names in (
+        ("emulation-only robot", vendor.emulation_only),
+        ("robot with a motion file", vendor.robot_motion),
+    ):
+        for name in names:
+            if name not in vendor.robots:
+                raise UnknownNameError(f"{what} of {vendor.name}", name, vendor.robots)
 
 
 def _check_suffixes(vendor: Vendor) -> None:

@@ -6,11 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from ..errors import Note, UnknownNameError
 from ..program.tool import FLANGE, WORLD, Tool, WorkObject
 from ..robot.model import Robot
 from .geometry import Geometry, Mesh
+
+if TYPE_CHECKING:
+    from ..registry import Registry
+    from ..vendor import Vendor
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +47,7 @@ class Cell:
             for a stationary tool).
         obstacles: what stands around.
         allowed: pairs of names that may touch; printed in every report.
+        motion: file of how this robot is driven, on top of what its vendor states; None for that.
         file: the file that the cell was read from.
     """
 
@@ -53,6 +59,7 @@ class Cell:
     tool_geometries: Mapping[str, Geometry] = field(default_factory=dict)
     obstacles: tuple[Obstacle, ...] = ()
     allowed: tuple[tuple[str, str], ...] = ()
+    motion: Path | None = None
     file: Path | None = None
 
     def __post_init__(self) -> None:
@@ -61,6 +68,15 @@ class Cell:
         object.__setattr__(self, "tools", MappingProxyType(tools))
         object.__setattr__(self, "frames", MappingProxyType(frames))
         object.__setattr__(self, "tool_geometries", MappingProxyType({**self.tool_geometries}))
+
+    def find_vendor(self, registry: Registry) -> Vendor:
+        """The robot's vendor, who drives it as the cell says.
+
+        Raises:
+            InputError: the motion file cannot be read, or is another robot's.
+        """
+        vendor = registry.find_vendor(self.vendor)
+        return vendor if self.motion is None else vendor.driven_by(self.motion, self.robot)
 
     def tool(self, name: str) -> Tool:
         """The tool ``name``.

@@ -42,6 +42,7 @@ def load_cell(path: str | Path, registry: Registry) -> Cell:
     obstacles = _obstacles(file, tables)
     frames = _frames(file, tables)
     clearance = _clearance(file)
+    motion = Path(path).parent / file.text("motion") if file.has("motion") else None
     allow = file.table("allow")
     file.finish()
     known = {*tools, *(obstacle.name for obstacle in obstacles), "base", *robot.axis_names}
@@ -53,6 +54,7 @@ def load_cell(path: str | Path, registry: Registry) -> Cell:
         frames=frames,
         tool_geometries=shapes,
         obstacles=obstacles,
+        motion=motion,
         allowed=_allowed(allow, known),
         file=file.file,
     )

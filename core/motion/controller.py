@@ -74,7 +74,7 @@ class Controller:
     Args:
         vendor: whose configurations and rules apply.
         robot: the robot, with its external axes.
-        model: the motion model; None for the vendor's own.
+        model: the motion model; None for the vendor's own of this robot.
         sampling: how densely paths are sampled.
     """
 
@@ -86,7 +86,7 @@ class Controller:
         sampling: Sampling | None = None,
     ) -> None:
         self.robot = robot
-        self.model = vendor.motion() if model is None else model
+        self.model = vendor.motion_of(robot) if model is None else model
         self.sampling = Sampling() if sampling is None else sampling
         self._routes = RouteFinder(robot, vendor.label)
 

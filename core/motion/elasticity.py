@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -133,8 +133,8 @@ class Elasticity:
 RIGID = Elasticity()
 
 
-def elasticity(table: dict[str, Any]) -> Elasticity:
-    """Elasticity from the table of a motion model's file.
+def elasticity(table: dict[str, Any], base: Elasticity = RIGID) -> Elasticity:
+    """Elasticity from the table of a motion model's file; ``base`` where it states nothing.
 
     Raises:
         InputError: a key is unknown or a value has the wrong type or range.
@@ -142,8 +142,10 @@ def elasticity(table: dict[str, Any]) -> Elasticity:
     unknown = set(table) - {"own_s2", "carried"}
     if unknown:
         raise InputError(f"elasticity.{min(unknown)}: no such key; there are own_s2 and carried")
-    own = _row("elasticity.own_s2", table.get("own_s2", []))
-    entries = table.get("carried", [])
+    own = _row("elasticity.own_s2", table["own_s2"]) if "own_s2" in table else base.own
+    if "carried" not in table:
+        return replace(base, own=own)
+    entries = table["carried"]
     if not isinstance(entries, list):
         raise InputError(f"elasticity.carried: a list of tables is expected, not {entries!r}")
     return Elasticity(own, tuple(_carried(entry) for entry in entries))

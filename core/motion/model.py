@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -177,29 +178,43 @@ _SINGLE_FIGURES = (
 )
 
 
-def load_motion_model(path: Path) -> MotionModel:
+def load_motion_model(
+    path: Path, base: MotionModel | None = None, robot: str | None = None
+) -> MotionModel:
     """Read a motion model.
 
+    Args:
+        path: TOML. A file may name the one ``robot`` that it holds for.
+        base: what holds where the file states nothing; None for the defaults of `MotionModel`.
+        robot: that is to be driven, such as ``abb/irb6640-180-255``; None for any.
+
     Raises:
-        InputError: the file is missing or no TOML, a key is unknown, a value has the wrong type
-            or range; the message names file and key.
+        InputError: the file is missing or no TOML, is another robot's, a key is unknown, a value
+            has the wrong type or range; the message names file and key.
     """
     try:
         data = tomllib.loads(path.read_text("utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise InputError(f"{path}: not a readable motion model: {error}") from error
+    own = data.pop("robot", robot)
+    if robot is not None and own != robot:
+        raise InputError(f"{path}: it says how {own} is driven, not {robot}")
     try:
-        return _model(data)
+        return _model(data, MotionModel() if base is None else base)
     except (InputError, TypeError, ValueError) as error:
         raise InputError(f"{path}: {error}") from error
 
 
-def _model(data: dict[str, Any]) -> MotionModel:
+def _model(data: dict[str, Any], base: MotionModel) -> MotionModel:
     blend, zone, time, limit, lead, origins = (_table(k, data.pop(k, {})) for k in _TABLES)
     provenance = {key: _provenance(f"provenance.{key}", entry) for key, entry in origins.items()}
-    values: dict[str, Any] = {"provenance": provenance, "elasticity": elasticity(lead)}
+    values: dict[str, Any] = {
+        "provenance": {**base.provenance, **provenance},
+        "elasticity": elasticity(lead, base.elasticity),
+    }
     _take(data, values, "", {"period_s": ("period", _number)})
-    _take(blend, values, "blend.", {name: (name, _blend) for name in _BLENDS})
+    blends = {name: (name, partial(_blend, getattr(base, name))) for name in _BLENDS}
+    _take(blend, values, "blend.", blends)
     _take(
         zone,
         values,
@@ -232,7 +247,7 @@ def _model(data: dict[str, Any]) -> MotionModel:
             "joint_acceleration_scale": ("joint_acceleration_scale", _row),
         },
     )
-    return MotionModel(**values)
+    return replace(base, **values)
 
 
 def _take(
@@ -263,14 +278,14 @@ def _provenance(key: str, entry: Any) -> Provenance:
     return Provenance(str(details.pop("status")), str(details.pop("source", "")), details)
 
 
-def _blend(entry: Any) -> Blend:
+def _blend(base: Blend, entry: Any) -> Blend:
     if not isinstance(entry, dict):
         raise InputError(f"a table is expected, not {entry!r}")
     values: dict[str, Any] = {
         key: tuple(map(_number, value)) if isinstance(value, list) else value
         for key, value in entry.items()
     }
-    return Blend(**values)
+    return replace(base, **values)
 
 
 def _number(entry: Any) -> float:

@@ -38,8 +38,8 @@ class Party:
 
     @cached_property
     def model(self) -> MotionModel:
-        """The vendor's motion model."""
-        return self.vendor.motion()
+        """How the vendor's controller drives the robot."""
+        return self.vendor.motion_of(self.robot)
 
     @cached_property
     def routes(self) -> RouteFinder:

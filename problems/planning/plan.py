@@ -16,7 +16,7 @@ from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, Target
 from ...core.program.tool import FLANGE, WORLD, Tool, WorkObject
 from ...core.program.zone import FINE, Zone
-from ...core.registry import find_vendor
+from ...core.registry import installed
 from .ends import external_values, free_end
 from .free_space import FreeSpace
 from .search import quickest_path
@@ -109,7 +109,7 @@ def plan_path(
     """
     options = PlanningOptions() if options is None else options
     clearance = cell.clearance if options.clearance is None else options.clearance
-    controller = controller or Controller(find_vendor(cell.vendor), cell.robot)
+    controller = controller or Controller(cell.find_vendor(installed()), cell.robot)
     scenes = scenes or scenes_of(cell)
     external = external_values(cell.robot, start, goal)
     space = FreeSpace(scenes(tool), clearance + options.margin, external)

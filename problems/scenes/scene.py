@@ -18,7 +18,7 @@ from ...core.program.speed import Speed
 from ...core.program.target import JointTarget
 from ...core.program.tool import Tool
 from ...core.program.zone import FINE, Zone
-from ...core.registry import find_vendor
+from ...core.registry import installed
 
 SECOND_ORDER = Blend(alpha=(0.0, 0.0, 0.0, 10.0, -15.0, 6.0))
 """α = 10s³ − 15s⁴ + 6s⁵: legs are left and met with continuous second derivatives."""
@@ -54,7 +54,7 @@ class Scene:
         self, model: MotionModel = SECOND_ORDER_BLENDS, sampling: Sampling | None = None
     ) -> Controller:
         """An emulated controller of the cell's vendor that drives by ``model``."""
-        return Controller(find_vendor(self.cell.vendor), self.cell.robot, model, sampling)
+        return Controller(self.cell.find_vendor(installed()), self.cell.robot, model, sampling)
 
 
 def joint_target(degrees: Sequence[float], name: str | None = None) -> JointTarget:

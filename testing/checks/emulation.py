@@ -68,7 +68,7 @@ class EmulationChecks(Subject):
         self, data: st.DataObject
     ) -> None:
         robot, run = self._drive(data, fly_by_zones(self.zones))
-        seen, model = Observed.of(robot, run), self.vendor.motion()
+        seen, model = Observed.of(robot, run), self.vendor.motion_of(robot)
         for away, turning in ((away_from_legs(seen), False), (turned_away(seen), True)):
             outside = outside_zones(seen, model, turning)
             assert away[outside].max(initial=0.0) < ON_PATH
@@ -132,13 +132,13 @@ class EmulationChecks(Subject):
         coast = 1e-3 * PERIOD * robot.limits.acceleration
         assert (np.abs(made.dq[[0, -1]]) <= coast).all()
         waits = sum(s.duration for s in run.program.statements if isinstance(s, Wait))
-        assert run.duration >= waits + sum(self.vendor.motion().smoothing)
+        assert run.duration >= waits + sum(self.vendor.motion_of(robot).smoothing)
 
     @DRIVES
     @given(data=st.data(), factor=st.floats(0.1, 0.9))
     def test_half_the_speed_takes_twice_the_time(self, data: st.DataObject, factor: float) -> None:
         robot, run = self._drive(data, self.zones)
-        model = self.vendor.motion()
+        model = self.vendor.motion_of(robot)
         for own in ("tcp_acceleration", "reorientation_acceleration"):
             if (limit := getattr(model, own)) is not None:
                 model = replace(model, **{own: limit * factor**2})

@@ -17,13 +17,19 @@ class MotionModelChecks(Subject):
         assert self.vendor.motion() is model
 
     def test_every_figure_has_a_provenance(self) -> None:
-        model = self.vendor.motion()
-        assert set(model.provenance) == model.figures
+        for model in self._models():
+            assert set(model.provenance) == model.figures
 
     def test_a_provenance_can_be_followed(self) -> None:
-        for key, entry in self.vendor.motion().provenance.items():
+        entries = [entry for model in self._models() for entry in model.provenance.items()]
+        for key, entry in entries:
             assert entry.status in STATUSES, key
             if entry.status == "fitted":
                 assert "command" in entry.details, f"{key}: a fit states the command that made it"
             else:
                 assert entry.source, f"{key}: {entry.status} by whom?"
+
+    def _models(self) -> list[MotionModel]:
+        """Of the controller, and of the robots of which more is known."""
+        robots = [self.vendor.robot(name) for name in self.vendor.robot_motion]
+        return [self.vendor.motion(), *map(self.vendor.motion_of, robots)]

@@ -80,7 +80,7 @@ class WithModel(Controller):
     def __init__(
         self, vendor: Vendor, robot: Robot, model: MotionModel | None, sampling: Sampling
     ) -> None:
-        model = replace(model or vendor.motion(), **self.changes)
+        model = replace(model or vendor.motion_of(robot), **self.changes)
         super().__init__(vendor, robot, model, sampling)
 
 

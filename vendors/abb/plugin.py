@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...core.hookspec import VendorRegister, hookimpl
-from ...core.vendor import Vendor, lazy_motion, lazy_robots
+from ...core.vendor import Vendor, lazy_motion, lazy_robots, motion_layers
 from .dialect import RAPID
 from .editing import RapidPatcher, RapidRecorder
 from .language import SUFFIXES, Rapid
@@ -36,6 +36,7 @@ def flyby_register_vendors(register: VendorRegister) -> None:
             name="abb",
             robots=lazy_robots(DATA.glob("robots/*.toml")),
             motion=lazy_motion(DATA / "motion.toml"),
+            robot_motion=motion_layers(DATA.glob("motion/*.toml")),
             label=_label,
             reader=rapid,
             writer=rapid,

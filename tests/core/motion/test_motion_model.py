@@ -106,3 +106,25 @@ def test_what_is_done_in_time_is_read(tmp_path) -> None:
     assert keys <= model.figures and not keys & MotionModel().figures
     path.write_text("[time]\nsmoothing_s = 0.06\n", "utf-8")
     assert load_motion_model(path).smoothing == (0.06,)
+
+
+def test_a_file_lies_on_a_base(tmp_path) -> None:
+    base, layer = tmp_path / "motion.toml", tmp_path / "own.toml"
+    base.write_text(
+        "period_s = 0.002\n[blend.tcp]\nkind = 'arc'\n[elasticity]\nown_s2 = [1e-4]\n"
+        "carried = [{ joint = 3, lead_s2_per_m2 = [2e-4] }]\n"
+        "[provenance]\nperiod_s = { status = 'assumed', source = 'a' }\n",
+        "utf-8",
+    )
+    layer.write_text(
+        "robot = 'acme/one'\n[blend.tcp]\nbeta = [0.5]\n[elasticity]\nown_s2 = [2e-4]\n"
+        "[provenance]\n'blend.tcp.beta' = { status = 'fitted', source = 'b' }\n",
+        "utf-8",
+    )
+    model = load_motion_model(layer, load_motion_model(base), "acme/one")
+    assert (model.period, model.tcp.kind, model.tcp.beta) == (0.002, "arc", (0.5,))
+    assert model.elasticity == Elasticity((2e-4,), (Carried(3, (2e-4,)),))
+    assert set(model.provenance) == {"period_s", "blend.tcp.beta"}
+    assert load_motion_model(layer).period == MotionModel().period
+    with pytest.raises(InputError, match="it says how acme/one is driven, not acme/two"):
+        load_motion_model(layer, robot="acme/two")
