@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,7 +10,6 @@ import typer
 
 from ..core.errors import InputError
 from .console import print_json, print_rich, print_table, progress, warn
-from .emulate import PLOT_FORMATS
 from .installed import registry
 from .loading import Source, robot_of, start_of
 from .options import (
@@ -24,33 +23,17 @@ from .options import (
     RobotName,
     Start,
 )
-from .outputs import check_outputs, writing
+from .outputs import check_outputs, check_plot_name, writing
 
 if TYPE_CHECKING:
-    from ..core.motion.controller import Run
     from ..core.program.target import JointTarget
     from ..core.robot.model import Robot
     from ..core.vendor import Vendor
-    from ..identification.alignment import Alignment
-    from ..identification.logs import CleanLog, LoggedRun
-    from ..identification.residuals import Figures, Residuals
+    from ..identification.logs import LoggedRun
+    from ..identification.prediction import Prediction
 
-PERIOD = 5e-4
-"""s between samples of the emulation. At 1 m/s round a radius of 10 mm, chords are 3 µm off."""
 RECORD = ".json"
 COLUMNS = (("", "left"), ("greatest", "right"), ("99 %", "right"), ("RMS", "right"))
-
-
-@dataclass(frozen=True, eq=False)
-class Compared:
-    """A log beside its emulation, and what came of it."""
-
-    robot: Robot
-    run: Run
-    log: CleanLog
-    alignment: Alignment
-    residuals: Residuals
-    figures: Figures
 
 
 def compare(
@@ -80,15 +63,14 @@ def compare(
     force: Force = False,
 ) -> None:
     """Hold a controller's log against the emulation of its program: in space and in time."""
-    if plot is not None and plot.suffix.lower() not in PLOT_FORMATS:
-        raise InputError(f"--plot {plot}: the name must end in {', '.join(PLOT_FORMATS)}")
+    check_plot_name(plot)
     source = Source.of(program, entry, io, others)
     check_outputs(
         {"--plot": plot}, source.inputs(cell, log, columns, motion), replace_existing=force
     )
     with progress("reading program and log") as say:
         vendor, arm, run = _load(source, log, _Driven(robot, cell, motion), columns)
-        stand = start_of(start, arm) or _first(run, arm)
+        stand = start_of(start, arm)
         say(f"emulating {len(run.program.moves)} moves")
         compared = _compare(vendor, arm, run, stand)
         if plot is not None:
@@ -137,52 +119,29 @@ def _load(
     return vendor, arm, found
 
 
-def _first(run: LoggedRun, robot: Robot) -> JointTarget | None:
-    """Where the log begins, if the program does not say where the robot stands."""
-    from ..core.program.target import JointTarget
-
-    if run.program.start is not None:
-        return None
-    values = tuple(map(float, run.q[0]))
-    return JointTarget(values[: robot.arm_size], values[robot.arm_size :])
-
-
-def _compare(vendor: Vendor, robot: Robot, run: LoggedRun, start: JointTarget | None) -> Compared:
+def _compare(vendor: Vendor, robot: Robot, run: LoggedRun, start: JointTarget | None) -> Prediction:
     from ..core.motion.controller import Controller
-    from ..identification.alignment import align
-    from ..identification.belonging import check_limits
     from ..identification.logs import clean
-    from ..identification.residuals import figures, residuals
+    from ..identification.prediction import predict
 
     try:
         log = clean(run)
-        check_limits(robot, run.q)
-        driven = Controller(vendor, robot).run(run.program, start, PERIOD)
-        aligned = align(robot, driven.trajectory, log)
     except InputError as error:
         raise InputError(f"{run.name}: {error}") from error
-    tool = run.program.moves[0].tool
-    found = residuals(robot, tool, driven.trajectory, log, aligned)
-    return Compared(robot, driven, log, aligned, found, figures(robot, found, aligned))
+    program = run.program if start is None else replace(run.program, start=start)
+    return predict(Controller(vendor, robot), run.name, program, log)
 
 
-def _draw(compared: Compared, plot: Path) -> None:
+def _draw(found: Prediction, plot: Path) -> None:
     from ..core.motion.trajectory import write_whole
-    from .plot_comparison import draw_comparison
+    from ..identification.report.picture import draw_prediction
 
-    data = draw_comparison(
-        compared.run,
-        compared.robot,
-        compared.log,
-        compared.alignment,
-        compared.residuals,
-        plot.suffix.lower()[1:],
-    )
+    data = draw_prediction(found, plot.suffix.lower()[1:])
     with writing("--plot", plot):
         write_whole(plot, data)
 
 
-def _tell(compared: Compared, run: LoggedRun, *, as_json: bool) -> None:
+def _tell(compared: Prediction, run: LoggedRun, *, as_json: bool) -> None:
     if as_json:
         print_json(_json(compared, run))
         return
@@ -200,13 +159,19 @@ def _tell(compared: Compared, run: LoggedRun, *, as_json: bool) -> None:
             "path of the joints, °",
             f"{np.degrees(f.joint_path_max):.4f}",
             f"{np.degrees(f.joint_path_p99):.4f}",
-            "",
+            f"{np.degrees(f.joint_path_rms):.4f}",
         ),
         (
             "joints at their time, °",
             f"{np.degrees(f.joint_time_max):.4f}",
             f"{np.degrees(f.joint_time_p99):.4f}",
-            "",
+            f"{np.degrees(f.joint_time_rms):.4f}",
+        ),
+        (
+            "the same, less drift, °",
+            f"{np.degrees(f.joint_clock_max):.4f}",
+            f"{np.degrees(f.joint_clock_p99):.4f}",
+            f"{np.degrees(f.joint_clock_rms):.4f}",
         ),
     ]
     print_rich(f"{run.name} on {compared.robot.name}: log less emulation")
@@ -222,7 +187,7 @@ def _tell(compared: Compared, run: LoggedRun, *, as_json: bool) -> None:
     )
 
 
-def _json(compared: Compared, run: LoggedRun) -> dict[str, Any]:
+def _json(compared: Prediction, run: LoggedRun) -> dict[str, Any]:
     """SI units, in the keys."""
     import numpy as np
 
@@ -237,8 +202,13 @@ def _json(compared: Compared, run: LoggedRun) -> dict[str, Any]:
         "path_rms_m": f.path_rms,
         "joint_path_max_rad": f.joint_path_max,
         "joint_path_p99_rad": f.joint_path_p99,
+        "joint_path_rms_rad": f.joint_path_rms,
         "joint_time_max_rad": f.joint_time_max,
         "joint_time_p99_rad": f.joint_time_p99,
+        "joint_time_rms_rad": f.joint_time_rms,
+        "joint_clock_max_rad": f.joint_clock_max,
+        "joint_clock_p99_rad": f.joint_clock_p99,
+        "joint_clock_rms_rad": f.joint_clock_rms,
         "offset_s": f.offset,
         "drift_s": f.drift,
         "cycle_time_s": aligned.moving,

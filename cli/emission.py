@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ..core.program.program import Program
     from ..core.robot.model import Robot
     from ..core.source.reading import Files
-    from ..core.vendor import Vendor
+    from ..core.vendor import Sources, Vendor
 
 
 class Emission:
@@ -47,14 +47,21 @@ class Emission:
             read = self._patching.read_back(program)
             self.files = self._patching.files
             return read
-        sources = self._vendor.write(program, self._robot)
-        with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            for file, text in sources.items():
-                (folder / file).write_bytes(text.encode())
-            first = next(
-                file for file in sources if Path(file).suffix.lower() in self._vendor.suffixes
-            )
-            read = self._vendor.read_file(folder / first, robot=self._robot)
+        read, sources = written_anew(self._vendor, self._robot, program)
         self.files = {file: SourceFile(file, text) for file, text in sources.items()}
         return read
+
+
+def written_anew(vendor: Vendor, robot: Robot, program: Program) -> tuple[Program, Sources]:
+    """The program as it is read from the text that the vendor's writer makes of it, and the text.
+
+    Raises:
+        FlybyError: the language cannot say what the program holds.
+    """
+    sources = vendor.write(program, robot)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for file, text in sources.items():
+            (folder / file).write_bytes(text.encode())
+        first = next(file for file in sources if Path(file).suffix.lower() in vendor.suffixes)
+        return vendor.read_file(folder / first, robot=robot), sources

@@ -25,7 +25,7 @@ from .options import (
     RobotName,
     Start,
 )
-from .outputs import check_outputs, writing
+from .outputs import check_outputs, check_plot_name, writing
 
 if TYPE_CHECKING:
     from ..core.motion.controller import Run
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
 LEAST_PERIOD = 1e-5
 """s. A cycle of a minute then makes six million samples."""
-PLOT_FORMATS = (".png", ".pdf", ".svg")
 
 
 @dataclass(frozen=True)
@@ -91,7 +90,7 @@ def emulate(
     source = Source.of(program, entry, io, others)
     files = _Files(csv, npz, plot, write)
     _check_opaque(opaque, write)
-    _check_plot(plot)
+    check_plot_name(plot)
     outputs = files.by_option()
     if write is not None and write.is_dir():
         del outputs["--write"]
@@ -123,11 +122,6 @@ def _options(style: OpaqueStyle | None) -> dict[str, str]:
     return {} if style is None else {"opaque": style.value}
 
 
-def _check_plot(path: Path | None) -> None:
-    if path is not None and path.suffix.lower() not in PLOT_FORMATS:
-        raise InputError(f"--plot {path}: the name must end in {', '.join(PLOT_FORMATS)}")
-
-
 def _run(
     vendor: Vendor, robot: Robot, program: Program, start: JointTarget | None, period: float | None
 ) -> Run:
@@ -154,7 +148,7 @@ def _write_files(
         check_outputs({f"--write: {path.name}": path for path in sources}, inputs, replace_existing)
         made += [("--write", path, text.encode()) for path, text in sources.items()]
     if files.plot is not None:
-        from .plot import draw
+        from ..drawing.run import draw
 
         made.append(("--plot", files.plot, draw(run, robot, files.plot.suffix.lower()[1:])))
     for option, path, data in made:

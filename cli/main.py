@@ -13,8 +13,12 @@ from .check import check
 from .compare import compare
 from .console import fail
 from .emulate import emulate
+from .experiment import experiment
+from .identify import identify
 from .kinematics import fk, ik
 from .optimize import optimize
+from .paint import paint
+from .pareto import pareto
 from .record import record
 from .translate import translate
 from .zones import zones
@@ -45,9 +49,13 @@ app.command()(emulate)
 app.command()(check)
 app.command()(translate)
 app.command()(record)
+app.command()(experiment)
 app.command()(compare)
+app.command()(identify)
 app.command()(zones)
 app.command()(optimize)
+app.command()(pareto)
+app.command()(paint)
 app.command()(robots)
 app.command()(vendors)
 app.command(context_settings=NUMBERS_MAY_BE_NEGATIVE)(fk)

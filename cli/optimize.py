@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..core.errors import InputError
+from .bystanders import bystander_notes, refuse_bystanders
 from .console import print_json, print_rich, print_table, progress
 from .emission import Emission
 from .installed import registry
 from .loading import Source, start_of
 from .options import AnswersFile, AsJson, Entry, Force, OtherFiles, Out, ProgramFile, Start
-from .outputs import check_outputs, writing
+from .outputs import check_outputs, check_plot_name, writing
 from .patching import check_places, write_patched
 from .places import place_json, short_place
 from .solution_report import solution_json, tell_solution
@@ -32,7 +34,6 @@ if TYPE_CHECKING:
 
 COLUMNS = (("move", "right"), ("line", "left"), ("target", "left"), ("zone", "left"))
 CHANGE = "change"
-PLOT_FORMATS = (".png", ".pdf", ".svg")
 
 
 def optimize(
@@ -86,6 +87,9 @@ def optimize(
         float | None,
         typer.Option("--clearance", help="Clearance to keep, mm; the cell's own if unset."),
     ] = None,
+    predefined: Annotated[
+        bool, typer.Option("--predefined", help="Choose among the vendor's predefined zones.")
+    ] = False,
     vias: Annotated[
         str,
         typer.Option(help="keep: the number of via points stays; change: it may become another."),
@@ -120,7 +124,12 @@ def optimize(
     source = Source.of(program, entry, io, others)
     inputs = source.inputs(cell)
     check_places(out, in_place, inputs, force)
-    _check_plot(plot, inputs, force)
+    check_plot_name(plot)
+    check_outputs({"--plot": plot}, inputs, force)
+    if zones_only and (limit or vias == CHANGE):
+        raise InputError(
+            "--zones-only leaves every point as it is: --limit and --vias change do not go with it"
+        )
     if in_place and vias == CHANGE:
         raise InputError(
             "--in-place and --vias change: with other via points the program is written anew: name "
@@ -144,6 +153,7 @@ def optimize(
             axes=axes,
             clearance=clearance,
             vias=vias,
+            predefined=predefined,
             start=start_of(start, where.robot),
         )
         emission = Emission(vendor, where.robot, parsed, own)
@@ -158,8 +168,10 @@ def optimize(
             zones_only,
             say,
         )
+        others_concerned = bystander_notes(made, vendor)
+        made = replace(made, notes=(*made.notes, *others_concerned))
         written: list[Path] = []
-        if made.changed:
+        if made.changed and not (in_place and others_concerned):
             from ..core.source.patching import reading_of
 
             read = reading_of(parsed).files
@@ -173,6 +185,8 @@ def optimize(
         _tell(program, made, where, written)
         if made.changed and not (out or in_place):
             print_rich("nothing was written: --in-place or --out FOLDER writes the new program")
+    if in_place:
+        refuse_bystanders(others_concerned)
     if not made.proven:
         raise typer.Exit(1)
 
@@ -197,15 +211,9 @@ def _optimized(
     return run(controller, program, cell, task, effort, emission.read_back, report)
 
 
-def _check_plot(path: Path | None, inputs: list[Path], replace_existing: bool) -> None:
-    if path is not None and path.suffix.lower() not in PLOT_FORMATS:
-        raise InputError(f"--plot {path}: the name must end in {', '.join(PLOT_FORMATS)}")
-    check_outputs({"--plot": path}, inputs, replace_existing)
-
-
 def _draw(plot: Path, cell: Cell, controller: Controller, made: Solution, task: Task) -> list[Path]:
     from ..core.motion.trajectory import write_whole
-    from .plot_cell import draw_cell
+    from ..drawing.cell import draw_cell
 
     runs = [("before", controller.run(made.original, task.start))]
     if made.changed:

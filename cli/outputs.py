@@ -9,6 +9,8 @@ from pathlib import Path
 
 from ..core.errors import InputError
 
+PLOT_FORMATS = (".png", ".pdf", ".svg")
+
 
 def check_outputs(
     outputs: Mapping[str, Path | None], inputs: Iterable[Path], replace_existing: bool
@@ -37,6 +39,16 @@ def check_outputs(
             raise InputError(f"{option} {path}: there is no folder {path.parent}")
         if path.exists() and not replace_existing:
             raise InputError(f"{option} {path}: exists already; --force replaces it")
+
+
+def check_plot_name(plot: Path | None) -> None:
+    """Refuse a drawing in a form that cannot be drawn.
+
+    Raises:
+        InputError: naming the path that ``--plot`` gives.
+    """
+    if plot is not None and plot.suffix.lower() not in PLOT_FORMATS:
+        raise InputError(f"--plot {plot}: the name must end in {', '.join(PLOT_FORMATS)}")
 
 
 def check_folder(option: str, folder: Path | None) -> None:

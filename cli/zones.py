@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..core.errors import InputError
+from .bystanders import bystander_notes, refuse_bystanders
 from .console import print_json, print_rich, print_table, progress
 from .installed import registry
 from .loading import Source, start_of
@@ -16,12 +17,12 @@ from .options import AnswersFile, AsJson, Entry, Force, OtherFiles, Out, Program
 from .patching import Patching, check_places, write_patched
 from .places import place_json, short_place
 from .solution_report import solution_json, tell_solution
-from .task_options import freed_stops, move_index
+from .task_options import clearance_of, freed_stops, move_index, rounding_of
 
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell
     from ..core.program.program import Program
-    from ..core.program.zone import Radius, Zone
+    from ..core.program.zone import Zone
     from ..core.vendor import Vendor
     from ..problems.zones.maximize import ZoneSolution
     from ..problems.zones.options import ZoneOptions
@@ -99,8 +100,11 @@ def zones(
         patching = Patching(vendor, where.robot, own)
         controller = Controller(vendor, where.robot)
         made = maximize_zones(controller, parsed, where, options, patching.read_back, say)
+        others_concerned = bystander_notes(made, vendor)
+        made = replace(made, notes=(*made.notes, *others_concerned))
+        refused = in_place and bool(others_concerned)
         written: list[Path] = []
-        if made.changed and (made.proven or unproven):
+        if made.changed and (made.proven or unproven) and not refused:
             from ..core.source.patching import reading_of
 
             written = write_patched(
@@ -117,6 +121,8 @@ def zones(
         _tell(program, made, where, written)
         if made.changed and not (out or in_place):
             print_rich("nothing was written: --in-place or --out FOLDER writes the new program")
+    if in_place:
+        refuse_bystanders(others_concerned)
     if not made.proven:
         raise typer.Exit(1)
 
@@ -135,22 +141,16 @@ def _options(
     from ..problems.zones.options import ZoneOptions
     from ..problems.zones.sizes import pattern_for
 
+    kept = [move_index(program, str(number), "--keep") for number in keep or []]
     return ZoneOptions(
-        clearance=None if clearance is None else 1e-3 * clearance,
-        freed=freed_stops(program, free or []),
+        clearance=clearance_of(clearance),
+        freed=freed_stops(program, free or [], kept),
         pattern=pattern_for(vendor.speaks),
-        kept=[move_index(program, str(number), "--keep") for number in keep or []],
+        kept=kept,
         apart=own,
-        predefined=_predefined(vendor) if predefined else (),
+        rounding=rounding_of(vendor, predefined),
         start=start_of(start, cell.robot),
     )
-
-
-def _predefined(vendor: Vendor) -> tuple[Radius, ...]:
-    found = () if vendor.speaks is None else vendor.speaks.zones()
-    if not found:
-        raise InputError(f"--predefined: {vendor.name} has no predefined zones")
-    return found
 
 
 def _tell(program: Path, made: ZoneSolution, cell: Cell, written: list[Path]) -> None:

@@ -7,8 +7,9 @@ language's own terms, and lists what has no counterpart. A check searches texts 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
+from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from .errors import InputError
@@ -18,8 +19,20 @@ from .program.zone import Radius, Zone
 if TYPE_CHECKING:
     from .program.move import Move
 
+_VISIBLE = re.compile(r"[^\r\n]")
 PACES = ("tcp", "joint_fraction", "joint")
 _SPEED_FIELDS = frozenset(field.name for field in fields(Speed)) - {"name"}
+
+
+class Orientation(StrEnum):
+    """The form in which a language says rotations."""
+
+    QUATERNION = "quaternion"
+    """Four numbers, rounded to what a controller resolves."""
+    EULER_ZYX = "euler zyx"
+    """Angles about z, then the new y, then the new x."""
+    ROTATION_VECTOR = "rotation vector"
+    """Axis times angle."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +62,21 @@ class MoveWords:
         unsaid = sorted(self.needs - self.speeds)
         if unsaid:
             raise InputError(f"MoveWords.needs: {unsaid[0]!r} is not among the speeds")
+
+
+@dataclass(frozen=True)
+class OutputWords:
+    """How an event on the way of a move (`core.program.event.Event`) sets an output.
+
+    Args:
+        switch: text of the action that turns a digital output, by its name, on or off.
+        level: text of the action that sets an analogue output, by its name, to a value.
+        longest_lead: s that an event's time may be at most.
+    """
+
+    switch: Callable[[str, bool], str]
+    level: Callable[[str, float], str]
+    longest_lead: float
 
 
 @dataclass(frozen=True)
@@ -93,6 +121,26 @@ class Wording:
         if "names" not in self.targets.groupindex:
             raise InputError("Wording.targets: the pattern needs a group called 'names'")
 
+    def quiet(self, text: str) -> str:
+        """A text with blanks for comments and strings."""
+        return self.silent.sub(lambda found: _VISIBLE.sub(" ", found[0]), text)
+
+    def declared(self, text: str) -> Iterator[tuple[str, int]]:
+        """Name and offset of every target that a text declares."""
+        for found in self.targets.finditer(text):
+            for one in re.finditer(r"[^,]+", _without_indices(found["names"])):
+                name = self.name.search(one[0])
+                if name is not None:
+                    yield name[0], found.start("names") + one.start() + name.start()
+
+    def folded(self, name: str) -> str:
+        """A name as it is compared with others."""
+        return name.lower() if self.same_case else name
+
+
+def _without_indices(names: str) -> str:
+    return re.sub(r"\[[^\]]*\]", lambda found: " " * len(found[0]), names)
+
 
 @dataclass(frozen=True)
 class Dialect:
@@ -112,6 +160,8 @@ class Dialect:
         user_frames: whether a work object has a user frame and an object frame in it.
         stationary_tools: whether the robot may carry the work object to a tool that stands still.
         external_axes: whether targets have external axes.
+        orientation: the form in which it says rotations.
+        in_si: whether lengths are said in m and angles in rad, not in mm and degrees.
         rigid_arcs: whether a tool that follows an arc keeps its orientation to the arc, whatever
             orientation the arc's end has.
         share_step: by what step shares of joint speed and acceleration are said.
@@ -120,6 +170,7 @@ class Dialect:
         zones: gives the zones that are known without a declaration, beside stops; called when
             they are needed.
         wording: how its texts are searched; None if they are not.
+        outputs: how outputs are set on the way of a move; None where there is nothing of the kind.
     """
 
     joint: MoveWords
@@ -132,12 +183,15 @@ class Dialect:
     user_frames: bool = False
     stationary_tools: bool = True
     external_axes: bool = True
+    orientation: Orientation = Orientation.QUATERNION
+    in_si: bool = False
     rigid_arcs: bool = False
     share_step: float = 0.01
     least_acceleration_share: float = 0.01
     fastest: float = 7.0
     zones: Callable[[], tuple[Radius, ...]] = tuple
     wording: Wording | None = None
+    outputs: OutputWords | None = None
 
     def __post_init__(self) -> None:
         if self.pace not in PACES or self.pace not in self.joint.speeds:

@@ -16,6 +16,11 @@ LENGTH = {"mm": MILLI, "m": 1.0}
 ANGLE = {"deg": math.pi / 180, "rad": 1.0}
 
 
+def per(units: Mapping[str, float], time: str) -> dict[str, float]:
+    """Units of a rate: ``deg_s`` of ``deg`` and ``s``."""
+    return {f"{unit}_{time}": scale for unit, scale in units.items()}
+
+
 class Table:
     """One table of a TOML file.
 

@@ -31,6 +31,7 @@ class Alignment:
     ``t_log = t_emulated + offset`` fits best with a constant offset; with a drift,
     ``t_log = t_emulated + offset + drift · (t_emulated − middle)``. Drift holds clocks that run
     differently and a motion that is emulated too fast or too slow alike: a log cannot tell them.
+    With both, ``t_log = origin + (1 + drift) · t_emulated``.
 
     Args:
         rows: (K,) indices of the log's samples from leaving the start to reaching the end; valid
@@ -39,6 +40,7 @@ class Alignment:
         off: (K, N) rad (m), from that place to the sample.
         offset: s; the robust constant one that leaves the least deviation of joints.
         drift: s/s, robust slope of what an offset leaves.
+        origin: s, of the log's time, where the emulated one is zero, with the drift.
         spread: s, robust standard deviation of what offset and drift leave.
         moving, logged_moving: s, from leaving the start to reaching the end: emulated, logged.
     """
@@ -48,6 +50,7 @@ class Alignment:
     off: FloatArray
     offset: float
     drift: float
+    origin: float
     spread: float
     moving: float
     logged_moving: float
@@ -85,12 +88,12 @@ def align(robot: Robot, trajectory: Trajectory, log: CleanLog) -> Alignment:
     lag = log.t[rows] - time
     weight = _speed(trajectory, time)
     offset = _weighted_median(lag, weight)
-    drift, spread = _drift(time, lag, weight)
+    drift, origin, spread = _drift(time, lag, weight, offset)
     motion = slice(int(rows[0]), _rest(log, int(rows[-1]), still))
     logged = moving_time(log.t[motion], log.q[motion])
     moving = moving_time(trajectory.t, trajectory.q)
     check_time(moving, logged)
-    return Alignment(rows, time, off, offset, drift, spread, moving, logged)
+    return Alignment(rows, time, off, offset, drift, origin, spread, moving, logged)
 
 
 def _ends(found: Match, still: float) -> tuple[int, int]:
@@ -122,15 +125,19 @@ def _weighted_median(values: FloatArray, weight: FloatArray) -> float:
     return float(values[order[np.searchsorted(total, 0.5 * total[-1])]])
 
 
-def _drift(time: FloatArray, lag: FloatArray, weight: FloatArray) -> tuple[float, float]:
-    """Slope of lags over time by the median over pairs (Theil, Sen), and the spread about it."""
+def _drift(
+    time: FloatArray, lag: FloatArray, weight: FloatArray, offset: float
+) -> tuple[float, float, float]:
+    """Slope of lags over time by the median over pairs (Theil, Sen), where the line begins, and the
+    spread about it."""
     rows = np.flatnonzero(weight > 0)
     if len(rows) < 3 or np.ptp(time[rows]) == 0:
-        return 0.0, 0.0
+        return 0.0, offset, 0.0
     used = rows[np.linspace(0, len(rows) - 1, min(len(rows), _PAIRS)).astype(np.int64)]
     a, b = np.triu_indices(len(used), 1)
     run = time[used][b] - time[used][a]
     apart = np.abs(run) > 0.1 * np.ptp(time[used])
     drift = float(np.median((lag[used][b] - lag[used][a])[apart] / run[apart]))
     rest = lag[rows] - drift * time[rows]
-    return drift, 1.4826 * float(np.median(np.abs(rest - np.median(rest))))
+    origin = float(np.median(rest))
+    return drift, origin, 1.4826 * float(np.median(np.abs(rest - origin)))

@@ -59,7 +59,7 @@ def measure_corner(t: FloatArray, tcp: FloatArray, points: FloatArray, radius: f
     met = np.flatnonzero(away[1][apex:] > OFF_THE_LEGS)
     entry = float(path[left[0]] @ into) if len(left) else 0.0
     leave = float(path[apex + met[-1]] @ out) if len(met) else 0.0
-    apex_distance = float(_least_distance(path))
+    apex_distance = float(least_distance(path))
     return Corner(apex_distance, max(entry, 0.0), max(leave, 0.0), float(np.ptp(t[rows])))
 
 
@@ -68,7 +68,7 @@ def _distance(path: FloatArray, unit: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.norm(path - np.outer(path @ unit, unit), axis=1))
 
 
-def _least_distance(path: FloatArray) -> float:
+def least_distance(path: FloatArray) -> float:
     """Least distance from the origin to the polyline through the points."""
     step = np.diff(path, axis=0)
     square = np.maximum(np.sum(step * step, axis=1), 1e-30)

@@ -30,6 +30,8 @@ class Residuals:
         joint_path: (K, N) rad (m), from the emulated path of joints, time aside.
         joint_time: (K, N) rad (m), from where the emulated motion is at that time, after one
             constant offset.
+        joint_clock: (K, N) rad (m), the same after offset and drift: as if the log's clock had run
+            as the emulation does.
     """
 
     t: FloatArray
@@ -38,6 +40,7 @@ class Residuals:
     path: FloatArray
     joint_path: FloatArray
     joint_time: FloatArray
+    joint_clock: FloatArray
 
 
 def residuals(
@@ -58,6 +61,7 @@ def residuals(
     tcp = tcp_positions(robot, held, q)
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
     expected = joints_at(trajectory, t - alignment.offset)
+    drifted = joints_at(trajectory, (t - alignment.origin) / (1.0 + alignment.drift))
     return Residuals(
         t,
         np.interp(alignment.time, trajectory.t, length),
@@ -65,6 +69,7 @@ def residuals(
         distance_to_polyline(tcp, line),
         alignment.off,
         q - expected,
+        q - drifted,
     )
 
 
@@ -80,8 +85,10 @@ class Figures:
 
     Args:
         path_max, path_p99, path_rms: m, of the TCP from the emulated path.
-        joint_path_max, joint_path_p99: rad, greatest over the axes that turn, time aside.
-        joint_time_max, joint_time_p99: the same after one constant offset in time.
+        joint_path_max, joint_path_p99, joint_path_rms: rad, greatest over the axes that turn, time
+            aside.
+        joint_time_max, joint_time_p99, joint_time_rms: the same after one constant offset in time.
+        joint_clock_max, joint_clock_p99, joint_clock_rms: the same after offset and drift.
         offset: s, the log's time less the emulated.
         drift: s, that the log falls behind the emulation from start to end beside the offset.
         cycle_time_ratio: emulated over logged time in motion.
@@ -92,8 +99,13 @@ class Figures:
     path_rms: float
     joint_path_max: float
     joint_path_p99: float
+    joint_path_rms: float
     joint_time_max: float
     joint_time_p99: float
+    joint_time_rms: float
+    joint_clock_max: float
+    joint_clock_p99: float
+    joint_clock_rms: float
     offset: float
     drift: float
     cycle_time_ratio: float
@@ -105,15 +117,25 @@ def figures(robot: Robot, found: Residuals, alignment: Alignment) -> Figures:
     turns = [joint.kind is not JointKind.PRISMATIC for joint in joints]
     place = np.abs(found.joint_path[:, turns]).max(axis=1, initial=0.0)
     moment = np.abs(found.joint_time[:, turns]).max(axis=1, initial=0.0)
+    clock = np.abs(found.joint_clock[:, turns]).max(axis=1, initial=0.0)
     return Figures(
         path_max=float(found.path.max()),
         path_p99=float(np.percentile(found.path, 99)),
-        path_rms=float(np.sqrt(np.mean(found.path**2))),
+        path_rms=_rms(found.path),
         joint_path_max=float(place.max()),
         joint_path_p99=float(np.percentile(place, 99)),
+        joint_path_rms=_rms(place),
         joint_time_max=float(moment.max()),
         joint_time_p99=float(np.percentile(moment, 99)),
+        joint_time_rms=_rms(moment),
+        joint_clock_max=float(clock.max()),
+        joint_clock_p99=float(np.percentile(clock, 99)),
+        joint_clock_rms=_rms(clock),
         offset=alignment.offset,
         drift=alignment.drift * alignment.moving,
         cycle_time_ratio=alignment.cycle_time_ratio,
     )
+
+
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values**2)))

@@ -16,6 +16,7 @@ from ..core.motion.timing import Timing
 from ..core.program.program import Program
 
 if TYPE_CHECKING:
+    from ..core.collision.certificate import SceneOf
     from ..core.collision.verdict import Certificate
 
 FloatArray = NDArray[np.float64]
@@ -117,6 +118,17 @@ class Solution:
         clearances = [None if m.clearance is None else 1e3 * m.clearance for m in (before, after)]
         rows.append(Row("proven clearance", "mm", *clearances))
         return tuple(rows)
+
+
+def scene_notes(scenes: SceneOf, program: Program) -> tuple[Note, ...]:
+    """What a user should know of the shapes that a program has been looked at with.
+
+    Args:
+        scenes: the cell with each tool.
+        program: whose tools count.
+    """
+    tools = dict.fromkeys(move.tool for move in program.moves)
+    return tuple(dict.fromkeys(note for tool in tools for note in scenes(tool).notes))
 
 
 def measure(controller: Controller, run: Run, certificate: Certificate | None = None) -> Measures:

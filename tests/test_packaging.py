@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 SETUPTOOLS = PYPROJECT["tool"]["setuptools"]
-SHELVES = ("cli", "core", "identification", "problems", "testing", "vendors")
+SHELVES = ("cli", "core", "drawing", "identification", "problems", "testing", "vendors")
 LINKS = (*SHELVES, "__init__.py", "py.typed")
 
 

@@ -104,6 +104,18 @@ class Cell:
         Raises:
             InputError: a mesh cannot be used.
         """
+        return tuple(note for mesh in self._meshes() for note in mesh.notes)
+
+    def doubtful_units(self) -> tuple[str, ...]:
+        """What speaks against the units of meshes: nothing else explains them as often where a
+        program collides at once.
+
+        Raises:
+            InputError: a mesh cannot be used.
+        """
+        doubts = ((mesh.file, mesh.doubt) for mesh in self._meshes())
+        return tuple(f"{file}: {doubt}" for file, doubt in doubts if doubt is not None)
+
+    def _meshes(self) -> list[Mesh]:
         geometries = (*self.tool_geometries.values(), *(o.geometry for o in self.obstacles))
-        meshes = [g.shape for g in geometries if isinstance(g.shape, Mesh)]
-        return tuple(note for mesh in meshes for note in mesh.notes)
+        return [g.shape for g in geometries if isinstance(g.shape, Mesh)]

@@ -11,7 +11,8 @@ from ..pose_table import pose_at
 from ..program.tool import FLANGE, WORLD, Tool, WorkObject
 from ..robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from ..robot.model import Robot
-from ..tables import ANGLE, LENGTH, Table
+from ..tables import ANGLE, LENGTH, Table, per
+from .arm import read_arm
 from .cell import Cell, Obstacle
 from .geometry import Geometry
 from .parts import read_geometry, read_load
@@ -36,7 +37,7 @@ def load_cell(path: str | Path, registry: Registry) -> Cell:
     """
     file = Table.read(path)
     axes = [_external_axis(name, t) for name, t in file.named_tables("external_axis").items()]
-    robot = _robot(file, registry, tuple(axes))
+    robot = read_arm(file, _robot(file, registry, tuple(axes)))
     tools, shapes = _tools(file)
     tables = {axis.name for axis in axes if axis.role is ExternalRole.TABLE}
     obstacles = _obstacles(file, tables)
@@ -138,8 +139,8 @@ def _external_axis(name: str, table: Table) -> ExternalAxis:
         axis=AXES[table.choice("axis", AXES)],
         lower=lower,
         upper=upper,
-        velocity=_positive(table, "speed", _per(unit, "s")),
-        acceleration=_positive(table, "acceleration", _per(unit, "s2")),
+        velocity=_positive(table, "speed", per(unit, "s")),
+        acceleration=_positive(table, "acceleration", per(unit, "s2")),
         kind=kind,
     )
     axis = ExternalAxis(
@@ -149,10 +150,6 @@ def _external_axis(name: str, table: Table) -> ExternalAxis:
     )
     table.finish()
     return axis
-
-
-def _per(units: Mapping[str, float], time: str) -> dict[str, float]:
-    return {f"{unit}_{time}": scale for unit, scale in units.items()}
 
 
 def _allowed(table: Table, known: Collection[str]) -> tuple[tuple[str, str], ...]:

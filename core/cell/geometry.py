@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from hashlib import sha256
@@ -19,8 +20,11 @@ FloatArray = NDArray[np.float64]
 
 MESH_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 25.4e-3}
 """Metres in one unit of a mesh file."""
-PLAUSIBLE_EXTENT = (1e-3, 100.0)
+PLAUSIBLE_EXTENT = (5e-3, 20.0)
 """m; beyond, the unit is probably wrong."""
+_USUAL_EXTENT = 0.5
+"""m, of what stands in a cell."""
+_NOTHING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -104,13 +108,27 @@ class Mesh:
         notes = []
         if not watertight:
             notes.append(Note(f"{self.file}: the mesh is not watertight: its inside reads as free"))
+        if self._doubt(vertices) is not None:
+            notes.append(Note(f"{self.file}: {self._doubt(vertices)}"))
+        return notes
+
+    @property
+    def doubt(self) -> str | None:
+        """Why its unit is probably another one; None where nothing speaks for that."""
+        return self._doubt(self.vertices)
+
+    def _doubt(self, vertices: FloatArray) -> str | None:
         extent = float(np.ptp(vertices, axis=0).max())
         shortest, longest = PLAUSIBLE_EXTENT
-        if not shortest <= extent <= longest:
-            notes.append(
-                Note(f"{self.file}: in {self.units} it is {extent:.3g} m long; check its units")
-            )
-        return notes
+        if shortest <= extent <= longest:
+            return None
+        numbers = max(extent, _NOTHING) / MESH_UNITS[self.units]
+        unit = min(
+            MESH_UNITS, key=lambda unit: abs(math.log(numbers * MESH_UNITS[unit] / _USUAL_EXTENT))
+        )
+        other = "" if unit == self.units else f": with units = {unit!r} it would be "
+        size = "" if unit == self.units else f"{numbers * MESH_UNITS[unit]:.3g} m"
+        return f"in {self.units} it is {extent:.3g} m long; check its units{other}{size}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,7 +57,8 @@ def read_geometry(table: Table, placement: Pose) -> Geometry | None:
     if not given:
         return None
     count, make = SHAPES[given[0]]
+    sizes = table.quantities(given[0], LENGTH, count)
     try:
-        return Geometry(make(table.quantities(given[0], LENGTH, count)), placement)
+        return Geometry(make(sizes), placement)
     except InputError as error:
         raise table.error(str(shapes[given[0]]), str(error)) from None

@@ -14,12 +14,11 @@ from numpy.typing import NDArray
 from ..cell.cell import Cell
 from ..errors import InputError
 from ..motion.controller import Controller, Run
-from ..motion.elasticity import RIGID
-from ..motion.timing import Timing
 from ..program.tool import Tool
 from .enclosure import Enclosure, Span
 from .findings import Budget, Cause, Finding
 from .scene import CollisionScene
+from .strays import smoothing_strays
 from .subdivision import Prover
 from .verdict import CONTACT, MM, Certificate, Reader, nearest_of
 
@@ -151,36 +150,6 @@ def _owners(
         scene = scenes(move.tool)
         owned.setdefault(id(scene), (scene, []))[1].append(int(piece))
     return list(owned.values())
-
-
-def smoothing_strays(controller: Controller, run: Run) -> FloatArray:
-    """(N,) rad or m by which smoothing in time moves the joints off the path at most.
-
-    A mean with a symmetric kernel of variance s² over a motion with accelerations within ±a is at
-    most a s² / 2 from the motion at the kernel's middle; see `motion.smoothing`. What commanded
-    joints lead their links by comes on top. No override drives faster than the program's own
-    limits; where the stamp exceeds them between samples, what it reaches counts.
-    """
-    smoothing = controller.smoothing(run.program, run.path)
-    elasticity = controller.model.elasticity
-    size = run.path.q.shape[1]
-    if smoothing.window == 0.0 and elasticity == RIGID:
-        return np.zeros(size)
-    _, dq, ddq, _ = run.timing.states_at(_instants(run.timing))
-    limits = run.timing.limits
-    velocity = np.maximum(limits.velocity[:, :size].max(axis=0), np.abs(dq).max(axis=0))
-    bound = np.maximum(limits.acceleration[:, :size].max(axis=0), np.abs(ddq).max(axis=0))
-    strays = bound * smoothing.stray
-    leads = elasticity.most(controller.robot, run.path.q, velocity, bound, strays)
-    return np.asarray(strays + leads)
-
-
-def _instants(timing: Timing) -> FloatArray:
-    """Several times in every interval of a stamp."""
-    share = np.linspace(0.0, 1.0, 5)
-    return np.asarray(
-        (timing.begin[:, None] + share * (timing.end - timing.begin)[:, None]).ravel()
-    )
 
 
 def _rank(finding: Finding) -> tuple[bool, float]:

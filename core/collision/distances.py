@@ -82,9 +82,9 @@ class RecentDistances:
     """The last answers, by configurations and range: value and gradient ask for the same ones."""
 
     def __init__(self) -> None:
-        self._kept: OrderedDict[tuple[bytes, float], Distances] = OrderedDict()
+        self._kept: OrderedDict[tuple[bytes, float, float], Distances] = OrderedDict()
 
-    def get(self, key: tuple[bytes, float], measure: Callable[[], Distances]) -> Distances:
+    def get(self, key: tuple[bytes, float, float], measure: Callable[[], Distances]) -> Distances:
         """What is kept for ``key``, measured if nothing is."""
         if key in self._kept:
             self._kept.move_to_end(key)

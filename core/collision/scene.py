@@ -91,18 +91,24 @@ class CollisionScene:
         a, b = self.pairs[pair]
         return self.bodies[a].name, self.bodies[b].name
 
-    def distances(self, q: ArrayLike, within: float = math.inf) -> Distances:
+    def distances(
+        self, q: ArrayLike, within: float = math.inf, costly_within: float = math.inf
+    ) -> Distances:
         """Signed distances of all pairs at configurations q (M, N).
 
         Args:
             q: rad or m.
             within: m; pairs at least this far apart are only said to be so.
+            costly_within: m, the same for pairs that no closed form tells, such as meshes: a
+                thousand times as costly as the others.
 
         Returns:
             arrays that cannot be written to; recent answers are kept.
         """
         rows = self._rows(q)
-        return self._recent.get((rows.tobytes(), within), lambda: self._measure(rows, within))
+        costly = min(within, costly_within)
+        key = (rows.tobytes(), within, costly)
+        return self._recent.get(key, lambda: self._measure(rows, within, costly))
 
     def chosen_distances(
         self, q: ArrayLike, which: tuple[ArrayLike, ArrayLike], within: ArrayLike
@@ -247,12 +253,15 @@ class CollisionScene:
         found = Distances.farther(len(R), len(pairs), within)
         return found, measure(self._hulls, pairs, R, p, within, found.numbers)
 
-    def _measure(self, q: FloatArray, within: float) -> Distances:
+    def _measure(self, q: FloatArray, within: float, costly: float) -> Distances:
         R, p = self._place(q)
         found, bound = self._closed_forms(R, p, self.pairs, within)
+        # Infinite bounds are of pairs that closed forms have told.
+        left = np.isfinite(bound)
+        found.distance[left] = np.clip(bound[left], costly, within)
         places = _places(R, p)
-        for m, k in np.argwhere(bound < within).tolist():
-            witness = self._distances.distance(*self._pairs[k], places[m], within)
+        for m, k in np.argwhere(bound < costly).tolist():
+            witness = self._distances.distance(*self._pairs[k], places[m], costly)
             if witness is not None:
                 found.put(m, k, witness)
         return found

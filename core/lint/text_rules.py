@@ -17,8 +17,6 @@ from ..source.reading import Reading
 from ..source.text import SourceText
 from .finding import Hit, ProgramSubject
 
-_VISIBLE = re.compile(r"[^\r\n]")
-
 
 def unused_targets(subject: ProgramSubject) -> Iterator[Hit]:
     """Targets that are declared and whose name stands nowhere else."""
@@ -27,12 +25,12 @@ def unused_targets(subject: ProgramSubject) -> Iterator[Hit]:
         return
     known = _known(texts.values(), wording)
     declared = Counter(
-        _folded(name, wording) for text in texts.values() for name, _ in _declared(text, wording)
+        wording.folded(name) for text in texts.values() for name, _ in wording.declared(text)
     )
     for file, text in _own(texts, subject.program).items():
         source = SourceText(text, file)
-        for name, at in _declared(text, wording):
-            if known[_folded(name, wording)] <= declared[_folded(name, wording)]:
+        for name, at in wording.declared(text):
+            if known[wording.folded(name)] <= declared[wording.folded(name)]:
                 yield Hit(
                     f"{name} is a target that no motion uses",
                     "remove it, or use it",
@@ -43,25 +41,8 @@ def unused_targets(subject: ProgramSubject) -> Iterator[Hit]:
 def _known(texts: Iterable[str], wording: Wording) -> Counter[str]:
     """How often every name stands in the texts."""
     return Counter(
-        _folded(found[0], wording) for text in texts for found in wording.name.finditer(text)
+        wording.folded(found[0]) for text in texts for found in wording.name.finditer(text)
     )
-
-
-def _declared(text: str, wording: Wording) -> Iterator[tuple[str, int]]:
-    """Name and offset of every target that is declared."""
-    for found in wording.targets.finditer(text):
-        for one in re.finditer(r"[^,]+", _without_indices(found["names"])):
-            name = wording.name.search(one[0])
-            if name is not None:
-                yield name[0], found.start("names") + one.start() + name.start()
-
-
-def _without_indices(names: str) -> str:
-    return re.sub(r"\[[^\]]*\]", lambda found: " " * len(found[0]), names)
-
-
-def _folded(name: str, wording: Wording) -> str:
-    return name.lower() if wording.same_case else name
 
 
 def pitfalls(subject: ProgramSubject) -> Iterator[Hit]:
@@ -95,11 +76,8 @@ def _searched(subject: ProgramSubject) -> tuple[Wording | None, dict[str, str]]:
     reading = subject.program.reading
     if subject.wording is None or not isinstance(reading, Reading):
         return None, {}
-    silent = subject.wording.silent
-    return subject.wording, {
-        name: silent.sub(lambda found: _VISIBLE.sub(" ", found[0]), file.text)
-        for name, file in reading.files.items()
-    }
+    quiet = subject.wording.quiet
+    return subject.wording, {name: quiet(file.text) for name, file in reading.files.items()}
 
 
 def _own(texts: Mapping[str, str], program: Program) -> dict[str, str]:

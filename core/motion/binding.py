@@ -46,7 +46,7 @@ def interval_limits(run: Run, axis_names: Sequence[str]) -> list[str]:
     for k in range(len(names) - 1, -1, -1):
         code = int(stamp.limit[k])
         if code >= 0:
-            names[k] = _acceleration(stamp.half_plane(code).row, axis_names)
+            names[k] = _acceleration(run, stamp.half_plane(code).row, axis_names)
         elif code == NEXT and k + 1 < len(names):
             names[k] = names[k + 1]
         elif code in (CEILING, NEXT):
@@ -54,10 +54,15 @@ def interval_limits(run: Run, axis_names: Sequence[str]) -> list[str]:
     return names
 
 
-def _acceleration(row: int, axis_names: Sequence[str]) -> str:
+def _acceleration(run: Run, row: int, axis_names: Sequence[str]) -> str:
     if row < len(axis_names):
         return f"{axis_names[row]} acceleration"
-    return ("TCP acceleration", "reorientation acceleration")[row - len(axis_names)]
+    row -= len(axis_names)
+    along = ("TCP acceleration", "reorientation acceleration")
+    shares = run.timing.path_limits.shares
+    if row < len(along) or shares is None:
+        return along[row]
+    return f"{axis_names[(row - len(along)) % shares.h.shape[1]]} torque"
 
 
 def _velocity(run: Run, knot: int, axis_names: Sequence[str]) -> str:

@@ -19,28 +19,29 @@ from ..robot.model import Robot
 from ..spatial.rotation import quaternion_from_matrix
 from ..vendor import Vendor
 from .arc_length import ArcLength
+from .consumption import SQUARED_TORQUE, Consumption
+from .durations import hold_durations, stamp_in_thirds, stamp_path
 from .elasticity import LEAD_STEP, RIGID, derivatives_of
 from .energy import Energy, energy
-from .limits import SegmentLimits, path_limits
-from .model import MotionModel
+from .excesses import excesses
+from .limits import SegmentLimits
+from .model import DurationRule, MotionModel
 from .path import Path, build_path
 from .pieces import Sampling
+from .ramped import stamped_motion as stamped_motion
 from .route import RouteFinder
 from .smoothing import Motion, Smoothing, States
-from .stamping import StampingError, stamp
+from .start_ramp import SUDDEN, StartRamp
 from .timing import Settling, Timing
+from .torque import WITHOUT_LIMIT, Shares
 from .trajectory import Trajectory, sample_times
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 _SKIPS = 10_000
-_DURATION_ROUNDS = 60
-_DURATION_MET = 1e-6
 _LIMIT_SLACK = 1e-6
 """rad or m by which a path may pass a joint limit: rounding of programmed values."""
-_EXCESS = 1.02
-"""Share of a limit from which on a sampled velocity or acceleration is reported."""
 _DEGREES = 180 / np.pi
 
 
@@ -75,7 +76,7 @@ class Controller:
         vendor: whose configurations and rules apply.
         robot: the robot, with its external axes.
         model: the motion model; None for the vendor's own of this robot.
-        sampling: how densely paths are sampled.
+        sampling: how densely paths are sampled; None for what the model's accuracy calls for.
     """
 
     def __init__(
@@ -87,7 +88,7 @@ class Controller:
     ) -> None:
         self.robot = robot
         self.model = vendor.motion_of(robot) if model is None else model
-        self.sampling = Sampling() if sampling is None else sampling
+        self.sampling = _sampling(self.model) if sampling is None else sampling
         self._routes = RouteFinder(robot, vendor.label)
 
     def run(
@@ -156,25 +157,36 @@ class Controller:
         settling = self._settling(program, path)
         try:
             along = ArcLength.of(path, self.robot.limits.acceleration)
-            timing = _timing(path, along, limits, settling)
+            shares = self._shares(along)
             if not timed:
-                return timing
+                return stamp_path(path, along, limits, shares, settling)
             wanted = np.array([moves[k].speed.duration for k in timed], dtype=float)
-            return _hold_durations(timing, timed, wanted, settling)
+            if self.model.duration is DurationRule.THIRDS:
+                timing = stamp_in_thirds(path, along, limits, shares, settling, timed, wanted)
+            else:
+                timing = stamp_path(path, along, limits, shares, settling)
+            return hold_durations(timing, timed, wanted, settling)
         except MotionError as error:
             raise _located(error, program) from error
+
+    def _shares(self, along: ArcLength) -> Shares | None:
+        """What shares of the torques' limits the path takes, if the model has any."""
+        if self.model.torque == WITHOUT_LIMIT:
+            return None
+        return self.model.torque.along(self.robot, *along.states[:3])
 
     def sample(self, program: Program, timing: Timing, period: float | None = None) -> Trajectory:
         """The commanded motion, smoothed in time where the vendor does, every ``period`` s."""
         period = self.model.period if period is None else period
         smoothing = self.smoothing(program, timing.path)
         t = sample_times(0.0, timing.duration, period)
-        if smoothing.window == 0.0 and self.model.elasticity == RIGID:
-            q, dq, ddq, sigma = timing.states_at(t)
+        if smoothing.window == 0.0 and timing.ramp == 0.0 and self.model.elasticity == RIGID:
+            q, dq, ddq, sigma = timing.driven_at(t)
         else:
             q, dq, ddq = self._commanded(smoothing, stamped_motion(timing), t)
-            middle = np.clip(t - 0.5 * smoothing.window, 0.0, timing.duration)
-            sigma = timing.states_at(middle)[3]
+            middle = t - 0.5 * (smoothing.window + timing.ramp)
+            middle = np.clip(middle, 0.0, timing.duration)
+            sigma = timing.driven_at(middle)[3]
         path = timing.path
         last = len(path.route.moves) - 1
         segment = np.clip(np.searchsorted(path.layout.waypoint, sigma, "right") - 1, 0, last)
@@ -182,13 +194,11 @@ class Controller:
         moves = np.array(path.route.moves, dtype=np.int64)
         return Trajectory(t, q, dq, ddq, position, quaternion, sigma, moves[segment])
 
-    def energy(self, program: Program, timing: Timing) -> Energy:
-        """The squared-torque energy of a stamped path, before smoothing; see `energy`.
-
-        Raises:
-            InputError: the robot's inertias are not known.
-        """
-        return energy(self.robot, timing, self.loads(program, timing.path))
+    def energy(
+        self, program: Program, timing: Timing, consumption: Consumption = SQUARED_TORQUE
+    ) -> Energy:
+        """The energy of a stamped path, before smoothing; see `energy` and what it raises."""
+        return energy(self.robot, timing, self.loads(program, timing.path), consumption)
 
     def loads(self, program: Program, path: Path) -> list[Inertia | None]:
         """What the flange carries on each segment: tool and payload."""
@@ -210,13 +220,17 @@ class Controller:
         return self.model.smoothing_at(gentlest)
 
     def smoothing_window(self, program: Program, path: Path) -> float:
-        """Length in s of what one commanded sample depends on."""
+        """Length in s of what one smoothed sample depends on."""
         return self.smoothing(program, path).window
 
     def _settling(self, program: Program, path: Path) -> Settling:
         window = self.smoothing_window(program, path)
+        gentlest = min(move.speed.jerk_fraction for move in self._moves(program, path))
+        ramp = self.model.ramp_at(gentlest)
+        window += ramp
         wait = self.model.settling
-        return Settling(window if wait is None else min(wait, window), window)
+        start = StartRamp(self.model.start_ramp)
+        return Settling(window if wait is None else min(wait, window), window, ramp, start)
 
     def _commanded(self, smoothing: Smoothing, stamped: Motion, t: FloatArray) -> States:
         """The smoothed joints and what they lead their links by."""
@@ -272,36 +286,27 @@ class Controller:
     def _excess_notes(self, timing: Timing, trajectory: Trajectory) -> list[Note]:
         """Moves on which the samples of the commanded motion exceed the robot's own limits.
 
-        Where joints are elastic, limits are those of the links, which are driven as stamped.
+        Where joints are elastic, limits are those of the links, which are driven as stamped. So
+        are those of a motion whose time comes up to speed.
         """
-        limits = self.robot.limits
+        q, dq, ddq = trajectory.q, trajectory.dq, trajectory.ddq
+        if self.model.elasticity != RIGID or timing.ramp > 0.0 or timing.start != SUDDEN:
+            q, dq, ddq, _ = timing.states_at(trajectory.t)
+        limits, torque = self.robot.limits, self.model.torque
+        names = self.robot.axis_names
         scale = [self.model.acceleration_scale(j) for j in range(self.robot.arm_size)]
         most = limits.acceleration.copy()
         most[: len(scale)] *= scale
-        dq, ddq = trajectory.dq, trajectory.ddq
-        if self.model.elasticity != RIGID:
-            _, dq, ddq, _ = timing.states_at(trajectory.t)
-        notes = []
-        for name, values, bound in (
-            ("velocity", dq, limits.velocity),
-            ("acceleration", ddq, most),
-        ):
-            share = np.abs(values) / bound
-            for move in np.unique(trajectory.move[share.max(axis=1) > _EXCESS]):
-                rows = share[trajectory.move == move]
-                axis = int(np.argmax(rows.max(axis=0)))
-                notes.append(
-                    Note(
-                        f"{name} of joint {self.robot.axis_names[axis]} reaches "
-                        f"{100 * rows.max():.0f} % of its limit between samples of the path; "
-                        "treat the timing of this move with care",
-                        int(move),
-                    )
-                )
+        most[: len(torque.own)] = np.inf
+        notes = excesses("velocity", np.abs(dq) / limits.velocity, names, trajectory.move)
+        notes += excesses("acceleration", np.abs(ddq) / most, names, trajectory.move)
+        if torque != WITHOUT_LIMIT:
+            taken = torque.taken(self.robot, q, dq, ddq)
+            notes += excesses("torque", taken, names, trajectory.move)
         return notes
 
     def _jerk_notes(self, program: Program) -> list[Note]:
-        if self.model.jerk is not None:
+        if self.model.jerk is not None or self.model.ramp > 0.0:
             return []
         for index, move in enumerate(program.moves):
             if move.speed.jerk_fraction < 1.0:
@@ -327,6 +332,13 @@ class Controller:
                     )
                 )
         return notes
+
+
+def _sampling(model: MotionModel) -> Sampling:
+    """What is known of times calls for speeds that are resolved; the rest is as before."""
+    if model.torque != WITHOUT_LIMIT:
+        return Sampling(step=0.01, approach=6)
+    return Sampling() if model.start_ramp == 0.0 else Sampling(step=0.01, joint=0.02)
 
 
 def _goes_nowhere(left_out: Sequence[int]) -> MotionError:
@@ -367,69 +379,3 @@ def _carried(move: Move) -> Inertia | None:
     for body in bodies[1:]:
         total = total + body
     return total
-
-
-def _timing(path: Path, along: ArcLength, limits: SegmentLimits, settling: Settling) -> Timing:
-    made = path_limits(along.states, along.spacing, path.pieces, limits)
-    try:
-        found = stamp(made.rows)
-    except StampingError as error:
-        knot = min(error.knot, len(made.rows.spacing) - 1)
-        piece = int(np.searchsorted(path.pieces.first_interval, knot, "right")) - 1
-        move = path.route.moves[int(path.pieces.segment[piece])]
-        raise MotionError(f"the limits leave it no speed: {error.message}", move) from error
-    return Timing.of(path, limits, along, made, found, settling)
-
-
-def _hold_durations(
-    timing: Timing, timed: list[int], wanted: FloatArray, settling: Settling
-) -> Timing:
-    """Slow segments down until they take the time that was programmed.
-
-    Velocities of the segment are scaled in common; a time too short for the robot stays unmet.
-    """
-    factor = np.ones(len(timed))
-    limits = _finite(timing, timed)
-    current = _timing(timing.path, timing.along, limits, settling)
-    for _ in range(_DURATION_ROUNDS):
-        spent = current.segment_durations()[timed]
-        slow = spent < wanted * (1 - _DURATION_MET)
-        fast = (spent > wanted * (1 + _DURATION_MET)) & (factor < 1.0)
-        if not (slow | fast).any():
-            break
-        factor = np.where(slow | fast, np.minimum(1.0, factor * spent / wanted), factor)
-        scaled = limits
-        for segment, share in zip(timed, factor, strict=True):
-            scaled = scaled.with_velocities_scaled([segment], float(share))
-        current = _timing(timing.path, timing.along, scaled, settling)
-    return current
-
-
-def _finite(timing: Timing, timed: list[int]) -> SegmentLimits:
-    """Limits in which each timed segment may go just as fast as it does without its time."""
-    velocity = timing.limits.velocity.copy()
-    path, stamped, states = timing.path, timing.stamp, timing.along.states
-    rate = np.sqrt(np.maximum(stamped.x[:-1], stamped.x[1:]))
-    top = np.zeros(len(path.route.moves))
-    np.maximum.at(top, timing.interval_segments, rate)
-    sample_segment = path.pieces.segment[path.pieces.sample_pieces]
-    speeds = np.concatenate(
-        [
-            np.abs(states.dq),
-            np.linalg.norm(states.v[:, :3], axis=1)[:, None],
-            np.linalg.norm(states.v[:, 3:], axis=1)[:, None],
-        ],
-        axis=1,
-    )
-    for k in timed:
-        reached = speeds[sample_segment == k].max(axis=0) * top[k]
-        velocity[k] = np.minimum(velocity[k], np.maximum(reached, 1e-12))
-    return replace(timing.limits, velocity=velocity)
-
-
-def stamped_motion(timing: Timing) -> Motion:
-    """The stamped motion, by knots fine enough that cubics in time between them stand for it."""
-    even = sample_times(0.0, timing.duration, 0.002)
-    t = np.unique(np.concatenate([even, timing.begin, timing.end]))
-    q, dq, _, _ = timing.states_at(t)
-    return Motion(t, q, dq)

@@ -18,6 +18,7 @@ from ..program.program import Program
 from ..program.target import JointTarget, PoseTarget
 from ..robot.chain_kernels import jacobians
 from .configurations import located
+from .consumption import SQUARED_TORQUE, Consumption
 from .controller import Controller
 from .energy import pull_energy
 from .limits import SpeedGradient, interval_samples, pull_path_limits
@@ -117,10 +118,10 @@ class Derivatives:
         seeds.t[-1] = 1.0
         return self._pull(seeds)
 
-    def energy(self) -> ProgramGradient:
-        """Derivative of the squared-torque energy, N² m² s; see `energy.energy`."""
+    def energy(self, consumption: Consumption = SQUARED_TORQUE) -> ProgramGradient:
+        """Derivative of the energy, that of squared torques (N² m² s) if not said otherwise."""
         seeds = self._seeds()
-        made = self._controller.energy(self._program, self._timing)
+        made = self._controller.energy(self._program, self._timing, consumption)
         seeds.x[:], seeds.t[:], seeds.spacing[:] = pull_energy(
             self._controller.robot, self._timing, made, seeds.states
         )
@@ -192,7 +193,7 @@ class Derivatives:
         speeds = SpeedGradient.zeros(len(path.route.moves))
         bar = stamp_adjoint(timing.stamp, seeds.x, seeds.t)
         bar.spacing[:] += seeds.spacing
-        pull_path_limits(
+        shares_bar = pull_path_limits(
             timing.along.states,
             path.pieces,
             timing.limits,
@@ -201,6 +202,11 @@ class Derivatives:
             seeds.states,
             speeds,
         )
+        if shares_bar is not None:
+            controller = self._controller
+            controller.model.torque.pull(
+                controller.robot, timing.along.states[:3], shares_bar, seeds.states[:3]
+            )
         sigma_bar = np.zeros(len(path.sigma))
         states_bar = timing.along.pull(path, seeds.states, bar.spacing, sigma_bar)
         return self._gather(pull_path(path, states_bar, sigma_bar), speeds)

@@ -9,6 +9,12 @@ laws for the control of flexible robots", ICRA 2000). Logs show the motors. K⁻
 
 each b a point mass on the axis of one of the arm's joints, at p_b with Jacobian J_b; p̈_b contains
 the centrifugal and Coriolis terms. Gravity is left out: logs meet their targets at rest.
+
+Gears are softer where little torque passes them (lost motion, as in gear makers' hysteresis
+curves). A joint with slack s leads by l + s tanh(l / s), l being what its stiffness alone gives.
+
+Logs of measured joints show the arm's servos following, each by its own lag. What all have in
+common is an offset in time; the differences bend the path, and so are leads as well: lag q̇.
 """
 
 from __future__ import annotations
@@ -22,9 +28,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..robot.chain import Chain
 from ..robot.chain_kernels import jacobians, motions
 from ..robot.model import Robot
+from .point_masses import chain_to_axis, filled, row_of
 
 FloatArray = NDArray[np.float64]
 
@@ -54,19 +60,32 @@ class Elasticity:
         own: s², lead per acceleration of the joint itself that does not depend on the posture;
             joints beyond the last have none.
         carried: masses on the arm.
+        slack: rad, how much farther a joint gives way at most before its gear is stiff; joints
+            beyond the last have none.
+        lag: s that a joint is ahead of the others where it moves (below zero: behind), as the
+            servos of a measured arm follow at different distances; joints beyond the last have
+            none.
     """
 
     own: tuple[float, ...] = ()
     carried: tuple[Carried, ...] = ()
+    slack: tuple[float, ...] = ()
+    lag: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         for key, values in (
             ("own_s2", self.own),
+            ("lag_s", self.lag),
             *(("carried.lead_s2_per_m2", mass.lead) for mass in self.carried),
         ):
             for value in values:
                 if not math.isfinite(value):
                     raise InputError(f"elasticity.{key} must be finite, not {value}")
+        for value in self.slack:
+            if not 0 <= value < math.inf:
+                raise InputError(
+                    f"elasticity.slack_rad must be finite and zero or more, not {value}"
+                )
         for mass in self.carried:
             if mass.joint < 1 or len(mass.lead) >= mass.joint:
                 raise InputError(
@@ -78,19 +97,27 @@ class Elasticity:
     @property
     def figures(self) -> tuple[str, ...]:
         """The dotted keys of what is stated."""
-        stated = (("own_s2", self.own), ("carried", self.carried))
+        stated = (
+            ("own_s2", self.own),
+            ("carried", self.carried),
+            ("slack_rad", self.slack),
+            ("lag_s", self.lag),
+        )
         return tuple(f"elasticity.{name}" for name, value in stated if value)
 
     def leads(self, robot: Robot, q: FloatArray, dq: FloatArray, ddq: FloatArray) -> FloatArray:
         """Lead (T, N) in rad or m at configurations, velocities and accelerations (T, N)."""
-        out = _filled(self.own, q.shape[1]) * ddq
+        out = filled(self.own, q.shape[1]) * ddq
         q, dq, ddq = (np.ascontiguousarray(array) for array in (q, dq, ddq))
         for mass in self.carried:
-            chain = _up_to(robot, mass)
+            chain = chain_to_axis(robot, mass.joint, "elasticity.carried")
             J = jacobians(chain, q)[:, :3]
             pull = motions(chain, q, dq, ddq)[1][:, :3]
-            out += _filled(mass.lead, q.shape[1]) * np.einsum("tij,ti->tj", J, pull)
-        return np.asarray(out)
+            out += filled(mass.lead, q.shape[1]) * np.einsum("tij,ti->tj", J, pull)
+        for joint, slack in enumerate(self.slack[: q.shape[1]]):
+            if slack > 0.0:
+                out[:, joint] += slack * np.tanh(out[:, joint] / slack)
+        return np.asarray(out + filled(self.lag, q.shape[1]) * dq)
 
     def most(
         self,
@@ -109,12 +136,12 @@ class Elasticity:
             strays: (N,), how far the links may be from the path.
         """
         size = q.shape[1]
-        out = np.abs(_filled(self.own, size)) * acceleration
+        out = np.abs(filled(self.own, size)) * acceleration
         # No lever is longer than the chain, and none turns by more than the joints do.
         between = np.abs(np.diff(q, axis=0, append=q[-1:])).max(axis=0)
         turned = float(np.sum(strays + between))
         for mass in self.carried:
-            chain = _up_to(robot, mass)
+            chain = chain_to_axis(robot, mass.joint, "elasticity.carried")
             longest = float(np.linalg.norm(chain.translation, axis=1).sum())
             longest += float(np.linalg.norm(chain.end_translation))
             moving = np.isin(np.arange(size), chain.joint)
@@ -126,8 +153,9 @@ class Elasticity:
             product += more[:, None] * more
             centrifugal = longest * float(velocity[moving].sum()) ** 2
             torque = (product @ acceleration + (lever + more) * centrifugal).max(axis=0)
-            out = out + np.abs(_filled(mass.lead, size)) * torque
-        return np.asarray(out)
+            out = out + np.abs(filled(mass.lead, size)) * torque
+        out = out + np.minimum(filled(self.slack, size), out)
+        return np.asarray(out + np.abs(filled(self.lag, size)) * velocity)
 
 
 RIGID = Elasticity()
@@ -139,16 +167,22 @@ def elasticity(table: dict[str, Any], base: Elasticity = RIGID) -> Elasticity:
     Raises:
         InputError: a key is unknown or a value has the wrong type or range.
     """
-    unknown = set(table) - {"own_s2", "carried"}
+    rows = {"own_s2": "own", "slack_rad": "slack", "lag_s": "lag"}
+    unknown = set(table) - {*rows, "carried"}
     if unknown:
-        raise InputError(f"elasticity.{min(unknown)}: no such key; there are own_s2 and carried")
-    own = _row("elasticity.own_s2", table["own_s2"]) if "own_s2" in table else base.own
-    if "carried" not in table:
-        return replace(base, own=own)
-    entries = table["carried"]
-    if not isinstance(entries, list):
-        raise InputError(f"elasticity.carried: a list of tables is expected, not {entries!r}")
-    return Elasticity(own, tuple(_carried(entry) for entry in entries))
+        raise InputError(
+            f"elasticity.{min(unknown)}: no such key; there are own_s2, carried, slack_rad and "
+            "lag_s"
+        )
+    values: dict[str, Any] = {
+        name: row_of(f"elasticity.{key}", table[key]) for key, name in rows.items() if key in table
+    }
+    if "carried" in table:
+        entries = table["carried"]
+        if not isinstance(entries, list):
+            raise InputError(f"elasticity.carried: a list of tables is expected, not {entries!r}")
+        values["carried"] = tuple(_carried(entry) for entry in entries)
+    return replace(base, **values)
 
 
 def derivatives_of(
@@ -166,36 +200,6 @@ def derivatives_of(
     return np.asarray(spline(inside)), np.asarray(spline(inside, 1)), np.asarray(spline(inside, 2))
 
 
-def _up_to(robot: Robot, mass: Carried) -> Chain:
-    """The chain from the world to the origin of the mass's joint.
-
-    Raises:
-        InputError: the arm has no such joint.
-    """
-    if mass.joint > robot.arm_size:
-        raise InputError(
-            f"elasticity.carried: {robot.name} has {robot.arm_size} joints, no joint {mass.joint}"
-        )
-    chain = robot.chain
-    k = int(np.flatnonzero(chain.joint == mass.joint - 1)[0])
-    return Chain(
-        chain.rotation[:k],
-        chain.translation[:k],
-        chain.axis[:k],
-        chain.prismatic[:k],
-        chain.joint[:k],
-        chain.sign[:k],
-        np.eye(3),
-        chain.translation[k],
-    )
-
-
-def _filled(values: tuple[float, ...], size: int) -> FloatArray:
-    out = np.zeros(size)
-    out[: len(values)] = values[:size]
-    return out
-
-
 def _carried(entry: Any) -> Carried:
     if not isinstance(entry, Mapping) or set(entry) != {"joint", "lead_s2_per_m2"}:
         raise InputError(
@@ -204,13 +208,4 @@ def _carried(entry: Any) -> Carried:
     joint = entry["joint"]
     if isinstance(joint, bool) or not isinstance(joint, int):
         raise InputError(f"elasticity.carried.joint: a whole number is expected, not {joint!r}")
-    return Carried(joint, _row("elasticity.carried.lead_s2_per_m2", entry["lead_s2_per_m2"]))
-
-
-def _row(key: str, entry: Any) -> tuple[float, ...]:
-    numbers = isinstance(entry, list) and all(
-        isinstance(value, int | float) and not isinstance(value, bool) for value in entry
-    )
-    if not numbers:
-        raise InputError(f"{key}: a list of numbers is expected, not {entry!r}")
-    return tuple(map(float, entry))
+    return Carried(joint, row_of("elasticity.carried.lead_s2_per_m2", entry["lead_s2_per_m2"]))

@@ -1,7 +1,7 @@
-"""The papers' energy: squared joint torques over time, with its gradient.
+"""The energy of a stamped motion, with its gradient: a `Consumption` over time.
 
-E = Σ ∫ τⱼ² dt, by the trapezium rule on the stamped samples from both sides of every knot
-("Towards Energy Optimization using Trajectory Smoothing", equations 8 and 9).
+By the trapezium rule on the stamped samples from both sides of every knot. The usual one is the
+papers': E = Σ ∫ τⱼ² dt ("Towards Energy Optimization using Trajectory Smoothing", equations 8, 9).
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..robot.inertia import Inertia
 from ..robot.model import Robot
+from .consumption import SQUARED_TORQUE, Consumption
 from .limits import interval_samples
 from .tcp_samples import States
 from .timing import Timing
@@ -27,25 +28,33 @@ class Energy:
     """The energy of a stamped path and what its reverse needs.
 
     Args:
-        value: N² m² s.
+        value: in the unit of the consumption; N² m² s of squared torques.
         torque: (K, 2, N) N m at both ends of every interval.
         motion: q, q̇ and q̈ there, (K, 2, N) each.
         loads: per interval, the load carried.
+        consumption: what is integrated.
     """
 
     value: float
     torque: FloatArray
     motion: tuple[FloatArray, FloatArray, FloatArray]
     loads: tuple[Inertia | None, ...]
+    consumption: Consumption = SQUARED_TORQUE
 
 
-def energy(robot: Robot, timing: Timing, loads: Sequence[Inertia | None]) -> Energy:
+def energy(
+    robot: Robot,
+    timing: Timing,
+    loads: Sequence[Inertia | None],
+    consumption: Consumption = SQUARED_TORQUE,
+) -> Energy:
     """The energy of a stamped path; waits, at rest, count nothing.
 
     Args:
         robot: with the inertias of its links.
         timing: the stamped path.
         loads: (M,), what the flange carries on each segment.
+        consumption: what is integrated.
 
     Raises:
         InputError: inertias are not known.
@@ -60,8 +69,15 @@ def energy(robot: Robot, timing: Timing, loads: Sequence[Inertia | None]) -> Ene
         axis = robot.axis_names[int(np.argwhere(~np.isfinite(torque))[0, 2])]
         raise InputError(f"the energy needs the inertia of axis {axis}, which is not known")
     steps = timing.end - timing.begin
-    value = 0.5 * float(np.sum(steps * np.sum(torque**2, axis=(1, 2))))
-    return Energy(value, torque, motion, tuple(loads))
+    power = consumption.total(consumption.powers(torque, motion[1]))
+    value = 0.5 * float(np.sum(steps * np.sum(power, axis=1)))
+    return Energy(value, torque, motion, tuple(loads), consumption)
+
+
+def energy_by_joint(timing: Timing, made: Energy) -> FloatArray:
+    """(N,), what each joint takes; of squared torques they add up to the whole."""
+    powers = made.consumption.powers(made.torque, made.motion[1])
+    return np.asarray(0.5 * np.einsum("k,kej->j", timing.end - timing.begin, powers))
 
 
 def _by_load(
@@ -94,7 +110,9 @@ def pull_energy(
     left = interval_samples(timing.path.pieces)
     ends = np.stack([left, left + 1], -1)
     steps = timing.end - timing.begin
-    torque_bar = steps[:, None, None] * made.torque
+    halves = 0.5 * steps[:, None, None]
+    by_torque, by_rate = made.consumption.slopes(made.torque, made.motion[1])
+    torque_bar = halves * by_torque
     bars = tuple(np.empty_like(made.torque) for _ in range(3))
     for load, rows in _by_load(made.loads, timing.interval_segments):
         q, dq, ddq = (part[rows] for part in made.motion)
@@ -102,6 +120,7 @@ def pull_energy(
         for bar, part in zip(bars, parts, strict=True):
             bar[rows] = np.einsum("keij,kei->kej", part, torque_bar[rows])
     q_bar, rate_bar, rise_bar = bars
+    rate_bar += halves * by_rate
     x = np.stack([stamp.x[:-1], stamp.x[1:]], -1)[..., None]
     u = stamp.u[:, None, None]
     root = np.sqrt(x)
@@ -117,7 +136,8 @@ def pull_energy(
     x_bar = np.zeros(len(stamp.x))
     x_bar[:-1] += by_x[:, 0] - by_u / (2 * spacing)
     x_bar[1:] += by_x[:, 1] + by_u / (2 * spacing)
-    by_step = 0.5 * np.sum(made.torque**2, axis=(1, 2))
+    power = made.consumption.total(made.consumption.powers(made.torque, made.motion[1]))
+    by_step = 0.5 * np.sum(power, axis=1)
     t_bar = np.zeros(len(stamp.t))
     t_bar[1:] += by_step
     t_bar[:-1] -= by_step

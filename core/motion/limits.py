@@ -2,7 +2,8 @@
 
 Velocities bound x = σ̇² at the knots: joints |q'| √x ≤ v, TCP |p'| √x ≤ v_tcp, tool |ω| √x ≤ v_ori.
 Accelerations are rows on u = σ̈ and x: joints q' u + q'' x, and along the path the change of the
-TCP's speed |p'| u + (p' · p'' / |p'|) x and of the tool's rate of turn likewise.
+TCP's speed |p'| u + (p' · p'' / |p'|) x and of the tool's rate of turn likewise. Joints that torque
+limits (`torque.Torque`) have rows of their own behind these.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ from .model import MotionModel
 from .pieces import Pieces
 from .segments import JOINT_SEGMENT
 from .tcp_samples import States
+from .torque import Shares
+from .torque_rows import pull_torque_rows, torque_rows
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -59,12 +62,14 @@ class SegmentLimits:
     Args:
         velocity: (M, N + 2), of the joints, the TCP (m/s) and the tool (rad/s); may be inf.
         acceleration: (M, N + 2), likewise.
+        torque: (M,), the share of the torques' limits that may be used.
         velocity_source, acceleration_source: (M, N + 2), name of the speed's number behind each
             and its derivative; used in reverse.
     """
 
     velocity: FloatArray
     acceleration: FloatArray
+    torque: FloatArray
     velocity_source: tuple[tuple[tuple[str, float] | None, ...], ...]
     acceleration_source: tuple[tuple[tuple[str, float] | None, ...], ...]
 
@@ -81,6 +86,7 @@ class SegmentLimits:
         return cls(
             np.array([[value for value, _ in velocity] for velocity, _ in made]),
             np.array([[value for value, _ in acceleration] for _, acceleration in made]),
+            np.array([speed.joint_acceleration_fraction for speed in speeds]),
             tuple(tuple(source for _, source in velocity) for velocity, _ in made),
             tuple(tuple(source for _, source in acceleration) for _, acceleration in made),
         )
@@ -92,9 +98,14 @@ class SegmentLimits:
         return replace(self, velocity=velocity)
 
     def pull(
-        self, velocity_bar: FloatArray, acceleration_bar: FloatArray, out: SpeedGradient
+        self,
+        velocity_bar: FloatArray,
+        acceleration_bar: FloatArray,
+        torque_bar: FloatArray,
+        out: SpeedGradient,
     ) -> None:
         """Reverse of `of` with respect to the speeds."""
+        out.joint_acceleration_fraction += torque_bar
         for bars, sources in (
             (velocity_bar, self.velocity_source),
             (acceleration_bar, self.acceleration_source),
@@ -139,6 +150,8 @@ def _limits(
             most *= model.acceleration_scale(index)
         own = speed.joint_acceleration_fraction * most
         limits = [(own, ("joint_acceleration_fraction", most))]
+        if index < len(model.torque.own):
+            limits = [(math.inf, None)]
         if kind == JOINT_SEGMENT:
             limits.append(_given(speed.joint_acceleration, "joint_acceleration"))
         acceleration.append(_least(*limits))
@@ -220,17 +233,23 @@ class PathLimits:
     """The limits along a sampled path, with what their reverse needs.
 
     Args:
-        rows: for `stamping.stamp`.
+        rows: for `stamping.stamp`; those of torque, 2 L of them, are the last.
+        shares: (S, L), what the rows of torque are made of; None where torque limits nothing.
         binding: (K + 1, 3), at each knot the sample, the row and the segment whose velocity
             limit is the ceiling; -1 at stops.
     """
 
     rows: stamping.Limits
+    shares: Shares | None
     binding: IntArray
 
 
 def path_limits(
-    states: States, spacing: FloatArray, pieces: Pieces, limits: SegmentLimits
+    states: States,
+    spacing: FloatArray,
+    pieces: Pieces,
+    limits: SegmentLimits,
+    shares: Shares | None = None,
 ) -> PathLimits:
     """Rows and ceilings for stamping a path.
 
@@ -239,6 +258,7 @@ def path_limits(
         spacing: (K,), of the intervals in that parameter.
         pieces: the path's pieces.
         limits: of the segments.
+        shares: (S, L), what share of its torque's limit each joint takes; None if none is limited.
     """
     first_sample, first_interval = pieces.first_sample, pieces.first_interval
     count, rows = int(first_interval[-1]), states.q.shape[1] + 2
@@ -261,13 +281,30 @@ def path_limits(
     stops = first_interval[pieces.stop]
     ceiling[stops] = 0.0
     binding[stops] = -1
-    return PathLimits(stamping.Limits(spacing, a, b, -bound, bound, ceiling), binding)
+    lower, upper = -bound, bound
+    if shares is not None:
+        part = torque_rows(shares, interval_ends(pieces), _torque_left(pieces, limits))
+        a, b, lower, upper = (
+            np.concatenate(pair, axis=2) for pair in zip((a, b, lower, upper), part, strict=True)
+        )
+    return PathLimits(stamping.Limits(spacing, a, b, lower, upper, ceiling), shares, binding)
+
+
+def _torque_left(pieces: Pieces, limits: SegmentLimits) -> FloatArray:
+    """(K,), the share of the torques' limits that may be used in each interval."""
+    return limits.torque[np.repeat(pieces.segment, pieces.intervals)]
 
 
 def interval_samples(pieces: Pieces) -> IntArray:
     """(K,), index of the sample at the left end of each interval."""
     piece = np.repeat(np.arange(len(pieces.segment)), pieces.intervals)
     return np.arange(len(piece)) + piece
+
+
+def interval_ends(pieces: Pieces) -> IntArray:
+    """(K, 2), index of the samples at both ends of each interval."""
+    left = interval_samples(pieces)
+    return np.stack([left, left + 1], -1)
 
 
 @njit(cache=True, error_model="numpy")
@@ -348,10 +385,16 @@ def pull_path_limits(
     bar: stamping_adjoint.StampGradient,
     states_bar: States,
     speeds_bar: SpeedGradient,
-) -> None:
-    """Reverse of `path_limits`; adds to the gradients of states and speeds."""
+) -> Shares | None:
+    """Reverse of `path_limits`; adds to the gradients of states and speeds.
+
+    Returns:
+        The gradient of the shares of torque, None without.
+    """
     velocity_bar = np.zeros_like(limits.velocity)
     acceleration_bar = np.zeros_like(limits.acceleration)
+    torque_bar = np.zeros_like(limits.torque)
+    plain = states.q.shape[1] + 2
     _pull_fill(
         states,
         pieces.first_sample,
@@ -360,12 +403,18 @@ def pull_path_limits(
         limits.velocity,
         limits.acceleration,
         made.binding,
-        bar.a,
-        bar.b,
-        bar.upper - bar.lower,
+        np.ascontiguousarray(bar.a[:, :, :plain]),
+        np.ascontiguousarray(bar.b[:, :, :plain]),
+        np.ascontiguousarray((bar.upper - bar.lower)[:, :, :plain]),
         bar.ceiling,
         states_bar,
         velocity_bar,
         acceleration_bar,
     )
-    limits.pull(velocity_bar, acceleration_bar, speeds_bar)
+    shares_bar = None
+    if made.shares is not None:
+        ends, left = interval_ends(pieces), _torque_left(pieces, limits)
+        shares_bar, left_bar = pull_torque_rows(made.shares, ends, left, bar)
+        np.add.at(torque_bar, np.repeat(pieces.segment, pieces.intervals), left_bar)
+    limits.pull(velocity_bar, acceleration_bar, torque_bar, speeds_bar)
+    return shares_bar

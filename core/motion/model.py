@@ -18,6 +18,7 @@ from ..errors import InputError, UnknownNameError
 from .blend import PARABOLA, Blend
 from .elasticity import RIGID, Elasticity, elasticity
 from .smoothing import Smoothing, window_for_jerk
+from .torque import WITHOUT_LIMIT, Torque, torque
 
 
 class Overlap(StrEnum):
@@ -45,6 +46,15 @@ class Space(StrEnum):
 
     JOINT = "joint"
     TCP = "tcp"
+
+
+class DurationRule(StrEnum):
+    """How a move is driven that is programmed to take a time."""
+
+    SCALED = "scaled"
+    """As without, all its speeds slowed in common."""
+    THIRDS = "thirds"
+    """Accelerating over the first third of the time, braking over the last (UR)."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +88,13 @@ class MotionModel:
         reorientation_acceleration: rad/s², likewise.
         joint_acceleration_scale: what the robot's own acceleration limits are multiplied by, from
             the first joint of the arm on; joints beyond the last keep theirs.
+        torque: what limits the acceleration of joints in the place of the robot's own figures; see
+            `Torque`.
+        duration: see `DurationRule`.
+        start_ramp: s over which a program's time comes up to speed when it starts; see
+            `StartRamp`.
+        ramp: s, length of a moving average over the place on the path, before the joints are
+            smoothed: accelerations along the path rise and fall over this time; see `ramped`.
         smoothing: lengths in s of the moving averages, one after the other, over the commanded
             joints; see `smoothing.Smoothing`.
         settling: s that the stamped motion waits at stops on the way; None waits until the
@@ -100,6 +117,10 @@ class MotionModel:
     tcp_acceleration: float | None = None
     reorientation_acceleration: float | None = None
     joint_acceleration_scale: tuple[float, ...] = ()
+    torque: Torque = WITHOUT_LIMIT
+    duration: DurationRule = DurationRule.SCALED
+    start_ramp: float = 0.0
+    ramp: float = 0.0
     smoothing: tuple[float, ...] = ()
     settling: float | None = None
     elasticity: Elasticity = RIGID
@@ -117,6 +138,8 @@ class MotionModel:
                 "beyond a half, neighbouring zones would overlap"
             )
         for key, durations in (
+            ("time.start_ramp_s", (self.start_ramp,)),
+            ("time.ramp_s", (self.ramp,)),
             ("time.smoothing_s", self.smoothing),
             ("time.settling_s", () if self.settling is None else (self.settling,)),
         ):
@@ -147,6 +170,10 @@ class MotionModel:
             return made
         return made.lengthened_to(window_for_jerk(self.jerk * jerk_fraction))
 
+    def ramp_at(self, jerk_fraction: float) -> float:
+        """The `ramp` where a share of the jerk is programmed."""
+        return self.ramp / jerk_fraction
+
     def acceleration_scale(self, joint: int) -> float:
         """What the acceleration limit of a joint, counted from zero, is multiplied by."""
         scales = self.joint_acceleration_scale
@@ -157,15 +184,22 @@ class MotionModel:
         """The dotted keys of all that the model states; each of them needs a provenance."""
         blends = (f"blend.{name}.{key}" for name in _BLENDS for key in ("kind", "alpha", "beta"))
         limits = (f"limit.{name}" for name in _LIMITS if getattr(self, name) is not None)
-        settling = () if self.settling is None else ("time.settling_s",)
-        elasticity = self.elasticity.figures
+        time = [f"time.{key}" for key, name, no in _TIMES if getattr(self, name) != no]
+        parts = (*self.elasticity.figures, *self.torque.figures)
         scale = ("limit.joint_acceleration_scale",) if self.joint_acceleration_scale else ()
-        return frozenset((*_SINGLE_FIGURES, *blends, *limits, *scale, *settling, *elasticity))
+        return frozenset((*_SINGLE_FIGURES, *blends, *limits, *scale, *time, *parts))
 
 
-_TABLES = ("blend", "zone", "time", "limit", "elasticity", "provenance")
+_TABLES = ("blend", "zone", "time", "limit", "torque", "elasticity", "provenance")
 _BLENDS = ("tcp", "joint", "orientation")
 _LIMITS = ("tcp_acceleration", "reorientation_acceleration")
+_TIMES = (
+    ("duration", "duration", DurationRule.SCALED),
+    ("start_ramp_s", "start_ramp", 0.0),
+    ("ramp_s", "ramp", 0.0),
+    ("settling_s", "settling", None),
+)
+"""Keys and fields of what takes time, and the values that stand for nothing."""
 _SINGLE_FIGURES = (
     "period_s",
     "zone.overlap",
@@ -206,10 +240,11 @@ def load_motion_model(
 
 
 def _model(data: dict[str, Any], base: MotionModel) -> MotionModel:
-    blend, zone, time, limit, lead, origins = (_table(k, data.pop(k, {})) for k in _TABLES)
+    blend, zone, time, limit, most, lead, origins = (_table(k, data.pop(k, {})) for k in _TABLES)
     provenance = {key: _provenance(f"provenance.{key}", entry) for key, entry in origins.items()}
     values: dict[str, Any] = {
         "provenance": {**base.provenance, **provenance},
+        "torque": torque(most, base.torque),
         "elasticity": elasticity(lead, base.elasticity),
     }
     _take(data, values, "", {"period_s": ("period", _number)})
@@ -232,6 +267,9 @@ def _model(data: dict[str, Any], base: MotionModel) -> MotionModel:
         values,
         "time.",
         {
+            "duration": ("duration", DurationRule),
+            "start_ramp_s": ("start_ramp", _number),
+            "ramp_s": ("ramp", _number),
             "smoothing_s": ("smoothing", _numbers),
             "settling_s": ("settling", _number),
             "jerk": ("jerk", lambda v: None if v == "none" else _number(v)),

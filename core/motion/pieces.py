@@ -41,6 +41,8 @@ class Sampling:
         least, most: bounds on the number of even intervals of a piece.
         halvings: how often the interval next to a stop, or to a change of programmed speed, is
             halved towards it: slow robots reach their speed within a fraction of a millimetre.
+        approach: how often at most the interval next to a zone is halved towards it, until it is
+            no longer than the zone's own: a robot slows down for a small zone within little path.
     """
 
     step: float = 0.02
@@ -50,6 +52,7 @@ class Sampling:
     least: int = 4
     most: int = 200
     halvings: int = 9
+    approach: int = 0
 
 
 @dataclass(frozen=True)
@@ -68,8 +71,7 @@ class Pieces:
         even: (P,), intervals before those at graded ends were halved.
         lean: (P,), how often the steps between samples are halved from a piece's beginning to its
             end: where a blend's legs differ much in extent, its parameter runs unevenly in σ.
-        graded: (P, 2) bool, whether the samples crowd towards the beginning and the end.
-        halvings: see `Sampling`.
+        graded: (P, 2), how often the intervals at the beginning and the end are halved.
         stop: (P + 1,) bool, boundaries at which the robot comes to rest.
     """
 
@@ -81,8 +83,7 @@ class Pieces:
     intervals: IntArray
     even: IntArray
     lean: IntArray
-    graded: NDArray[np.bool_]
-    halvings: int
+    graded: IntArray
     stop: NDArray[np.bool_]
 
     @cached_property
@@ -105,7 +106,7 @@ class Pieces:
         """(S,), how far along its piece every sample stands, from 0 to 1."""
         return np.concatenate(
             [
-                _shares(int(even), int(lean), bool(first), bool(last), self.halvings)
+                _shares(int(even), int(lean), int(first), int(last))
                 for even, lean, (first, last) in zip(self.even, self.lean, self.graded, strict=True)
             ]
         )
@@ -130,14 +131,14 @@ class Pieces:
 
 
 @cache
-def _shares(even: int, lean: int, first: bool, last: bool, halvings: int) -> FloatArray:
-    """Samples of one piece from 0 to 1, their steps shrinking by 2^lean along it."""
+def _shares(even: int, lean: int, first: int, last: int) -> FloatArray:
+    """Samples of one piece from 0 to 1, their steps shrinking by 2^lean along it, the first and
+    the last step halved that often."""
     steps = 0.5 ** (lean * np.linspace(0.0, 1.0, even))
     shares = np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
     shares[-1] = 1.0
-    crowd = 0.5 ** np.arange(halvings, 0, -1)
-    begin = shares[1] * crowd if first else crowd[:0]
-    end = 1.0 - (1.0 - shares[-2]) * crowd[::-1] if last else crowd[:0]
+    begin = shares[1] * 0.5 ** np.arange(first, 0, -1)
+    end = 1.0 - (1.0 - shares[-2]) * 0.5 ** np.arange(1, last + 1)
     return np.concatenate([shares[:1], begin, shares[1:-1], end, shares[-1:]])
 
 
@@ -178,8 +179,11 @@ def cut(
     if last > 0:
         stop |= at_waypoint & (layout.corners.kind[inner] == STOP)
     crowded = stop | (at_waypoint & paces[source[:, 0]])
-    graded = np.stack([crowded[:-1], crowded[1:]], -1)
-    intervals = even + sampling.halvings * graded.sum(1)
+    graded = sampling.halvings * np.stack([crowded[:-1], crowded[1:]], -1)
+    if sampling.approach > 0:
+        near = _approach(np.diff(edge) / even, np.asarray(inside.any(axis=1)), sampling.approach)
+        graded = np.maximum(graded, near)
+    intervals = even + graded.sum(1)
     return Pieces(
         edge,
         source,
@@ -190,9 +194,18 @@ def cut(
         even,
         lean,
         graded,
-        sampling.halvings,
         stop,
     )
+
+
+def _approach(step: FloatArray, inside: NDArray[np.bool_], most: int) -> IntArray:
+    """(P, 2), how often intervals next to zones are halved, so as not to be longer than theirs."""
+    halvings = np.zeros((len(step), 2), dtype=np.int64)
+    ratio = np.log2(step[1:] / step[:-1])
+    times = np.clip(np.ceil(np.abs(ratio) - 0.5), 0, most).astype(np.int64)
+    halvings[1:, 0] = np.where(inside[:-1] & ~inside[1:] & (ratio > 0), times, 0)
+    halvings[:-1, 1] = np.where(~inside[:-1] & inside[1:] & (ratio < 0), times, 0)
+    return halvings
 
 
 def _boundaries(layout: Layout) -> tuple[FloatArray, IntArray]:

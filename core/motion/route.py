@@ -45,8 +45,9 @@ _FURTHEST = 1e3
 _HALF_TURN = np.cos(np.radians(179.9))
 """Cosine of a reorientation from which on rounding decides the way round."""
 _COLLINEAR = 1e-4
-_NOWHERE = 1e-7
-"""Scale (m or rad) below which a move goes nowhere."""
+_NOWHERE = 1e-6
+"""Scale (m or rad) below which a move goes nowhere: targets are written with about that precision,
+and a move of nothing would be a stop more."""
 
 
 @dataclass

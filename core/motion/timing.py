@@ -12,6 +12,7 @@ from .arc_length import ArcLength
 from .limits import PathLimits, SegmentLimits, interval_samples
 from .path import Path
 from .stamping import Stamp
+from .start_ramp import SUDDEN, StartRamp
 from .tcp_samples import States
 
 FloatArray = NDArray[np.float64]
@@ -25,10 +26,14 @@ class Settling:
     Args:
         stop: s, at each stop on the way.
         end: s, after the last.
+        ramp: s, of this what the place on the path is averaged over.
+        start: how time comes up to speed when the motion begins.
     """
 
     stop: float = 0.0
     end: float = 0.0
+    ramp: float = 0.0
+    start: StartRamp = SUDDEN
 
 
 @dataclass(frozen=True)
@@ -44,6 +49,9 @@ class Timing:
         begin: (K,) s, when each interval is entered, waits included.
         end: (K,) s, when it is left.
         duration: s, of everything, settling at the end included.
+        ramp: s, what the place on the path is averaged over afterwards; see `ramped.ramped`.
+        start: how the controller's time comes up to speed; `begin`, `end` and `states_at` are
+            without, see `driven_at`.
     """
 
     path: Path
@@ -54,6 +62,8 @@ class Timing:
     begin: FloatArray
     end: FloatArray
     duration: float
+    ramp: float = 0.0
+    start: StartRamp = SUDDEN
 
     @classmethod
     def of(
@@ -82,8 +92,11 @@ class Timing:
         # A wait at a knot comes before the interval that leaves it.
         delay = np.cumsum(wait)
         begin, end = stamp.t[:-1] + delay[:-1], stamp.t[1:] + delay[:-1]
-        duration = float(stamp.t[-1] + delay[-1])
-        return cls(path, limits, along, path_limits, stamp, begin, end, duration)
+        start = settling.start.begun_at(float(begin[0]))
+        duration = float(stamp.t[-1] + delay[-1]) + start.delay
+        return cls(
+            path, limits, along, path_limits, stamp, begin, end, duration, settling.ramp, start
+        )
 
     @property
     def interval_segments(self) -> IntArray:
@@ -123,6 +136,15 @@ class Timing:
             sigma,
         )
         return q, dq, ddq, sigma
+
+    def driven_at(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """`states_at`, with time that comes up to speed when the motion begins."""
+        if self.start == SUDDEN:
+            return self.states_at(t)
+        stamped, rate, growth = self.start.stamped(t)
+        q, dq, ddq, sigma = self.states_at(stamped)
+        rate, growth = rate[:, None], growth[:, None]
+        return q, rate * dq, rate**2 * ddq + growth * dq, sigma
 
 
 @njit(cache=True, error_model="numpy")

@@ -229,9 +229,23 @@ def _link_shape(row: Table, frames: list[Pose]) -> LinkShape:
     link = row.number("link")
     if link not in range(len(frames)):
         raise row.error("link", f"must be a whole number from 0 to {len(frames) - 1}")
-    shape, placement = _shape(row)
+    shape, placement = read_shape(row)
     row.finish()
     return LinkShape(int(link), shape, frames[int(link)] @ placement)
+
+
+def read_shape(row: Table) -> tuple[Shape, Pose]:
+    """A shape by ``kind`` with its lengths, and its frame in the one that these are given in.
+
+    Raises:
+        InputError: naming file and key.
+    """
+    try:
+        return _shape(row)
+    except InputError as error:
+        if str(error).startswith(str(row.file)):
+            raise
+        raise row.error("kind", str(error)) from None
 
 
 def _shape(row: Table) -> tuple[Shape, Pose]:

@@ -70,7 +70,9 @@ class Dynamics:
         columns = [np.ascontiguousarray(x[:, self._order]).T for x in (q, dq, ddq)]
         torques = np.empty_like(q)
         if len(q):
-            torques[:, self._order] = pin.rneaInParallel(1, self._pool, *columns).T
+            found = np.asarray(pin.rneaInParallel(1, self._pool, *columns))
+            # Pinocchio drops the axis of a single joint.
+            torques[:, self._order] = found.reshape(len(self._order), -1).T
         torques[:, self._unknown] = np.nan
         return torques
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..errors import SourceError, Span
+
+Executed = Callable[[Span], None]
+"""Told of a statement that is executed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,10 +33,12 @@ class Meter:
 
     Args:
         limits: what must not be passed.
+        executed: is told of every statement; None for nobody.
     """
 
-    def __init__(self, limits: Limits) -> None:
+    def __init__(self, limits: Limits, executed: Executed | None = None) -> None:
         self._limits = limits
+        self._executed = executed
         self._statements = 0
         self._moves = 0
         self._repeats: dict[tuple[str, int, int], int] = {}
@@ -45,6 +51,8 @@ class Meter:
             SourceError: there are too many since the last move.
         """
         self._statements += 1
+        if self._executed is not None:
+            self._executed(span)
         if self._statements > self._limits.statements:
             raise _endless(f"{self._limits.statements} statements are executed in a row", span)
 

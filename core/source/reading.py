@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .answers import Answers
-from .limits import Limits
+from .limits import Executed, Limits
 from .text import SourceFile
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ class ReadOptions:
         others: further files of the program: modules, subprograms, data lists, configuration.
             Files that stand beside the program and belong to it by their vendor's rules are found
             without being named.
+        executed: is told of every statement that is executed.
     """
 
     entry: str | None = None
@@ -39,6 +40,7 @@ class ReadOptions:
     answers: Answers = field(default_factory=Answers)
     limits: Limits = field(default_factory=Limits)
     others: tuple[Path, ...] = ()
+    executed: Executed | None = field(default=None, repr=False, compare=False)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from . import dense
 from .ldl import Factors, Ldl, factorise, substitute
 from .matrices import FloatArray, IntArray, SparseMatrix, Sparsity
 
@@ -28,6 +29,8 @@ class Definiteness:
     def holds(self, matrix: SparseMatrix) -> bool:
         """Whether ``matrix``, which stores both triangles and its diagonal, is."""
         pattern = matrix.pattern
+        if dense.is_dense(pattern):
+            return dense.positive_definite(matrix)
         if self._pattern is not pattern:
             self._pattern = pattern
             self._upper = np.flatnonzero(pattern.rows <= pattern.columns)
@@ -134,6 +137,8 @@ class Saddle:
             d (n,) and the multipliers of the rows (m,), zero on inactive ones; None if the
             factorisation breaks down.
         """
+        if dense.is_dense(P.pattern):
+            return dense.saddle(P, q, A, rows, target, fixed, values)
         pattern = self._patterns.of(P.pattern, A.pattern)
         matrices = _Matrices(
             P.pattern.starts,

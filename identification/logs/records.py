@@ -2,8 +2,9 @@
 
 The log is a file as `read_samples` takes it; the JSON names robot, tool, start and
 moves in SI units (``target_pose`` as ``xyz_m`` with ``quat_wxyz`` or ``rotvec``, or
-``target_joints_rad``; ``zone.radius_m`` or ``rule_radius_m``; speeds in ``speed`` or, for
-URScript, ``params``).
+``target_joints_rad``; ``zone.radius_m`` or ``rule_radius_m``; speeds in ``speed``, see `SPEEDS`,
+or, for URScript, ``params``; ``arc_orientation`` of arcs). `flyby.identification.experiment.record`
+writes them.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import InputError
-from ...core.program.move import Move, MoveC, MoveJ, MoveL
+from ...core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from ...core.program.program import Program
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget
@@ -37,11 +38,30 @@ _ROBOTS = {
     "ur10e": "ur/ur10e",
     "ur3 (cb3)": "ur/ur3",
 }
+SPEEDS = {
+    "tcp_mps": "tcp",
+    "ori_radps": "reorientation",
+    "acc_mps2": "tcp_acceleration",
+    "ori_acc_radps2": "reorientation_acceleration",
+    "external_mps": "external_linear",
+    "external_radps": "external_angular",
+    "joint_radps": "joint",
+    "joint_acc_radps2": "joint_acceleration",
+    "joint_fraction": "joint_fraction",
+    "joint_acc_fraction": "joint_acceleration_fraction",
+    "jerk_fraction": "jerk_fraction",
+    "duration_s": "duration",
+    "name": "name",
+}
+"""Keys of ``speed`` in a record, and what they are in `Speed`."""
 _MOVED_MM = 1.0
 """Distance beyond which a record's first or last target is not where the run began or ended."""
 _JOINT_MOVES = {"MoveJ", "MoveAbsJ", "PTP"}
 _LINEAR_MOVES = {"MoveL", "LIN"}
 _ARC_MOVES = {"MoveC", "CIRC"}
+_ARC_ORIENTATION = ArcOrientation.FIXED_FRAME
+"""Where a record does not say: the arcs of all logs that were seen turn the tool evenly from start
+to end, to 0.01°, and leave the auxiliary point's orientation aside."""
 
 
 def load_run(path: Path, robots: Callable[[str], Robot]) -> LoggedRun:
@@ -49,7 +69,7 @@ def load_run(path: Path, robots: Callable[[str], Robot]) -> LoggedRun:
 
     Where the record gives a target's position alone, its orientation is that of the logged
     sample nearest to it; where it says that the first or last point was moved before the run, the
-    log's first or last sample takes its place.
+    log's first or last sample takes its place. So does the first one where it states no start.
 
     Args:
         path: the JSON file.
@@ -78,12 +98,28 @@ def load_run(path: Path, robots: Callable[[str], Robot]) -> LoggedRun:
     said = (str(data["note"]),) if data.get("note") else ()
     real = None if real is None else bool(real)
     notes = (*said, *samples.notes)
-    return LoggedRun(path.stem, robot, real, program, samples.t, samples.q, notes)
+    return LoggedRun(
+        path.stem,
+        robot,
+        real,
+        program,
+        samples.t,
+        samples.q,
+        notes,
+        source=_source(data),
+        timed=all("reconstructed" not in entry for entry in data["moves"]),
+        zones_known=all("rule_radius_m" not in entry.get("zone", {}) for entry in data["moves"]),
+    )
+
+
+def _source(data: Mapping[str, Any]) -> str:
+    """Runs of one data set from one controller were stamped by one clock."""
+    return " / ".join(str(data[key]) for key in ("dataset", "controller") if data.get(key))
 
 
 def _start(data: dict[str, Any], q: FloatArray) -> Sequence[float]:
     moved = float(data.get("checks", {}).get("log_start_to_first_target_mm", 0.0)) > _MOVED_MM
-    return tuple(q[0] if moved else data["start_joints_rad"])
+    return tuple(q[0] if moved else data.get("start_joints_rad", q[0]))
 
 
 def _completed(data: dict[str, Any], robot: Robot, q: FloatArray) -> dict[str, Any]:
@@ -108,6 +144,23 @@ def _completed(data: dict[str, Any], robot: Robot, q: FloatArray) -> dict[str, A
         moves[-1]["target_pose"] = end
         moves[-1].pop("target_joints_rad", None)
     return {**data, "moves": moves}
+
+
+def robot_of_record(path: Path) -> str | None:
+    """Catalogue name of the robot of a record of a run; None of other files."""
+    try:
+        data = json.loads(path.read_text("utf-8"))
+        return _robot(str(data["robot"])) if {"moves", "log"} <= set(data) else None
+    except (OSError, ValueError, RecursionError, TypeError, KeyError, InputError):
+        return None
+
+
+def log_of_record(path: Path) -> Path | None:
+    """The log that a record of a run names; None of other files."""
+    try:
+        return path.parent / str(json.loads(path.read_text("utf-8"))["log"]["file"])
+    except (OSError, ValueError, RecursionError, TypeError, KeyError):
+        return None
 
 
 def _robot(name: str) -> str:
@@ -146,6 +199,8 @@ def _zone(entry: Mapping[str, Any]) -> Zone:
         float(entry.get("pzone_ori_m", 0.0)),
         float(entry.get("pzone_ori_m", 0.0)),
         float(entry.get("zone_ori_rad", 0.0)),
+        float(entry.get("zone_linear_m", 0.0)),
+        float(entry.get("zone_rotating_rad", 0.0)),
         name=entry.get("name"),
     )
 
@@ -158,13 +213,10 @@ def _speed(entry: Mapping[str, Any], joint: bool) -> Speed:
         if joint:
             return Speed(joint=float(params["v"]), joint_acceleration=float(params["a"]))
         return Speed(tcp=float(params["v"]), tcp_acceleration=float(params["a"]))
-    speed = entry.get("speed", {})
-    return Speed(
-        tcp=speed.get("tcp_mps"),
-        reorientation=speed.get("ori_radps"),
-        tcp_acceleration=None if joint else speed.get("acc_mps2"),
-        name=speed.get("name"),
-    )
+    speed = {SPEEDS[key]: value for key, value in entry.get("speed", {}).items() if key in SPEEDS}
+    if joint:
+        speed.pop("tcp_acceleration", None)
+    return Speed(**speed)
 
 
 def _move(entry: Mapping[str, Any], data: Mapping[str, Any]) -> Move:
@@ -181,5 +233,7 @@ def _move(entry: Mapping[str, Any], data: Mapping[str, Any]) -> Move:
     if kind in _LINEAR_MOVES:
         return MoveL(goal, speed, zone, tool)
     if kind in _ARC_MOVES:
-        return MoveC(goal, speed, zone, tool, via=PoseTarget(_pose(entry["via_pose"])))
+        via = PoseTarget(_pose(entry["via_pose"]))
+        turn = ArcOrientation(entry.get("arc_orientation", _ARC_ORIENTATION))
+        return MoveC(goal, speed, zone, tool, via=via, orientation=turn)
     raise InputError(f"move {entry.get('i', '?')} is of an unknown type {kind!r}")

@@ -24,6 +24,11 @@ class LoggedRun:
         t: (T,) s, increasing.
         q: (T, N), joints in rad, linear axes in m.
         notes: what the record says of its own uncertainties, and what the reader left out.
+        source: whose clock stamped the log; runs of one source share it.
+        timed: whether the program's speeds are those that were driven; where they were guessed
+            afterwards, the log shows the path and not its timing.
+        zones_known: whether the program's zones are; where they were inferred from the log, it
+            shows the form of corners and not their size.
     """
 
     name: str
@@ -33,3 +38,6 @@ class LoggedRun:
     t: FloatArray
     q: FloatArray
     notes: tuple[str, ...] = ()
+    source: str = ""
+    timed: bool = True
+    zones_known: bool = True

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -79,6 +78,20 @@ class Change:
     waypoints: FloatArray
 
 
+class _Shifted:
+    """A path beside that of a drive.
+
+    Args:
+        path: the path.
+        places: at which its configurations count.
+    """
+
+    def __init__(self, path: Path, places: Places) -> None:
+        self.path = path
+        self.rooms = rooms_of(path)
+        self.q = configurations(path, places)
+
+
 class Driver:
     """Drives one block.
 
@@ -106,14 +119,22 @@ class Driver:
     def drive(self, x: FloatArray) -> Drive | None:
         """The program at x; None where it cannot be driven."""
         program = self.variables.applied(x)
+        path = self._planned(program)
+        if path is None:
+            return None
         try:
-            path = self.controller.plan(program)
-            if path.route.moves != self._first.route.moves:
-                return None
             timing = self.controller.stamp(program, path)
         except MotionError:
             return None
-        return Drive(x, program, path, timing, _rooms(path), configurations(path, self.places))
+        return Drive(x, program, path, timing, rooms_of(path), configurations(path, self.places))
+
+    def _planned(self, program: Program) -> Path | None:
+        """The path, if the same moves are driven as of the program that was given."""
+        try:
+            path = self.controller.plan(program)
+        except MotionError:
+            return None
+        return path if path.route.moves == self._first.route.moves else None
 
     def change(self, drive: Drive, which: IntArray) -> Change:
         """Derivatives at a drive, for some of the places."""
@@ -170,15 +191,17 @@ class Driver:
             np.zeros((len(drive.rooms), variables.size)),
             np.zeros((count + 1, axes, variables.size)),
         )
+        places = Places(self.places.part[which], self.places.share[which])
         for together in self._colours:
             moved = drive.x.copy()
             moved[together] += step[together]
             sign = 1.0
-            other = self.drive(moved)
-            if other is None:
+            path = self._planned(self.variables.applied(moved))
+            if path is None:
                 sign = -1.0
                 moved[together] -= 2.0 * step[together]
-                other = self.drive(moved)
+                path = self._planned(self.variables.applied(moved))
+            other = None if path is None else _Shifted(path, places)
             if other is None or len(other.rooms) != len(drive.rooms):
                 continue
             self._take(drive, other, which, together, sign * step, made)
@@ -187,15 +210,16 @@ class Driver:
     def _take(
         self,
         drive: Drive,
-        other: Drive,
+        other: _Shifted,
         which: IntArray,
         together: IntArray,
         step: FloatArray,
         made: Change,
     ) -> None:
         """Difference quotients of variables that were moved at once."""
-        by_place = other.q[which] - drive.q[which]
-        by_room = np.array([b.left.value - a.left.value for a, b in self._pairs(drive, other)])
+        by_place = other.q - drive.q[which]
+        pairs = zip(drive.rooms, other.rooms, strict=True)
+        by_room = np.array([b.left.value - a.left.value for a, b in pairs])
         by_waypoint = _waypoints(other.path) - _waypoints(drive.path)
         near_place = self._near(_place_waypoints(drive.path, self.places, which))
         near_room = self._near(np.array([[r.corner + 0.0, r.corner + 2.0] for r in drive.rooms]))
@@ -208,9 +232,6 @@ class Driver:
             if len(by_room):
                 rows = near_room[:, column]
                 made.rooms[rows, column] = by_room[rows] / step[column]
-
-    def _pairs(self, drive: Drive, other: Drive) -> Iterator[tuple[Room, Room]]:
-        return zip(drive.rooms, other.rooms, strict=True)
 
     @cached_property
     def _owners(self) -> list[FloatArray]:
@@ -274,7 +295,8 @@ def _counts(path: Path, density: int) -> IntArray:
     return np.clip(wanted, density * _LEAST, density * _MOST).astype(np.int64)
 
 
-def _rooms(path: Path) -> tuple[Room, ...]:
+def rooms_of(path: Path) -> tuple[Room, ...]:
+    """What room the vendor's rules leave between neighbouring zones of a path."""
     route = path.route
     planner = ZonePlanner(path.segments, route.chains, path.model, route.moves)
     return tuple(planner.rooms(route.zones))

@@ -29,6 +29,9 @@ IntArray = NDArray[np.int64]
 
 _WITHIN = 0.3
 """m beyond which distances are of no concern to a step."""
+_COSTLY_WITHIN = 0.04
+"""The same of distances to meshes: those would be most of the work, and a step that meets one
+from further away is corrected by the true value there."""
 _FASTEST = 4.0
 """m by which a robot's body moves at most, about, where the variables change by a length of 1."""
 
@@ -124,7 +127,11 @@ class BlockProblem:
         if self._weight < 1.0:
             objective += (1.0 - self._weight) * energy / self._energy
         found = tuple(
-            watched.scene.distances(drive.q[watched.places], float(watched.wanted.max()) + _WITHIN)
+            watched.scene.distances(
+                drive.q[watched.places],
+                float(watched.wanted.max()) + _WITHIN,
+                float(watched.wanted.max()) + _COSTLY_WITHIN,
+            )
             for watched in self._watched
         )
         return Evaluated(drive.x, objective, self._constraints(drive, found), drive, found)
@@ -172,6 +179,8 @@ class BlockProblem:
         """Constraints that a step within ``box`` may violate, and a few more."""
         drive = point.drive
         near = point.constraints < min(_FASTEST * float(np.linalg.norm(box)), 0.999 * _WITHIN)
+        told = [found.normal.any(axis=-1).ravel() for found in point.distances]
+        near[: sum(map(len, told))] &= np.concatenate(told)
         first = len(point.constraints) - len(self._points) - 2 * drive.q.shape[1]
         near[first - len(drive.rooms) : first] = True
         return np.flatnonzero(near)

@@ -13,7 +13,7 @@ from ...core.motion.controller import Controller, Run
 from ...core.program.move import Move
 from ...core.program.program import Program
 from ...core.program.zone import Fine
-from ..solution import RESOLUTION, Solution, measure
+from ..solution import RESOLUTION, Solution, measure, scene_notes
 from ..zones.points import passable_stops
 from ..zones.refusal import check_start
 from .blocks import Block, cut
@@ -106,7 +106,7 @@ class _Optimization:
         given = self.controller.run(program, self.task.start)
         proof = self._proof(given, scenes)
         check_start(self.controller, given, scenes, proof, self.task.residual)
-        notes: list[Note] = []
+        notes = list(scene_notes(scenes, program))
         base = self._freed(program)
         found = self._improved(base, self.task, self.effort, scenes, notes)
         if found is not None and self.task.vias is ViaCount.CHANGE:
@@ -173,7 +173,7 @@ class _Optimization:
     ) -> Counted | None:
         """The blocks put together; one that does not hold in the whole is left as it was."""
         while any(answer is not None for answer in chosen):
-            run = self._driven(_assembled(program, blocks, chosen), task)
+            run = self._driven(_assembled(program, blocks, chosen, task), task)
             proof = None if run is None else self._proof(run, scenes)
             if run is not None and proof is not None and proof.proven:
                 return Counted(run, proof, self._cost(run), task)
@@ -255,14 +255,14 @@ class _Optimization:
 
 
 def _assembled(
-    program: Program, blocks: Sequence[Block], answers: Sequence[Answer | None]
+    program: Program, blocks: Sequence[Block], answers: Sequence[Answer | None], task: Task
 ) -> Program:
     """The program with what has changed in every block; moves keep their places in the source."""
     moves: list[Move] = list(program.moves)
     for block, answer in zip(blocks, answers, strict=True):
         if answer is None:
             continue
-        changed = block.variables.applied(answer.x).moves
+        changed = block.variables.written(answer.x, task.rounding).moves
         for k, move in enumerate(changed):
             old = moves[block.first + k]
             moves[block.first + k] = replace(old, target=move.target, zone=move.zone)

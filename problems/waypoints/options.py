@@ -12,10 +12,12 @@ from ...core.errors import InputError
 from ...core.motion.pieces import Sampling
 from ...core.program.target import JointTarget
 from ...core.program.zone import Radius
+from ..rounding import Rounding
 from ..zones.sizes import GRADED
 from .limits import FREE, PointLimit
 
 _SAMPLING = Sampling()
+_ROUNDING = Rounding()
 
 
 class Freedom(StrEnum):
@@ -55,6 +57,8 @@ class Task:
         pattern: proportions of the zones that freed stops and new via points get.
         vias: see `ViaCount`.
         residual: m by which the real robot may stray from the emulated one.
+        rounding: of new numbers, as the program's language writes them. With predefined zones
+            points are refined once more when zones have been chosen.
         start: where the robot stands; None for the program's own start.
 
     Raises:
@@ -72,6 +76,7 @@ class Task:
     pattern: Radius = GRADED
     vias: ViaCount = ViaCount.KEEP
     residual: float = 0.0
+    rounding: Rounding = _ROUNDING
     start: JointTarget | None = None
 
     def __post_init__(self) -> None:

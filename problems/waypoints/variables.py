@@ -22,6 +22,7 @@ from ...core.program.zone import ContourFraction, Radius
 from ...core.robot.model import Robot
 from ...core.spatial.pose import Pose
 from ...core.spatial.rotation import matrix_from_rotation_vector, quaternion_from_matrix
+from ..rounding import Rounding
 from .limits import Box, PointLimit
 from .options import Task
 from .selection import Selection
@@ -78,9 +79,14 @@ class JointPoint:
             joints[axis] = float(value)
         return replace(move, target=replace(self.target, joints=tuple(joints)))
 
-    def rounded(self, values: FloatArray) -> FloatArray:
-        """The same in whole ten-thousandths of a degree."""
-        return np.radians(np.round(np.degrees(values), 4))
+    def written(self, move: Move, values: FloatArray, rounding: Rounding) -> Move:
+        """A move with these values rounded; joints that have not changed stay to the last digit."""
+        given = self.values()
+        rounded = [
+            now if now == then else rounding.angle(now, lower, upper)
+            for now, then, lower, upper in zip(values, given, self.lower, self.upper, strict=True)
+        ]
+        return self.applied(move, np.array(rounded))
 
     def gradient(self, made: ProgramGradient, values: FloatArray) -> FloatArray:
         """From the program's parameters to the variables."""
@@ -130,9 +136,18 @@ class PosePoint:
         pose = Pose((x, y, z), (w, i, j, k))
         return replace(move, target=replace(self.target, pose=pose))
 
-    def rounded(self, values: FloatArray) -> FloatArray:
-        """The same in whole micrometres."""
-        return np.concatenate([np.round(values[:3], 6), values[3:]])
+    def written(self, move: Move, values: FloatArray, rounding: Rounding) -> Move:
+        """A move with these values rounded; what has not changed stays to the last digit."""
+        applied = self.applied(move, values).target
+        assert isinstance(applied, PoseTarget)
+        given = np.array(self.target.pose.position)
+        position, quaternion = self.target.pose.position, self.target.pose.quaternion
+        if np.any(values[:3] != 0.0):
+            wanted = applied.pose.position
+            position = rounding.position(wanted, given - self.shift, given + self.shift)
+        if np.any(values[3:] != 0.0):
+            quaternion = rounding.quaternion(applied.pose.quaternion)
+        return replace(move, target=replace(self.target, pose=Pose(position, quaternion)))
 
     def gradient(self, made: ProgramGradient, values: FloatArray) -> FloatArray:
         """From the program's parameters to the variables."""
@@ -148,10 +163,12 @@ class ZoneRadius:
     Args:
         moves: that read it.
         zone: as it was given.
+        chosen: whether it stays what it is, one of those to choose from.
     """
 
     moves: tuple[int, ...]
     zone: Radius
+    chosen: bool = False
 
     @property
     def size(self) -> int:
@@ -160,10 +177,12 @@ class ZoneRadius:
 
     def values(self) -> FloatArray:
         """Those of the program that was given."""
-        return np.array([max(self.zone.tcp, LEAST_RADIUS)])
+        return np.array([self.zone.tcp if self.chosen else max(self.zone.tcp, LEAST_RADIUS)])
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """Lower and upper ones."""
+        if self.chosen:
+            return self.values(), self.values()
         return np.array([LEAST_RADIUS]), np.array([np.inf])
 
     def scale(self) -> FloatArray:
@@ -176,9 +195,9 @@ class ZoneRadius:
         zone = Radius(radius) if self.zone.tcp == 0.0 else self.zone.resized(radius)
         return replace(move, zone=zone)
 
-    def rounded(self, values: FloatArray) -> FloatArray:
-        """The same in whole hundredths of a millimetre, rounded down."""
-        return np.floor(values * 1e5 + 1e-6) / 1e5
+    def written(self, move: Move, values: FloatArray, rounding: Rounding) -> Move:
+        """A move with a zone rounded down."""
+        return _with_rounded_zone(self.applied(move, values), rounding)
 
     def gradient(self, made: ProgramGradient, values: FloatArray) -> FloatArray:
         """From the program's parameters to the variables."""
@@ -227,9 +246,9 @@ class ZoneShare:
         """A move with these values."""
         return replace(move, zone=ContourFraction(float(np.clip(values[0], 0.0, 1.0))))
 
-    def rounded(self, values: FloatArray) -> FloatArray:
-        """The same in whole percents, rounded down."""
-        return np.floor(values * 1e2 + 1e-6) / 1e2
+    def written(self, move: Move, values: FloatArray, rounding: Rounding) -> Move:
+        """A move with a zone rounded down."""
+        return _with_rounded_zone(self.applied(move, values), rounding)
 
     def gradient(self, made: ProgramGradient, values: FloatArray) -> FloatArray:
         """From the program's parameters to the variables."""
@@ -238,6 +257,10 @@ class ZoneShare:
 
 Part = JointPoint | PosePoint | ZoneRadius | ZoneShare
 """Variables of one datum: their values, bounds and scale, and what they do to a move."""
+
+
+def _with_rounded_zone(move: Move, rounding: Rounding) -> Move:
+    return replace(move, zone=rounding.zone(move.zone))
 
 
 class Variables:
@@ -281,10 +304,32 @@ class Variables:
                 moves[i] = part.applied(moves[i], self.of(index, x))
         return self.program.with_moves(tuple(moves))
 
-    def rounded(self, x: FloatArray) -> FloatArray:
-        """Values near x that make numbers as a person would write them."""
-        found = [part.rounded(self.of(k, x)) for k, part in enumerate(self.parts)]
-        return np.clip(np.concatenate(found or [np.zeros(0)]), self.lower, self.upper)
+    def written(self, x: FloatArray, rounding: Rounding) -> Program:
+        """The program with numbers near these values, as a person would write them."""
+        moves = list(self.program.moves)
+        for index, part in enumerate(self.parts):
+            for i in part.moves:
+                moves[i] = part.written(moves[i], self.of(index, x), rounding)
+        return self.program.with_moves(tuple(moves))
+
+    def with_chosen_zones(self, x: FloatArray, rounding: Rounding) -> Variables:
+        """The same with each radius held at the predefined one that is nearest below x."""
+        least = min(rounding.predefined, key=lambda zone: zone.tcp)
+        parts: list[Part] = []
+        for index, part in enumerate(self.parts):
+            if isinstance(part, ZoneRadius):
+                zone = rounding.zone(Radius(float(self.of(index, x)[0])))
+                part = ZoneRadius(part.moves, zone if isinstance(zone, Radius) else least, True)
+            parts.append(part)
+        return Variables(self.program, parts)
+
+    def with_smaller_zone(self, x: FloatArray, move: int, by: float) -> FloatArray:
+        """Values x with a smaller zone at a move, by m or a share; x if it has none here."""
+        smaller = x.copy()
+        for index, part in enumerate(self.parts):
+            if isinstance(part, ZoneRadius | ZoneShare) and move in part.moves:
+                smaller[self.offsets[index]] -= by
+        return np.asarray(np.maximum(smaller, self.lower))
 
     def gradient(self, made: ProgramGradient, x: FloatArray) -> FloatArray:
         """(n,) from the gradient with respect to the program's parameters."""

@@ -15,8 +15,10 @@ from ...core.collision.verdict import Certificate, Verdict
 from ...core.errors import MotionError
 from ...core.motion.controller import Controller, Run
 from ...core.motion.sensitivity import Places
+from ...core.program.program import Program
+from ..rounding import STEP
 from .blocks import Block
-from .driving import crowd
+from .driving import crowd, rooms_of
 from .evaluation import BlockProblem
 from .options import Effort, Task
 from .search import Memory, Settings, search, violation
@@ -31,6 +33,9 @@ _AGAIN_ITERATIONS, _AGAIN_BOX = 10, 0.05
 _COARSE, _FINE = 2, 4
 """Density of places of a search and of a refinement."""
 _WIDER, _AMPLE = 1.3, 1.15
+_STEPS = STEP * 2.0 ** np.arange(8)
+"""m by which zones are made smaller in turn that rounding has left without room."""
+_TIGHT = 1e-9
 FEASIBLE = 1e-4
 """m of violation that a refinement mends."""
 
@@ -178,11 +183,13 @@ def _proven(shop: Workshop, job: Job) -> Answer:
 
     Where the proof fails, the search is told to look there more closely, and aims wider.
     """
+    if shop.task.rounding.predefined:
+        shop, job = _with_chosen_zones(shop, job)
     manner = _Manner(shop.controller, Settings(_AGAIN_ITERATIONS, _AGAIN_BOX), _FINE)
     for _ in range(shop.effort.proofs + 1):
         job = replace(job, memory=Memory(job.memory.x, _AGAIN_BOX))
         answer = _searched(shop, job, manner)
-        answer = replace(answer, x=shop.blocks[job.block].variables.rounded(answer.x))
+        answer = replace(answer, x=_with_room(shop, answer))
         run = _driven(shop, answer)
         if run is None:
             return answer
@@ -198,13 +205,51 @@ def _proven(shop: Workshop, job: Job) -> Answer:
     return answer
 
 
+def _with_chosen_zones(shop: Workshop, job: Job) -> tuple[Workshop, Job]:
+    """The job with predefined zones, for which its points are refined once more."""
+    block = shop.blocks[job.block]
+    chosen = block.variables.with_chosen_zones(job.memory.x, shop.task.rounding)
+    blocks = list(shop.blocks)
+    blocks[job.block] = replace(block, variables=chosen)
+    shop = replace(shop, blocks=tuple(blocks))
+    x = np.clip(job.memory.x, chosen.lower, chosen.upper)
+    refined = work(shop, replace(job, memory=Memory(x, FINE_BOX), stage=Stage.REFINE))
+    return shop, replace(job, memory=refined.memory)
+
+
 def _driven(shop: Workshop, answer: Answer) -> Run | None:
     if not np.isfinite(answer.objective):
         return None
     try:
-        return shop.controller.run(shop.blocks[answer.block].variables.applied(answer.x))
+        return shop.controller.run(_written(shop, answer.block, answer.x))
     except MotionError:
         return None
+
+
+def _written(shop: Workshop, block: int, x: FloatArray) -> Program:
+    return shop.blocks[block].variables.written(x, shop.task.rounding)
+
+
+def _with_room(shop: Workshop, answer: Answer) -> FloatArray:
+    """Values with zones small enough for their neighbours when all is rounded.
+
+    Rounded points are a little nearer to each other or further apart than those searched for.
+    """
+    x, variables = answer.x, shop.blocks[answer.block].variables
+    if shop.task.rounding.predefined:
+        # The next smaller one would be far smaller; zones that are cut by a hair do no harm.
+        return x
+    for step in _STEPS:
+        try:
+            path = shop.controller.plan(_written(shop, answer.block, x))
+        except MotionError:
+            return answer.x
+        tight = {room.corner for room in rooms_of(path) if room.left.value < -_TIGHT}
+        if not tight:
+            return x
+        for corner in tight:
+            x = variables.with_smaller_zone(x, path.route.zone_moves[corner], step)
+    return x
 
 
 def _more(known: Places | None, run: Run, certificate: Certificate) -> Places | None:

@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from ...core.cell.cell import Cell
 from ...core.collision.certificate import SceneOf, certify, scenes_of
 from ...core.collision.verdict import Certificate
-from ...core.errors import MotionError, Note
+from ...core.errors import MotionError
+from ...core.motion.attainable import attainable_accelerations
 from ...core.motion.controller import Controller, Run
 from ...core.program.program import Program
 from ...core.program.zone import Radius, Zone
-from ..solution import RESOLUTION, Solution, measure
+from ..solution import RESOLUTION, Solution, measure, scene_notes
 from .clearing import Clearing
 from .driving import ZoneOf, drive
 from .neighbourhood import Neighbourhoods
@@ -112,8 +113,8 @@ class _Maximization:
         trials = Neighbourhoods(self._controller.robot, points.route, self._controller.model)
         found = self._search(points, trials, before)
         self._tell("certifying the new program")
-        zones = settle(points, program, trials, self._rules(points), found, options.predefined)
-        repair = Repair(points, program, zones)
+        zones = settle(points, program, trials, self._rules(points), found, options.rounding)
+        repair = Repair(points, program, zones, options.rounding)
         after, certificate = self._proven(repair, (before, proof), read_back)
         return ZoneSolution(
             program,
@@ -121,13 +122,9 @@ class _Maximization:
             measure(self._controller, before, proof),
             measure(self._controller, after, certificate),
             certificate,
-            (*points.notes, *self._scene_notes()),
+            (*points.notes, *scene_notes(self._scenes, program)),
             zones=changes(points, program, repair.zones, found),
         )
-
-    def _scene_notes(self) -> tuple[Note, ...]:
-        tools = dict.fromkeys(move.tool for move in self._program.moves)
-        return tuple(dict.fromkeys(note for tool in tools for note in self._scenes(tool).notes))
 
     def _proven(
         self, repair: Repair, given: tuple[Run, Certificate], read_back: ReadBack
@@ -179,8 +176,9 @@ class _Maximization:
 
     def _one(self, growth: Growth, sides: Sides, largest: float) -> tuple[Asking, ZoneOf]:
         """The search at one corner, and what its sizes mean."""
-        if self._options.predefined and isinstance(growth.pattern, Radius):
-            allowed = choices(self._options.predefined, largest)
+        predefined = self._options.rounding.predefined
+        if predefined and isinstance(growth.pattern, Radius):
+            allowed = choices(predefined, largest)
             by_size: Mapping[float, Zone] = {zone.tcp: zone for zone in allowed}
             return choose(sides, allowed), by_size.__getitem__
         return Search(sides, largest, self._options.tolerance).run(), growth.zone
@@ -203,7 +201,7 @@ class _Maximization:
         size = run.path.q.shape[1]
         limits, controller = run.timing.limits, self._controller
         velocity = _EXCESS * limits.velocity[:, :size].max(axis=0)
-        bound = _EXCESS * limits.acceleration[:, :size].max(axis=0)
+        bound = _EXCESS * attainable_accelerations(run.timing)
         strays = bound * smoothing.stray
         elasticity = controller.model.elasticity
         leads = elasticity.most(controller.robot, run.path.q, velocity, bound, strays)

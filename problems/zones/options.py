@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from ...core.errors import InputError
 from ...core.program.target import JointTarget
 from ...core.program.zone import Radius
+from ..rounding import Rounding
 from .search import TOLERANCE
 from .sizes import GRADED
+
+_ROUNDING = Rounding()
 
 
 @dataclass(frozen=True)
@@ -24,7 +27,8 @@ class ZoneOptions:
         pattern: proportions of the zones that freed stops get.
         kept: indices of moves whose zone stays as it is.
         apart: whether zones that the source states in one datum may become different ones.
-        predefined: zones to choose from, such as a vendor's; empty for zones of any size.
+        rounding: of the new zones, as the program's language writes them, or to a vendor's
+            predefined ones.
         tolerance: share of the first failing size by which a zone may stay below it.
         start: where the robot stands; None for the program's own start.
 
@@ -38,7 +42,7 @@ class ZoneOptions:
     pattern: Radius = GRADED
     kept: Collection[int] = ()
     apart: bool = False
-    predefined: tuple[Radius, ...] = field(default=())
+    rounding: Rounding = _ROUNDING
     tolerance: float = TOLERANCE
     start: JointTarget | None = None
 

@@ -13,7 +13,8 @@ from ...core.program.origin import Ownership
 from ...core.program.program import Program
 from ...core.program.target import JointTarget
 from ...core.program.zone import Fine, Zone
-from .sizes import SMALLEST, Growth, size_of
+from ..rounding import SMALLEST
+from .sizes import Growth, size_of
 
 _TINY = 0.01 * SMALLEST
 """Size at which no two zones overlap."""

@@ -34,7 +34,9 @@ def check_start(
         return
     overlap = _first_overlap(run, scenes)
     if overlap is not None:
-        raise _error(run, overlap.move, f"the program collides as it is: {overlap}")
+        cell = scenes(run.program.moves[overlap.move].tool).cell
+        hints = "".join(f"; {doubt}" for doubt in cell.doubtful_units())
+        raise _error(run, overlap.move, f"the program collides as it is: {overlap}{hints}")
     least = certify(controller, run, scenes, 0.0, residual, resolution=_TOLD)
     advice = "with no clearance at all: " + least.message
     if least.proven:

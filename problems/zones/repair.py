@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from ...core.collision.verdict import Certificate
 from ...core.motion.controller import Run
 from ...core.program.program import Program
 from ...core.program.zone import Fine, Zone
+from ..rounding import Rounding
 from .points import Points
 from .settling import with_zones
 from .sizes import Growth, size_of
@@ -31,13 +32,17 @@ class Repair:
         points: of the program.
         program: as it was given.
         zones: the new zones by corner.
+        rounding: of smaller ones.
     """
 
-    def __init__(self, points: Points, program: Program, zones: Mapping[int, Zone]) -> None:
+    def __init__(
+        self, points: Points, program: Program, zones: Mapping[int, Zone], rounding: Rounding
+    ) -> None:
         self._points = points
         self._given = program
         self._old = {i: program.moves[points.move[i]].zone for i in zones}
         self._group = {i: members for members in points.groups for i in members}
+        self._rounding = rounding
         self._tried: dict[int, int] = {}
         self._left = MOST
         self.zones = dict(zones)
@@ -111,11 +116,10 @@ class Repair:
         if tried > PATIENCE or isinstance(zone, Fine):
             return self._old[corner]
         growth = Growth.of(zone)
-        smaller = growth.rounded(size_of(zone) * SMALLER**tried)
+        smaller = growth.rounded(size_of(zone) * SMALLER**tried, self._rounding)
         return self._old[corner] if isinstance(smaller, Fine) else smaller
 
-    def _change(self, corners: Iterable[int], new: object) -> bool:
-        assert callable(new)
+    def _change(self, corners: Iterable[int], new: Callable[[int], Zone]) -> bool:
         corners = list(corners)
         self._left -= 1
         if not corners or self._left < 0:

@@ -16,9 +16,9 @@ from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ...core.errors import MotionError
+from ..rounding import SMALLEST
 from .clearing import Cells, Clearing, Shortfall, joined
 from .neighbourhood import CornerPath
-from .sizes import SMALLEST
 
 TOLERANCE = 0.005
 """Share of the first failing size by which the answer may be smaller."""

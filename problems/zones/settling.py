@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 from ...core.program.program import Program
-from ...core.program.zone import FINE, Fine, Radius, Zone
+from ...core.program.zone import Fine, Zone
+from ..rounding import SMALLEST, Rounding
 from .neighbourhood import Neighbourhoods
 from .points import Points
 from .rules import Rules, share_legs
 from .search import Found
-from .sizes import SMALLEST, Growth, size_of
+from .sizes import Growth, size_of
 
 WORTH = 2e-3
 """Share by which a zone must grow to be changed."""
@@ -24,7 +25,7 @@ def settle(
     trials: Neighbourhoods,
     rules: Rules,
     found: Mapping[int, Found],
-    predefined: Sequence[Radius],
+    rounding: Rounding,
 ) -> dict[int, Zone]:
     """The zone of each corner that might change.
 
@@ -37,7 +38,7 @@ def settle(
         trials: emulates single corners.
         rules: of the vendor.
         found: by corner; corners at which no zone has any effect are left out.
-        predefined: zones to choose from; empty for zones of any size.
+        rounding: of sizes, or to predefined zones.
     """
     sizes = _one_a_group(points, {corner: known.size for corner, known in found.items()})
     movable = {corner: size for corner, size in sizes.items() if size >= SMALLEST}
@@ -45,7 +46,7 @@ def settle(
         movable = _shared(points, trials, movable)
     zones = {corner: program.moves[points.move[corner]].zone for corner in points.growths}
     for corner, size in movable.items():
-        fitting = _fitting(points.growths[corner], size, predefined)
+        fitting = points.growths[corner].rounded(size, rounding)
         cut = not rules.shared_legs and found[corner].fails is None
         if _worth(zones[corner], fitting, math.inf if cut else size):
             zones[corner] = fitting
@@ -77,13 +78,6 @@ def _shared(points: Points, trials: Neighbourhoods, sizes: Mapping[int, float]) 
     standing = {corner: size_of(growth.pattern) for corner, growth in fixed.items()}
     shares = share_legs(trials, growing, fixed, {**standing, **sizes})
     return _one_a_group(points, {corner: shares[corner] for corner in sizes})
-
-
-def _fitting(growth: Growth, size: float, predefined: Sequence[Radius]) -> Zone:
-    if not (predefined and isinstance(growth.pattern, Radius)):
-        return growth.rounded(size)
-    fitting = [zone for zone in predefined if zone.tcp <= size * (1 + 1e-9)]
-    return max(fitting, key=lambda zone: zone.tcp, default=FINE)
 
 
 def _worth(old: Zone, new: Zone, clear: float) -> bool:

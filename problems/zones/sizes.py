@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from ...core.dialect import Dialect
 from ...core.errors import InputError
 from ...core.program.zone import FINE, Angle, ContourFraction, Fine, Radius, Zone
+from ..rounding import Rounding
 
-SMALLEST = 1e-4
-"""Size (m, rad or share) below which there is no zone worth having."""
 GRADED = Radius(
     0.1,
     0.15,
@@ -59,22 +58,9 @@ class Growth:
             return ContourFraction(min(1.0, size))
         return Angle(size)
 
-    def rounded(self, size: float) -> Zone:
-        """The zone of a size rounded down, in numbers that a person would write.
-
-        Radii are whole hundredths of a millimetre (micrometres below a millimetre), shares whole
-        percents, angles whole thousandths of a degree.
-        """
-        if isinstance(self.pattern, ContourFraction):
-            return self._unless_nothing(_down(size, 0.01))
-        if isinstance(self.pattern, Angle):
-            return self._unless_nothing(math.radians(_down(math.degrees(size), 1e-3)))
-        tcp = _down(size, 1e-5 if size >= 1e-3 else 1e-6)
-        zone = self._unless_nothing(tcp)
-        return _rounded_parts(zone) if isinstance(zone, Radius) else zone
-
-    def _unless_nothing(self, size: float) -> Zone:
-        return FINE if size < SMALLEST else self.zone(size)
+    def rounded(self, size: float, rounding: Rounding) -> Zone:
+        """The zone of a size rounded down, in numbers that a person would write."""
+        return rounding.zone(self.zone(size))
 
 
 def size_of(zone: Zone) -> float:
@@ -93,25 +79,3 @@ def size_of(zone: Zone) -> float:
         case Angle(angle):
             return angle
     raise InputError(f"{zone} depends on speeds, and has no size of its own; use a distance")
-
-
-def _down(value: float, step: float) -> float:
-    """The multiple of a step below a value, which may be one but for rounding."""
-    count = math.floor(value / step * (1 + 1e-12) + 1e-9)
-    return count / round(1.0 / step)
-
-
-def _rounded_parts(zone: Radius) -> Radius:
-    """The parts beside the TCP's, to micrometres and millionths of a degree."""
-
-    def degrees(angle: float) -> float:
-        return math.radians(round(math.degrees(angle), 6))
-
-    return replace(
-        zone,
-        reorientation=max(zone.tcp, round(zone.reorientation, 6)) if zone.reorientation else 0.0,
-        external=max(zone.tcp, round(zone.external, 6)) if zone.external else 0.0,
-        angle=degrees(zone.angle),
-        external_linear=round(zone.external_linear, 6),
-        external_angular=degrees(zone.external_angular),
-    )

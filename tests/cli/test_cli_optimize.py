@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -129,14 +130,29 @@ def test_what_is_kept_stays(flyby: Flyby, cell: Path, program: Path, tmp_path: P
         (("--objective", "speed"), "--objective speed"),
         (("--objective", "1.5"), "--objective 1.5"),
         (("--keep", "9"), "--keep 9"),
-        (("--keep", "vglue"), "vglue"),
+        (("--keep", "vglue"), "a speed (v1000, v500)"),
         (("--free", "5"), "move 5"),
         (("--limit", "2=ball:3"), "--limit 2=ball:3"),
-        (("--limit", "2=cone:190"), "Cone"),
+        (("--limit", "2=cone:190"), "--limit 2=cone:190: a cone's angle"),
         (("--axes", "7"), "--axes 7"),
         (("--vias", "some"), "--vias some"),
         (("--clearance", "200"), "clearance"),
-        (("--starts", "0"), "starts"),
+        (("--clearance=-3",), "--clearance -3: a distance in mm"),
+        (("--clearance", "nan"), "--clearance nan"),
+        (("--starts", "0"), "--starts 0: a number from 1 on"),
+        (("--generations=-1",), "--generations -1"),
+        (("--seed=-1",), "--seed -1"),
+        (("--axes", ""), "--axes ''"),
+        (("--axes", "2;3"), "--axes 2;3"),
+        (("--limit", ""), "--limit"),
+        (("--limit", "2=box:-5"), "--limit 2=box:-5: ranges are zero or more"),
+        (("--limit", "2=box:"), "--limit 2=box:"),
+        (("--limit", "9=fixed"), "--limit 9: the program has moves 1 to 5"),
+        (("--limit", "p2=fixed"), "--limit p2=fixed"),
+        (("--keep", ""), "--keep ''"),
+        (("--keep", "2", "--free", "2"), "--free 2: --keep has this stop stay"),
+        (("--zones-only", "--limit", "2=fixed"), "--zones-only"),
+        (("--zones-only", "--vias", "change"), "--zones-only"),
         (("--plot", "cell.txt"), "--plot"),
         (("--in-place", "--out", "x"), "--out"),
     ],
@@ -148,6 +164,51 @@ def test_refusals_name_the_option(
     assert result.exit_code == 1
     assert word in result.stderr.replace("\n", " ")
     assert program.read_bytes() == PROGRAM.encode()
+
+
+def test_what_is_written_has_few_digits(
+    flyby: Flyby, cell: Path, program: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    result = flyby("optimize", program, "--cell", cell, *QUICK, "--own", "--out", out)
+    assert result.exit_code == 0, result.output
+    text = (out / "m.mod").read_text("utf-8")
+    joints = re.findall(r"jointtarget p[123]:=\[\[0,([^,]+),([^,]+),0,0,0\]", text)
+    assert len(joints) == 3
+    zones = re.findall(r"zonedata \w+:=\[FALSE,([^]]+)\]", text)
+    assert len(zones) >= 2
+    for number in (*sum(joints, ()), *",".join(zones).split(",")):
+        assert len(number.partition(".")[2]) <= 4, text
+
+
+def test_predefined_zones_are_named_in_the_text(
+    flyby: Flyby, cell: Path, program: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    program.write_bytes(PROGRAM.replace("zz,rod", "z1,rod").encode())
+    result = flyby("optimize", program, "--cell", cell, *QUICK, "--predefined", "--out", out)
+    assert result.exit_code == 0, result.output
+    text = (out / "m.mod").read_text("utf-8")
+    zones = re.findall(r"MoveAbsJ p[123],v\d+,(z\d+),rod", text)
+    assert len(zones) == 3 and "zFb" not in text, text
+    assert duration(out / "m.mod") < 0.9 * duration(program)
+
+
+def test_code_that_was_not_driven_is_told_and_bars_the_files_own_place(
+    flyby: Flyby, cell: Path, program: Path, tmp_path: Path
+) -> None:
+    other = "  PROC other()\r\n    MoveAbsJ p2,v100,fine,rod;\r\n  ENDPROC\r\nENDMODULE"
+    program.write_bytes(PROGRAM.replace("ENDMODULE", other).encode())
+    given = program.read_bytes()
+    refused = flyby("optimize", program, "--cell", cell, *QUICK, "--in-place")
+    told = refused.stderr.replace("\n", " ")
+    assert refused.exit_code == 1 and "nothing was written" in told
+    assert "p2 has changed, and is also named in line 17" in told
+    assert program.read_bytes() == given
+    beside = flyby("optimize", program, "--cell", cell, *QUICK, "--out", tmp_path / "out")
+    assert beside.exit_code == 0 and "p2 has changed" in beside.stderr.replace("\n", " ")
+    zones = flyby("zones", program, "--cell", cell, "--in-place")
+    assert zones.exit_code == 0, "the other code reads no zone that changes"
 
 
 def test_a_limit_for_all_holds_every_point(

@@ -10,7 +10,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flyby.cli.plot_geometry import path_geometry, tcp_speed
 from flyby.cli.report import Report, make_report
 from flyby.core.motion.controller import Controller, Run
 from flyby.core.program.move import MoveC, MoveJ, MoveL
@@ -20,6 +19,7 @@ from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
+from flyby.drawing.geometry import path_geometry, tcp_speed
 
 ROBOT = find_robot("abb/irb6640-180-255")
 CONTROLLER = Controller(find_vendor("abb"), ROBOT)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+import trimesh
 from typer.testing import Result
 
 from flyby.cli.patching import write_patched
@@ -141,9 +142,34 @@ def test_stops_are_freed_by_number_or_all(flyby: Flyby, cell: Path, tmp_path: Pa
         ("--free", "x", "the number of a move, or 'all'"),
         ("--free", "9", "moves 1 to 5"),
         ("--keep", "0", "moves 1 to 5"),
+        ("--clearance", "-3", "--clearance -3: a distance in mm"),
+        ("--clearance", "inf", "--clearance inf"),
     ):
         result = flyby("zones", path, "--cell", cell, option, text)
         assert result.exit_code == 1 and message in result.stderr
+
+
+def test_a_zone_that_other_code_reads_bars_the_files_own_place(
+    flyby: Flyby, cell: Path, tmp_path: Path
+):
+    path = _program(tmp_path)
+    other = b"  PROC other()\r\n    MoveAbsJ p0,v100,zz,rod;\r\n  ENDPROC\r\nENDMODULE"
+    path.write_bytes(path.read_bytes().replace(b"ENDMODULE", other))
+    given = path.read_bytes()
+    result = flyby("zones", path, "--cell", cell, "--in-place")
+    assert result.exit_code == 1 and "zz has changed" in result.stderr.replace("\n", " ")
+    assert path.read_bytes() == given
+    assert flyby("zones", path, "--cell", cell, "--in-place", "--own").exit_code == 0
+    assert b"zz:=[FALSE,30,45,45,4.5,45,4.5]" in path.read_bytes()
+
+
+def test_what_is_kept_and_freed_at_once_is_refused(flyby: Flyby, cell: Path, tmp_path: Path):
+    path = _program(tmp_path, MOVES.replace("zz", "fine"))
+    words = ("zones", path, "--cell", cell, "--keep", "3")
+    refused = flyby(*words, "--free", "3")
+    assert refused.exit_code == 1 and "--free 3: --keep" in refused.stderr
+    assert flyby(*words, "--free", "all", "--in-place").exit_code == 0
+    assert [size > 0 for size in _zones(path)] == [False, True, False, True, False]
 
 
 def test_what_is_not_proven_is_not_written_unless_by_name(
@@ -173,6 +199,17 @@ def test_a_collision_is_told_with_its_line(flyby: Flyby, cell: Path, tmp_path: P
     assert result.exit_code == 1
     assert "m.mod:11:" in result.stderr and "move 3" in result.stderr
     assert "rod and box overlap by up to" in result.stderr
+
+
+def test_a_mesh_in_wrong_units_is_suspected_where_the_program_collides(
+    flyby: Flyby, cell: Path, tmp_path: Path
+):
+    trimesh.creation.box((2500.0, 1200.0, 900.0)).export(tmp_path / "bench.stl")
+    bench = '[[obstacle]]\nname = "bench"\nmesh = "bench.stl"\nunits = "m"\n'
+    cell.write_text(CELL.replace("[allow]", bench + "[allow]"), "utf-8")
+    result = flyby("zones", _program(tmp_path), "--cell", cell)
+    assert result.exit_code == 1
+    assert "with units = 'mm' it would be 2.5 m" in result.stderr.replace("\n", " ")
 
 
 def test_an_edit_saved_meanwhile_is_not_lost(tmp_path: Path) -> None:

@@ -23,6 +23,7 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.chain_kernels import poses
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import quaternion_from_matrix
+from flyby.problems.rounding import Rounding
 from flyby.problems.waypoints import Box, Fixed, Task
 from flyby.problems.waypoints.blocks import cut
 from flyby.problems.waypoints.driving import Driver
@@ -238,13 +239,47 @@ def test_gradients_are_those_of_the_duration() -> None:
     assert made @ d == pytest.approx(quotient, rel=1e-3, abs=1e-5)
 
 
-def test_rounded_values_are_near_and_zones_not_larger() -> None:
+def test_a_written_program_is_near_and_has_no_larger_zones() -> None:
     variables = variables_of(mixed())
     x = variables.start + 0.01234567 * variables.scale
-    rounded = variables.rounded(x)
-    assert rounded == pytest.approx(x, abs=2e-5)
-    zones = [k for k, part in enumerate(variables.parts) if part.size == 1]
-    assert all(variables.of(k, rounded)[0] <= variables.of(k, x)[0] for k in zones)
+    exact, written = variables.applied(x), variables.written(x, Rounding())
+    for one, other in zip(exact.moves, written.moves, strict=True):
+        if isinstance(one.zone, Radius) and isinstance(other.zone, Radius):
+            assert one.zone.tcp - 1.1e-5 <= other.zone.tcp <= one.zone.tcp + 1e-12
+        if isinstance(one.target, JointTarget) and isinstance(other.target, JointTarget):
+            assert other.target.joints == pytest.approx(one.target.joints, abs=1e-6)
+        if isinstance(one.target, PoseTarget) and isinstance(other.target, PoseTarget):
+            assert other.target.pose.position == pytest.approx(one.target.pose.position, abs=6e-6)
+            assert other.target.pose.quaternion == pytest.approx(
+                one.target.pose.quaternion, abs=1e-8
+            )
+
+
+def test_what_does_not_change_is_written_to_the_last_digit() -> None:
+    variables = variables_of(mixed())
+    assert [m.target for m in variables.written(variables.start, Rounding()).moves] == [
+        m.target for m in variables.program.moves
+    ]
+
+
+def test_a_zone_without_room_becomes_smaller_where_it_is() -> None:
+    variables = variables_of(four(SMALL, SMALL, SMALL, FINE))
+    smaller = variables.with_smaller_zone(variables.start, 1, 0.01)
+    radii = [m.zone.tcp for m in variables.applied(smaller).moves[:3]]  # type: ignore[union-attr]
+    assert radii == pytest.approx([0.05, 0.04, 0.05])
+
+
+def test_chosen_zones_are_predefined_ones_and_stay() -> None:
+    zones = (Radius(0.02, 0.03, 0.03, name="z20"), Radius(0.05, name="z50"), Radius(0.06))
+    variables = variables_of(four(SMALL, SMALL, SMALL, FINE))
+    x = variables.start.copy()
+    x[variables.offsets[1]] = 0.049
+    x[variables.offsets[3]] = 0.001
+    chosen = variables.with_chosen_zones(x, Rounding(predefined=zones))
+    held = [part.bounds()[0][0] for part in chosen.parts if part.size == 1]
+    assert held == [0.02, 0.02, 0.05]
+    written = chosen.written(np.clip(x, chosen.lower, chosen.upper), Rounding(predefined=zones))
+    assert [m.zone for m in written.moves[:3]] == [zones[0], zones[0], zones[1]]
 
 
 def test_ranges_and_axes_bound_the_variables() -> None:

@@ -25,6 +25,7 @@ from flyby.core.program.zone import FINE, ContourFraction, Fine, Radius, Zone
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.shape import Box, Sphere
 from flyby.core.spatial.pose import Pose
+from flyby.problems.rounding import Rounding
 from flyby.problems.scenes.scene import with_zone
 from flyby.problems.scenes.two_joints import two_joints
 from flyby.problems.zones import maximize
@@ -185,7 +186,9 @@ def test_kept_zones_stay():
 def test_predefined_zones_are_the_largest_that_fit():
     zones = find_vendor("abb").speaks.zones()
     assert [zone.name for zone in zones][:3] == ["z0", "z1", "z5"]
-    made = maximize_zones(CONTROLLER, PROGRAM, _cell(), ZoneOptions(predefined=zones))
+    made = maximize_zones(
+        CONTROLLER, PROGRAM, _cell(), ZoneOptions(rounding=Rounding(predefined=zones))
+    )
     free = _sizes(_with_ball())
     for move, size in zip(made.program.moves[:-1], free, strict=False):
         fitting = [zone for zone in zones if zone.tcp <= size]
@@ -319,7 +322,7 @@ def test_an_interrupt_keeps_what_was_found_so_far():
 def _enlarged() -> tuple[Points, dict[int, Zone], Repair]:
     points = find_points(CONTROLLER, PROGRAM, None, {}, (), False)
     zones = {i: GRADED.resized(0.1) for i in points.growths}
-    return points, zones, Repair(points, PROGRAM, zones)
+    return points, zones, Repair(points, PROGRAM, zones, Rounding())
 
 
 def test_zones_that_cost_time_are_put_back_until_none_is_lost():

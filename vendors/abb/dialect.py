@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from ...core.dialect import Dialect, MoveWords, Wording
+from ...core.dialect import Dialect, MoveWords, OutputWords, Wording
 from ...core.program.zone import Radius
 
 _SPEEDS = frozenset(
@@ -39,6 +39,12 @@ def _zones() -> tuple[Radius, ...]:
     return tuple(one for one in found if isinstance(one, Radius))
 
 
+_OUTPUTS = OutputWords(
+    switch=lambda name, on: f"{name},{int(on)}",
+    level=lambda name, value: f"\\AOp:={name},{value:.6g}",
+    longest_lead=0.5,  # TriggIO \Time
+)
+
 RAPID = Dialect(
     joint=_MOVE,
     line=_MOVE,
@@ -51,4 +57,5 @@ RAPID = Dialect(
     fastest=7.0,
     zones=_zones,
     wording=_WORDING,
+    outputs=_OUTPUTS,
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from ...core.dialect import Dialect, MoveWords, Pitfall, Wording
+from ...core.dialect import Dialect, MoveWords, Orientation, OutputWords, Pitfall, Wording
 from ...core.program.zone import Angle, ContourFraction, Radius
 
 _NAME = r"[^\W\d][\w$]*"
@@ -45,6 +45,17 @@ _PATH = MoveWords(
     frozenset({"tcp"}),
 )
 
+
+def _switch(name: str, on: bool) -> str:
+    """``$OUT[5]=TRUE`` by the output's number, ``gun=TRUE`` by its declared name."""
+    return f"{f'$OUT[{name}]' if name.isdecimal() else name}={'TRUE' if on else 'FALSE'}"
+
+
+def _level(name: str, value: float) -> str:
+    """``$ANOUT[1]=0.5``; analogue outputs take shares of 10 V."""
+    return f"{f'$ANOUT[{name}]' if name.isdecimal() else name}={value:.6g}"
+
+
 KRL = Dialect(
     joint=MoveWords(
         # C_DIS on PTP (KSS 8.2 and newer) takes fractions of a mm, C_PTP whole percents.
@@ -56,6 +67,8 @@ KRL = Dialect(
     arc=_PATH,
     pace="joint_fraction",
     comment="; ",
+    orientation=Orientation.EULER_ZYX,
     fastest=3.0,
     wording=_WORDING,
+    outputs=OutputWords(_switch, _level, longest_lead=1.0),
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from ...core.dialect import Dialect, MoveWords, Wording
+from ...core.dialect import Dialect, MoveWords, Orientation, Wording
 from ...core.program.zone import Radius
 
 _WORDING = Wording(
@@ -35,6 +35,8 @@ URSCRIPT = Dialect(
     work_objects=False,
     stationary_tools=False,
     external_axes=False,
+    orientation=Orientation.ROTATION_VECTOR,
+    in_si=True,
     rigid_arcs=True,
     share_step=0.0,
     fastest=5.0,

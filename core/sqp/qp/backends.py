@@ -20,10 +20,13 @@ class BackendKind(StrEnum):
     """Needs the optional package ``piqp``."""
     INTERIOR_POINT = "interior_point"
     """Our own."""
+    DENSE_INTERIOR_POINT = "dense_interior_point"
+    """Our own for full matrices: Gauss–Newton's of many residuals."""
 
 
 _FALLBACK = {
     BackendKind.INTERIOR_POINT: BackendKind.CLARABEL,
+    BackendKind.DENSE_INTERIOR_POINT: BackendKind.CLARABEL,
     BackendKind.CLARABEL: BackendKind.OSQP,
     BackendKind.OSQP: BackendKind.CLARABEL,
     BackendKind.PIQP: BackendKind.CLARABEL,
@@ -49,6 +52,10 @@ def _make(kind: BackendKind) -> Backend:
         from .interior_point import InteriorPointBackend
 
         return InteriorPointBackend()
+    if kind is BackendKind.DENSE_INTERIOR_POINT:
+        from .dense_interior_point import DenseInteriorPointBackend
+
+        return DenseInteriorPointBackend()
     if kind is BackendKind.CLARABEL:
         from .clarabel_backend import ClarabelBackend
 

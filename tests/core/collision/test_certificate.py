@@ -16,8 +16,8 @@ from flyby.core.collision.certificate import (
     certify,
     certify_stretch,
     scenes_of,
-    smoothing_strays,
 )
+from flyby.core.collision.strays import greatest_rates, smoothing_strays
 from flyby.core.collision.verdict import Certificate, Verdict
 from flyby.core.errors import InputError, MotionError
 from flyby.core.motion.controller import Controller, Run
@@ -321,6 +321,20 @@ def test_smoothing_strays_from_the_path_by_no_more_than_is_reckoned(data, window
     middle = np.clip(run.trajectory.t - 0.75 * window, 0.0, None)
     off = np.abs(run.trajectory.q - run.timing.states_at(middle)[0]).max(axis=0)
     assert (off <= strays * (1 + 1e-6) + 1e-9).all()
+
+
+@settings(max_examples=12)
+@given(st.data())
+def test_rates_between_samples_are_bounded_and_hardly_more(data) -> None:
+    run = planned(cell_with(), data.draw(random_moves(find_robot(ARM))))
+    timing = run.timing
+    share = np.linspace(0.0, 1.0, 101)
+    instants = timing.begin[:, None] + share * (timing.end - timing.begin)[:, None]
+    _, dq, ddq, _ = timing.states_at(instants.ravel())
+    for bound, met in zip(greatest_rates(timing), (dq, ddq), strict=True):
+        met = np.abs(met).max(axis=0)
+        assert np.all(met <= bound * (1 + 1e-9) + 1e-9)
+        assert np.all(bound <= 1.5 * met + 1e-3)
 
 
 def test_smoothing_of_a_steady_acceleration_strays_just_that_far() -> None:

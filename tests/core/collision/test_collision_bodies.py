@@ -214,7 +214,12 @@ def test_an_open_mesh_has_no_inside_and_says_so(mesh_file: Callable[..., Mesh]) 
 def test_a_mesh_in_the_wrong_unit_is_noted(mesh_file: Callable[..., Mesh]) -> None:
     huge = mesh_file(trimesh.creation.box((300.0, 400.0, 500.0)), "m")
     scene = CollisionScene(cell(obstacles=(Obstacle("block", Geometry(huge)),)), GUN)
-    assert any("check its units" in note.message for note in scene.notes)
+    told = "in m it is 500 m long; check its units: with units = 'mm' it would be 0.5 m"
+    assert any(told in note.message for note in scene.notes)
+    assert scene.cell.doubtful_units() == (f"{huge.file}: {told}",)
+    tiny = mesh_file(trimesh.creation.box((0.3, 0.4, 1.2)), "mm")
+    assert tiny.doubt is not None and "with units = 'm' it would be 1.2 m" in tiny.doubt
+    assert mesh_file(trimesh.creation.box((0.3, 0.4, 1.2)), "m").doubt is None
 
 
 @settings(max_examples=40)

@@ -125,6 +125,20 @@ def test_a_range_only_cuts_off(scene: CollisionScene, seed: int, within: float) 
 
 
 @FEW
+@given(scenes, st.integers(0, 10**6), st.floats(0.0, 0.5), st.floats(0.0, 0.5))
+def test_a_range_of_costly_pairs_leaves_a_lower_bound(
+    scene: CollisionScene, seed: int, within: float, costly: float
+) -> None:
+    q = drawn(scene, seed)
+    near, rough = scene.distances(q, within), scene.distances(q, within, costly)
+    assert np.all(rough.distance <= near.distance + 1e-9)
+    assert np.all(rough.distance >= np.minimum(near.distance, min(within, costly)) - 1e-9)
+    told = rough.normal.any(axis=-1)
+    np.testing.assert_array_equal(rough.distance[told], near.distance[told])
+    assert np.all(told | (rough.distance >= min(within, costly)))
+
+
+@FEW
 @given(scenes, st.integers(0, 10**6))
 def test_witness_points_are_the_distance_apart(scene: CollisionScene, seed: int) -> None:
     found = scene.distances(drawn(scene, seed))

@@ -16,6 +16,7 @@ from flyby.core.motion.blend import Blend
 from flyby.core.motion.controller import Controller
 from flyby.core.motion.derivatives import Derivatives, ProgramGradient
 from flyby.core.motion.model import MotionModel
+from flyby.core.motion.torque import Borne, Torque
 from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -113,6 +114,15 @@ MODELS = {
         VENDOR.motion(), tcp=SMOOTHSTEP, joint=SMOOTHSTEP, orientation=SMOOTHSTEP
     ),
     "arc": replace(VENDOR.motion(), tcp=Blend(kind="arc")),
+    "torque": replace(
+        VENDOR.motion(),
+        torque=Torque(
+            (0.2, 0.15, 0.3, 0.1),
+            (Borne(3, (0.13, 0.01)), Borne(5, (0.06, 0.09, 0.03, 0.0))),
+            (0.0, 0.1, 0.6),
+            (0.3, 0.2, 0.1),
+        ),
+    ),
 }
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,7 +11,7 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
 from flyby.core.motion.elasticity import RIGID, Carried, Elasticity
-from flyby.core.motion.model import MotionModel
+from flyby.core.motion.model import MotionModel, load_motion_model
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -126,3 +128,46 @@ def test_a_joint_that_an_arm_does_not_have_is_refused() -> None:
     arm = find_robot("ur/ur10e")
     with pytest.raises(InputError, match="no joint 9"):
         Elasticity((), (Carried(9, (1e-4,)),)).leads(arm, *np.zeros((3, 1, 6)))
+
+
+@settings(max_examples=20, deadline=None)
+@given(slack=st.floats(1e-5, 1e-3), seed=st.integers(0, 1000))
+def test_slack_doubles_small_leads_and_adds_itself_to_large_ones(slack, seed) -> None:
+    arm = find_robot("abb/irb6640-180-255")
+    q, dq, ddq = states(arm.size, seed)
+    stiff = Elasticity((1.0, 1.0, 1.0))
+    soft = Elasticity((1.0, 1.0, 1.0), slack=(slack, 0.0, slack))
+    small = 1e-3 * slack
+    lead = stiff.leads(arm, q, dq, small * ddq)
+    twice = soft.leads(arm, q, dq, small * ddq)
+    np.testing.assert_allclose(twice[:, 0], 2 * lead[:, 0], rtol=1e-4)
+    np.testing.assert_array_equal(twice[:, 1], lead[:, 1])
+    more = soft.leads(arm, q, dq, 1e3 * ddq) - stiff.leads(arm, q, dq, 1e3 * ddq)
+    np.testing.assert_allclose(more[:, 2], slack * np.sign(ddq[:, 2]), rtol=1e-3)
+    bounds = np.ones(6), np.ones(6), np.zeros(6)
+    extra = soft.most(arm, q, *bounds) - stiff.most(arm, q, *bounds)
+    np.testing.assert_allclose(extra, [slack, 0, slack, 0, 0, 0], atol=1e-12)
+
+
+@settings(max_examples=10, deadline=None)
+@given(lag=st.lists(st.floats(-3e-3, 3e-3), min_size=6, max_size=6), seed=st.integers(0, 1000))
+def test_a_lag_leads_by_its_time(lag, seed) -> None:
+    arm = find_robot("kuka/kr3-r540")
+    q, dq, ddq = states(arm.size, seed)
+    made = replace(GEARS, lag=tuple(lag))
+    more = made.leads(arm, q, dq, ddq) - GEARS.leads(arm, q, dq, ddq)
+    np.testing.assert_allclose(more, np.array(lag) * dq, atol=1e-12)
+    bounds = [np.abs(array).max(axis=0) for array in (dq, ddq)]
+    most = made.most(arm, q, *bounds, np.zeros(arm.size))
+    assert (np.abs(made.leads(arm, q, dq, ddq)).max(axis=0) <= most + 1e-12).all()
+
+
+def test_a_lag_is_read_with_its_key(tmp_path) -> None:
+    file = tmp_path / "motion.toml"
+    file.write_text("[elasticity]\nlag_s = [0.0, 0.0, 0.0018]\n")
+    model = load_motion_model(file)
+    assert model.elasticity == Elasticity(lag=(0.0, 0.0, 0.0018))
+    assert "elasticity.lag_s" in model.figures
+    file.write_text("[elasticity]\nlag_s = [nan]\n")
+    with pytest.raises(InputError, match=r"elasticity\.lag_s"):
+        load_motion_model(file)

@@ -25,6 +25,7 @@ BROKEN = {
     "[elasticity]\nown = [1]": "elasticity.own",
     "[elasticity]\nown_s2 = 1": "elasticity.own_s2",
     "[elasticity]\nown_s2 = [nan]": "elasticity.own_s2",
+    "[elasticity]\nslack_rad = [-1e-4]": "elasticity.slack_rad",
     "[elasticity]\ncarried = 3": "elasticity.carried",
     "[elasticity]\ncarried = [{ joint = 3 }]": "elasticity.carried",
     "[elasticity]\ncarried = [{ joint = 3.5, lead_s2_per_m2 = [] }]": "elasticity.carried",

@@ -89,7 +89,7 @@ class Interpreter:
         self.settings = Settings()
         self.out = Output(texts)
         self.course = Course(options.answers)
-        self.meter = Meter(options.limits)
+        self.meter = Meter(options.limits, options.executed)
         self.flow = Flow(data)
         self.robot = options.robot
         self.convert = Converter(self, external_axes)

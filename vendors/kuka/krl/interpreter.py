@@ -95,7 +95,7 @@ class Interpreter:
         self.inline = Inline(self)
         self.parts: list[Parts] = []
         self._motions = MotionReader(self)
-        self.meter = Meter(options.limits)
+        self.meter = Meter(options.limits, options.executed)
         self.moving = Moving(self.calls.body_of)
         self._statements: list[ProgramStatement] = []
         self._notes: dict[str, Note] = {}

@@ -70,7 +70,7 @@ class Interpreter:
         self.texts = texts
         self.flow = flow
         self.course = Course(options.answers)
-        self.meter = Meter(options.limits)
+        self.meter = Meter(options.limits, options.executed)
         self.settings = Settings()
         self.position = Position(options.robot)
         self.notebook = Notebook()

@@ -1,0 +1,63 @@
+"""Warnings where a changed datum is used by code that was not driven, and so not proven."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from ..core.errors import InputError, Note
+
+if TYPE_CHECKING:
+    from ..core.source.bystanders import Bystander
+    from ..core.vendor import Vendor
+    from ..problems.solution import Solution
+
+_SHOWN = 5
+"""Lines that a note names."""
+
+
+def bystander_notes(made: Solution, vendor: Vendor) -> tuple[Note, ...]:
+    """Where a new program changes more than what was driven.
+
+    Args:
+        made: with the program as it is read from its new text.
+        vendor: whose language it is.
+    """
+    from ..core.source.bystanders import bystanders
+
+    wording = None if vendor.speaks is None else vendor.speaks.wording
+    if wording is None or not made.changed or _is_anew(made):
+        return ()
+    return tuple(map(_note, bystanders(made.original, made.program, wording)))
+
+
+def refuse_bystanders(notes: Sequence[Note]) -> None:
+    """Refuse to put the new program in the place of the old one.
+
+    Raises:
+        InputError: there are such places.
+    """
+    if notes:
+        raise InputError(
+            "--in-place: nothing was written, since code that was not driven uses changed data "
+            "(see the warnings): --keep these moves, or name a folder by --out and look at that "
+            "code"
+        )
+
+
+def _note(found: Bystander) -> Note:
+    lines = list(dict.fromkeys(str(place.line) for place in found.places))
+    more = f" and {len(lines) - _SHOWN} more" if len(lines) > _SHOWN else ""
+    where = f"line{'s' if len(lines) > 1 else ''} {', '.join(lines[:_SHOWN])}{more}"
+    return Note(
+        f"{found.datum} has changed, and is also named in {where}, which this run has not driven: "
+        "nothing is proven of what happens there",
+        found.move,
+        found.places[0],
+    )
+
+
+def _is_anew(made: Solution) -> bool:
+    """Whether the statements are others: such a program is no change of the old one's files."""
+    old, new = made.original.statements, made.program.statements
+    return [type(s) for s in old] != [type(s) for s in new]

@@ -1,0 +1,89 @@
+"""What a cell says of its own arm: closer shapes of links, narrower limits of joints."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..robot.catalogue import UNITS, read_shape
+from ..robot.joint import Joint
+from ..robot.model import Robot
+from ..robot.shape import LinkShape
+from ..spatial.pose import IDENTITY, Pose
+from ..tables import Table, per
+
+BASE = "base"
+
+
+def read_arm(file: Table, robot: Robot) -> Robot:
+    """The robot with the ``[[robot_shape]]`` and ``[joint_limit.NAME]`` of a cell file.
+
+    Raises:
+        InputError: a link or joint is unknown, or a range is wider than the robot's; the message
+            names file and key.
+    """
+    return replace(robot, shapes=_shapes(file, robot), joints=_joints(file, robot))
+
+
+def _shapes(file: Table, robot: Robot) -> tuple[LinkShape, ...]:
+    """Those of the links that the file names, and the robot's own of all others."""
+    names = [BASE, *(joint.name for joint in robot.joints)]
+    frames = _at_zero(robot)
+    given: list[LinkShape] = []
+    for row in file.listed_tables("robot_shape"):
+        link = names.index(row.choice("link", names))
+        shape, placement = read_shape(row)
+        row.finish()
+        given.append(LinkShape(link, shape, frames[link].inverse() @ placement))
+    named = {shape.link for shape in given}
+    return (*(shape for shape in robot.shapes if shape.link not in named), *given)
+
+
+def _at_zero(robot: Robot) -> list[Pose]:
+    """The frames of base and links in the base's, all joints at zero."""
+    frames = [IDENTITY]
+    for joint in robot.joints:
+        frames.append(frames[-1] @ joint.placement)
+    return frames
+
+
+def _joints(file: Table, robot: Robot) -> tuple[Joint, ...]:
+    tables = file.named_tables("joint_limit")
+    known = [joint.name for joint in robot.joints]
+    for name in tables:
+        if name not in known:
+            message = f"{robot.name} has no such joint, but {', '.join(known)}"
+            raise file.table("joint_limit").error(name, message)
+    return tuple(
+        _limited(tables[joint.name], joint) if joint.name in tables else joint
+        for joint in robot.joints
+    )
+
+
+def _limited(table: Table, joint: Joint) -> Joint:
+    units = UNITS[joint.kind]
+    limited = joint
+    if table.unit_key("range", units):
+        limited = _narrowed(table, joint, table.quantities("range", units, 2))
+    if table.unit_key("speed", per(units, "s")):
+        speed = table.quantity("speed", per(units, "s"))
+        if not 0.0 < speed <= joint.velocity * (1 + 1e-9):
+            most = joint.shown(joint.velocity)
+            raise table.error("speed", f"must be above zero, and {most}/s at most")
+        limited = replace(limited, velocity=speed)
+    if table.unit_key("acceleration", per(units, "s2")):
+        acceleration = table.quantity("acceleration", per(units, "s2"))
+        if acceleration <= 0.0:
+            raise table.error("acceleration", "must be above zero")
+        limited = replace(limited, acceleration=acceleration)
+    table.finish()
+    return limited
+
+
+def _narrowed(table: Table, joint: Joint, ends: tuple[float, ...]) -> Joint:
+    lower, upper = ends
+    if lower >= upper:
+        raise table.error("range", "must rise")
+    if lower < joint.lower - 1e-9 or upper > joint.upper + 1e-9:
+        reach = f"{joint.shown(joint.lower)} to {joint.shown(joint.upper)}"
+        raise table.error("range", f"may only be narrower than the robot's own, {reach}")
+    return replace(joint, lower=max(lower, joint.lower), upper=min(upper, joint.upper))

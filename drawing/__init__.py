@@ -1,0 +1,1 @@
+"""Pictures: paths and speeds of runs, cells and robots in space."""

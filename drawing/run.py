@@ -1,0 +1,223 @@
+"""Draws a run: the path of the TCP, its speed, and the joints against their limits."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.motion.controller import Run
+from ..core.robot.model import Robot
+from .geometry import PathGeometry, path_geometry, tcp_speed
+from .style import DPI, LIMIT, NOMINAL, SPEED, STOP, STYLE, ZONE
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
+
+FloatArray = NDArray[np.float64]
+
+NUMBERED = 30
+"""Waypoints up to which each is numbered."""
+LEAST_SPAN = 0.35
+"""Of the box drawn in space: its shortest side over its longest."""
+
+
+def draw(run: Run, robot: Robot, kind: str) -> bytes:
+    """A figure of a run as a file of the kind ``png``, ``pdf`` or ``svg``."""
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE):
+        figure = make_figure(run, robot)
+        buffer = io.BytesIO()
+        figure.savefig(buffer, format=kind, dpi=DPI)
+    return buffer.getvalue()
+
+
+def make_figure(run: Run, robot: Robot) -> Figure:
+    """The figure: two views of the path at the left, three curves over time at the right."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(15, 9), layout="constrained")
+    halves: Any = figure.subfigures(1, 2, width_ratios=(1.0, 1.15))
+    left, right = halves
+    _draw_path(left, run, path_geometry(run, robot))
+    speed, position, velocity = right.subplots(3, 1, sharex=True)
+    _draw_speed(speed, run)
+    _draw_joints(position, velocity, run, robot)
+    velocity.set_xlabel("time, s")
+    velocity.set_xlim(0.0, run.duration)
+    figure.suptitle(
+        f"{run.program.name} on {robot.name}: cycle time {run.duration:.3f} s",
+        x=0.01,
+        ha="left",
+        fontweight="bold",
+    )
+    return figure
+
+
+def _draw_path(figure: SubFigure, run: Run, geometry: PathGeometry) -> None:
+    """The path in space above, and along a world axis below."""
+    grid = figure.add_gridspec(2, 1, height_ratios=(1.0, 1.05), hspace=0.12)
+    space = figure.add_subplot(grid[0], projection="3d")
+    plane = figure.add_subplot(grid[1])
+    _draw_space(space, run, geometry)
+    coloured = _draw_plane(plane, run, geometry, _view(run, geometry))
+    bar = figure.colorbar(coloured, ax=plane, shrink=0.9, pad=0.02)
+    bar.set_label("TCP speed, mm/s")
+    bar.outline.set_visible(False)
+
+
+def _view(run: Run, geometry: PathGeometry) -> tuple[int, int]:
+    """The two world axes in which most zones lie flat; without zones those of the largest spans."""
+    legs = np.diff(geometry.waypoints, axis=0)
+    legs /= np.maximum(np.linalg.norm(legs, axis=1, keepdims=True), 1e-9)
+    normals = np.abs(np.cross(legs[:-1], legs[1:]))[geometry.radius[1:-1] > 0]
+    facing = normals.sum(axis=0)
+    if not facing.any():
+        facing = -np.ptp(run.trajectory.position, axis=0)
+    across, up = (axis for axis in range(3) if axis != int(np.argmax(facing)))
+    return across, up
+
+
+def _draw_space(axes: Any, run: Run, geometry: PathGeometry) -> None:
+    from mpl_toolkits.mplot3d.art3d import Line3DCollection
+
+    points = 1e3 * run.trajectory.position
+    for nominal in geometry.nominal:
+        axes.plot(*(1e3 * nominal.T), color=NOMINAL, linestyle=(0, (4, 3)), linewidth=0.8)
+    lines = Line3DCollection(_strokes(points), linewidth=1.8, cmap="viridis")
+    lines.set_array(_stroke_speeds(run))
+    axes.add_collection3d(lines)
+    stops = 1e3 * geometry.waypoints[geometry.radius == 0]
+    axes.scatter(*stops.T, color=STOP, s=10, depthshade=False)
+    spans = np.ptp(points, axis=0)
+    spans = np.maximum(spans, LEAST_SPAN * spans.max() + 1.0)
+    centre = 0.5 * (points.max(axis=0) + points.min(axis=0))
+    for name, middle, span in zip("xyz", centre, spans, strict=True):
+        getattr(axes, f"set_{name}lim")(middle - 0.55 * span, middle + 0.55 * span)
+        getattr(axes, f"set_{name}label")(f"{name}, mm")
+        getattr(axes, f"{name}axis").set_major_locator(_ticks(4 if span == spans.max() else 3))
+    axes.tick_params(labelsize=7, pad=1)
+    axes.set_box_aspect(spans, zoom=0.92)
+    axes.set_title("path of the TCP")
+
+
+def _draw_plane(axes: Axes, run: Run, geometry: PathGeometry, view: tuple[int, int]) -> Any:
+    """The path in two world axes; returns what is coloured by speed."""
+    from matplotlib.collections import LineCollection, PatchCollection
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Circle
+
+    points = 1e3 * run.trajectory.position[:, view]
+    for nominal in geometry.nominal:
+        axes.plot(*(1e3 * nominal[:, view].T), color=NOMINAL, linestyle=(0, (4, 3)), linewidth=0.8)
+    passed = geometry.radius > 0
+    circles = [
+        Circle((float(x), float(y)), float(radius))
+        for (x, y), radius in zip(
+            1e3 * geometry.waypoints[passed][:, view], 1e3 * geometry.radius[passed], strict=True
+        )
+    ]
+    axes.add_collection(
+        PatchCollection(circles, facecolor=ZONE + "22", edgecolor=ZONE, linewidth=0.8)
+    )
+    lines = LineCollection(list(_strokes(points)), linewidth=1.8, cmap="viridis")
+    lines.set_array(_stroke_speeds(run))
+    axes.add_collection(lines)
+    stops = 1e3 * geometry.waypoints[~passed][:, view]
+    axes.plot(*stops.T, "s", color=STOP, markersize=3.5)
+    if len(geometry.waypoints) <= NUMBERED:
+        _number(axes, run, geometry, view)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel(f"{'xyz'[view[0]]}, mm")
+    axes.set_ylabel(f"{'xyz'[view[1]]}, mm")
+    axes.margins(0.08)
+    handles = [
+        Line2D([], [], color=NOMINAL, linestyle=(0, (4, 3)), linewidth=0.8, label="programmed"),
+        Line2D([], [], color=ZONE, marker="o", markerfacecolor="none", linestyle="", label="zone"),
+        Line2D([], [], color=STOP, marker="s", markersize=3.5, linestyle="", label="stop"),
+    ]
+    axes.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 0.99), ncols=3)
+    return lines
+
+
+def _number(axes: Axes, run: Run, geometry: PathGeometry, view: tuple[int, int]) -> None:
+    """Write at each target the numbers of the moves that end there."""
+    ending: dict[tuple[float, ...], list[int]] = {}
+    for move, point in zip(run.path.route.moves, geometry.waypoints[1:], strict=True):
+        ending.setdefault(tuple(np.round(1e3 * point[list(view)], 1)), []).append(move + 1)
+    for (x, y), moves in ending.items():
+        axes.annotate(
+            ", ".join(map(str, moves)),
+            (x, y),
+            xytext=(5, 5),
+            textcoords="offset points",
+            fontsize=8,
+        )
+
+
+def _strokes(points: FloatArray) -> FloatArray:
+    """Straight pieces (T − 1, 2, D) between points (T, D)."""
+    return np.stack([points[:-1], points[1:]], axis=1)
+
+
+def _stroke_speeds(run: Run) -> FloatArray:
+    """mm/s on each of the strokes."""
+    speed = 1e3 * tcp_speed(run)
+    return np.asarray(0.5 * (speed[1:] + speed[:-1]))
+
+
+def _draw_speed(axes: Axes, run: Run) -> None:
+    trajectory = run.trajectory
+    axes.fill_between(trajectory.t, 1e3 * tcp_speed(run), color=SPEED, alpha=0.12, linewidth=0)
+    axes.plot(trajectory.t, 1e3 * tcp_speed(run), color=SPEED, linewidth=1.2, label="driven")
+    wanted = [run.program.moves[i].speed.tcp for i in trajectory.move]
+    programmed = np.array([np.nan if speed is None else speed for speed in wanted])
+    if np.isfinite(programmed).any():
+        axes.step(
+            trajectory.t,
+            1e3 * programmed,
+            where="post",
+            color=LIMIT,
+            linewidth=0.9,
+            linestyle=(0, (4, 2)),
+            label="programmed",
+        )
+        # A program at "maximum speed" would press the driven curve to the floor.
+        axes.set_ylim(0.0, 1.15e3 * min(np.nanmax(programmed), 1.3 * tcp_speed(run).max() + 1e-3))
+    axes.set_title("speed of the TCP, mm/s")
+    _legend_above(axes)
+
+
+def _draw_joints(position: Axes, velocity: Axes, run: Run, robot: Robot) -> None:
+    """Positions in % of the range from its middle, velocities in % of their limit."""
+    trajectory, limits = run.trajectory, robot.limits
+    middle, half = 0.5 * (limits.upper + limits.lower), 0.5 * (limits.upper - limits.lower)
+    for j, name in enumerate(robot.axis_names):
+        colour = f"C{j}"
+        share = (trajectory.q[:, j] - middle[j]) / half[j]
+        position.plot(trajectory.t, 100 * share, color=colour, linewidth=1.2, label=name)
+        rate = trajectory.dq[:, j] / limits.velocity[j]
+        velocity.plot(trajectory.t, 100 * rate, color=colour, linewidth=1.2)
+    for axes in (position, velocity):
+        axes.axhline(100, color=LIMIT, linewidth=0.9, linestyle=(0, (4, 2)))
+        axes.axhline(-100, color=LIMIT, linewidth=0.9, linestyle=(0, (4, 2)))
+        axes.set_ylim(-110, 110)
+    position.set_title("joint position, % of the range from its middle")
+    velocity.set_title("joint velocity, % of the limit")
+    _legend_above(position)
+
+
+def _legend_above(axes: Axes) -> None:
+    axes.legend(
+        loc="lower right", bbox_to_anchor=(1.0, 0.99), ncols=8, handlelength=1.4, columnspacing=1.2
+    )
+
+
+def _ticks(count: int) -> Any:
+    from matplotlib.ticker import MaxNLocator
+
+    return MaxNLocator(count)

@@ -1,0 +1,289 @@
+"""From a robot in its cell to an experiment: postures, runs, the choice among them, their texts."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.cell.cell import Cell
+from ...core.collision.certificate import certify, scenes_of
+from ...core.collision.scene import CollisionScene
+from ...core.collision.verdict import Certificate
+from ...core.errors import FlybyError, InputError
+from ...core.motion.controller import Controller, Run
+from ...core.program.move import Move, MoveC, MoveJ
+from ...core.program.program import Program
+from ...core.program.speed import Speed
+from ...core.program.target import JointTarget, PoseTarget
+from ...core.source.patching import difference
+from ...core.vendor import Sources, Vendor
+from .candidates import Family
+from .checking import Refused, check
+from .information import Informer
+from .plan import Candidate, Designed, Experiment, Plan, Skipped, usual_radii
+from .postures import Clear, Site, find_sites, given_site, reach_of
+from .selection import Choice, Option
+from .words import Words
+
+FloatArray = NDArray[np.float64]
+Say = Callable[[str], None]
+
+PERIODS = (0.008, 0.012, 0.016, 0.024, 0.1)
+"""s between samples: the first that the vendor's recorder takes."""
+ROUNDED = 2e-6
+"""m, rad, and as a share: how near numbers must be read back (RAPID has single precision)."""
+SPARE = 0.01
+"""m that postures keep beyond the clearance, for the motion round them."""
+
+
+def design(
+    vendor: Vendor, cell: Cell, plan: Plan, *, bare: bool, say: Say = lambda message: None
+) -> Experiment:
+    """Design an experiment.
+
+    Args:
+        vendor: whose controller drives the robot.
+        cell: robot, tools, obstacles, clearance.
+        plan: what was asked for.
+        bare: whether nothing is known of what stands around the robot.
+        say: is told what is going on.
+
+    Raises:
+        InputError: the vendor's language cannot say or log such motions, the robot has external
+            axes, a posture is of no use, or no run is possible.
+    """
+    if cell.robot.external_axes:
+        raise InputError(
+            f"{cell.robot.name} has external axes ({', '.join(cell.robot.axis_names[6:])}): "
+            "records of runs hold the arm alone; leave them out of the cell file"
+        )
+    return _Designer(vendor, cell, plan, bare, say).design()
+
+
+@dataclass(frozen=True)
+class _Clearance:
+    """Proves clearances, if anything is known of the robot's shape."""
+
+    cell: Cell
+    controller: Controller
+
+    def scene(self, plan: Plan) -> CollisionScene | None:
+        return CollisionScene(self.cell, plan.tool) if self.cell.robot.shapes else None
+
+    def proof(self, run: Run) -> Certificate | None:
+        """None where no shape is known."""
+        if not self.cell.robot.shapes:
+            return None
+        return certify(self.controller, run, scenes_of(self.cell), self.cell.clearance)
+
+
+class _Designer:
+    def __init__(self, vendor: Vendor, cell: Cell, plan: Plan, bare: bool, say: Say) -> None:
+        self.words = Words(vendor, cell.robot)
+        self.vendor, self.cell, self.plan, self.bare, self.say = vendor, cell, plan, bare, say
+        self.controller = Controller(vendor, cell.robot)
+        self.random = np.random.default_rng(plan.seed)
+        self.reach = reach_of(cell.robot, plan.tool)
+        self.clearance = _Clearance(cell, self.controller)
+        self.skipped: list[Skipped] = []
+
+    def design(self) -> Experiment:
+        sites = self._sites()
+        candidates = self._candidates(sites)
+        period = self._period(candidates)
+        informer = Informer.of(self.vendor, self.cell.robot, period)
+        choice = Choice(self._options(candidates, informer), self.plan)
+        runs = self._chosen(choice, period)
+        if not runs:
+            reasons = "; ".join(f"{s.what}: {s.reason}" for s in self.skipped[:3])
+            raise InputError(f"no run of this experiment is possible: {reasons}")
+        return Experiment(
+            self.cell.robot,
+            self.plan,
+            period,
+            tuple(sites),
+            tuple(self._with_ways(runs)),
+            tuple(self.skipped),
+            tuple(choice.left_over()),
+            informer.precision(choice.information),
+            tuple(self._notes(choice, len(sites))),
+        )
+
+    def _sites(self) -> list[Site]:
+        robot, plan = self.cell.robot, self.plan
+        self.say("looking for postures")
+        if not isinstance(plan.postures, int):
+            for q in plan.postures:
+                if np.shape(q) != (robot.size,):
+                    raise InputError(f"a posture of {robot.name} has {robot.size} joint values")
+            rows = [np.asarray(q, dtype=float) for q in plan.postures]
+            return [given_site(robot, plan.tool, q, plan.margin, self.random) for q in rows]
+        return find_sites(robot, plan.tool, plan.postures, plan.margin, self._clear(), self.random)
+
+    def _clear(self) -> Clear:
+        scene = self.clearance.scene(self.plan)
+        if scene is None:
+            return lambda q: True
+        wanted = self.cell.clearance + SPARE
+        return lambda q: bool(scene.clearance(q, 2 * wanted).min() >= wanted)
+
+    def _candidates(self, sites: Iterable[Site]) -> list[Candidate]:
+        radii = tuple(sorted(self.plan.radii or usual_radii(self.reach)))
+        found: list[Candidate] = []
+        for number, site in enumerate(sites):
+            self.say(f"designing runs at posture {number + 1}")
+            family = Family(
+                self.words,
+                self.controller,
+                self.plan,
+                radii,
+                number,
+                site,
+                self.reach,
+                self.random,
+            )
+            for made in family.candidates():
+                if isinstance(made, Skipped):
+                    self.skipped.append(made)
+                elif made[1].duration > 1.5 * self.plan.longest:
+                    reason = f"would last {made[1].duration:.0f} s"
+                    self.skipped.append(Skipped(made[0].name, reason))
+                else:
+                    found.append(made[0])
+        return found
+
+    def _period(self, candidates: list[Candidate]) -> float:
+        """The plan's, or the first that the recorder takes."""
+        program = candidates[0].program if candidates else Program(())
+        if self.plan.period is not None:
+            self.vendor.record(program, self.cell.robot, self.plan.period)
+            return self.plan.period
+        refusal: FlybyError | None = None
+        for period in PERIODS:
+            try:
+                self.vendor.record(program, self.cell.robot, period)
+            except InputError as error:
+                refusal = error
+            else:
+                return period
+        raise refusal or InputError("the recorder takes no period")
+
+    def _options(self, candidates: list[Candidate], informer: Informer) -> list[Option]:
+        options = []
+        for k, candidate in enumerate(candidates):
+            self.say(f"what would run {k + 1} of {len(candidates)} tell?")
+            try:
+                information = informer.information(candidate)
+            except FlybyError as error:
+                self.skipped.append(Skipped(candidate.name, str(error)))
+                continue
+            duration = self.controller.run(candidate.program).duration
+            options.append(Option(candidate, information, duration))
+        return options
+
+    # The choice
+
+    def _chosen(self, choice: Choice, period: float) -> list[Designed]:
+        runs: list[Designed] = []
+        while (option := choice.best()) is not None:
+            self.say(f"proving {option.candidate.name}")
+            try:
+                made = self._made(option.candidate, period)
+            except FlybyError as error:
+                self.skipped.append(Skipped(option.candidate.name, str(error)))
+                choice.refuse(option)
+                continue
+            runs.append(replace(made, gain=choice.take(option)))
+        return runs
+
+    def _made(self, candidate: Candidate, period: float) -> Designed:
+        """The run as text, read back, looked at and proven.
+
+        Raises:
+            FlybyError: it cannot be said, is not read back, or does not keep clear.
+        """
+        robot = self.cell.robot
+        sources = self.vendor.record(candidate.program, robot, period)
+        program = self._read_back(sources)
+        found = difference(_unlabelled(candidate.program), _unlabelled(program), ROUNDED)
+        if found is not None:
+            raise Refused(f"its text is read back with another {found[1]}")
+        first = program.moves[0].target
+        assert isinstance(first, JointTarget)
+        # Not every language keeps the names of tools, by which the cell knows their shapes.
+        moves = tuple(replace(move, tool=self.plan.tool) for move in program.moves)
+        program = replace(program.with_moves(moves), name=candidate.name, start=first)
+        candidate = replace(candidate, start=np.array(first.joints))
+        run = check(self.controller, candidate, self.plan.margin, program)
+        certificate = self.clearance.proof(run)
+        if certificate is not None and not certificate.proven:
+            raise Refused(str(certificate))
+        return Designed(candidate, program, sources, run, certificate, 0.0)
+
+    def _read_back(self, sources: Sources) -> Program:
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            for file, text in sources.items():
+                (folder / file).write_bytes(text.encode())
+            return self.vendor.read_file(
+                folder / main_file(sources, self.vendor), robot=self.cell.robot
+            )
+
+    def _with_ways(self, runs: list[Designed]) -> Iterable[Designed]:
+        """The runs, each with whether the way to it from the one before keeps clear."""
+        before: Designed | None = None
+        for made in runs:
+            yield made if before is None else replace(made, way_proven=self._way(before, made))
+            before = made
+
+    def _way(self, before: Designed, then: Designed) -> bool | None:
+        """Whether the joint line from the end of a run to the start of another keeps clear."""
+        if self.bare or not self.cell.robot.shapes:
+            return None
+        stand = JointTarget(tuple(map(float, before.run.trajectory.q[-1])))
+        first = then.program.moves[0]
+        move = MoveJ(first.target, Speed(joint_fraction=0.1), tool=self.plan.tool)
+        try:
+            run = self.controller.run(Program((move,)), stand)
+        except FlybyError:
+            return False
+        proof = self.clearance.proof(run)
+        return proof is not None and proof.proven
+
+    def _notes(self, choice: Choice, sites: int) -> Iterable[str]:
+        if isinstance(self.plan.postures, int) and sites < self.plan.postures:
+            yield f"only {sites} of {self.plan.postures} postures were found"
+        if not self.cell.robot.shapes:
+            yield "nothing is known of the robot's shape: no collision is excluded"
+        elif self.bare:
+            yield (
+                "no cell was given: it is proven that the arm does not touch itself, and nothing "
+                "of tools, floor and surroundings"
+            )
+        for level in choice.missing():
+            yield f"{level} has no place in the time there is"
+
+
+def main_file(sources: Sources, vendor: Vendor) -> str:
+    """The file with the program, among those of a recording."""
+    return next(file for file in sources if Path(file).suffix.lower() in vendor.suffixes)
+
+
+def _unlabelled(program: Program) -> Program:
+    """The moves, without the labels of configurations on the way of lines and arcs: they are those
+    that the arm arrives with, and not every language keeps them."""
+
+    return Program(tuple(_bare(move) for move in program.moves))
+
+
+def _bare(move: Move) -> Move:
+    if isinstance(move.target, PoseTarget):
+        move = replace(move, target=replace(move.target, configuration=None))
+    if isinstance(move, MoveC):
+        move = replace(move, via=replace(move.via, configuration=None))
+    return move

@@ -1,0 +1,277 @@
+"""What a user asks of an experiment, and the values of a design."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.collision.verdict import Certificate
+from ...core.errors import InputError
+from ...core.motion.controller import Run
+from ...core.program.program import Program
+from ...core.program.tool import FLANGE, Tool
+from ...core.robot.model import Robot
+from ...core.vendor import Sources
+from .postures import Site
+
+FloatArray = NDArray[np.float64]
+
+TURNS = tuple(math.radians(turn) for turn in (30, 60, 90, 120, 150))
+SPEEDS = (0.05, 0.2, 0.5, 1.0)
+RADII = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2)
+"""m; predefined by ABB but for 2 mm."""
+SMALLEST_SHARE, LARGEST_SHARE = 0.0015, 0.08
+"""Of the robot's reach, between which the usual zones lie."""
+ZONE_LEVELS = 4
+
+
+class Kind(StrEnum):
+    """What the moves of a run are; of mixed ones every other leg is of the second sort."""
+
+    LINES = "lines"
+    JOINTS = "joints"
+    ARCS = "arcs"
+    LINES_AND_JOINTS = "lines-joints"
+    LINES_AND_ARCS = "lines-arcs"
+    TURNS = "turns"
+    """Lines along which the tool turns, otherwise before the corner than behind it."""
+    LINE_STOPS = "line-stops"
+    """Lines of several lengths with stops between them."""
+    JOINT_STOPS = "joint-stops"
+    SINGLE_AXES = "single-axes"
+    """One joint after the other, as fast as the language lets it go."""
+
+    @property
+    def short(self) -> str:
+        """For names of programs."""
+        return _SHORT[self]
+
+    @property
+    def has_corners(self) -> bool:
+        """Whether the runs pass fly-by points."""
+        return self not in (Kind.LINE_STOPS, Kind.JOINT_STOPS, Kind.SINGLE_AXES)
+
+
+_SHORT = {
+    Kind.LINES: "line",
+    Kind.JOINTS: "joint",
+    Kind.ARCS: "arc",
+    Kind.LINES_AND_JOINTS: "linejoint",
+    Kind.LINES_AND_ARCS: "linearc",
+    Kind.TURNS: "turn",
+    Kind.LINE_STOPS: "stopline",
+    Kind.JOINT_STOPS: "stopjoint",
+    Kind.SINGLE_AXES: "axes",
+}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What shall be measured, and how much time there is.
+
+    Args:
+        turns: changes of direction at the corners, rad, in (0, π).
+        radii: of the zones, m; None for `usual_radii` of the robot.
+        speeds: of the TCP, m/s.
+        kinds: of moves.
+        postures: how many, or the configurations (N,) themselves.
+        minutes: at the robot; None for all runs.
+        overhead: s, what a run takes beside its motion: to load, to start, to fetch the log.
+        longest: s, that one run may last.
+        margin: rad (m) that joints keep from their limits.
+        period: s between samples; None for the shortest of `PERIODS` that the recorder takes.
+        tool: that is mounted.
+        seed: of all that is drawn.
+
+    Raises:
+        InputError: a number is out of its range.
+    """
+
+    turns: tuple[float, ...] = TURNS
+    radii: tuple[float, ...] | None = None
+    speeds: tuple[float, ...] = SPEEDS
+    kinds: tuple[Kind, ...] = tuple(Kind)
+    postures: int | Sequence[FloatArray] = 3
+    minutes: float | None = 60.0
+    overhead: float = 60.0
+    longest: float = 30.0
+    margin: float = math.radians(5)
+    period: float | None = None
+    tool: Tool = FLANGE
+    seed: int = 1
+
+    def __post_init__(self) -> None:
+        _check("corner angles", self.turns, math.pi, math.degrees, "°")
+        _check("zones", self.radii or (1e-3,), 1.0, lambda value: 1e3 * value, " mm")
+        _check("speeds", self.speeds, 10.0, lambda value: 1e3 * value, " mm/s")
+        for name in ("longest", "margin"):
+            if not 0 < getattr(self, name) < math.inf:
+                raise InputError(f"an experiment's {name} must be above zero and finite")
+        if not 0 <= self.overhead < math.inf:
+            raise InputError("an experiment's overhead must be zero or more seconds")
+        if self.minutes is not None and not 0 < self.minutes < math.inf:
+            raise InputError("an experiment needs a time above zero")
+        if not self.kinds:
+            raise InputError("an experiment needs at least one kind of moves")
+        count = self.postures if isinstance(self.postures, int) else len(self.postures)
+        if not 1 <= count <= 99:
+            raise InputError(f"an experiment has 1 to 99 postures, not {count}")
+        if not self.tool.robot_held:
+            raise InputError(
+                f"the tool {self.tool.name} stands still: records of runs know tools that the "
+                "robot carries"
+            )
+
+
+def _check(
+    what: str,
+    values: Sequence[float],
+    below: float,
+    shown: Callable[[float], float],
+    unit: str,
+) -> None:
+    if not values:
+        raise InputError(f"an experiment needs {what}")
+    for value in values:
+        if not 0 < value < below:
+            raise InputError(
+                f"{what} of an experiment lie between 0 and {shown(below):.4g}{unit}, not at "
+                f"{shown(value):.4g}{unit}"
+            )
+    if len(set(values)) != len(values):
+        raise InputError(f"{what} of an experiment: one is given twice")
+
+
+def usual_radii(reach: float) -> tuple[float, ...]:
+    """Zones, m, for a robot of a reach, m: up to four, evenly graded."""
+    fit = [r for r in RADII if SMALLEST_SHARE * reach <= r <= LARGEST_SHARE * reach]
+    chosen = np.unique(np.round(np.linspace(0, len(fit) - 1, ZONE_LEVELS)).astype(int))
+    return tuple(fit[k] for k in chosen)
+
+
+@dataclass(frozen=True)
+class Corner:
+    """A fly-by point as it is designed.
+
+    Args:
+        turn: change of the TCP's direction, rad.
+        radius: of the zone, m.
+    """
+
+    turn: float
+    radius: float
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A run that may become part of the experiment.
+
+    Args:
+        name: of its program.
+        kind: of moves.
+        posture: number from 0.
+        speed: m/s of the TCP; None of single axes.
+        corners: in their order.
+        program: begins with a joint move to ``start``, a stop.
+        start: (N,), where the measured motion begins.
+    """
+
+    name: str
+    kind: Kind
+    posture: int
+    speed: float | None
+    corners: tuple[Corner, ...]
+    program: Program
+    start: FloatArray
+
+
+@dataclass(frozen=True)
+class Designed:
+    """A run of the experiment.
+
+    Args:
+        candidate: what was designed.
+        program: as it is read back from its text.
+        sources: its text, by file name.
+        run: its emulation.
+        certificate: of its clearance; None where nothing is known of the robot's shape.
+        gain: nats of information on the motion model (see `information`) that it adds to the
+            runs before it.
+        way_proven: whether the joint line from the end of the run before to the start keeps
+            clear; None if that is not known.
+    """
+
+    candidate: Candidate
+    program: Program
+    sources: Sources
+    run: Run
+    certificate: Certificate | None
+    gain: float
+    way_proven: bool | None = None
+
+    @property
+    def duration(self) -> float:
+        """s, emulated."""
+        return self.run.duration
+
+
+@dataclass(frozen=True)
+class Skipped:
+    """What is not part of an experiment."""
+
+    what: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Precision:
+    """What the runs would tell of one figure of the motion model.
+
+    Args:
+        key: dotted key of the motion model's file, with an index where there are several.
+        value: where it was looked at.
+        before: assumed standard deviation.
+        after: standard deviation with all runs.
+    """
+
+    key: str
+    value: float
+    before: float
+    after: float
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A set of runs, in the order in which they should be driven.
+
+    Args:
+        robot: that drives them.
+        plan: what was asked for.
+        period: s between the samples of the logs.
+        sites: the postures, with the planes that the corners lie in.
+        runs: most telling first.
+        skipped: what is not possible, with the reasons.
+        unused: runs that there was no time for, most telling first.
+        precision: of each figure of the motion model.
+        notes: what a user should know.
+    """
+
+    robot: Robot
+    plan: Plan
+    period: float
+    sites: tuple[Site, ...]
+    runs: tuple[Designed, ...]
+    skipped: tuple[Skipped, ...]
+    unused: tuple[Skipped, ...]
+    precision: tuple[Precision, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def seconds(self) -> float:
+        """s at the robot: motion, and what each run takes beside it."""
+        return sum(run.duration + self.plan.overhead for run in self.runs)

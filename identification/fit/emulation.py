@@ -1,0 +1,262 @@
+"""The emulated joints at the samples of a run, and how they change with parameters.
+
+What a parameter does not touch is not done again: a blend's coefficient changes the path and all
+that follows, a limit the stamp, an elasticity only the leads. Leads are linear in their
+coefficients, so that their derivatives by differences are exact; those of the rest are differences
+to one side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.motion.controller import Controller, stamped_motion
+from ...core.motion.elasticity import RIGID
+from ...core.motion.model import MotionModel
+from ...core.motion.path import Path
+from ...core.motion.smoothing import Motion, Smoothing, States
+from ..matching import Match, match
+from ..prediction import PERIOD, start_of
+from .keys import with_value
+from .parameters import ParameterSet
+from .runs import PreparedRun
+
+FloatArray = NDArray[np.float64]
+
+_NEVER = frozenset({"provenance", "period"})
+_AFTER_STAMP = _NEVER | {"elasticity"}
+_AFTER_PATH = _AFTER_STAMP | {
+    "smoothing",
+    "settling",
+    "jerk",
+    "ramp",
+    "torque",
+    "joint_acceleration_scale",
+    "tcp_acceleration",
+    "reorientation_acceleration",
+}
+"""Fields of a motion model that the path does not depend on; unknown ones count as ones it does."""
+STEP = 1e-3
+"""Share of a parameter's scale that differences step by."""
+_MOMENT = 1e-4
+"""s, the same of time."""
+_SIZE = 1e-3
+"""Share of the zones' size, likewise."""
+
+
+@dataclass(frozen=True)
+class Nuisance:
+    """What a run has of its own.
+
+    Args:
+        offset: s, the log's time less the emulated at the log's zero; the emulated time is that in
+            the middle of what smoothing looks at, so that more smoothing is no delay.
+        clock: s that pass while the log counts one.
+        size: of the zones, as a factor on what the program says.
+    """
+
+    offset: float = 0.0
+    clock: float = 1.0
+    size: float = 1.0
+
+    def emulated(self, t: FloatArray, window: float) -> FloatArray:
+        """The emulation's time at stamps, where smoothing looks at a window in s."""
+        return self.clock * (t - self.offset) + 0.5 * window
+
+
+@dataclass(frozen=True)
+class _Stages:
+    """What was made on the way to a command."""
+
+    model: MotionModel
+    size: float
+    path: Path
+    stamped: Motion
+    smoothing: Smoothing
+    window: float
+    duration: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Base:
+    """Where derivatives are taken."""
+
+    model: MotionModel
+    stages: _Stages
+    nuisance: Nuisance
+    off: FloatArray
+    moments: States | None
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Weighted residuals of a run.
+
+    Args:
+        values: (K, M).
+        by_parameter: (K, M, P).
+        by_offset, by_clock, by_size: (K, M).
+    """
+
+    values: FloatArray
+    by_parameter: FloatArray
+    by_offset: FloatArray
+    by_clock: FloatArray
+    by_size: FloatArray
+
+
+class RunEmulator:
+    """Emulates one run again and again.
+
+    Args:
+        prepared: the run.
+    """
+
+    def __init__(self, prepared: PreparedRun) -> None:
+        self.prepared = prepared
+
+    def residuals(self, model: MotionModel, nuisance: Nuisance) -> FloatArray:
+        """(K, M), weighted.
+
+        Raises:
+            FlybyError: the program cannot be driven so.
+        """
+        stages = self._stages(model, nuisance.size, None)
+        return self._weighted(self._off(stages, model, nuisance))
+
+    def rows(self, parameters: ParameterSet, values: FloatArray, nuisance: Nuisance) -> Rows:
+        """Residuals and derivatives.
+
+        Args:
+            parameters: whose derivatives are wanted.
+            values: (P,) of them.
+            nuisance: of the run.
+
+        Raises:
+            FlybyError: the program cannot be driven so.
+        """
+        model = parameters.model(values)
+        stages = self._stages(model, nuisance.size, None)
+        off = self._off(stages, model, nuisance)
+        base = _Base(model, stages, nuisance, off, self._moments(stages, nuisance))
+        columns = [self._by_parameter(parameters, values, k, base) for k in range(parameters.size)]
+        shape = (*off.shape, 0)
+        by_parameter = np.stack(columns, -1) if columns else np.zeros(shape)
+        by_time = self._by_time(stages, model, nuisance)
+        stamps = self.prepared.t - nuisance.offset
+        return Rows(
+            self._weighted(off),
+            np.einsum("kmn,knp->kmp", self.prepared.weight, by_parameter),
+            self._weighted(-nuisance.clock * by_time),
+            self._weighted(stamps[:, None] * by_time),
+            self._weighted(self._by_size(model, nuisance)),
+        )
+
+    def _weighted(self, off: FloatArray) -> FloatArray:
+        return np.asarray(np.einsum("kmn,kn->km", self.prepared.weight, off))
+
+    def _by_parameter(
+        self, parameters: ParameterSet, values: FloatArray, k: int, base: _Base
+    ) -> FloatArray:
+        """(K, N), by a step to the side where the bounds leave room."""
+        one = parameters.parameters[k]
+        step = STEP * one.scale
+        if one.upper - values[k] < step < values[k] - one.lower:
+            step = -step
+        model = base.model
+        for key in one.keys:
+            model = with_value(model, key, float(values[k] + step))
+        made = self._stages(model, base.nuisance.size, base.stages)
+        if made is base.stages and base.moments is not None:
+            off = self.prepared.q - self._led(model, base.moments)
+        else:
+            off = self._off(made, model, base.nuisance)
+        return np.asarray((off - base.off) / step)
+
+    def _moments(self, stages: _Stages, nuisance: Nuisance) -> States | None:
+        """The smoothed motion at the samples' times; None where only places count."""
+        if self.prepared.by_place:
+            return None
+        t = nuisance.emulated(self.prepared.t, stages.window)
+        return stages.smoothing.command(stages.stamped, t)
+
+    def _led(self, model: MotionModel, states: States) -> FloatArray:
+        """(K, N), commanded for a smoothed motion."""
+        return led(self.prepared.controller(model), states)
+
+    def _by_time(self, stages: _Stages, model: MotionModel, nuisance: Nuisance) -> FloatArray:
+        """(K, N), by the emulation's time."""
+        if self.prepared.by_place:
+            return np.zeros_like(self.prepared.q)
+        t = nuisance.emulated(self.prepared.t, stages.window)
+        ahead, behind = (self._joints(stages, model, t + by) for by in (_MOMENT, -_MOMENT))
+        return np.asarray((behind - ahead) / (2 * _MOMENT))
+
+    def _by_size(self, model: MotionModel, nuisance: Nuisance) -> FloatArray:
+        """(K, N)."""
+        if self.prepared.run.zones_known:
+            return np.zeros_like(self.prepared.q)
+        sizes = nuisance.size * (1 + _SIZE), nuisance.size * (1 - _SIZE)
+        ends = []
+        for size in sizes:
+            changed = Nuisance(nuisance.offset, nuisance.clock, size)
+            ends.append(self._off(self._stages(model, size, None), model, changed))
+        return np.asarray((ends[0] - ends[1]) / (sizes[0] - sizes[1]))
+
+    def _stages(self, model: MotionModel, size: float, known: _Stages | None) -> _Stages:
+        """What a command needs, taken from what is known as far as the models agree."""
+        if known is not None and known.size == size and _agree(model, known.model, _AFTER_STAMP):
+            return known
+        controller = self.prepared.controller(model)
+        program = self.prepared.program(size)
+        if known is not None and known.size == size and _agree(model, known.model, _AFTER_PATH):
+            path = known.path
+        else:
+            path = controller.plan(program, start_of(program, self.prepared.log, controller.robot))
+        timing = controller.stamp(program, path)
+        smoothing = controller.smoothing(program, path)
+        stamped = stamped_motion(timing)
+        window = smoothing.window + timing.ramp
+        return _Stages(model, size, path, stamped, smoothing, window, timing.duration)
+
+    def _joints(self, stages: _Stages, model: MotionModel, t: FloatArray) -> FloatArray:
+        """(K, N), commanded at times."""
+        return commanded(self.prepared.controller(model), stages.smoothing, stages.stamped, t)
+
+    def _off(self, stages: _Stages, model: MotionModel, nuisance: Nuisance) -> FloatArray:
+        """(K, N), log less emulation."""
+        if not self.prepared.by_place:
+            t = nuisance.emulated(self.prepared.t, stages.window)
+            return self.prepared.q - self._joints(stages, model, t)
+        return self._match(stages, model).off
+
+    def _match(self, stages: _Stages, model: MotionModel) -> Match:
+        count = int(np.ceil(stages.duration / PERIOD)) + 1
+        t = np.linspace(0.0, stages.duration, count)
+        return match(t, self._joints(stages, model, t), self.prepared.q, 1e-4)
+
+
+def commanded(
+    controller: Controller, smoothing: Smoothing, stamped: Motion, t: FloatArray
+) -> FloatArray:
+    """Commanded joints (K, N) of a stamped motion at times that do not decrease."""
+    return led(controller, smoothing.command(stamped, t))
+
+
+def led(controller: Controller, states: States) -> FloatArray:
+    """Commanded joints (K, N) of a smoothed motion."""
+    if controller.model.elasticity == RIGID:
+        return states[0]
+    return states[0] + controller.model.elasticity.leads(controller.robot, *states)
+
+
+def _agree(a: MotionModel, b: MotionModel, apart: frozenset[str]) -> bool:
+    """Whether two models are the same, some fields apart."""
+    return all(
+        getattr(a, field.name) == getattr(b, field.name)
+        for field in fields(MotionModel)
+        if field.name not in apart
+    )

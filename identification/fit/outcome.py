@@ -1,0 +1,57 @@
+"""Each run of a fit, before and after it: what tables and reports show."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ...core.motion.model import MotionModel
+from ..prediction import Prediction, predict
+from .emulation import Nuisance
+from .fitting import Fit
+from .runs import PreparedRun
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """One run.
+
+    Args:
+        run: as the fit saw it.
+        nuisance: of the run, fitted; its clock has been taken off the logs below.
+        before, after: the log beside the emulation with the models of start and end.
+    """
+
+    run: PreparedRun
+    nuisance: Nuisance
+    before: Prediction
+    after: Prediction
+
+
+def outcomes(fitted: Fit, start: MotionModel | None = None) -> list[Outcome]:
+    """All runs of a fit.
+
+    Args:
+        fitted: the fit.
+        start: the model to compare with; None for the one that the fit began with.
+
+    Raises:
+        FlybyError: a run cannot be emulated with one of the models.
+    """
+    p = fitted.parameters
+    first = p.model(p.start) if start is None else start
+    return [
+        Outcome(run, own, predicted(run, first, own), predicted(run, fitted.model, own))
+        for run, own in zip(fitted.runs, fitted.nuisances, strict=True)
+    ]
+
+
+def predicted(run: PreparedRun, model: MotionModel, nuisance: Nuisance) -> Prediction:
+    """A run's log, its clock put right, beside what a model makes of its program."""
+    program = run.program(nuisance.size)
+    return predict(run.controller(model), run.name, program, run.corrected(nuisance.clock))
+
+
+def worst(outcomes: Sequence[Outcome]) -> Outcome:
+    """The run whose path is off the most."""
+    return max(outcomes, key=lambda one: one.after.figures.path_max)

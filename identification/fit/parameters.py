@@ -1,0 +1,239 @@
+"""What is fitted: figures of a motion model, as a vector of about one."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.errors import InputError
+from ...core.motion.model import MotionModel
+from ...core.robot.model import Robot
+from .keys import value_of, with_value
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number that is fitted.
+
+    Args:
+        keys: where it stands in a motion model; several have the same value.
+        start: where the fit begins.
+        lower, upper: what it may be.
+        scale: how far it may well be from its start; the variable is (value − start) / scale.
+    """
+
+    keys: tuple[str, ...]
+    start: float
+    lower: float
+    upper: float
+    scale: float
+
+    def __post_init__(self) -> None:
+        if not self.keys:
+            raise InputError("a parameter needs a key")
+        if not (math.isfinite(self.start) and self.lower <= self.start <= self.upper):
+            raise InputError(
+                f"{self.name}: the start {self.start:g} lies outside of {self.lower:g} to "
+                f"{self.upper:g}"
+            )
+        if not 0 < self.scale < math.inf:
+            raise InputError(f"{self.name}: the scale must be above zero, not {self.scale:g}")
+
+    @property
+    def name(self) -> str:
+        """All its keys."""
+        return " + ".join(self.keys)
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What is usual for figures whose keys match."""
+
+    pattern: re.Pattern[str]
+    lower: float
+    upper: float
+    scale: float
+
+
+_KNOWN = tuple(
+    _Known(re.compile(pattern), lower, upper, scale)
+    for pattern, lower, upper, scale in (
+        (r"blend\..*\.beta\[", -8.0, 8.0, 0.5),
+        (r"blend\..*\.alpha\[", -20.0, 20.0, 0.5),
+        (r"time\.smoothing_s", 1e-3, 0.5, 0.01),
+        (r"time\.settling_s", 0.0, 1.0, 0.1),
+        (r"time\.ramp_s", 0.0, 0.5, 0.02),
+        (r"limit\..*_scale", 0.1, 10.0, 0.5),
+        (r"elasticity\.", -5e-3, 5e-3, 1e-4),
+        (r"torque\.own_s2", 1e-6, 10.0, 0.05),
+        (r"torque\.carried", 0.0, 10.0, 0.05),
+        (r"torque\.weight", 0.0, 5.0, 0.5),
+        (r"torque\.fade_s2", 0.0, 10.0, 0.2),
+    )
+)
+_SHARE = 0.5
+"""Scale of what is not known, as a share of its start."""
+
+
+def parameter(model: MotionModel, text: str) -> Parameter:
+    """The parameter that a text names.
+
+    Args:
+        model: gives the start where the text does not.
+        text: ``key``; ``key + key`` for several with one value; then maybe ``= start``, and maybe
+            ``in lower .. upper``.
+
+    Raises:
+        InputError: there is no such key, or the model has no value there and the text names none.
+    """
+    found = _TEXT.fullmatch(text)
+    if found is None:
+        raise InputError(f"{text!r} names no parameter: 'key', 'key = start in lower .. upper'")
+    keys = tuple(key.strip() for key in found["keys"].split("+"))
+    start = _first(model, keys[0]) if found["start"] is None else _number(found["start"], text)
+    for key in keys:
+        with_value(model, key, start)
+    known = next((k for k in _KNOWN if k.pattern.match(keys[0])), None)
+    if known is None:
+        known = _Known(
+            re.compile(""), 0.0 if start > 0 else -math.inf, math.inf, _SHARE * abs(start) or _SHARE
+        )
+    lower, upper = min(known.lower, start), max(known.upper, start)
+    if found["lower"] is not None:
+        lower, upper = _number(found["lower"], text), _number(found["upper"], text)
+    return Parameter(keys, start, lower, upper, known.scale)
+
+
+_TEXT = re.compile(
+    r"(?P<keys>[^=]+?)\s*(=\s*(?P<start>\S+)\s*)?(\bin\s+(?P<lower>\S+)\s*\.\.\s*(?P<upper>\S+)\s*)?"
+)
+
+
+def _first(model: MotionModel, key: str) -> float:
+    found = value_of(model, key)
+    if found is None:
+        raise InputError(f"{key}: the motion model states nothing there; name a start: {key} = …")
+    return found
+
+
+def _number(text: str, whole: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"{whole!r}: {text!r} is no number") from None
+
+
+def fitted_before(model: MotionModel) -> list[str]:
+    """What the model's figures were fitted by, as their provenance says."""
+    texts: dict[str, None] = {}
+    for origin in model.provenance.values():
+        if origin.status == "fitted":
+            texts.update(dict.fromkeys(map(str, origin.details.get("fitted", ()))))
+    return list(texts)
+
+
+def usual_parameters(model: MotionModel, robot: Robot) -> list[str]:
+    """What is fitted where nobody says what: what the model's figures were fitted by before, or, of
+    a model that never was, how corners bulge, how long commands are averaged, and the scale of each
+    joint's acceleration."""
+    before = fitted_before(model)
+    if before:
+        return before
+    scales = [f"limit.joint_acceleration_scale[{k}] = 1" for k in range(robot.arm_size)]
+    return ["blend.tcp.beta[0] = 0", "time.smoothing_s[0] = 0.02", *scales]
+
+
+@dataclass(frozen=True)
+class ParameterSet:
+    """Several parameters on top of a motion model.
+
+    Args:
+        base: what is not fitted.
+        parameters: what is.
+    """
+
+    base: MotionModel
+    parameters: tuple[Parameter, ...]
+
+    @classmethod
+    def named(cls, base: MotionModel, texts: Iterable[str]) -> ParameterSet:
+        """See `parameter`; one text after the other, each on top of those before.
+
+        Raises:
+            InputError: as `parameter` does, or a key occurs twice.
+        """
+        model = base
+        made: list[Parameter] = []
+        for text in texts:
+            one = parameter(model, text)
+            taken = {key for other in made for key in other.keys}
+            twice = taken.intersection(one.keys)
+            if twice:
+                raise InputError(f"{min(twice)} is to be fitted twice")
+            for key in one.keys:
+                model = with_value(model, key, one.start)
+            made.append(one)
+        return cls(base, tuple(made))
+
+    @property
+    def size(self) -> int:
+        """How many there are."""
+        return len(self.parameters)
+
+    @property
+    def scale(self) -> FloatArray:
+        """(P,)."""
+        return np.array([p.scale for p in self.parameters])
+
+    @property
+    def start(self) -> FloatArray:
+        """(P,), values."""
+        return np.array([p.start for p in self.parameters])
+
+    @property
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """(P,) each, of values."""
+        lower = np.array([p.lower for p in self.parameters])
+        return lower, np.array([p.upper for p in self.parameters])
+
+    def model(self, values: Sequence[float] | FloatArray) -> MotionModel:
+        """The motion model with values (P,).
+
+        Raises:
+            InputError: the model refuses them.
+        """
+        model = self.base
+        for one, value in zip(self.parameters, values, strict=True):
+            for key in one.keys:
+                model = with_value(model, key, float(value))
+        return model
+
+    def starting_at(self, values: FloatArray) -> ParameterSet:
+        """The same with other starts (P,)."""
+        made = (
+            Parameter(p.keys, float(v), min(p.lower, float(v)), max(p.upper, float(v)), p.scale)
+            for p, v in zip(self.parameters, values, strict=True)
+        )
+        return ParameterSet(self.base, tuple(made))
+
+    def holding(self, names: Iterable[str]) -> ParameterSet:
+        """The same without some parameters, which stay at their start."""
+        gone, base = set(names), self.base
+        for one in self.parameters:
+            if one.name in gone:
+                for key in one.keys:
+                    base = with_value(base, key, one.start)
+        return self.without(gone, base)
+
+    def without(self, names: Iterable[str], at: MotionModel | None = None) -> ParameterSet:
+        """The same without some parameters, which stay where a model (the base) has them."""
+        gone = set(names)
+        kept = tuple(p for p in self.parameters if p.name not in gone)
+        return ParameterSet(self.base if at is None else at, kept)

@@ -1,0 +1,217 @@
+"""All runs of a robot as one robust least-squares problem."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.errors import FlybyError, InputError
+from ...core.sqp import NLP
+from .crew import Crew
+from .emulation import Nuisance, Rows
+from .loss import square_root
+from .parameters import ParameterSet
+from .runs import PreparedRun
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+OFFSET_SCALE, CLOCK_SCALE, SIZE_SCALE = 0.01, 0.01, 0.5
+"""s, 1 and 1: the units of nuisances in the problem's variables."""
+MOST_OFFSET, MOST_CLOCK = 0.5, 0.05
+"""s and 1, by which they may leave their starts."""
+SMALLEST, LARGEST = 0.02, 50.0
+"""Factors on zones that were not recorded."""
+
+
+@dataclass(frozen=True)
+class Variables:
+    """What the problem's variables stand for: parameters, then offsets, clocks and sizes.
+
+    Args:
+        parameters: of the motion model.
+        runs: whose nuisances are variables.
+        clocks: names of the clocks that runs share.
+        start: nuisances of each run at the start.
+    """
+
+    parameters: ParameterSet
+    runs: tuple[PreparedRun, ...]
+    clocks: tuple[str, ...]
+    start: tuple[Nuisance, ...]
+
+    @classmethod
+    def of(
+        cls,
+        parameters: ParameterSet,
+        runs: Sequence[PreparedRun],
+        nuisances: Sequence[Nuisance] | None = None,
+    ) -> Variables:
+        """The variables for runs.
+
+        Args:
+            parameters: of the motion model.
+            runs: all of one robot.
+            nuisances: where the runs' own begin; None for what their alignment says.
+        """
+        clocks = tuple(sorted({run.clock for run in runs if run.clock is not None}))
+        start = first_nuisances(runs) if nuisances is None else tuple(nuisances)
+        return cls(parameters, tuple(runs), clocks, start)
+
+    @property
+    def size(self) -> int:
+        """How many variables there are."""
+        return self.parameters.size + len(self.timed) + len(self.clocks) + len(self.sized)
+
+    @property
+    def timed(self) -> tuple[int, ...]:
+        """Indices of the runs with an offset."""
+        return tuple(k for k, run in enumerate(self.runs) if not run.by_place)
+
+    @property
+    def sized(self) -> tuple[int, ...]:
+        """Indices of the runs whose zones are to be found."""
+        return tuple(k for k, run in enumerate(self.runs) if not run.run.zones_known)
+
+    def values(self, x: FloatArray) -> FloatArray:
+        """(P,), the parameters at variables x."""
+        p = self.parameters
+        lower, upper = p.bounds
+        return np.clip(p.start + p.scale * x[: p.size], lower, upper)
+
+    def nuisances(self, x: FloatArray) -> tuple[Nuisance, ...]:
+        """The runs' own at variables x."""
+        offset = self.parameters.size + np.arange(len(self.timed))
+        offsets = dict(zip(self.timed, OFFSET_SCALE * x[offset], strict=True))
+        clocks = dict(zip(self.clocks, CLOCK_SCALE * x[self._clock()], strict=True))
+        sizes = dict(zip(self.sized, SIZE_SCALE * x[self._size()], strict=True))
+        made = []
+        for k, (run, start) in enumerate(zip(self.runs, self.start, strict=True)):
+            made.append(
+                Nuisance(
+                    start.offset + offsets.get(k, 0.0),
+                    start.clock + (0.0 if run.clock is None else clocks[run.clock]),
+                    start.size * float(np.exp(sizes.get(k, 0.0))),
+                )
+            )
+        return tuple(made)
+
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """(n,) each, of the variables."""
+        p = self.parameters
+        lower, upper = p.bounds
+        low, high = [(lower - p.start) / p.scale], [(upper - p.start) / p.scale]
+        for count, most in (
+            (len(self.timed), MOST_OFFSET / OFFSET_SCALE),
+            (len(self.clocks), MOST_CLOCK / CLOCK_SCALE),
+        ):
+            low.append(np.full(count, -most))
+            high.append(np.full(count, most))
+        sizes = np.array([self.start[k].size for k in self.sized])
+        low.append(np.log(SMALLEST / sizes) / SIZE_SCALE)
+        high.append(np.log(LARGEST / sizes) / SIZE_SCALE)
+        return np.concatenate(low), np.concatenate(high)
+
+    def jacobian(self, k: int, rows: Rows, nuisance: Nuisance) -> FloatArray:
+        """(K, M, n), derivatives of a run's residuals with respect to all variables."""
+        p = self.parameters
+        out = np.zeros((*rows.values.shape, self.size))
+        out[..., : p.size] = rows.by_parameter * p.scale
+        run = self.runs[k]
+        if k in self.timed:
+            out[..., p.size + self.timed.index(k)] = OFFSET_SCALE * rows.by_offset
+        if run.clock is not None:
+            place = self._clock()[self.clocks.index(run.clock)]
+            out[..., place] = CLOCK_SCALE * rows.by_clock
+        if k in self.sized:
+            place = self._size()[self.sized.index(k)]
+            out[..., place] = SIZE_SCALE * nuisance.size * rows.by_size
+        return out
+
+    def _clock(self) -> IntArray:
+        return self.parameters.size + len(self.timed) + np.arange(len(self.clocks))
+
+    def _size(self) -> IntArray:
+        return self.size - len(self.sized) + np.arange(len(self.sized))
+
+
+def first_nuisances(runs: Sequence[PreparedRun]) -> tuple[Nuisance, ...]:
+    """The runs' own as their alignment says: a clock is the median of its runs'."""
+    clocks = {
+        name: float(np.median([1 / (1 + run.drift) for run in runs if run.clock == name]))
+        for name in {run.clock for run in runs if run.clock is not None}
+    }
+    return tuple(
+        Nuisance(run.offset, 1.0 if run.clock is None else clocks[run.clock], run.size)
+        for run in runs
+    )
+
+
+class Problem:
+    """The least-squares problem for `flyby.core.sqp`.
+
+    Args:
+        crew: emulates the runs.
+        variables: of the same runs.
+    """
+
+    def __init__(self, crew: Crew, variables: Variables) -> None:
+        self.crew = crew
+        self.variables = variables
+        self._scale = 1.0 / np.sqrt(
+            sum(run.weight.shape[0] * run.weight.shape[1] for run in crew.runs)
+        )
+
+    def nlp(self) -> NLP:
+        """To minimise."""
+        lower, upper = self.variables.bounds()
+        return NLP(
+            self.variables.size,
+            residuals=self.residuals,
+            residual_jacobian=self.jacobian,
+            x_lower=lower,
+            x_upper=upper,
+        )
+
+    def residuals(self, x: FloatArray) -> FloatArray:
+        """All of them, robust and scaled to one; NaN where a program cannot be driven."""
+        v = self.variables
+        found = self.crew.residuals(v.parameters.model(v.values(x)), v.nuisances(x))
+        parts = []
+        for run, one in zip(self.crew.runs, found, strict=True):
+            if isinstance(one, FlybyError):
+                parts.append(np.full(_rows(run), np.nan))
+            else:
+                parts.append(square_root(one.ravel())[0])
+        return np.asarray(self._scale * np.concatenate(parts))
+
+    def jacobian(self, x: FloatArray) -> FloatArray:
+        """(R, n)."""
+        parts = []
+        for rows, J in self.linearised(x):
+            slope = square_root(rows.values)[1]
+            parts.append((slope[..., None] * J).reshape(-1, self.variables.size))
+        return np.asarray(self._scale * np.concatenate(parts))
+
+    def linearised(self, x: FloatArray) -> list[tuple[Rows, FloatArray]]:
+        """Weighted residuals of each run, and their derivatives (K, M, n) by the variables.
+
+        Raises:
+            InputError: a program cannot be driven.
+        """
+        v = self.variables
+        nuisances = v.nuisances(x)
+        out = []
+        for k, rows in enumerate(self.crew.rows(v.parameters, v.values(x), nuisances)):
+            if isinstance(rows, FlybyError):
+                raise InputError(f"{self.crew.runs[k].name}: {rows}") from rows
+            out.append((rows, v.jacobian(k, rows, nuisances[k])))
+        return out
+
+
+def _rows(run: PreparedRun) -> int:
+    """How many weighted residuals a run has."""
+    return int(run.weight.shape[0] * run.weight.shape[1])

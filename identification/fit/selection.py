@@ -1,0 +1,251 @@
+"""Which parts of a motion model earn their parameters: cross-validation over groups of runs.
+
+Runs are left out in groups that share a condition (a zone, a speed, kinds of moves, a posture);
+each candidate model is fitted to the rest and judged by the robust loss of the runs left out, whose
+offsets in time alone are fitted to them. A part earns its parameters if runs that had no say in
+them are predicted better with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.errors import FlybyError, InputError
+from ...core.motion.model import MotionModel
+from ...core.program.zone import Radius
+from .crew import Crew
+from .emulation import Nuisance
+from .fitting import Minimum, minimise
+from .keys import figure_of
+from .loss import loss
+from .parameters import ParameterSet
+from .problem import first_nuisances
+from .runs import PreparedRun
+
+FloatArray = NDArray[np.float64]
+
+POSTURE = 0.5
+"""rad within which starts count as one posture."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A model to be compared.
+
+    Args:
+        name: for the table.
+        parameters: that it fits.
+    """
+
+    name: str
+    parameters: ParameterSet
+
+
+def candidates(parameters: ParameterSet) -> list[Candidate]:
+    """All parameters, and all but those of one figure of the motion file, for each figure; a
+    figure that is not fitted stays where the base of the parameters has it."""
+    figures: dict[str, list[str]] = {}
+    model = parameters.model(parameters.start)
+    for one in parameters.parameters:
+        figure = figure_of(one.keys[0], model) or one.keys[0]
+        figures.setdefault(figure, []).append(one.name)
+    found = [Candidate("all", parameters)]
+    if len(figures) > 1:
+        found += [Candidate(f"all but {k}", parameters.without(v)) for k, v in figures.items()]
+    return found
+
+
+@dataclass(frozen=True)
+class Score:
+    """How a candidate predicts runs that it was not fitted to.
+
+    Args:
+        name: of the candidate.
+        count: of its parameters.
+        loss: mean robust loss per residual of each run, left out.
+        fitted: the same of the runs when they take part, as the mean over the folds.
+        gain: by how much its loss is below the first candidate's: mean over the runs.
+        error: standard error of the gain.
+    """
+
+    name: str
+    count: int
+    loss: tuple[float, ...]
+    fitted: float
+    gain: float
+    error: float
+
+    @property
+    def mean(self) -> float:
+        """Of the runs left out."""
+        return float(np.mean(self.loss))
+
+
+def grouped(runs: Sequence[PreparedRun], trait: str) -> list[tuple[int, ...]]:
+    """Indices of runs that share a trait: ``zone``, ``speed``, ``moves``, ``posture`` or ``run``.
+
+    Raises:
+        InputError: there is no such trait, or all runs share it.
+    """
+    if trait not in TRAITS:
+        raise InputError(f"runs are grouped by {', '.join(TRAITS)}, not by {trait!r}")
+    found: dict[object, list[int]] = {}
+    for k, run in enumerate(runs):
+        found.setdefault(TRAITS[trait](run), []).append(k)
+    if len(found) < 2:
+        raise InputError(f"all runs have the same {trait}: none can be left out")
+    return [tuple(group) for group in found.values()]
+
+
+def folds(runs: Sequence[PreparedRun], count: int) -> list[tuple[int, ...]]:
+    """Indices of runs in ``count`` groups, so that neighbours in the list come apart."""
+    count = min(count, len(runs))
+    return [tuple(range(k, len(runs), count)) for k in range(count)]
+
+
+@dataclass(frozen=True, eq=False)
+class LeftOut:
+    """Runs predicted by a fit in which they had no part.
+
+    Args:
+        indices: of the runs.
+        nuisances: of them; offsets are fitted to them, clocks are those of the fit.
+        model: that was fitted to the others.
+        loss: mean robust loss per residual of each.
+        fitted: the same over the others.
+    """
+
+    indices: tuple[int, ...]
+    nuisances: tuple[Nuisance, ...]
+    model: MotionModel
+    loss: tuple[float, ...]
+    fitted: float
+
+
+def leave_out(
+    runs: Sequence[PreparedRun],
+    parameters: ParameterSet,
+    groups: Sequence[tuple[int, ...]],
+    workers: int = 1,
+    tell: Callable[[str], None] | None = None,
+) -> list[LeftOut]:
+    """Fit to all runs but a group, and predict the group; each group in its turn.
+
+    Args:
+        runs: all of one robot.
+        parameters: to be fitted; start near the fit to all runs, to save time.
+        groups: indices of runs to leave out together.
+        workers: processes.
+        tell: is told how far the work is.
+
+    Raises:
+        InputError: a group holds all runs, or a program cannot be driven.
+    """
+    first, found = first_nuisances(runs), []
+    for number, group in enumerate(groups):
+        if tell is not None:
+            tell(f"leaving out group {number + 1} of {len(groups)}")
+        rest = [k for k in range(len(runs)) if k not in group]
+        if not rest:
+            raise InputError("no run would be left to fit to")
+        with Crew([runs[k] for k in rest], workers) as crew:
+            end = minimise(crew, parameters, [first[k] for k in rest])
+        found.append(_judge([runs[k] for k in group], group, parameters, end))
+    return found
+
+
+def compare_models(
+    runs: Sequence[PreparedRun],
+    candidates: Sequence[Candidate],
+    groups: Sequence[tuple[int, ...]],
+    workers: int = 1,
+    tell: Callable[[str], None] | None = None,
+) -> list[Score]:
+    """Score candidates by the runs that they were not fitted to.
+
+    Raises:
+        InputError: as `leave_out` does.
+    """
+    scores: list[Score] = []
+    for candidate in candidates:
+        say = _named(tell, candidate.name)
+        made = leave_out(runs, candidate.parameters, groups, workers, say)
+        each = np.empty(len(runs))
+        for left in made:
+            each[list(left.indices)] = left.loss
+        against = np.array(scores[0].loss) if scores else each
+        gain = against - each
+        scores.append(
+            Score(
+                candidate.name,
+                candidate.parameters.size,
+                tuple(map(float, each)),
+                float(np.mean([left.fitted for left in made])),
+                float(gain.mean()),
+                float(gain.std(ddof=1) / np.sqrt(len(gain))) if len(gain) > 1 else 0.0,
+            )
+        )
+    return scores
+
+
+def _named(tell: Callable[[str], None] | None, name: str) -> Callable[[str], None] | None:
+    return None if tell is None else lambda text: tell(f"{name}: {text}")
+
+
+def _judge(
+    runs: Sequence[PreparedRun], indices: tuple[int, ...], parameters: ParameterSet, end: Minimum
+) -> LeftOut:
+    """What a fit to others makes of runs."""
+    model = parameters.model(end.values)
+    clocks = {
+        run.clock: one.clock
+        for run, one in zip(end.variables.runs, end.nuisances, strict=True)
+        if run.clock is not None
+    }
+    start = [
+        replace(one, clock=clocks.get(run.clock or "", one.clock))
+        for run, one in zip(runs, first_nuisances(runs), strict=True)
+    ]
+    # The clock is known: the run may shift its offset, and the sizes of zones nobody recorded.
+    still = [replace(run, run=replace(run.run, real=None)) for run in runs]
+    nothing = ParameterSet(model, ())
+    with Crew(still, 1) as crew:
+        alone = minimise(crew, nothing, start)
+        found = crew.residuals(model, alone.nuisances)
+    each = []
+    for run, one in zip(runs, found, strict=True):
+        if isinstance(one, FlybyError):
+            raise InputError(f"{run.name}: {one}") from one
+        each.append(float(loss(one).mean()))
+    return LeftOut(indices, alone.nuisances, model, tuple(each), end.last)
+
+
+def _zone(run: PreparedRun) -> float:
+    zones = [m.zone.tcp for m in run.run.program.moves if isinstance(m.zone, Radius)]
+    return round(max(zones, default=0.0), 4)
+
+
+def _speed(run: PreparedRun) -> float:
+    return max((m.speed.tcp or 0.0 for m in run.run.program.moves), default=0.0)
+
+
+def _moves(run: PreparedRun) -> tuple[str, ...]:
+    return tuple(sorted({type(move).__name__ for move in run.run.program.moves}))
+
+
+def _posture(run: PreparedRun) -> tuple[int, ...]:
+    return tuple(int(v) for v in np.round(np.median(run.q, axis=0) / POSTURE))
+
+
+TRAITS: dict[str, Callable[[PreparedRun], object]] = {
+    "zone": _zone,
+    "speed": _speed,
+    "moves": _moves,
+    "posture": _posture,
+    "run": lambda run: run.name,
+}
+"""By which runs are left out together."""

@@ -1,0 +1,198 @@
+"""The page of a fit: parameters, what is left run by run, pictures, the motion file."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterable, Sequence
+from html import escape
+
+import numpy as np
+
+from ..fit import Fit, Outcome
+from ..residuals import Figures
+from .corners import CutCorner, cut_corners
+from .picture import draw_prediction
+
+_STYLE = """
+body { font: 14px/1.5 system-ui, sans-serif; max-width: 75rem; margin: 2rem auto; padding: 0 1rem;
+       color: #222 }
+h1, h2, h3 { line-height: 1.2 }
+table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular-nums }
+th, td { padding: .2rem .7rem; text-align: right; border-bottom: 1px solid #e6e6e6 }
+th { border-bottom: 1px solid #888; font-weight: 600; vertical-align: bottom }
+th:first-child, td:first-child { text-align: left }
+img { width: 100%; height: auto }
+pre { background: #f6f6f6; padding: 1rem; overflow-x: auto }
+p.note { color: #555 }
+"""
+_BEFORE_AFTER = " → "
+_CORNERS = 12
+"""Corners of a run that are listed; those where the log strays most."""
+
+
+def page(fitted: Fit, outcomes: Sequence[Outcome], motion_file: str) -> str:
+    """The page, whole in one file.
+
+    Args:
+        fitted: the fit.
+        outcomes: its runs (`fit.outcomes`).
+        motion_file: the text of the motion file that it gave (`fit.motion_file`).
+    """
+    robot = fitted.runs[0].robot.name
+    title = f"How {robot} is driven"
+    body = "\n".join(
+        [
+            f"<h1>{escape(title)}</h1>",
+            _summary(fitted, outcomes),
+            "<h2>Parameters</h2>",
+            _parameters(fitted),
+            "<h2>What is left, run by run</h2>",
+            _residuals(outcomes),
+            "<h2>Cycle times</h2>",
+            _times(outcomes),
+            "<h2>Runs</h2>",
+            *(_run(one) for one in outcomes),
+            "<h2>The motion file</h2>",
+            f"<pre>{escape(motion_file)}</pre>",
+        ]
+    )
+    return (
+        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}'
+        f"</title><style>{_STYLE}</style></head><body>\n{body}\n</body></html>\n"
+    )
+
+
+def _summary(fitted: Fit, outcomes: Sequence[Outcome]) -> str:
+    worst = max(outcomes, key=lambda one: one.after.figures.path_max)
+    lines = [
+        f"{fitted.parameters.size} parameters, fitted to {len(outcomes)} logged runs in "
+        f"{fitted.iterations} iterations: mean robust loss {fitted.before:.4g} before, "
+        f"{fitted.after:.4g} after.",
+        f"The log that strays most from its emulation is {worst.run.name}: "
+        f"{1e3 * worst.after.figures.path_max:.3f} mm.",
+    ]
+    if not fitted.converged:
+        lines.append("<b>The fit was ended before it could go no further.</b>")
+    return "".join(f"<p>{line}</p>" for line in lines)
+
+
+def _parameters(fitted: Fit) -> str:
+    starts = {p.name: p.start for p in fitted.parameters.parameters}
+    known = [
+        (
+            one.name,
+            f"{starts[one.name]:.5g}",
+            f"{one.value:.5g}",
+            f"{one.deviation:.2g}",
+            f"{one.lower:.4g} … {one.upper:.4g}",
+        )
+        for one in fitted.intervals
+    ]
+    unseen = [
+        f'<p class="note">{escape(one.name)} is not identifiable: {escape(one.reason)}; it stays '
+        "as it was.</p>"
+        for one in fitted.unseen
+    ]
+    return _table(("parameter", "start", "fitted", "deviation", "95 %"), known) + "".join(unseen)
+
+
+def _residuals(outcomes: Sequence[Outcome]) -> str:
+    heading = (
+        "run",
+        "path of the TCP, mm: greatest",
+        "99 %",
+        "RMS",
+        "path of the joints, °: greatest",
+        "99 %",
+        "RMS",
+        "joints at their time, °: greatest",
+        "99 %",
+        "RMS",
+    )
+    rows = [
+        (one.run.name, *(_both(*pair) for pair in zip(*map(_numbers, _pair(one)), strict=True)))
+        for one in outcomes
+    ]
+    return _table(heading, rows) + (
+        '<p class="note">Log less emulation, before → after the fit. <i>Path</i>: time aside. '
+        "<i>At their time</i>: after one constant offset for each run.</p>"
+    )
+
+
+def _pair(one: Outcome) -> tuple[Figures, Figures]:
+    return one.before.figures, one.after.figures
+
+
+def _numbers(f: Figures) -> tuple[float, ...]:
+    path = (f.path_max, f.path_p99, f.path_rms)
+    place = (f.joint_path_max, f.joint_path_p99, f.joint_path_rms)
+    time = (f.joint_time_max, f.joint_time_p99, f.joint_time_rms)
+    return (*(1e3 * value for value in path), *map(float, np.degrees([*place, *time])))
+
+
+def _both(before: float, after: float) -> str:
+    return f"{before:.3f}{_BEFORE_AFTER}{after:.3f}"
+
+
+def _times(outcomes: Sequence[Outcome]) -> str:
+    rows = []
+    for one in outcomes:
+        before, after = one.before.alignment, one.after.alignment
+        rows.append(
+            (
+                one.run.name,
+                f"{after.logged_moving:.3f}",
+                _both(before.moving, after.moving),
+                f"{before.cycle_time_ratio:.4f}{_BEFORE_AFTER}{after.cycle_time_ratio:.4f}",
+                f"{1e3 * one.after.figures.drift:+.1f}",
+                f"{one.nuisance.clock:.5f}",
+                f"{one.nuisance.size:.4g}" if not one.run.run.zones_known else "as programmed",
+            )
+        )
+    heading = (
+        "run", "logged, s", "emulated, s", "emulated / logged", "drift, ms", "clock", "zones",
+    )  # fmt: skip
+    return _table(heading, rows) + (
+        '<p class="note"><i>Drift</i>: how far the log falls behind from start to end. '
+        "<i>Clock</i>: seconds that pass while the log counts one, fitted; it is taken off the "
+        "logs. <i>Zones</i>: as a factor of what the record says, where that was not recorded.</p>"
+    )
+
+
+def _run(one: Outcome) -> str:
+    picture = base64.b64encode(draw_prediction(one.after, "png")).decode("ascii")
+    notes = "".join(f'<p class="note">{escape(note)}</p>' for note in one.run.log.notes)
+    name = escape(one.run.name)
+    return (
+        f"<h3>{name}</h3>{notes}{_corners(cut_corners(one.after))}"
+        f'<img alt="log and emulation of {name}" src="data:image/png;base64,{picture}">'
+    )
+
+
+def _corners(corners: Sequence[CutCorner]) -> str:
+    if not corners:
+        return ""
+    worst = sorted(sorted(corners, key=lambda corner: -corner.off)[:_CORNERS], key=lambda c: c.move)
+    rows = [
+        (
+            f"{corner.move + 1}",
+            f"{1e3 * corner.radius:.4g}",
+            f"{1e3 * corner.logged:.3f}",
+            f"{1e3 * corner.emulated:.3f}",
+            f"{1e3 * corner.off:.3f}",
+        )
+        for corner in worst
+    ]
+    heading = (
+        "corner of move", "zone, mm", "least distance from the waypoint, mm: logged", "emulated",
+        "path off nearby, mm",
+    )  # fmt: skip
+    return _table(heading, rows)
+
+
+def _table(heading: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    top = "".join(f"<th>{escape(cell)}</th>" for cell in heading)
+    body = "\n".join(
+        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
+    )
+    return f"<table><thead><tr>{top}</tr></thead><tbody>\n{body}\n</tbody></table>"

@@ -1,0 +1,39 @@
+"""Optimal control of the free robot: how fast, and how cheaply, it could go if no program language
+stood in the way.
+
+After S. Björkenstam, D. Gleeson, R. Bohlin, J. S. Carlson and B. Lennartson, "Energy Efficient and
+Collision Free Motion of Industrial Robots using Optimal Control" (CASE 2013), and D. Gleeson,
+"Trajectory Optimization including Robot Controller Emulation" (thesis, Chalmers 2025), chapters 2
+and 3. What it does and what it reaches stands in docs/optimal_control.md.
+"""
+
+from .audit import Audit
+from .effort import Effort
+from .motion import Motion
+from .motor import SQUARED_TORQUE, Motors, RunningCost, SquaredTorque
+from .optimize import optimize
+from .result import Optimum, Step, energy_of
+from .scheme import SchemeKind
+from .surroundings import Surroundings
+from .task import ControlLimits, Objective, Task, TorqueLine, Waypoint
+
+__all__ = [
+    "SQUARED_TORQUE",
+    "Audit",
+    "ControlLimits",
+    "Effort",
+    "Motion",
+    "Motors",
+    "Objective",
+    "Optimum",
+    "RunningCost",
+    "SchemeKind",
+    "SquaredTorque",
+    "Step",
+    "Surroundings",
+    "Task",
+    "TorqueLine",
+    "Waypoint",
+    "energy_of",
+    "optimize",
+]

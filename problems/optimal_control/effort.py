@@ -1,0 +1,55 @@
+"""How hard to try."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ...core.errors import InputError
+from .scheme import SchemeKind
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Settings of a search.
+
+    Args:
+        intervals: of the first grid, roughly.
+        scheme: what the motion is between nodes.
+        group: intervals that stretch together; None for whole legs between waypoints, which is a
+            fixed grid in scaled time where there is one leg.
+        tolerance: share by which limits may be exceeded between nodes.
+        solver_tolerance: of the KKT conditions and of constraints.
+        gain: share of the objective below which an outer iteration counts as the last one.
+        outer: outer iterations at most.
+        box: rad or m by which joints may move at first in an outer iteration, near obstacles.
+        places: on each interval, where distances are linearised.
+        slots: pairs of bodies at most whose distance is linearised at a place.
+        qp: back end of the SQP solver.
+
+    Raises:
+        InputError: a number out of its range.
+    """
+
+    intervals: int = 60
+    scheme: SchemeKind = SchemeKind.LINEAR
+    group: int | None = None
+    tolerance: float = 1e-3
+    solver_tolerance: float = 1e-5
+    gain: float = 2e-4
+    outer: int = 60
+    box: float = 0.2
+    places: int = 2
+    slots: int = 3
+    qp: str = "interior_point"
+
+    def __post_init__(self) -> None:
+        for name in ("intervals", "outer", "places", "slots"):
+            if getattr(self, name) < 1:
+                raise InputError(f"Effort.{name} is one or more, not {getattr(self, name)}")
+        if self.group is not None and self.group < 1:
+            raise InputError(f"Effort.group is one or more, or None, not {self.group}")
+        for name in ("tolerance", "solver_tolerance", "gain", "box"):
+            value = getattr(self, name)
+            if not 0.0 < value < math.inf:
+                raise InputError(f"Effort.{name} is above zero and finite, not {value}")

@@ -1,0 +1,106 @@
+"""Optimal control of a robot from a task to a motion that is proven."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...core.errors import InputError, MotionError, Note
+from .audit import audit
+from .effort import Effort
+from .limits import Limits
+from .proof import prove
+from .refusal import check_task
+from .result import Optimum
+from .sampled import Plant
+from .scheme import Scheme
+from .search import Report, Search
+from .start import Guess, Polyline, first_guess
+from .surroundings import Surroundings
+from .task import Task
+
+
+def optimize(
+    task: Task,
+    around: Surroundings | None = None,
+    effort: Effort | None = None,
+    vias: Sequence[ArrayLike] | None = None,
+    report: Report | None = None,
+) -> Optimum:
+    """The best motion found for a task.
+
+    Args:
+        task: what is asked.
+        around: what to keep clear of; None for nothing.
+        effort: how hard to try.
+        vias: corners (c, N) of a path of joint lines that is free, for each leg between
+            waypoints; None for straight lines.
+        report: is told of every outer iteration; True ends the search, as Ctrl-C does, with the
+            best motion so far.
+
+    Raises:
+        InputError: what is asked does not fit the robot or its limits; the joint is named.
+        MotionError: the robot collides at a station or on the path to begin with, or no motion
+            within the limits was found.
+    """
+    effort = effort or Effort()
+    limits = Limits.of(task)
+    needed = limits.dynamic or task.objective.time_weight < 1.0
+    plant = Plant(task) if needed else None
+    check_task(task, limits, plant, around, effort.scheme)
+    line = _line(task, vias)
+    scheme = Scheme(effort.scheme)
+    guess = first_guess(task, limits, plant, line, scheme, effort.intervals, effort.group)
+    if around is not None:
+        _check_first(task, guess, around)
+    search = Search(task, limits, plant, around, effort, guess, report)
+    converged = search.run()
+    return _optimum(search, guess, converged)
+
+
+def _line(task: Task, vias: Sequence[ArrayLike] | None) -> Polyline:
+    if vias is None:
+        return Polyline.direct(task)
+    if len(vias) != task.legs:
+        raise InputError(
+            f"corners of {len(vias)} legs were given; there are {task.legs} between waypoints"
+        )
+    return Polyline.through(task, [np.asarray(rows, dtype=float) for rows in vias])
+
+
+def _check_first(task: Task, guess: Guess, around: Surroundings) -> None:
+    found = prove(task, guess.motion, around.scene, around.clearance)
+    if not found.certificate.proven:
+        raise MotionError(
+            "the path to begin with does not keep the clearance: "
+            f"{found.certificate}; plan one (flyby.problems.planning), or give corners of a free "
+            "path"
+        )
+
+
+def _optimum(search: Search, guess: Guess, converged: bool) -> Optimum:
+    if search.best is None:
+        seen = audit(
+            search.task, search.limits, search.plant, search.base.motion, search.effort.tolerance
+        )
+        reason = search.steps[-1].what if search.steps else "the search was ended"
+        raise MotionError(
+            f"no motion within the limits was found: the best one uses {100 * seen.used:.1f} % of "
+            f"one of them ({reason}); allow more intervals, or begin with another path"
+        )
+    _, motion, seen, proof = search.best
+    notes = []
+    if not converged:
+        notes.append(Note("the search ended before it converged: a longer one may find better"))
+    return Optimum(
+        search.task,
+        motion,
+        guess.motion,
+        seen,
+        None if proof is None else proof.certificate,
+        tuple(search.steps),
+        converged,
+        tuple(notes),
+    )

@@ -1,0 +1,1 @@
+"""Spray painting: initial curve, deposition model, thickness optimisation, executable program."""

@@ -1,0 +1,128 @@
+"""A painting made executable: program, coat as emulated, proof."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from ....core.collision.certificate import certify, scenes_of
+from ....core.collision.verdict import Certificate
+from ....core.errors import Note
+from ....core.motion.controller import Controller
+from ....core.program.program import Program
+from ...solution import scene_notes
+from ..coat import Coat
+from ..deposition import Deposition
+from ..painting import Painting
+from ..trajectory import PaintTrajectory
+from .emulated import Driven, drive
+from .feedback import Execution, Progress, drive_evenly, judged
+from .spin import Posture, choose_posture
+from .station import Station
+from .writing import DriveOptions, with_run_in
+
+_BUDGET = 400_000
+"""Distances measured for the proof: a minute's worth. Usually some thousand are enough."""
+
+ReadBack = Callable[[Program], Program]
+"""The program as the controller would read it from its text: numbers rounded."""
+
+
+@dataclass(frozen=True, eq=False)
+class Executable:
+    """A program that paints.
+
+    Args:
+        program: as read from its text.
+        planned: the trajectory that it drives, run-in included, in the part's frame.
+        posture: how the robot holds the gun at its waypoints.
+        driven: the gun's motion as emulated.
+        coat: that it leaves, on all of the part.
+        rounds: standard deviation (m) of the coat as emulated in each round of correction, on the
+            points of the optimisation.
+        certificate: that the robot keeps its clearance; None where no proof was asked for.
+        notes: what the emulator has to say.
+    """
+
+    program: Program
+    planned: PaintTrajectory
+    posture: Posture
+    driven: Driven
+    coat: Coat
+    rounds: tuple[float, ...]
+    certificate: Certificate | None
+    notes: tuple[Note, ...]
+
+
+def execute(
+    painting: Painting,
+    station: Station,
+    options: DriveOptions,
+    speed: tuple[float, float],
+    *,
+    read_back: ReadBack = lambda program: program,
+    prove: bool = True,
+    progress: Progress | None = None,
+) -> Executable:
+    """The program of a painting for a robot, corrected until the coat as emulated is even.
+
+    Args:
+        painting: what to execute.
+        station: robot, gun and place.
+        options: zones, run-in, outputs.
+        speed: least and largest programmed speed, m/s.
+        read_back: the program as it is read from its text.
+        prove: whether to prove that robot and gun keep the cell's clearance, from the part too.
+        progress: see `drive_evenly`.
+
+    Raises:
+        MotionError: the robot cannot reach a stretch of the curve, or cannot drive it.
+        InputError: the language cannot say what the gun needs.
+    """
+    controller = Controller(station.vendor, station.cell.robot)
+    planned = with_run_in(painting.best, options.run_in)
+    posture = choose_posture(planned, station)
+    coarse, judge = painting.coarse, painting.judge
+    made: Execution = drive_evenly(
+        controller,
+        planned,
+        posture,
+        station,
+        options,
+        coarse.deposition,
+        coarse.target,
+        speed,
+        coarse.visible(planned),
+        progress,
+    )
+    program = replace(read_back(made.program), start=made.program.start)
+    driven = drive(controller, program, made.planned, station)
+    finely = Deposition(judge.part.samples, judge.footprint, subpoints=1)
+    found = judged(finely, driven, judge.target, judge.visible(made.planned))
+    notes = _told(driven)
+    certificate = None
+    if prove:
+        cell = station.with_part(judge.part).cell
+        scenes = scenes_of(cell)
+        certificate = certify(controller, driven.run, scenes, cell.clearance, budget=_BUDGET)
+        notes = (*scene_notes(scenes, program), *notes)
+    return Executable(
+        program,
+        made.planned,
+        posture,
+        driven,
+        found,
+        made.rounds,
+        certificate,
+        notes,
+    )
+
+
+def _told(driven: Driven) -> tuple[Note, ...]:
+    """The emulator's notes, without places in a text that is not the user's yet; the first move
+    only makes sure where the robot begins."""
+    return tuple(
+        replace(note, span=None)
+        for note in driven.notes
+        if not (note.move == 0 and "goes nowhere" in note.message)
+    )

@@ -1,0 +1,194 @@
+"""The whole way from a part to an even coat: first curve, best speeds, full optimisation, judged
+at every stage on the part itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+
+import numpy as np
+
+from ...core.errors import InputError, Note
+from .coat import Coat, coat
+from .deposition import BoolArray, Deposition
+from .footprint import Footprint
+from .initial.curve import InitialCurve, initial_curve
+from .initial.plan import SweepPlan
+from .optimize import optimize
+from .optimize_options import OuterLoop, PaintLimits, PaintWeights
+from .optimize_round import Progress
+from .part import Part
+from .reference import Reference
+from .resolution import coarsened
+from .robust import NO_ERRORS, PaintErrors
+from .sight import sight
+from .speeds import SpeedSolution, best_speeds
+from .trajectory import PaintTrajectory
+
+POINTS = 2600
+"""Of the part, on which it is optimised."""
+
+
+class Stage(StrEnum):
+    """What has been done to a trajectory."""
+
+    START = "start"
+    """The first curve, at the one speed that gives the target on average."""
+    SPEED = "speed only"
+    FULL = "full"
+    DRIVEN = "as emulated"
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """A coat that is wanted.
+
+    Args:
+        target: thickness, m.
+        plan: of the first curve; its speed is only where to begin.
+        limits, weights, loop, errors: of the optimisation.
+        points: of the part, on which it is optimised; it is judged on all of them.
+        seed: of their choice.
+    """
+
+    target: float
+    plan: SweepPlan
+    limits: PaintLimits = field(default_factory=PaintLimits)
+    weights: PaintWeights = field(default_factory=PaintWeights)
+    loop: OuterLoop = field(default_factory=lambda: OuterLoop(rounds=12, enough=0.05))
+    errors: PaintErrors = NO_ERRORS
+    points: int = POINTS
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.target < 0.01:
+            raise InputError(f"a coat of {self.target:g} m: thickness is in metres here")
+
+
+class Judge:
+    """Judges trajectories on all of a part, with what the gun does not see.
+
+    Args:
+        part: the part.
+        footprint: of the gun.
+        target: m.
+    """
+
+    def __init__(self, part: Part, footprint: Footprint, target: float) -> None:
+        self.part = part
+        self.target = target
+        self.deposition = Deposition(part.samples, footprint)
+
+    @property
+    def footprint(self) -> Footprint:
+        return self.deposition.footprint
+
+    def visible(self, trajectory: PaintTrajectory) -> BoolArray | None:
+        """(V, S) what each segment sees; None where nothing stands in the way."""
+        seen = sight(self.part, self.footprint, trajectory)
+        return None if seen.all() else seen
+
+    def coat(self, trajectory: PaintTrajectory) -> Coat:
+        """The coat that a trajectory leaves on all of the part."""
+        visible = self.visible(trajectory)
+        return coat(self.deposition.with_visible(visible), trajectory, self.target)
+
+
+@dataclass(frozen=True, eq=False)
+class Painting:
+    """A part, its coat, and how it came about.
+
+    Args:
+        judge: of all coats.
+        coarse: the same of the points on which it was optimised.
+        curve: the first one.
+        trajectories: at each stage, the start first.
+        coats: what they leave on all of the part.
+        speeds: of the stage of speeds only, with its certificate.
+        interrupted: whether the user ended the optimisation.
+        notes: what the user should know.
+    """
+
+    judge: Judge
+    coarse: Judge
+    curve: InitialCurve
+    trajectories: dict[Stage, PaintTrajectory]
+    coats: dict[Stage, Coat]
+    speeds: SpeedSolution
+    interrupted: bool
+    notes: tuple[Note, ...]
+
+    @property
+    def best(self) -> PaintTrajectory:
+        """The trajectory of the last stage."""
+        return list(self.trajectories.values())[-1]
+
+
+def paint(
+    part: Part,
+    footprint: Footprint,
+    wishes: Wishes,
+    say: Callable[[str], None] = lambda text: None,
+    progress: Progress | None = None,
+) -> Painting:
+    """The most even coat that is found for a part.
+
+    Args:
+        part: at the resolution at which it is judged.
+        footprint: of the gun.
+        wishes: what is wanted.
+        say: is told what is being done.
+        progress: see `optimize`.
+
+    Raises:
+        InputError: the part cannot be painted as planned.
+    """
+    say("first curve")
+    curve = initial_curve(part, wishes.plan, footprint)
+    few = coarsened(part, wishes.points, wishes.seed)
+    judge, coarse = (Judge(one, footprint, wishes.target) for one in (part, few))
+    visible = coarse.visible(curve.trajectory)
+    seen = coarse.deposition.with_visible(visible)
+    start = at_mean(seen, curve.trajectory, wishes)
+    say("best speeds")
+    low, high = wishes.limits.speed
+    speeds = best_speeds(seen, start, wishes.target, low, high)
+    found = optimize(
+        coarse.deposition,
+        start,
+        wishes.target,
+        Reference.below(start, wishes.plan.distance),
+        limits=wishes.limits,
+        weights=wishes.weights,
+        loop=wishes.loop,
+        errors=wishes.errors,
+        sight=None if visible is None else lambda now: sight(few, footprint, now),
+        progress=progress,
+    )
+    say("judging")
+    trajectories = {
+        Stage.START: start,
+        Stage.SPEED: speeds.trajectory,
+        Stage.FULL: found.trajectory,
+    }
+    coats = {stage: judge.coat(trajectory) for stage, trajectory in trajectories.items()}
+    notes = tuple(dict.fromkeys((*curve.notes, *speeds.notes, *found.notes)))
+    return Painting(judge, coarse, curve, trajectories, coats, speeds, found.interrupted, notes)
+
+
+def at_mean(deposition: Deposition, trajectory: PaintTrajectory, wishes: Wishes) -> PaintTrajectory:
+    """The trajectory at the one speed, within its limits, that comes nearest to the target on
+    average.
+
+    Raises:
+        InputError: no paint gets onto the part.
+    """
+    samples = deposition.samples
+    mean = float(samples.areas @ deposition.thickness(trajectory)) / samples.area
+    if not mean > 0.0:
+        raise InputError("no paint gets onto the part: check the gun's distance and the footprint")
+    factor = wishes.target / mean
+    low, high = wishes.limits.speed
+    speeds = np.clip(trajectory.speeds / factor, low, high)
+    return replace(trajectory, duration=np.maximum(trajectory.lengths / speeds, 1e-3))

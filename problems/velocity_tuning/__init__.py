@@ -1,0 +1,25 @@
+"""Velocity tuning: how fast a path whose geometry is fixed is best passed."""
+
+from .cones import TuningError
+from .drives import Drive, TorqueCurve, drives_of
+from .path import FixedPath, Rigid
+from .result import Tuned, Way
+from .task import Objective, Task
+from .tune import tune, tune_by_cones, tune_by_sweeps, tune_in_sequence
+
+__all__ = [
+    "Drive",
+    "FixedPath",
+    "Objective",
+    "Rigid",
+    "Task",
+    "TorqueCurve",
+    "Tuned",
+    "TuningError",
+    "Way",
+    "drives_of",
+    "tune",
+    "tune_by_cones",
+    "tune_by_sweeps",
+    "tune_in_sequence",
+]

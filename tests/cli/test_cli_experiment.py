@@ -1,0 +1,181 @@
+"""``flyby experiment``: programs and records in a folder, and logs that come back."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import Result
+
+from flyby.core.motion.blend import Blend
+from flyby.core.motion.controller import Controller
+from flyby.core.program.move import MoveJ, MoveL
+from flyby.core.program.target import JointTarget
+from flyby.core.registry import find_robot, find_vendor
+
+ROOT = Path(__file__).parents[2]
+Flyby = Callable[..., Result]
+SMALL = (
+    *("--postures", 1, "--angles", "60,110", "--zones", "8,20", "--speeds", 200),
+    *("--minutes", 10, "--kinds", "lines,joints"),
+)
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """The folder of a small experiment of a robot, written once."""
+    from typer.testing import CliRunner
+
+    from flyby.cli.main import app
+
+    made: dict[str, Path] = {}
+
+    def folder(robot: str) -> Path:
+        if robot not in made:
+            made[robot] = tmp_path_factory.mktemp("experiment") / "runs"
+            words = ["experiment", "--robot", robot, "--out", made[robot], *SMALL]
+            result = CliRunner().invoke(app, [str(word) for word in words])
+            assert result.exit_code == 0, result.output
+        return made[robot]
+
+    return folder
+
+
+@pytest.mark.parametrize("robot", ["abb/irb6640-180-255", "kuka/kr3-r540", "ur/ur5e"])
+def test_a_folder_holds_programs_records_a_page_and_a_picture(folders, robot: str) -> None:
+    folder = folders(robot)
+    names = {path.stem for path in folder.glob("*.json")}
+    assert names == {"p1_line_v200_1", "p1_joint_v200_1"}
+    page = (folder / "README.md").read_text("utf-8")
+    assert (folder / "overview.png").read_bytes().startswith(b"\x89PNG")
+    suffix = {"abb": ".mod", "kuka": ".src", "ur": ".script"}[robot.partition("/")[0]]
+    for name in names:
+        told = json.loads((folder / f"{name}.json").read_text("utf-8"))
+        assert name in page and told["log"]["file"] == f"{name}.csv"
+        assert {path.name for path in (folder / name).iterdir()} == set(told["program"])
+        assert name + suffix in told["program"]
+        assert len(told["design"]["corners"]) == 4 and len(told["moves"]) == 9
+
+
+@pytest.mark.parametrize("away", [0.1, 0.0])
+def test_a_log_that_comes_back_is_compared(
+    folders, flyby: Flyby, tmp_path: Path, away: float
+) -> None:
+    """A controller with another motion model drives the run, from elsewhere or from its start, and
+    logs it with noise: with the model that it has, what is left is the noise."""
+    robot, vendor = find_robot("ur/ur5e"), find_vendor("ur")
+    name = "p1_joint_v200_1"
+    record = tmp_path / f"{name}.json"
+    record.write_bytes((folders(robot.name) / record.name).read_bytes())
+    source = folders(robot.name) / name / f"{name}.script"
+    program = vendor.read_file(source, robot=robot)
+    model = replace(vendor.motion_of(robot), joint=Blend(beta=(1.5,)), smoothing=(0.04,))
+    start = JointTarget(tuple(value + away for value in program.moves[0].target.joints))
+    driven = Controller(vendor, robot, model).run(program, start, 0.008).trajectory
+    noise = np.random.default_rng(3).normal(0, 2e-6, driven.q.shape)
+    rows = np.column_stack([100.0 + driven.t, driven.q + noise])
+    header = ",".join(["t", *(f"q{k}" for k in range(1, 7))])
+    np.savetxt(tmp_path / f"{name}.csv", rows, "%.9g", ",", header=header, comments="")
+    motion = tmp_path / "motion.toml"
+    motion.write_text("[blend.joint]\nbeta = [1.5]\n[time]\nsmoothing_s = 0.04\n", "utf-8")
+
+    def compared(*options: object) -> dict:
+        result = flyby("compare", record, "--json", *options)
+        assert result.exit_code == 0, result.output
+        return json.loads(result.stdout)
+
+    today, known = compared(), compared("--motion", motion)
+    assert known["run"] == name and known["robot"] == robot.name
+    assert known["path_max_m"] < 3e-5 and known["joint_time_p99_rad"] < 1e-4
+    assert known["cycle_time_ratio"] == pytest.approx(1.0, abs=2e-3)
+    assert today["path_max_m"] > 1e-3
+    assert known["torn"] == 0 and known["compared"] > 0.8 * len(rows)
+
+
+def test_a_run_without_its_log_says_what_is_missing(folders, flyby: Flyby) -> None:
+    record = folders("ur/ur5e") / "p1_line_v200_1.json"
+    result = flyby("compare", record)
+    assert result.exit_code == 1 and "p1_line_v200_1.csv" in result.stderr
+
+
+def test_files_are_replaced_only_when_told(folders, flyby: Flyby) -> None:
+    folder = folders("ur/ur5e")
+    words = ("experiment", "--robot", "ur/ur5e", "--out", folder, *SMALL)
+    before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    result = flyby(*words)
+    assert result.exit_code == 1 and "--force replaces it" in result.stderr
+    result = flyby(*words, "--force", "--json")
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    assert {run["name"] for run in told["runs"]} == {"p1_line_v200_1", "p1_joint_v200_1"}
+    assert told["seconds_s"] < 600 and set(told["files"]) == set(map(str, before))
+    after = {path: path.read_bytes() for path in before}
+    assert after == before
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--kinds", "splines"), "--kinds splines: lines, joints"),
+        (("--tool", "gun"), "give --cell"),
+        (("--angles", "0"), "corner angles"),
+        (("--zones", "a"), "--zones: 'a' is no number"),
+        (("--at", "0,0,0"), "has 6 axes"),
+        (("--at", "0,-90,0,-90,0,0"), "singular"),
+        (("--minutes", "0"), "time above zero"),
+        (("--period", "0.003"), "cycles of 0.002 s"),
+    ],
+)
+def test_what_is_no_use_is_refused(
+    flyby: Flyby, tmp_path: Path, options: tuple[str, ...], message: str
+) -> None:
+    out = tmp_path / "runs"
+    result = flyby("experiment", "--robot", "ur/ur5e", "--out", out, *SMALL, *options)
+    assert result.exit_code == 1 and message in " ".join(result.stderr.split())
+    assert not out.exists()
+
+
+def test_a_cell_and_a_posture_are_taken(flyby: Flyby, tmp_path: Path) -> None:
+    cell = tmp_path / "cell.toml"
+    cell.write_text(
+        'robot = "kuka/kr3-r540"\nclearance_mm = 8\n'
+        "base = { xyz_mm = [200, 0, 500], abc_deg = [90, 0, 0] }\n"
+        "[tool.pin]\ntcp = { xyz_mm = [10, 0, 90] }\ncapsule_mm = [8, 60]\n"
+        "pose = { xyz_mm = [0, 0, 40] }\n[allow]\npairs = [['A6', 'pin'], ['A5', 'pin']]\n"
+        '[[obstacle]]\nname = "floor"\nbox_mm = [2000, 2000, 20]\n'
+        "pose = { xyz_mm = [0, 0, 0] }\n",
+        "utf-8",
+    )
+    out = tmp_path / "runs"
+    at = "10,-80,100,20,60,30"
+    words = ("experiment", "--cell", cell, "--tool", "pin", "--out", out, "--at", at, *SMALL)
+    result = flyby(*words, "--json")
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    assert told["postures_rad"] == [pytest.approx(np.radians([float(v) for v in at.split(",")]))]
+    assert told["notes"] == [] and all("proven" in run["clearance"] for run in told["runs"])
+    record = json.loads((out / "p1_line_v200_1.json").read_text("utf-8"))
+    assert record["tool"]["xyz_m"] == [0.01, 0.0, 0.09]
+    vendor, robot = find_vendor("kuka"), find_robot("kuka/kr3-r540")
+    source = out / "p1_line_v200_1" / "p1_line_v200_1.src"
+    read = vendor.read_file(source, robot=robot)
+    assert read.moves[1].tool.tcp.position == pytest.approx((0.01, 0.0, 0.09))
+    assert isinstance(read.moves[0], MoveJ) and isinstance(read.moves[1], MoveL)
+
+
+def test_options_are_documented() -> None:
+    text = (ROOT / "docs" / "cli.md").read_text("utf-8")
+    section = text[text.index("## flyby experiment") : text.index("## flyby compare")]
+    import re
+
+    from typer.main import get_command
+
+    from flyby.cli.main import app
+
+    (command,) = [c for n, c in get_command(app).commands.items() if n == "experiment"]
+    options = {option for param in command.params for option in param.opts}
+    assert {o for o in options if o != "--help"} <= set(re.findall(r"--[a-z]+", section))

@@ -1,0 +1,176 @@
+"""``flyby identify``: a motion model fitted to logs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import Result
+
+from flyby.core.motion.blend import Blend
+from flyby.core.motion.controller import Controller
+from flyby.core.motion.model import load_motion_model
+from flyby.core.registry import find_robot, find_vendor
+from flyby.identification.logs.synthetic import Faults, synthetic_run
+
+ROOT = Path(__file__).parents[2]
+ROBOT = "abb/irb6640-180-255"
+SQUARE = ROOT / "examples" / "square.mod"
+FIT = ("--fit", "blend.tcp.beta[0] = -0.3", "--fit", "time.smoothing_s[*] = 0.045")
+OTHER_PATH = np.array([0, 0.5, 0.4, -0.3, 0.2, 0.1, 0.4])
+TRUE = {"blend.tcp.beta[0]": -0.9, "time.smoothing_s[*]": 0.03}
+
+Flyby = Callable[..., Result]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A program with a log beside it: how a controller drove that is not the vendor's."""
+    vendor, robot = find_vendor("abb"), find_robot(ROBOT)
+    model = replace(
+        vendor.motion_of(robot),
+        tcp=Blend(beta=(-0.9,)),
+        smoothing=(0.03,) * 3,
+    )
+    told = vendor.read_file(SQUARE, None, robot)
+    run = synthetic_run(Controller(vendor, robot, model), told, "square", Faults(torn=4), 1)
+    out = tmp_path_factory.mktemp("logs")
+    (out / "square.mod").write_text(SQUARE.read_text("utf-8"), "utf-8")
+    save(out / "square.csv", np.column_stack([run.t, run.q]))
+    return out
+
+
+def save(path: Path, data: np.ndarray, header: str = "t,q1,q2,q3,q4,q5,q6") -> None:
+    np.savetxt(path, data, "%.9g", ",", header=header, comments="")
+
+
+def copied(folder: Path, to: Path, change: Callable[[np.ndarray], np.ndarray]) -> Path:
+    """The run with another log."""
+    (to / "square.mod").write_text((folder / "square.mod").read_text("utf-8"), "utf-8")
+    save(to / "square.csv", change(np.loadtxt(folder / "square.csv", delimiter=",", skiprows=1)))
+    return to / "square.mod"
+
+
+def test_a_model_is_fitted_and_written(flyby: Flyby, folder: Path, tmp_path: Path) -> None:
+    out = tmp_path / "params.toml"
+    result = flyby(
+        "identify", folder, "--robot", ROBOT, "--vendor", "abb", *FIT, "--workers", 1, "--json",
+        "--out", out,
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+    found = json.loads(result.stdout)
+    for one in found["parameters"]:
+        assert one["lower"] <= TRUE[one["name"]] <= one["upper"], one
+    (run,) = found["runs"]
+    assert run["after"]["path_max"] < 0.3 * run["before"]["path_max"]
+    assert run["after"]["joint_time_p99"] < run["before"]["joint_time_p99"]
+    vendor = find_vendor("abb")
+    robot = find_robot(ROBOT)
+    made = load_motion_model(out, vendor.motion_of(robot), ROBOT)
+    assert made.tcp.beta[0] == pytest.approx(-0.9, abs=0.02)
+    assert (
+        made.provenance["blend.tcp.beta"].source == f"flyby identify {folder.name} --robot {ROBOT}"
+    )
+    # The file is what --motion takes: the log is predicted with it.
+    again = flyby(
+        "compare", folder / "square.mod", folder / "square.csv", "--robot", ROBOT, "--motion", out,
+        "--json",
+    )  # fmt: skip
+    assert again.exit_code == 0, again.output
+    assert json.loads(again.stdout)["path_max_m"] == pytest.approx(
+        run["after"]["path_max"], rel=0.1
+    )
+
+
+def test_tables(flyby: Flyby, folder: Path) -> None:
+    result = flyby("identify", folder / "square.mod", "--robot", ROBOT, *FIT, "--workers", 1)
+    assert result.exit_code == 0, result.output
+    for text in ("blend.tcp.beta[0]", "path max, mm", "cycle time ratio", "square", "→"):
+        assert text in result.stdout
+    assert "4 samples off the path" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda data: data[: len(data) // 2], "shorter than the program"),
+        (lambda data: np.column_stack([data[:, 0], np.degrees(data[:, 1:])]), "degrees"),
+        (lambda data: np.column_stack([1e3 * data[:, 0], data[:, 1:]]), "time in"),
+        (lambda data: np.concatenate([data[50:], data[:50]]), "time runs back"),
+        (lambda data: data + OTHER_PATH, "does not follow this program"),
+    ],
+    ids=["short", "degrees", "milliseconds", "backwards", "elsewhere"],
+)
+def test_logs_that_are_no_runs_of_the_program(
+    flyby: Flyby,
+    folder: Path,
+    tmp_path: Path,
+    change: Callable[[np.ndarray], np.ndarray],
+    message: str,
+) -> None:
+    program = copied(folder, tmp_path, change)
+    result = flyby("identify", program, "--robot", ROBOT, *FIT)
+    assert result.exit_code == 1
+    assert "square" in result.stderr and message in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("header", "message"),
+    [
+        ("t,q1,q2,q3,q4,q5,q5", "q5"),
+        ("t,q1,q2,q3,q4,q5,other", "5 joints are logged"),
+        ("q1,q2,q3,q4,q5,q6,other", "no known form of log"),
+    ],
+)
+def test_columns_that_are_missing_or_double(
+    flyby: Flyby, folder: Path, tmp_path: Path, header: str, message: str
+) -> None:
+    program = copied(folder, tmp_path, lambda data: data)
+    data = np.loadtxt(folder / "square.csv", delimiter=",", skiprows=1)
+    save(tmp_path / "square.csv", data, header)
+    result = flyby("identify", program, "--robot", ROBOT, *FIT)
+    assert result.exit_code == 1 and message in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--robot", ROBOT, "--vendor", "kuka"), "is driven by abb"),
+        (("--robot", ROBOT, "--fit", "time.nonsense"), "nothing is called 'nonsense'"),
+        (("--robot", ROBOT, "--fit", "zone.overlap"), "no number"),
+        ((), "which robot"),
+    ],
+)
+def test_refusals(flyby: Flyby, folder: Path, arguments: tuple[str, ...], message: str) -> None:
+    result = flyby("identify", folder, *arguments)
+    assert result.exit_code == 1 and message in result.stderr
+
+
+def test_no_runs(flyby: Flyby, tmp_path: Path) -> None:
+    result = flyby("identify", tmp_path, "--robot", ROBOT)
+    assert result.exit_code == 1 and "no run of abb/irb6640-180-255" in result.stderr
+    (tmp_path / "lonely.mod").write_text(SQUARE.read_text("utf-8"), "utf-8")
+    result = flyby("identify", tmp_path / "lonely.mod", "--robot", ROBOT)
+    assert result.exit_code == 1 and "no log of the same name" in result.stderr
+
+
+def test_no_file_is_replaced_unasked(flyby: Flyby, folder: Path, tmp_path: Path) -> None:
+    out = tmp_path / "params.toml"
+    out.write_text("mine")
+    result = flyby("identify", folder, "--robot", ROBOT, *FIT, "--out", out)
+    assert result.exit_code == 1 and "--force" in result.stderr
+    assert out.read_text() == "mine"
+    inside = folder / "square.csv"
+    result = flyby("identify", folder, "--robot", ROBOT, *FIT, "--out", inside, "--force")
+    assert result.exit_code == 1 and "would overwrite" in result.stderr
+
+
+def test_a_record_of_another_robot(flyby: Flyby, folder: Path, tmp_path: Path) -> None:
+    record = tmp_path / "run.json"
+    record.write_text(json.dumps({"robot": "UR10e", "moves": [], "log": {"file": "x.csv"}}))
+    result = flyby("identify", folder, record, "--robot", ROBOT, *FIT)
+    assert result.exit_code == 1

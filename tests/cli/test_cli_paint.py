@@ -1,0 +1,129 @@
+"""``flyby paint``: what it prints, what it writes where, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from typer.testing import Result
+
+from flyby.core.registry import find_robot, find_vendor
+
+ROBOT = "abb/irb6640-180-255"
+FOOTPRINT = (
+    "reference_distance_mm = 250\nnear_radius_mm = 35\n"
+    "radius_mm = [0, 150, 250]\ngrowth_um_s = [2, 20, 0]\n"
+)
+
+Flyby = Callable[..., Result]
+
+
+@pytest.fixture
+def panel(tmp_path: Path) -> tuple[Path, Path]:
+    """A flat panel of 0.5 m x 0.3 m in millimetres, and a footprint."""
+    x, y = np.meshgrid(np.linspace(-250, 250, 6), np.linspace(-150, 150, 4))
+    vertices = np.stack([x.ravel(), y.ravel(), 0.0 * x.ravel()], axis=1)
+    index = np.arange(24).reshape(4, 6)
+    a, b, c, d = (
+        i.ravel() for i in (index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1])
+    )
+    faces = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+    part, footprint = tmp_path / "panel.stl", tmp_path / "bell.toml"
+    trimesh.Trimesh(vertices, faces, process=False).export(part)
+    footprint.write_text(FOOTPRINT)
+    return part, footprint
+
+
+def words(panel: tuple[Path, Path], *more: object) -> tuple[object, ...]:
+    part, footprint = panel
+    return ("paint", part, "--footprint", footprint, "--target", "50um", "--units", "mm", *more)
+
+
+def test_program_and_pictures(flyby: Flyby, panel: tuple[Path, Path], tmp_path: Path):
+    out = tmp_path / "out"
+    robot = ("--robot", ROBOT, "--place", "1500,0,800", "--signal", "doGun", "--delay", "40")
+    result = flyby(*words(panel, *robot, "--points", "300", "--out", out, "--json"))
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    stages = told["stages"]
+    assert list(stages) == ["start", "speed only", "full", "as emulated"]
+    assert stages["as emulated"]["std_m"] < stages["full"]["std_m"] + 0.5e-6
+    assert stages["full"]["within_10_percent"] == 1.0
+    assert told["proven"] is True and told["speed_only"]["duality_gap"] < 1e-6
+    written = {path.name for path in out.iterdir()}
+    assert written == {"paint.mod", "thickness.png", "curve.png", "histogram.png"}
+    assert {str(out / name) for name in written} == set(told["files"])
+    assert all((out / n).read_bytes().startswith(b"\x89PNG") for n in written if n[-3:] == "png")
+    program = find_vendor("abb").read_file(out / "paint.mod", robot=find_robot(ROBOT))
+    assert [e.text for m in program.moves for e in m.events] == ["doGun,1", "doGun,0"]
+    again = flyby(*words(panel, "--out", out))
+    assert again.exit_code == 1 and "--force replaces it" in again.output
+
+
+def test_without_a_robot_there_is_a_table_alone(flyby: Flyby, panel: tuple[Path, Path]):
+    result = flyby(*words(panel, "--points", "200"))
+    assert result.exit_code == 0, result.output
+    assert "as emulated" not in result.stdout and "full" in result.stdout
+    assert "transfer %" in result.stdout and "paint ml" in result.stdout
+
+
+def test_millimetres_taken_for_metres(flyby: Flyby, panel: tuple[Path, Path]):
+    part, footprint = panel
+    result = flyby("paint", part, "--footprint", footprint, "--target", "50um")
+    assert result.exit_code == 1
+    assert "probably mm, and were taken for m" in result.output
+
+
+def test_gaps_between_sweeps_are_predicted(flyby: Flyby, panel: tuple[Path, Path]):
+    result = flyby(*words(panel, "--points", "200", "--sweep", "260", "--overhang", "0"))
+    assert result.exit_code == 0, result.output
+    assert "of its mean on a plane" in result.output
+
+
+def test_a_stretch_out_of_reach(flyby: Flyby, panel: tuple[Path, Path]):
+    robot = ("--robot", ROBOT, "--place", "2600,0,800", "--points", "200")
+    result = flyby(*words(panel, *robot))
+    assert result.exit_code == 1
+    assert "cannot reach the stretch from waypoint" in result.output.replace("\n", " ")
+
+
+def test_what_is_not_proven_is_not_written(flyby: Flyby, panel: tuple[Path, Path], tmp_path: Path):
+    cell = tmp_path / "cell.toml"
+    cell.write_text(f'robot = "{ROBOT}"\nclearance_mm = 400\n')
+    robot = ("--cell", cell, "--place", "1500,0,800", "--points", "200", "--out", tmp_path / "o")
+    result = flyby(*words(panel, *robot))
+    assert result.exit_code == 1
+    assert "have to be kept" in result.output and "is not written" in result.output
+    assert not (tmp_path / "o" / "paint.mod").exists()
+    result = flyby(*words(panel, *robot, "--unproven", "--force"))
+    assert result.exit_code == 1
+    assert (tmp_path / "o" / "paint.mod").exists()
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        (("--target", "50"), "a thickness with its unit"),
+        (("--target", "xum"), "a thickness with its unit"),
+        (("--speed", "800,50"), "least and largest in mm/s"),
+        (("--method", "spiral"), "--method spiral: raster or sideways"),
+        (("--view", "0,0"), "a direction x,y,z"),
+        (("--sweep", "-3"), "a length in mm above zero"),
+        (("--tilt", "90"), "degrees between 0 and 80"),
+        (("--points", "3"), "a number from 100 on"),
+        (("--delay", "30"), "name its switch by --signal"),
+        (("--robot", ROBOT), "where does the part stand?"),
+        (("--tool", "gun"), "name it by --robot or --cell"),
+        (("--robot", "ur/ur10e", "--place", "500,0,100", "--signal", "1"), "no actions at a place"),
+    ],
+)
+def test_what_is_refused(
+    flyby: Flyby, panel: tuple[Path, Path], more: tuple[str, ...], message: str
+):
+    result = flyby(*words(panel, *more))
+    assert result.exit_code == 1
+    assert message in result.output.replace("\n", " ")

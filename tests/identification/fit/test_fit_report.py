@@ -1,0 +1,113 @@
+"""The page of a fit and its pictures show what the fit found."""
+
+from __future__ import annotations
+
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+from flyby.identification.fit import ParameterSet, fit, motion_file, outcomes
+from flyby.identification.logs.synthetic import Faults
+from flyby.identification.report.corners import cut_corners
+from flyby.identification.report.page import page
+from flyby.identification.report.picture import draw_prediction, tcp_profiles
+
+from .known_truth import START, TRUE_VALUES, logged, ready
+
+FITTED = ("blend.tcp.beta[0]", "time.smoothing_s[*]", "elasticity.own_s2[1]")
+
+
+class Text(HTMLParser):
+    """Cells of tables, row by row, and whatever is not closed."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.rows: list[list[str]] = []
+        self.open: list[str] = []
+
+    def handle_starttag(self, tag, attrs) -> None:
+        if tag not in ("img", "meta"):
+            self.open.append(tag)
+        if tag == "tr":
+            self.rows.append([])
+        if tag in ("td", "th"):
+            self.rows[-1].append("")
+
+    def handle_endtag(self, tag) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data) -> None:
+        if self.open and self.open[-1] in ("td", "th"):
+            self.rows[-1][-1] += data
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    runs = [ready(logged(radius, speed)) for radius, speed in ((0.03, 0.3), (0.0, 0.5))]
+    return fit(ParameterSet.named(START, FITTED), runs)
+
+
+@pytest.fixture(scope="module")
+def each(fitted):
+    return outcomes(fitted)
+
+
+def test_the_page_states_what_was_found(fitted, each) -> None:
+    file = motion_file(fitted, "flyby identify <logs>")
+    text = Text()
+    text.feed(page(fitted, each, file))
+    assert not text.open
+    rows = {row[0]: row[1:] for row in text.rows if row}
+    for one in fitted.intervals:
+        assert float(rows[one.name][1]) == pytest.approx(one.value, rel=1e-4)
+    for one in each:
+        path, *_ = next(row[1:] for row in text.rows if row[0] == one.run.name and len(row) == 10)
+        before, after = map(float, path.split(" → "))
+        assert before == pytest.approx(1e3 * one.before.figures.path_max, abs=6e-4)
+        assert after == pytest.approx(1e3 * one.after.figures.path_max, abs=6e-4)
+
+
+def test_the_page_is_whole_in_one_file_and_escapes_what_it_is_told(fitted, each) -> None:
+    made = page(fitted, each, "robot = '<script>'")
+    assert "<script>" not in made and "&lt;script&gt;" in made
+    assert len(re.findall(r'src="data:image/png;base64,', made)) == len(each)
+    assert "http" not in made
+    assert made == page(fitted, each, "robot = '<script>'")
+
+
+def test_corners_are_those_of_the_program(each) -> None:
+    (corner,) = cut_corners(each[0].after)
+    assert (corner.waypoint, corner.move) == (1, 0)
+    assert corner.radius == pytest.approx(0.03, rel=1e-6)
+    assert 0 < corner.logged < corner.radius
+    assert abs(corner.logged - corner.emulated) <= corner.off + 1e-5
+    assert corner.off <= each[0].after.figures.path_max
+    assert cut_corners(each[1].after) == []
+
+
+@pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
+def test_pictures_of_runs_with_and_without_corners(each, kind) -> None:
+    starts = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}
+    for one in each:
+        assert draw_prediction(one.before, kind).startswith(starts[kind])
+
+
+def test_profiles_are_exact_on_parabolas_and_average_noise() -> None:
+    rng = np.random.default_rng(1)
+    t = np.sort(rng.uniform(0.0, 1.0, 200))
+    tcp = np.outer(t**2, [0.3, -0.4, 1.2]) + np.arange(3.0)
+    middle, speed, acceleration = tcp_profiles(t, tcp)
+    # The slope of a parabola's chord: that at the middle of the window, whatever the stamps.
+    assert acceleration == pytest.approx(2 * 1.3, rel=1e-6)
+    assert speed == pytest.approx(2 * 1.3 * middle, abs=1e-6)
+    short = tcp_profiles(t[:2], tcp[:2])
+    assert all(len(values) == 2 for values in short)
+
+
+def test_logs_with_holes_are_drawn() -> None:
+    faults = Faults(noise=1e-5, hole=0.14, torn=3)
+    run = ready(logged(0.03, 0.3, faults=faults))
+    other = fit(ParameterSet.named(START, [next(iter(TRUE_VALUES))]), [run])
+    assert draw_prediction(outcomes(other)[0].after, "png").startswith(b"\x89PNG")
