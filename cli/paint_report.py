@@ -6,8 +6,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from .console import print_rich, print_table, warn
 from .places import note_json
 
@@ -53,6 +51,8 @@ def pictures_of(
     source: FootprintSource, painting: Painting, made: Executable | None
 ) -> dict[str, bytes]:
     """The pictures by file name."""
+    import numpy as np
+
     from ..drawing.coat import Curve, Painted, draw_curve, draw_map, draw_spread, draw_strokes
     from ..problems.paint.strokes import section
 

@@ -77,7 +77,7 @@ def draw_map(surface: Painted, title: str, kind: str) -> bytes:
         figure = Figure(figsize=(9.5, 6.0), layout="constrained")
         axes = figure.add_subplot(projection="3d")
         colours = _paint_surface(axes, surface)
-        bar = figure.colorbar(colours, ax=axes, shrink=0.7, extend="both", pad=0.02)
+        bar = figure.colorbar(colours, ax=axes, shrink=0.7, extend="both", pad=0.09)
         bar.set_label(
             f"thickness µm (target {surface.target / MICRON:g} ± {100 * surface.tolerance:g} %)"
         )
@@ -99,9 +99,9 @@ def draw_curve(surface: Painted, curve: Curve, title: str, kind: str) -> bytes:
         lines = Line3DCollection(ways[curve.painting], cmap="viridis", linewidths=2.0, zorder=5)
         lines.set_array(1e3 * curve.speed[curve.painting])
         axes.add_collection3d(lines)
-        axes.add_collection3d(
-            Line3DCollection(ways[~curve.painting], colors=NOMINAL, linewidths=1.0, zorder=5)
-        )
+        if not curve.painting.all():
+            off = Line3DCollection(ways[~curve.painting], colors=NOMINAL, linewidths=1.0, zorder=5)
+            axes.add_collection3d(off)
         step = max(1, len(curve.position) // ARROWS)
         at, along = curve.position[::step], curve.nozzle[::step]
         length = 0.06 * float(np.ptp(curve.position, axis=0).max())
@@ -109,7 +109,7 @@ def draw_curve(surface: Painted, curve: Curve, title: str, kind: str) -> bytes:
         axes.scatter(*curve.position[:1].T, color=LIMIT, s=25, zorder=7)
         points = np.concatenate([surface.vertices, curve.position])
         _frame(axes, points)
-        figure.colorbar(lines, ax=axes, shrink=0.7, pad=0.02).set_label("programmed speed mm/s")
+        figure.colorbar(lines, ax=axes, shrink=0.7, pad=0.09).set_label("programmed speed mm/s")
         axes.set_title(title)
         return _file(figure, kind)
 
@@ -265,7 +265,7 @@ def _frame(axes: Any, points: FloatArray) -> None:
         getattr(axes, f"{name}axis").set_major_locator(
             MaxNLocator(max(1, round(5 * width / span.max())))
         )
-    axes.set_box_aspect(span, zoom=1.15)
+    axes.set_box_aspect(span)
     axes.view_init(elev=38, azim=-62)
 
 

@@ -12,11 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion.allowed import Allowed, coefficients
-from ..motion.attainable import attainable_accelerations
 from ..motion.controller import Controller, Run
-from ..motion.elasticity import RIGID
+from ..motion.elasticity import LEAD_STEP, RIGID
 from ..motion.lead_bound import most_lead
+from ..motion.ramped import stamped_motion
+from ..motion.smoothing import Smoothing
 from ..motion.timing import Timing
+from ..motion.trajectory import sample_times
 
 FloatArray = NDArray[np.float64]
 
@@ -27,35 +29,39 @@ def smoothing_strays(controller: Controller, run: Run) -> FloatArray:
     A mean with a symmetric kernel of variance s² over a motion with accelerations within ±a is at
     most a s² / 2 from the motion at the kernel's middle; see `motion.smoothing`. What commanded
     joints lead their links by comes on top (`motion.lead_bound`). a and leads are the greatest
-    that the program's limits allow, between samples too; no override drives outside of them.
+    that the program's limits allow, between samples too; no override drives outside of them. Where
+    accelerations are ramped besides, what this motion reaches counts if that is more.
     """
     smoothing = controller.smoothing(run.program, run.path)
     elasticity = controller.model.elasticity
     size = run.path.q.shape[1]
     if smoothing.window == 0.0 and elasticity == RIGID:
         return np.zeros(size)
-    if run.timing.ramp > 0.0:
-        return _of_ramped(controller, run)
     allowed, start = Allowed.of(run.timing), run.timing.start
     most = allowed.greatest(allowed.accelerations, np.abs).max(axis=0)
     strays = start.most_acceleration * most * smoothing.stray
-    if elasticity == RIGID:
-        return np.asarray(strays)
-    return np.asarray(strays + most_lead(elasticity, controller.robot, allowed, smoothing, start))
-
-
-def _of_ramped(controller: Controller, run: Run) -> FloatArray:
-    """The same where accelerations are ramped along the path: what this motion reaches counts."""
-    smoothing = controller.smoothing(run.program, run.path)
-    elasticity = controller.model.elasticity
-    reached, accelerated = greatest_rates(run.timing)
-    limits = run.timing.limits
-    velocity = np.maximum(limits.velocity[:, : len(reached)].max(axis=0), reached)
-    accelerated = run.timing.start.most_acceleration * accelerated
-    bound = np.maximum(attainable_accelerations(run.timing), accelerated)
-    strays = bound * smoothing.stray
-    leads = elasticity.most(controller.robot, run.path.q, velocity, bound, strays)
+    leads = np.zeros(size)
+    if elasticity != RIGID:
+        leads = most_lead(elasticity, controller.robot, allowed, smoothing, start)
+    if run.timing.ramp > 0.0:
+        reached = _reached(controller, run, smoothing)
+        strays, leads = np.maximum(strays, reached[0]), np.maximum(leads, reached[1])
     return np.asarray(strays + leads)
+
+
+def _reached(
+    controller: Controller, run: Run, smoothing: Smoothing
+) -> tuple[FloatArray, FloatArray]:
+    """(N,) each, strays and leads of this motion.
+
+    A ramp takes accelerations along the path to where the path bends otherwise.
+    """
+    motion = stamped_motion(run.timing)
+    accelerations = np.abs(np.gradient(motion.dq, motion.t, axis=0)).max(axis=0)
+    even = sample_times(0.0, float(motion.t[-1]), LEAD_STEP)
+    states = smoothing.command(motion, even)
+    leads = np.abs(controller.model.elasticity.leads(controller.robot, *states)).max(axis=0)
+    return accelerations * smoothing.stray, leads
 
 
 def greatest_rates(timing: Timing) -> tuple[FloatArray, FloatArray]:

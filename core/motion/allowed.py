@@ -1,4 +1,4 @@
-"""What the limits of a path allow between two samples of it, at any speed.
+"""What the limits of a path allow between two samples of it, at any speed, without ramps.
 
 In an interval from ℓ₀ to ℓ₁ = ℓ₀ + Δ a motion is given by x₀ and x₁, its ℓ̇² at both ends: x is
 linear between them and u = ℓ̈ = (x₁ − x₀) / (2 Δ) is constant. Ceilings and rows leave a convex
@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -31,14 +32,14 @@ _UNBOUNDED = 1e6
 """Times the greatest ceiling, where there is none."""
 
 
-@dataclass(frozen=True)
-class Linear:
-    """Polynomials that are linear in x₀ and x₁.
+class Linear(NamedTuple):
+    """Polynomials that are linear in u, x₀ and x₁.
 
     Args:
-        left, right: (C, K, D), factors of x₀ and x₁ in the C Bernstein coefficients.
+        push, left, right: (C, K, D), factors of u, x₀ and x₁ in the C Bernstein coefficients.
     """
 
+    push: FloatArray
     left: FloatArray
     right: FloatArray
 
@@ -52,7 +53,7 @@ class Allowed:
         points: (6, K, N), Bernstein coefficients of q.
         slope: (5, K, N), of q'.
         bend: (4, K, N), of q''.
-        corners: (K, V, 2), corners (x₀, x₁) of the polygons; the origin where there are fewer.
+        corners: (K, V, 3), corners (u, x₀, x₁) of what is allowed; the origin behind them.
         count: (K,), how many there are.
     """
 
@@ -66,22 +67,25 @@ class Allowed:
     @classmethod
     def of(cls, timing: Timing) -> Allowed:
         """What the limits of a path allow, and what its stamp does."""
-        rows = timing.path_limits.rows
+        rows, states = timing.path_limits.rows, coefficients(timing)
         known = np.isfinite(rows.ceiling)
         most = _UNBOUNDED * rows.ceiling[known].max(initial=1.0)
-        ceiling = np.where(known, rows.ceiling, most)
+        ceiling = (1.0 + _LOOSER) * np.where(known, rows.ceiling, most)
+        ceiling = np.maximum(ceiling, timing.stamp.x)
         room = 5 + 4 * rows.a.shape[2]
-        corners = np.zeros((len(rows.spacing), room, 2))
+        ends = np.zeros((len(rows.spacing), room, 2))
         count = np.zeros(len(rows.spacing), dtype=np.int64)
-        _polygons(*rows.rows, rows.spacing, ceiling, timing.stamp.x, corners, count)
-        corners = corners[:, : int(count.max(initial=1))]
-        points, slope, bend = coefficients(timing)
-        return cls(rows.spacing, points, slope, bend, corners, count)
+        _reach(*rows.rows, rows.spacing, ceiling, ends)
+        _polygons(*rows.rows, rows.spacing, ceiling, timing.stamp.x, ends, count)
+        ends = ends[:, : int(count.max(initial=1))]
+        push = (ends[:, :, 1] - ends[:, :, 0]) / (2.0 * rows.spacing[:, None])
+        corners = np.concatenate([push[:, :, None], ends], axis=2)
+        return cls(rows.spacing, *states, corners, count)
 
     @property
     def fastest(self) -> FloatArray:
         """(K,), greatest x."""
-        return np.asarray(self.corners.max(axis=(1, 2)))
+        return np.asarray(self.corners[:, :, 1:].max(axis=(1, 2)))
 
     @property
     def velocities(self) -> FloatArray:
@@ -91,20 +95,20 @@ class Allowed:
     @property
     def accelerations(self) -> Linear:
         """q̈, as polynomials of fourth degree."""
-        push = self.slope / (2.0 * self.spacing[:, None])
         share = np.arange(5)[:, None, None] / 4.0
-        left, right = -push, push.copy()
-        left[:4] += (1.0 - share[:4]) * self.bend
-        right[1:] += share[1:] * self.bend
-        return Linear(left, right)
+        left, right = np.zeros_like(self.slope), np.zeros_like(self.slope)
+        left[:4] = (1.0 - share[:4]) * self.bend
+        right[1:] = share[1:] * self.bend
+        return Linear(self.slope, left, right)
 
     def greatest(self, what: Linear, size: Callable[[FloatArray], FloatArray]) -> FloatArray:
         """(K, …), what a convex size (C, K, …) of polynomials (C, K, D) does not exceed."""
         found = size(np.zeros_like(what.left)).max(axis=0)
         for v in range(self.corners.shape[1]):
             on = np.flatnonzero(self.count > v)
-            left, right = self.corners[on, v, 0, None], self.corners[on, v, 1, None]
-            values = what.left[:, on] * left + what.right[:, on] * right
+            u, before, after = (self.corners[on, v, part, None] for part in range(3))
+            values = what.push[:, on] * u
+            values += what.left[:, on] * before + what.right[:, on] * after
             found[on] = np.maximum(found[on], size(values).max(axis=0))
         return np.asarray(found)
 
@@ -143,33 +147,66 @@ def _polygons(
     count: IntArray,
 ) -> None:
     """Write the corners of each interval's polygon, and the stamp behind them."""
-    spare = np.empty_like(corners[0])
     for k in range(spacing.size):
-        here = corners[k]
-        right, top = (1.0 + _LOOSER) * ceiling[k], (1.0 + _LOOSER) * ceiling[k + 1]
-        here[0] = 0.0, 0.0
-        here[1] = right, 0.0
-        here[2] = right, top
-        here[3] = 0.0, top
-        size = 4
-        for end in range(2):
-            for r in range(a.shape[2]):
-                push = a[k, end, r] / (2.0 * spacing[k])
-                p = -push + (b[k, end, r] if end == 0 else 0.0)
-                q = push + (b[k, end, r] if end == 1 else 0.0)
-                if upper[k, end, r] < np.inf:
-                    size = _cut(here, size, p, q, (1.0 + _LOOSER) * upper[k, end, r], spare)
-                if lower[k, end, r] > -np.inf:
-                    size = _cut(here, size, -p, -q, -(1.0 + _LOOSER) * lower[k, end, r], spare)
-        here[size] = x[k], x[k + 1]
-        here[size + 1 :] = 0.0
+        size = _polygon(k, a, b, lower, upper, spacing, ceiling, corners[k])
+        corners[k, size] = x[k], x[k + 1]
+        corners[k, size + 1 :] = 0.0
         count[k] = size + 1
 
 
 @njit(cache=True, error_model="numpy")
-def _cut(
-    corners: FloatArray, size: int, p: float, q: float, most: float, spare: FloatArray
+def _reach(
+    a: FloatArray,
+    b: FloatArray,
+    lower: FloatArray,
+    upper: FloatArray,
+    spacing: FloatArray,
+    ceiling: FloatArray,
+    corners: FloatArray,
+) -> None:
+    """Lower the ceilings to what can be braked from, and then to what can be sped up to."""
+    for back in range(2):
+        for i in range(spacing.size):
+            k = spacing.size - 1 - i if back == 0 else i
+            size = _polygon(k, a, b, lower, upper, spacing, ceiling, corners[k])
+            most = 0.0
+            for v in range(size):
+                most = max(most, corners[k, v, back])
+            ceiling[k + back] = min(ceiling[k + back], (1.0 + _LOOSER) * most)
+
+
+@njit(cache=True, error_model="numpy")
+def _polygon(
+    k: int,
+    a: FloatArray,
+    b: FloatArray,
+    lower: FloatArray,
+    upper: FloatArray,
+    spacing: FloatArray,
+    ceiling: FloatArray,
+    here: FloatArray,
 ) -> int:
+    """Write the corners of one interval's polygon; how many there are."""
+    spare = np.empty_like(here)
+    here[0] = 0.0, 0.0
+    here[1] = ceiling[k], 0.0
+    here[2] = ceiling[k], ceiling[k + 1]
+    here[3] = 0.0, ceiling[k + 1]
+    size = 4
+    for end in range(2):
+        for r in range(a.shape[2]):
+            push = a[k, end, r] / (2.0 * spacing[k])
+            p = -push + (b[k, end, r] if end == 0 else 0.0)
+            q = push + (b[k, end, r] if end == 1 else 0.0)
+            if upper[k, end, r] < np.inf:
+                size = _cut(here, size, p, q, (1.0 + _LOOSER) * upper[k, end, r], spare)
+            if lower[k, end, r] > -np.inf:
+                size = _cut(here, size, -p, -q, -(1.0 + _LOOSER) * lower[k, end, r], spare)
+    return size
+
+
+@njit(cache=True, error_model="numpy")
+def _cut(corners: FloatArray, size: int, p: float, q: float, most: float, spare: FloatArray) -> int:
     """Leave of a convex polygon what has p x₀ + q x₁ ≤ most; the number of its corners."""
     kept = 0
     for i in range(size):

@@ -26,6 +26,7 @@ lead J_jᵀ p̈ differs by that times the lever, and by λ D times the greatest 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -41,6 +42,8 @@ from .start_ramp import StartRamp
 
 FloatArray = NDArray[np.float64]
 
+Near = Callable[[FloatArray], FloatArray]
+
 _OVER, _OVER_BY_SLOPE = 0.55, 0.275
 
 
@@ -52,20 +55,20 @@ class _Mass:
         lead: (5, K, N) of either corner, of what leads the middle's Jacobian makes.
         error: (K, N), how far leads in the interval may be from that.
         factor: (N,), |lead| per J_jᵀ p̈.
-        lever: (N,), greatest |J_j|.
-        longest: λ.
-        speed, acceleration: V and A of the joints that move it.
-        pull: greatest |p̈|.
+        lever: (K, N), greatest |J_j| in each interval.
+        longest: (K,), λ.
+        speed, acceleration: (K,), V and A nearby, of the joints that move it.
+        pull: (K,), greatest |p̈| nearby.
     """
 
     lead: Linear
     error: FloatArray
     factor: FloatArray
     lever: FloatArray
-    longest: float
-    speed: float
-    acceleration: float
-    pull: float
+    longest: FloatArray
+    speed: FloatArray
+    acceleration: FloatArray
+    pull: FloatArray
 
     def started(self, start: StartRamp) -> _Mass:
         """The same where time comes up to speed: q̈ and p̈ by at most as much as accelerations."""
@@ -79,23 +82,24 @@ class _Mass:
         J_j changes since.
         """
         since = 0.5 * start.length
-        moved = min(self.speed * since, 0.5 * self.acceleration * since**2)
-        return 0.5 * self.factor * self.longest * moved * self.pull
+        V, A = self.speed.max(), self.acceleration.max()
+        moved = min(V * since, 0.5 * A * since**2)
+        return np.asarray(0.5 * self.factor * self.longest.max() * moved * self.pull.max())
 
     def smoothed(self, smoothing: Smoothing) -> tuple[FloatArray, FloatArray]:
-        """(N,) by which leads may be beyond those unsmoothed, and (N,) how fast they change."""
+        """(K, N) by which leads may be beyond those unsmoothed, and (K, N) how fast they change."""
         variance, A, V = 2.0 * smoothing.stray, self.acceleration, self.speed
         off = 0.5 * variance * A
         apart = V * np.sqrt(variance) + off
-        longest = self.longest * float(np.exp(0.5 * V * smoothing.window + off))
-        lever = self.lever + longest * off
+        longest = self.longest * np.exp(0.5 * V * smoothing.window + off)
+        lever = self.lever + (longest * off)[:, None]
         pull = longest * (apart * A + 2.0 * variance * A**2 + apart * V**2)
-        more = self.factor * (lever * pull + longest * apart * self.pull)
+        more = self.factor * (lever * pull[:, None] + (longest * apart * self.pull)[:, None])
         if not smoothing.widths:
             return more, np.full_like(more, np.inf)
         jerk = 2.0 * A / max(smoothing.widths)
         change = longest * (jerk + 3.0 * V * A + V**3)
-        slope = lever * change + longest * V * (self.pull + pull)
+        slope = lever * change[:, None] + (longest * V * (self.pull + pull))[:, None]
         return more, self.factor * slope
 
 
@@ -117,21 +121,25 @@ def most_lead(
     """
     ddq = allowed.accelerations
     size = ddq.left.shape[2]
+    near = _near(allowed, 0.5 * smoothing.window + start.length)
     own = filled(elasticity.own, size)
-    masses = [_mass(mass, robot, allowed, ddq) for mass in elasticity.carried]
+    masses = [_mass(mass, robot, allowed, ddq, near) for mass in elasticity.carried]
     lead = Linear(
-        own * ddq.left + sum(mass.lead.left for mass in masses),
-        own * ddq.right + sum(mass.lead.right for mass in masses),
+        *(
+            own * part + sum(more)
+            for part, *more in zip(ddq, *(m.lead for m in masses), strict=True)
+        )
     )
     error = sum((mass.error for mass in masses), np.zeros(lead.left.shape[1:]))
-    most = start.most_acceleration * (allowed.greatest(lead, np.abs) + error).max(axis=0)
+    most = start.most_acceleration * near(allowed.greatest(lead, np.abs) + error)
     a = start.most_acceleration * allowed.greatest(ddq, np.abs).max(axis=0)
     lag = np.abs(filled(elasticity.lag, size))
     slope = np.abs(own) * 2.0 * a / max(smoothing.widths, default=np.inf)
     for mass in masses:
         most += mass.turned(start)
         more, change = mass.started(start).smoothed(smoothing)
-        most, slope = most + more, slope + change
+        most, slope = most + more, slope + change.max(axis=0)
+    most = most.max(axis=0)
     slack = filled(elasticity.slack, size)
     slope = np.where(slack > 0.0, 2.0, 1.0) * slope + lag * a
     most = most + np.minimum(slack, most) + lag * allowed.velocities.max(axis=0)
@@ -140,7 +148,21 @@ def most_lead(
     return np.asarray(most + np.minimum(_OVER * most, _OVER_BY_SLOPE * LEAD_STEP * slope))
 
 
-def _mass(mass: Carried, robot: Robot, allowed: Allowed, ddq: Linear) -> _Mass:
+def _near(allowed: Allowed, away: float) -> Near:
+    """What finds the greatest of values (K, …) on intervals that s are enough to come from."""
+    edge = np.concatenate(
+        [[0.0], np.cumsum(allowed.spacing / np.sqrt(np.maximum(allowed.fastest, 1e-12)))]
+    )
+    first = np.searchsorted(edge[1:], edge[:-1] - away)
+    last = np.searchsorted(edge[:-1], edge[1:] + away, "right")
+
+    def near(values: FloatArray) -> FloatArray:
+        return np.stack([values[i:j].max(axis=0) for i, j in zip(first, last, strict=True)])
+
+    return near
+
+
+def _mass(mass: Carried, robot: Robot, allowed: Allowed, ddq: Linear, near: Near) -> _Mass:
     chain = chain_to_axis(robot, mass.joint, "elasticity.carried")
     size = allowed.slope.shape[2]
     moving = np.isin(np.arange(size), chain.joint)
@@ -150,6 +172,7 @@ def _mass(mass: Carried, robot: Robot, allowed: Allowed, ddq: Linear) -> _Mass:
     turn = motions(chain, middle, rate, np.zeros_like(rate))[1][:, :3]
     share = np.arange(5)[:, None, None] / 4.0
     pull = Linear(
+        np.einsum("kin,ckn->cki", J, ddq.push),
         np.einsum("kin,ckn->cki", J, ddq.left) + (1.0 - share) * turn,
         np.einsum("kin,ckn->cki", J, ddq.right) + share * turn,
     )
@@ -172,12 +195,12 @@ def _mass(mass: Carried, robot: Robot, allowed: Allowed, ddq: Linear) -> _Mass:
     given = filled(mass.lead, size)
     error = np.abs(given) * ((longest * reach * most)[:, None] + lever * off[:, None])
     return _Mass(
-        Linear(*(given * np.einsum("kin,cki->ckn", J, part) for part in (pull.left, pull.right))),
+        Linear(*(given * np.einsum("kin,cki->ckn", J, part) for part in pull)),
         error,
         np.abs(given),
-        (lever + (longest * reach)[:, None]).max(axis=0),
-        float(longest.max()),
-        float((steepest * np.sqrt(x)).max()),
-        float(acceleration.max()),
-        float(most.max()),
+        lever + (longest * reach)[:, None],
+        longest,
+        near(steepest * np.sqrt(x)),
+        near(acceleration),
+        near(most),
     )

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from ...core.cell.cell import Cell
 from ...core.collision.certificate import SceneOf, certify, scenes_of
+from ...core.collision.strays import smoothing_strays
 from ...core.collision.verdict import Certificate
 from ...core.errors import MotionError
-from ...core.motion.attainable import attainable_accelerations
 from ...core.motion.controller import Controller, Run
 from ...core.program.program import Program
 from ...core.program.zone import Radius, Zone
@@ -41,8 +41,9 @@ ReadBack = Callable[[Program], Program]
 """Writes a program and reads what was written."""
 Tell = Callable[[str], None]
 
-_EXCESS = 1.05
-"""On acceleration limits: samples of a stamp may pass them by a little."""
+_EXCESS = 1.5
+"""On how far smoothing and leads take the joints off the path before zones have grown: with larger
+ones the robot is faster. The certificate that ends every run takes what it is then."""
 _INTERRUPTED = Found(0.0, 0.0, MotionError("the search was interrupted"))
 
 
@@ -197,12 +198,4 @@ class _Maximization:
 
     def _deviation(self, run: Run) -> FloatArray:
         """How far (N,) smoothing in time, and leads of elastic joints, take them off the path."""
-        smoothing = self._controller.smoothing(self._program, run.path)
-        size = run.path.q.shape[1]
-        limits, controller = run.timing.limits, self._controller
-        velocity = _EXCESS * limits.velocity[:, :size].max(axis=0)
-        bound = _EXCESS * attainable_accelerations(run.timing)
-        strays = bound * smoothing.stray
-        elasticity = controller.model.elasticity
-        leads = elasticity.most(controller.robot, run.path.q, velocity, bound, strays)
-        return np.asarray(strays + leads)
+        return np.asarray(_EXCESS * smoothing_strays(self._controller, run))

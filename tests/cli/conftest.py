@@ -11,7 +11,7 @@ from typer.testing import CliRunner, Result
 from flyby.cli.main import app
 
 ROOT = Path(__file__).parents[2]
-ROBOT = "abb/irb6640-180-255"
+ROBOT = "abb/irb6640-235-255"
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 MODULE = """MODULE Small
   CONST jointtarget home := [[0,0,0,0,90,0],{unused}];

@@ -15,7 +15,7 @@ from flyby.core.motion.trajectory import Trajectory
 from flyby.core.registry import find_vendor
 
 ROOT = Path(__file__).parents[2]
-ROBOT = "abb/irb6640-180-255"
+ROBOT = "abb/irb6640-235-255"
 SQUARE = ROOT / "examples" / "square.mod"
 
 Flyby = Callable[..., Result]
@@ -161,7 +161,7 @@ def test_an_unreachable_target_names_line_and_move(flyby: Flyby, small: Small) -
         ((), "which robot?"),
         (("--robot", "abb/irb664"), "did you mean"),
         (("--robot", "kuka/kr3-r540"), "is a program for abb"),
-        (("--robot", ROBOT, "--start", "1,2"), "--start: abb/irb6640-180-255 has 6 axes"),
+        (("--robot", ROBOT, "--start", "1,2"), "--start: abb/irb6640-235-255 has 6 axes"),
         (("--robot", ROBOT, "--period", "0"), "--period must be at least 1e-05 s, not 0.0"),
         (("--robot", ROBOT, "--period", "nan"), "--period must be at least"),
         (("--robot", ROBOT, "--entry", "foo"), "foo"),

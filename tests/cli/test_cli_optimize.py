@@ -19,7 +19,7 @@ from flyby.core.motion.controller import Controller
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_robot, find_vendor
 
-CELL = """robot = "abb/irb6640-180-255"
+CELL = """robot = "abb/irb6640-235-255"
 clearance_mm = 5
 [tool.rod]
 tcp = { xyz_mm = [0, 0, 300] }
@@ -74,7 +74,7 @@ def program(tmp_path: Path) -> Path:
 
 
 def duration(path: Path) -> float:
-    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-180-255")
+    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-235-255")
     return Controller(vendor, robot).run(vendor.read_file(path, robot=robot)).duration
 
 
@@ -219,7 +219,7 @@ def test_a_limit_for_all_holds_every_point(
         "optimize", program, "--cell", cell, *QUICK, "--limit", "all=joints:2", "--out", out
     )
     assert result.exit_code == 0, result.output
-    new = Controller(find_vendor("abb"), find_robot("abb/irb6640-180-255"))
+    new = Controller(find_vendor("abb"), find_robot("abb/irb6640-235-255"))
     read = find_vendor("abb").read_file(out / "m.mod", robot=new.robot)
     for move, (a, b) in zip(read.moves, POINTS, strict=True):
         q = [value * 180 / 3.141592653589793 for value in move.target.joints]  # type: ignore[union-attr]
@@ -242,7 +242,7 @@ def test_other_via_points_are_written_beside(
     out = tmp_path / "out"
     result = flyby("optimize", program, "--cell", cell, *QUICK, "--vias", "change", "--out", out)
     assert result.exit_code == 0, result.output
-    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-180-255")
+    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-235-255")
     (file,) = out.iterdir()
     old, new = (vendor.read_file(path, robot=robot) for path in (program, file))
     assert len(new.moves) > len(old.moves)
@@ -250,7 +250,7 @@ def test_other_via_points_are_written_beside(
 
 
 def test_other_moves_are_written_anew(program: Path) -> None:
-    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-180-255")
+    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-235-255")
     read = vendor.read_file(program, robot=robot)
     fewer = replace(read, statements=(*read.statements[:2], *read.statements[3:]))
     emission = Emission(vendor, robot, read, False)

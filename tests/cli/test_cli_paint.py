@@ -64,11 +64,15 @@ def test_program_and_pictures(flyby: Flyby, panel: tuple[Path, Path], tmp_path: 
     assert again.exit_code == 1 and "--force replaces it" in again.output
 
 
-def test_without_a_robot_there_is_a_table_alone(flyby: Flyby, panel: tuple[Path, Path]):
-    result = flyby(*words(panel, "--points", "200"))
+def test_without_a_robot_there_is_no_program(
+    flyby: Flyby, panel: tuple[Path, Path], tmp_path: Path
+):
+    out = tmp_path / "out"
+    result = flyby(*words(panel, "--points", "200", "--out", out))
     assert result.exit_code == 0, result.output
     assert "as emulated" not in result.stdout and "full" in result.stdout
     assert "transfer %" in result.stdout and "paint ml" in result.stdout
+    assert {path.name for path in out.iterdir()} == {"thickness.png", "curve.png", "histogram.png"}
 
 
 def test_millimetres_taken_for_metres(flyby: Flyby, panel: tuple[Path, Path]):

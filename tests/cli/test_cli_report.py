@@ -21,7 +21,7 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
 from flyby.drawing.geometry import path_geometry, tcp_speed
 
-ROBOT = find_robot("abb/irb6640-180-255")
+ROBOT = find_robot("abb/irb6640-235-255")
 CONTROLLER = Controller(find_vendor("abb"), ROBOT)
 HOME = JointTarget((0.0, 0.0, 0.0, 0.0, np.pi / 2, 0.0))
 Small = Callable[..., Path]

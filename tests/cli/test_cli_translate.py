@@ -12,7 +12,7 @@ from typer.testing import Result
 
 from flyby.core.registry import find_robot, find_vendor
 
-ROBOT = "abb/irb6640-180-255"
+ROBOT = "abb/irb6640-235-255"
 
 Flyby = Callable[..., Result]
 Small = Callable[..., Path]

@@ -18,8 +18,8 @@ from flyby.core.motion.trajectory import write_whole
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.text import SourceFile
 
-ROBOT = "abb/irb6640-180-255"
-CELL = """robot = "abb/irb6640-180-255"
+ROBOT = "abb/irb6640-235-255"
+CELL = """robot = "abb/irb6640-235-255"
 clearance_mm = 5
 [tool.rod]
 tcp = { xyz_mm = [0, 0, 300] }

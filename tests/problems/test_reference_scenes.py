@@ -243,6 +243,6 @@ def test_the_written_station_is_proven(tmp_path: Path) -> None:
     file = tmp_path / "station.toml"
     file.write_text(example["cell_text"](scene, "meshes"), "utf-8")
     cell = load_cell(file, installed())
-    controller = Controller(find_vendor("abb"), cell.robot)
+    controller = Controller(find_vendor("abb"), cell.robot, PARABOLAS)
     run = controller.run(example["whole_program"](scene))
     assert certify(controller, run, scenes_of(cell), cell.clearance).proven

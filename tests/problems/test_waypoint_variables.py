@@ -33,7 +33,7 @@ from flyby.problems.waypoints.variables import Variables, make_variables
 
 FloatArray = NDArray[np.float64]
 
-ROBOT = find_robot("abb/irb6640-180-255")
+ROBOT = find_robot("abb/irb6640-235-255")
 CONTROLLER = Controller(find_vendor("abb"), ROBOT)
 START = JointTarget((0.0, 0.2, 0.2, 0.0, 0.9, 0.0))
 BOTH = Freedom.WAYPOINTS_AND_ZONES

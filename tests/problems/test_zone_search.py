@@ -70,7 +70,8 @@ def _tcp_program(cell: Cell) -> tuple[Controller, Program]:
         MoveC(at(1.6, 0.4, 0.6), speed, via=at(1.6, 0.25, 0.5), tool=tool),
         MoveL(at(1.4, 0.5, 0.9), speed, tool=tool),
     ]
-    return Controller(find_vendor("abb"), cell.robot), Program(tuple(moves))
+    abb = find_vendor("abb")
+    return Controller(abb, cell.robot, abb.motion()), Program(tuple(moves))
 
 
 def _prepared(

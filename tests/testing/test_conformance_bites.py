@@ -112,7 +112,7 @@ def empty_source() -> MotionModel:
 def test_a_fault_is_found(change: dict[str, Any], check: str) -> None:
     run(SOUND, check)
     with pytest.raises((AssertionError, KeyError, ExceptionGroup)):
-        run(replace(SOUND, **change), check)
+        run(replace(SOUND, **{"robot_motion": {}, **change}), check)
 
 
 def test_importing_the_plugins_is_light() -> None:

@@ -22,6 +22,7 @@ ROWS = {
     "orientation": "zone.orientation",
     "TCP move next to a pure turn": "zone.stops_at_pure_reorientation",
     "period": "period_s",
+    "averages over the joints": "time.smoothing_s",
 }
 VENDORS = ("abb", "kuka", "ur")
 
@@ -49,7 +50,12 @@ def test_the_vendors_table_states_their_rules() -> None:
         assert stops == model.stops_at_pure_reorientation
         assert cells("period")[k].startswith(f"{1e3 * model.period:g} ms")
         assert ("arc" in cells("blend of the TCP")[k]) == (model.tcp.kind == "arc")
-        assert model.smoothing == () and model.jerk is None
+        averages = cells("averages over the joints")[k]
+        widths = " × ".join(
+            (str(len(model.smoothing)), *(f"{1e3 * w:g}" for w in {*model.smoothing}))
+        )
+        assert averages.startswith(widths if model.smoothing else "none")
+        assert model.jerk is None
 
 
 def test_all_laws_of_the_table_pass_the_same_apex() -> None:

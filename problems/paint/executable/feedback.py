@@ -9,7 +9,7 @@ by least squares, and drives the new one; the best that was driven is kept.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,7 +81,7 @@ def drive_evenly(
         target: wanted thickness, m.
         speed: least and largest programmed speed, m/s.
         visible: (V, S) which points each programmed segment sees; None for all.
-        progress: see `Progress`.
+        progress: see `Progress`; Ctrl-C ends the rounds too.
 
     Raises:
         MotionError: the robot cannot drive it.
@@ -91,20 +91,40 @@ def drive_evenly(
     rounds: list[float] = []
     now = planned
     for number in range(ROUNDS + 1):
-        program = paint_program(now, posture, station, options)
-        driven = drive(controller, program, now, station)
-        found = judged(deposition, driven, target, visible)
-        rounds.append(found.by_area.std)
-        made = Execution(program, now, driven, found, ())
-        gained = 1.0 if best is None else 1.0 - found.squared_error / best.coat.squared_error
+        try:
+            made = _driven(controller, now, posture, station, options, deposition, target, visible)
+        except KeyboardInterrupt:
+            if best is None:
+                raise
+            break
+        rounds.append(made.coat.by_area.std)
+        gained = 1.0 if best is None else 1.0 - made.coat.squared_error / best.coat.squared_error
         best = made if gained > 0.0 or best is None else best
-        stopped = progress is not None and progress(number, found)
-        if stopped or gained < ENOUGH or number == ROUNDS:
+        stopped = progress is not None and progress(number, made.coat)
+        if stopped or gained < ENOUGH:
             break
         factors = _factors(deposition, made, target, speed, visible)
         now = now.with_durations(now.duration * factors)
     assert best is not None
-    return Execution(best.program, best.planned, best.driven, best.coat, tuple(rounds))
+    return replace(best, rounds=tuple(rounds))
+
+
+def _driven(
+    controller: Controller,
+    planned: PaintTrajectory,
+    posture: Posture,
+    station: Station,
+    options: DriveOptions,
+    deposition: Deposition,
+    target: float,
+    visible: BoolArray | None,
+) -> Execution:
+    """One round: the program of a trajectory, driven and judged."""
+    program = paint_program(planned, posture, station, options)
+    driven = drive(controller, program, planned, station)
+    return Execution(
+        program, planned, driven, judged(deposition, driven, target, visible), rounds=()
+    )
 
 
 def judged(

@@ -67,9 +67,14 @@ def test_equal_laws_keep_the_radius_of_a_line(between) -> None:
 
 def test_other_laws_get_the_radius_that_cuts_alike(between) -> None:
     pair = between("abb", "kuka")
-    made = pair.translate(corner(pair, Radius(0.02, 0.02)))
-    expected = 0.02 * cut_share("abb") / cut_share("kuka")
-    assert expected != pytest.approx(0.02, rel=0.05)
+    kuka = find_vendor("kuka")
+    model = replace(kuka.motion(), tcp=Blend(beta=(-0.5,)))
+    made = translate(
+        corner(pair, Radius(0.02, 0.02)),
+        (find_vendor("abb"), pair.robot(pair.old)),
+        (replace(kuka, motion=lambda: model), pair.robot(pair.new)),
+    )
+    expected = 0.02 * cut_share("abb") / (1.0 - 0.5 / 4.0)
     assert made.program.moves[1].zone.tcp == pytest.approx(expected, rel=1e-3)
 
 
