@@ -243,6 +243,8 @@ def test_zones_of_joint_moves_end_on_the_sphere(arm, share, change) -> None:
     centre = tcp(arm, wp[None])[0]
     halves = [tcp(arm, (wp + 0.5 * np.array(far))[None])[0] for far in (-first, change)]
     radius = min(share * arm.leg, *(np.linalg.norm(half - centre) for half in halves))
+    # The sixth joint alone turns the tool about itself: no sphere is left then.
+    assume(radius > 1e-6)
     for reach, far in zip(path.corners.reach[0, POSITION], (-first, change), strict=True):
         inside = tcp(arm, wp + np.linspace(0, reach, 50)[:, None] * np.array(far))
         distance = np.linalg.norm(inside - centre, axis=1)
