@@ -136,7 +136,7 @@ class _Run:
         matrix = self.P.copy()
         self.products.add(of_rows.astype(np.float64), matrix)
         matrix[np.diag_indices(len(diagonal))] += diagonal + _REGULARISATION
-        return _System(Cholesky(matrix), self.E)
+        return _System(matrix, self.E)
 
     # ------------------------------------------------------------------- the iteration
 
@@ -160,7 +160,10 @@ class _Run:
                 return QpStatus.SOLVED
             if not patience:
                 break
-            state = self._step(state, left)
+            try:
+                state = self._step(state, left)
+            except LinAlgError:
+                break
         return QpStatus.INEXACT if best <= _ENOUGH else QpStatus.FAILED
 
     def solution(self, status: QpStatus) -> QpSolution:
@@ -180,10 +183,13 @@ class _Run:
         return QpSolution(status, d, y, z)
 
     def _start(self) -> _State:
-        """The middle of the box where there is one, slacks and multipliers of about 1."""
-        d = np.zeros(len(self.free))
-        slack = np.maximum(self.sides.bound - self.across(d), 1e-2)
-        return _State(d, np.zeros(len(self.equal)), slack, np.minimum(1.0, 1e-1 / slack))
+        """The least-squares point of the sides, its slacks and multipliers shifted until positive
+        (L. Vandenberghe, "The CVXOPT linear and quadratic cone program solvers", section 5.3)."""
+        ones = np.ones(len(self.sides.bound))
+        system = self.factorised(_State(np.zeros(len(self.free)), np.zeros(0), ones, ones))
+        d, y = system.solve(self.back(self.sides.bound) - self.q, self.b)
+        over = self.across(d) - self.sides.bound
+        return _State(d, y, _shifted(-over), _shifted(over))
 
     def _residuals(self, state: _State) -> tuple[FloatArray, FloatArray, FloatArray]:
         """What is left of slope, equalities and sides."""
@@ -249,6 +255,12 @@ class _Run:
         return float(np.abs(values).max(initial=0.0))
 
 
+def _shifted(values: FloatArray) -> FloatArray:
+    """The values, raised by one amount until the least is at least 1 if one is not positive."""
+    least = float(values.min(initial=np.inf))
+    return values if least > 0.0 else values + (1.0 - least)
+
+
 class _Products:
     """Aᵀ diag(w) A of a sparse A (l, n), added to full matrices."""
 
@@ -270,15 +282,26 @@ class _Products:
 
 
 class _System:
-    """[M, Eᵀ; E, 0] with M factorised."""
+    """[M, Eᵀ; E, 0] with M factorised.
 
-    def __init__(self, matrix: Cholesky, E: FloatArray) -> None:
-        self._matrix, self._E = matrix, E
-        self._spread = matrix.solve(E.T)
+    Raises:
+        LinAlgError: M is not definite to rounding, as happens when sides close in on a solution.
+    """
+
+    def __init__(self, matrix: FloatArray, E: FloatArray) -> None:
+        self._full, self._matrix, self._E = matrix, Cholesky(matrix), E
+        self._spread = self._matrix.solve(E.T)
         shift = _REGULARISATION * np.eye(len(E))
         self._rows = Cholesky(E @ self._spread + shift) if len(E) else None
 
     def solve(self, first: FloatArray, second: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The solution, refined once: weights of sides span twenty orders near the end."""
+        d, y = self._once(first, second)
+        left = first - self._full @ d - self._E.T @ y
+        change, of_y = self._once(left, second - self._E @ d)
+        return d + change, y + of_y
+
+    def _once(self, first: FloatArray, second: FloatArray) -> tuple[FloatArray, FloatArray]:
         d = self._matrix.solve(first)
         if self._rows is None:
             return d, np.zeros(0)

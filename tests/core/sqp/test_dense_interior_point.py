@@ -61,7 +61,8 @@ def test_as_good_as_clarabel(seed, n, rows, share):
     other = ClarabelBackend().solve(qp, None)
     assert found.status is QpStatus.SOLVED
     assert value(qp, found) == pytest.approx(value(qp, other), rel=1e-5, abs=1e-5)
-    assert active_set.error(qp, found) <= 1e-3  # of weakly active sides, which polishing settles
+    slope = np.abs(qp.q).max()  # of weakly active sides, which polishing settles
+    assert active_set.error(qp, found) <= 1e-3 * slope
 
 
 @pytest.mark.parametrize("seed", range(3))
