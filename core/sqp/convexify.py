@@ -230,19 +230,21 @@ class _Sum:
     def _remember(self, H: Sparsity, J: Sparsity | None) -> None:
         self._H, self._J = H, J
         n = H.shape[0]
+        none = np.zeros(0, dtype=np.int64)
         h_keys = H.columns * n + H.rows
         diagonal = np.arange(n, dtype=np.int64) * (n + 1)
-        keys = [h_keys, diagonal]
-        self._rows = self._first = self._second = np.zeros(0, dtype=np.int64)
-        if J is not None:
-            self._rows, self._first, self._second = _pairs(J)
-            keys.append(J.columns[self._first] * n + J.columns[self._second])
-        union = np.unique(np.concatenate(keys))
+        self._rows, self._first, self._second = (none, none, none) if J is None else _pairs(J)
+        products = none if J is None else J.columns[self._first] * n + J.columns[self._second]
+        if H.full:  # keys are places
+            self._pattern = H
+            self._h_places, self._diagonal, self._places = h_keys, diagonal, products
+            return
+        union = np.unique(np.concatenate([h_keys, diagonal, products]))
         starts = np.searchsorted(union // n, np.arange(n + 1))
         self._pattern = Sparsity((n, n), union % n, starts)
-        self._h_places = np.searchsorted(union, h_keys)
-        self._diagonal = np.searchsorted(union, diagonal)
-        self._places = np.searchsorted(union, keys[2]) if J is not None else self._rows
+        self._h_places, self._diagonal, self._places = (
+            np.searchsorted(union, keys) for keys in (h_keys, diagonal, products)
+        )
 
 
 def _pairs(J: Sparsity) -> tuple[IntArray, IntArray, IntArray]:

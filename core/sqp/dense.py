@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from .matrices import FloatArray, SparseMatrix, Sparsity
@@ -17,7 +18,7 @@ BoolArray = NDArray[np.bool_]
 _LEAST_SIZE = 100
 _LEAST_SHARE = 0.3
 _REGULARISATION = 1e-9
-_REFINEMENTS = 4
+_REFINEMENTS = 20
 _EXACT = 1e-13
 
 
@@ -117,8 +118,9 @@ def saddle(
     y = np.zeros(len(target))
     if not len(free):
         return d, y
-    active = np.flatnonzero(rows)
-    B = A.scipy()[active][:, free].toarray() if len(active) else np.zeros((0, len(free)))
+    across = sparse.csr_array(A.scipy())[:, free]
+    active = np.flatnonzero(rows & (abs(across).sum(axis=1) > 0.0))  # others cannot be met
+    B = across[active].toarray()
     delta = _REGULARISATION * max(1.0, P.largest())
     try:
         reduced = _Reduced(full[np.ix_(free, free)], B, delta)

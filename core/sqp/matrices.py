@@ -43,6 +43,11 @@ class Sparsity:
         """Number of entries."""
         return len(self.rows)
 
+    @property
+    def full(self) -> bool:
+        """Whether every place has an entry: then entry k stands at row k % rows."""
+        return self.size == self.shape[0] * self.shape[1]
+
     def equals(self, rows: ArrayLike, starts: ArrayLike) -> bool:
         """Whether these are the same places."""
         return np.array_equal(self.starts, starts) and np.array_equal(self.rows, rows)

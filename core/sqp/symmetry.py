@@ -47,6 +47,10 @@ class Symmetry:
         """Where each entry's counterpart is."""
         self._pattern = pattern
         n = pattern.shape[0]
+        if pattern.full:
+            self._places = np.arange(n * n).reshape(n, n).T.ravel()
+            self._found = np.ones(n * n, dtype=np.bool_)
+            return
         keys = pattern.columns * n + pattern.rows
         wanted = pattern.rows * n + pattern.columns
         places = np.minimum(np.searchsorted(keys, wanted), max(len(keys) - 1, 0))

@@ -57,6 +57,7 @@ class ClarabelBackend:
     """
 
     name = "clarabel"
+    worth = 30
 
     def __init__(self, accuracy: float = 1e-9) -> None:
         self._settings = clarabel.DefaultSettings()

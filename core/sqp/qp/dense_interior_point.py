@@ -64,6 +64,7 @@ class DenseInteriorPointBackend:
     """
 
     name = "dense_interior_point"
+    worth = 2  # a system takes as long as an iteration, of which there are about ten
 
     def __init__(self, accuracy: float = 1e-9, iterations: int = 60) -> None:
         self._accuracy = accuracy

@@ -44,6 +44,7 @@ class InteriorPointBackend:
     """
 
     name = "interior_point"
+    worth = 30
 
     def __init__(self, accuracy: float = 1e-9, iterations: int = 60) -> None:
         self._accuracy = accuracy

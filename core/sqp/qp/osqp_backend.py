@@ -34,6 +34,7 @@ class OsqpBackend:
     """
 
     name = "osqp"
+    worth = 30
 
     def __init__(self, accuracy: float = 1e-8, iterations: int = 20_000) -> None:
         self._accuracy = accuracy

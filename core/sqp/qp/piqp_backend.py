@@ -33,6 +33,7 @@ class PiqpBackend:
     """
 
     name = "piqp"
+    worth = 30
 
     def __init__(self, accuracy: float = 1e-9) -> None:
         try:

@@ -70,9 +70,15 @@ class QpSolution:
 
 
 class Backend(Protocol):
-    """Solves subproblems one after the other, and keeps what it can between them."""
+    """Solves subproblems one after the other, and keeps what it can between them.
+
+    Attributes:
+        name: of the back end.
+        worth: linear systems that may be solved to save asking it, from a guess of what is active.
+    """
 
     name: str
+    worth: int
 
     def solve(self, qp: QuadraticProgram, warm: QpSolution | None) -> QpSolution:
         """The solution of ``qp``.

@@ -14,7 +14,6 @@ from .equilibration import units_of
 from .problem import Backend, QpSolution, QpStatus, QuadraticProgram
 
 _POLISHING = 1
-_FROM_GUESS = 30
 _EXACT = 1e-9
 _INEXACT = 1e-5
 """Error of a solution from a back end that gave up at which it is still taken."""
@@ -81,7 +80,7 @@ class Subproblems:
     def _from_guess(self, qp: QuadraticProgram, warm: QpSolution) -> QpSolution | None:
         """The solution from the active set of another; None where that leads nowhere."""
         guess = active_set.pushed_by(qp, warm.y, warm.z)
-        found = active_set.settled(qp, guess, self._saddle, _FROM_GUESS)
+        found = active_set.settled(qp, guess, self._saddle, self._backends[0].worth)
         if found is None:
             return None
         size = max(1.0, float(np.abs(qp.q).max()))

@@ -98,7 +98,10 @@ def test_saddles_are_those_of_the_sparse_path(seed):
     n, m = 120, 30
     root = rng.normal(size=(150, n))
     P, q = filled(root.T @ root), rng.normal(size=n)
-    A = from_scipy(sparse.random_array((m, n), density=0.05, rng=rng) + sparse.eye_array(m, n))
+    entries = sparse.random_array(
+        (m, n), density=0.05, rng=rng, data_sampler=lambda size: rng.uniform(0.1, 1.0, size)
+    )
+    A = from_scipy(entries + sparse.eye_array(m, n))
     rows, fixed = rng.random(m) < 0.5, rng.random(n) < 0.2
     target, values = rng.normal(size=m), rng.normal(size=n)
     found = Saddle().solve(P, q, A, rows, target, fixed, values)

@@ -96,6 +96,7 @@ class _Claims:
     """A back end that claims a status, whatever it is asked."""
 
     name = "claims"
+    worth = 0
 
     def __init__(self, status: QpStatus) -> None:
         self._status = status
