@@ -106,10 +106,9 @@ class Basis:
     def share(self, percent: Value | None, default: str) -> Value:
         """A percentage of a default; the default itself for 100 and more, and if it is open."""
         full = self.default(default)
-        known = isinstance(percent, int | float) and isinstance(full, int | float)
-        if not known or percent >= 100:  # type: ignore[operator]
-            return percent if isinstance(percent, Unknown) else plain(full)
-        return float(percent) * float(full) / 100  # type: ignore[arg-type]
+        if isinstance(full, int | float) and isinstance(percent, int | float) and percent < 100:
+            return float(percent) * full / 100
+        return percent if isinstance(percent, Unknown) else plain(full)
 
     def path_limit(self, value: Value, span: Span) -> Value:
         """A speed of the TCP, cut to ``DEF_VEL_CP``."""

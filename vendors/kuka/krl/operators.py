@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import TypeGuard
 
 from ....core.errors import InputError
 from .frames import frame_of, pose_of
@@ -37,7 +38,7 @@ def apply(symbol: str, left: Value, right: Value) -> Value:
         return _logic(symbol, left, right)
     if symbol in _BITWISE:
         if _is_int(left) and _is_int(right):
-            return _BITWISE[symbol](int(left), int(right))  # type: ignore[arg-type]
+            return _BITWISE[symbol](left, right)
         raise _wrong(symbol, "whole numbers", left, right)
     return _arithmetic(symbol, left, right)
 
@@ -57,10 +58,10 @@ def negate(symbol: str, operand: Value) -> Value:
     if symbol == "b_not":
         if not _is_int(operand):
             raise OperandError(f"B_NOT wants a whole number, not {shown(operand)}")
-        return ~int(operand)  # type: ignore[arg-type]
+        return ~operand
     if not _is_number(operand):
         raise OperandError(f"'{symbol}' wants a number, not {shown(operand)}")
-    return -operand if symbol == "-" else +operand  # type: ignore[operator]
+    return -operand if symbol == "-" else +operand
 
 
 def chained(left: Value, right: Value) -> Struct:
@@ -113,13 +114,13 @@ _COMPARISONS: dict[str, Callable[[float, float], bool]] = {
 
 def _compared(symbol: str, left: Value, right: Value) -> bool:
     if _is_number(left) and _is_number(right):
-        return _COMPARISONS[symbol](left, right)  # type: ignore[arg-type]
+        return _COMPARISONS[symbol](left, right)
     alike = any(isinstance(left, kind) and isinstance(right, kind) for kind in (bool, str, Choice))
     if alike and symbol in ("==", "<>"):
         return (left == right) == (symbol == "==")
-    codes = [ord(v) if isinstance(v, str) and len(v) == 1 else v for v in (left, right)]
-    if _is_number(codes[0]) and _is_number(codes[1]):
-        return _COMPARISONS[symbol](*codes)  # type: ignore[arg-type]
+    first, second = (ord(v) if isinstance(v, str) and len(v) == 1 else v for v in (left, right))
+    if _is_number(first) and _is_number(second):
+        return _COMPARISONS[symbol](first, second)
     raise _wrong(symbol, "two values of one type", left, right)
 
 
@@ -164,11 +165,11 @@ def _arithmetic(symbol: str, left: Value, right: Value) -> Value:
     return value
 
 
-def _is_number(value: Value) -> bool:
+def _is_number(value: Value) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _is_int(value: Value) -> bool:
+def _is_int(value: Value) -> TypeGuard[int]:
     return isinstance(value, int) and not isinstance(value, bool)
 
 

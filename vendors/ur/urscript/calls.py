@@ -277,7 +277,7 @@ def _sleep(run: Interpreter, call: Call, scope: Scope) -> Located:
         raise SourceError(f"sleep takes a time in s, not {describe(value)}", span)
     run.threads.waited()
     try:
-        run.emit(Wait(float(value), span))  # type: ignore[arg-type]
+        run.emit(Wait(float(value), span))
     except InputError as error:
         raise SourceError(f"sleep: {error}", span) from None
     return NOTHING

@@ -65,9 +65,9 @@ SHAPES = frozenset({"length", "size", "get_list_length"})
 
 
 def _number(value: Value) -> float:
-    if not is_number(value) and not isinstance(value, bool):
-        raise ValueFault(f"a number is wanted, not {describe(value)}")
-    return value  # type: ignore[return-value]
+    if is_number(value) or isinstance(value, bool):
+        return value
+    raise ValueFault(f"a number is wanted, not {describe(value)}")
 
 
 def _whole(value: Value) -> int:

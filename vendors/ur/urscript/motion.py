@@ -270,7 +270,7 @@ class _MoveReader:
             raise SourceError(
                 f"'{name}' of {self.call.name} is a number, not {describe(found.value)}", span
             )
-        return float(found.value), found  # type: ignore[arg-type]
+        return float(found.value), found
 
     def _speed(self, values: dict[str, float]) -> Speed:
         a, v, t = (values.get(name, 0.0) for name in _SPEED)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable
+from typing import TypeGuard
 
 from .values import (
     Struct,
@@ -57,7 +58,7 @@ def apply(symbol: str, left: Value, right: Value) -> Value:
     if symbol in _ORDER:
         if not (_real(left) and _real(right)):
             raise _mismatch(symbol, left, right)
-        return _ORDER[symbol](left, right)  # type: ignore[arg-type]
+        return _ORDER[symbol](left, right)
     if symbol in _BITS:
         return _bits(symbol, left, right)
     return checked(_arithmetic(symbol, left, right))
@@ -78,7 +79,7 @@ def negate(symbol: str, operand: Value) -> Value:
             raise ValueFault(f"'~' takes an integer, not {describe(operand)}")
         return ~operand
     if _real(operand):
-        return -operand if symbol == "-" else operand  # type: ignore[operator]
+        return -operand if symbol == "-" else operand
     if isinstance(operand, tuple) and not isinstance(operand, UrPose):
         return tuple([negate(symbol, item) for item in operand])
     raise ValueFault(f"'{symbol}' takes a number, not {describe(operand)}")
@@ -114,7 +115,7 @@ def _logical(symbol: str, left: Value, right: Value) -> Value:
     return left if isinstance(left, Unknown) else right
 
 
-def _real(value: Value) -> bool:
+def _real(value: Value) -> TypeGuard[float]:
     return type(value) is float or type(value) is int or type(value) is bool
 
 
@@ -149,7 +150,7 @@ def _bits(symbol: str, left: Value, right: Value) -> int:
 
 def _arithmetic(symbol: str, left: Value, right: Value) -> Value:
     if _real(left) and _real(right):
-        return _numbers(symbol, left, right)  # type: ignore[arg-type]
+        return _numbers(symbol, left, right)
     if symbol == "+" and isinstance(left, str) and isinstance(right, str):
         return left + right
     if isinstance(left, UrPose) or isinstance(right, UrPose):

@@ -57,9 +57,9 @@ def mass_of(value: Value) -> float:
     Raises:
         ValueFault: it is none.
     """
-    if not is_number(value) or float(value) < 0:  # type: ignore[arg-type]
+    if not is_number(value) or float(value) < 0:
         raise ValueFault(f"the mass is a number of kg, not {describe(value)}")
-    return float(value)  # type: ignore[arg-type]
+    return float(value)
 
 
 def centre_of(value: Value) -> Vector3:

@@ -7,7 +7,7 @@ changes: URScript copies lists, too. What is more stands here.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 from ....core.errors import Span
 from ....core.program.target import Configuration
@@ -117,7 +117,7 @@ class ValueFault(Exception):
     """Values that do not go together; whoever knows the place makes a SourceError of it."""
 
 
-def is_number(value: Value) -> bool:
+def is_number(value: Value) -> TypeGuard[float]:
     """Whether a value is an int or a float, and no bool."""
     return type(value) is float or type(value) is int
 
