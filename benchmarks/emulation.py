@@ -1,4 +1,4 @@
-"""The emulator's speed, and its distance from logged runs of real controllers.
+"""The emulator's speed.
 
     python benchmarks/emulation.py [--json] [--case 1000-moves]
 
@@ -8,21 +8,14 @@ of planning, stamping and sampling it over its moves; ``real_time_factor`` the r
 over that CPU time; ``derivative_cost_ratio`` the CPU time of duration, energy and both gradients
 over that of duration and energy alone. ``start-up`` runs a fresh interpreter whose compiled
 kernels are in numba's cache already.
-
-With FLYBY_LOGS naming a folder of logged runs (see `flyby.identification.logs`), there is a case
-for each run: distances of the log's samples from the emulated path of the TCP, and emulated over
-logged time in motion. Cycle times of the KUKA and UR10e runs say little: the speeds that these
-robots were told, or their override, were not recorded.
 """
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -38,14 +31,9 @@ from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
-from flyby.identification.comparison import compare
-from flyby.identification.logs import LoggedRun, load_run
 
 MOVES = 1000
 SPEED = Speed(tcp=0.5, reorientation=np.radians(500), name="v500")
-# What the records of two runs state as the best estimate of blend radii that were not logged: one
-# radius for all waypoints in m, and a share of the rule radius.
-RADII = {"lin_18_20250701_092904": (0.1, 0.0), "lin_26_20250722_103002": (0.0, 2.0)}
 # A box in front of the robot, tool down, in which it meets no singularity and no joint limit.
 CENTRE = np.array([1.5, 0.0, 1.0])
 HALF = np.array([0.3, 0.5, 0.3])
@@ -167,52 +155,12 @@ def start_up(case: str) -> Iterator[Figure]:
     yield Figure(case, "process_s", float(whole), "s", "target", 3.0)
 
 
-def _with_estimated_radii(run: LoggedRun) -> Program:
-    """The run's program, its zones replaced by the record's own best estimate if it states one."""
-    if run.name not in RADII:
-        return run.program
-    fixed, share = RADII[run.name]
-    zones = (
-        replace(m.zone, tcp=fixed + share * m.zone.tcp) if isinstance(m.zone, Radius) else m.zone
-        for m in run.program.moves
-    )
-    moves = (replace(m, zone=zone) for m, zone in zip(run.program.moves, zones, strict=True))
-    return run.program.with_moves(tuple(moves))
-
-
-def logged(case: str, path: Path) -> Iterator[Figure]:
-    run = load_run(path, find_robot)
-    driven = _with_estimated_radii(run)
-    robot = find_robot(run.robot)
-    driver = Controller(find_vendor(run.robot.split("/")[0]), robot)
-    emulated = driver.run(driven).trajectory
-    found = compare(robot, run.program.moves[0].tool, run.t, run.q, emulated)
-    yield Figure(case, "path_max_mm", 1e3 * float(found.deviation.max()), "mm")
-    yield Figure(case, "path_p99_mm", 1e3 * float(np.percentile(found.deviation, 99)), "mm")
-    peer = "controller" if run.real else "virtual controller"
-    yield Figure(case, "cycle_time_ratio", found.cycle_time_ratio, "", peer, found.logged_moving)
-    yield Figure(case, "start_mm", 1e3 * found.start, "mm")
-    yield Figure(case, "end_mm", 1e3 * found.end, "mm")
-
-
-def logs() -> dict[str, Path]:
-    """The logged runs by name; none if FLYBY_LOGS is not set."""
-    folder = os.environ.get("FLYBY_LOGS")
-    if folder is None:
-        print("FLYBY_LOGS is not set: no logged runs to compare with", file=sys.stderr)
-        return {}
-    return {f"{p.parent.name}/{p.stem}": p for p in sorted(Path(folder).glob("*/*.json"))}
-
-
 def measure(case: str) -> Iterator[Figure]:
     """Figures of one case."""
     if case == "1000-moves":
         return thousand_moves(case)
-    if case == "start-up":
-        return start_up(case)
-    return logged(case, RUNS[case])
+    return start_up(case)
 
 
 if __name__ == "__main__":
-    RUNS = logs()
-    main(__doc__ or "", measure, ["1000-moves", "start-up", *RUNS])
+    main(__doc__ or "", measure, ["1000-moves", "start-up"])

@@ -1,21 +1,28 @@
 """How well fitted motion models predict logged runs that had no part in the fit.
 
-    FLYBY_LOGS=… python benchmarks/identification.py [--json] [--case fit-abb] [--folds 10]
+    FLYBY_LOGS=… python benchmarks/identification.py [--json] [--case fit-abb]
 
-FLYBY_LOGS names a folder of records of runs (see `flyby.identification.logs`). All runs of a robot
-are divided into ``folds`` groups; each group is predicted by a fit of the robot's fitted figures to
-the others. The robot's published and assumed figures are used as they are; of a robot without
-figures fitted to numbers, only what belongs to a run itself is. Per run: greatest
-distance and 99 % of the log's samples from the emulated path of the TCP (``path_max_mm``,
-``path_p99_mm``), the same of joints, time aside (``joint_max_deg``), and at their time after one
-constant offset (``joint_p99_deg``), and emulated over logged time in motion (``cycle_time_ratio``).
+FLYBY_LOGS names a folder of records of runs (see `flyby.identification.logs`). Each run is a case:
+greatest distance and 99 % of the log's samples from the emulated path of the TCP (``path_max_mm``,
+``path_p99_mm``), the same of joints, time aside (``joint_max_deg``), at their time after one
+constant offset (``joint_p99_deg``, with the drift over the run, ``drift_ms``), and emulated over
+logged time in motion (``cycle_time_ratio``). Which fit predicts a run depends on the robot:
+
+- Of a robot with fitted figures the runs of the source with the most runs are its *lesson*. Each of
+  them is left out in its turn: all figures are fitted anew to the others. The peer is ``in the
+  fit``: the same figure where the run takes part.
+- Runs of other sources (other programs, the real robot) are predicted by the fit to the lesson.
+- Where zones are not recorded one factor on them is fitted to each run, to its odd corners for its
+  even ones and the other way round; peer ``own radius``, with the mean factor. It is not predicted.
+- A robot without fitted figures is predicted as its vendor's files say.
+
 Stamps of virtual controllers are put right by the clock that the fit to the *other* runs found, as
-peer ``clock`` says. Runs whose speeds nobody recorded have no figures of time; zones that nobody
-recorded are fitted to the run itself (peer ``own radius``), and are not predicted.
+peer ``clock`` says. Runs whose speeds nobody recorded have no figures of time.
 
-``fit-abb`` is the fit to all virtual runs of the IRB 6640 on two cores, from rough starts
-(no bulge in corners, all else off by a quarter): seconds from the prepared runs to intervals, and
-``cpu_s`` of all processes, which another load on the machine does not change.
+``fit-abb`` is the fit to the lesson of the IRB 6640 on two cores, from rough starts (no bulge in
+corners, all else off by a quarter): seconds from the prepared runs to intervals, and ``cpu_s`` of
+all processes, which another load on the machine does not change; ``loss`` beside that of the fit
+from the shipped figures.
 """
 
 from __future__ import annotations
@@ -23,7 +30,9 @@ from __future__ import annotations
 import os
 import sys
 import time
+from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -31,11 +40,17 @@ import numpy as np
 from report import Figure, main
 
 from flyby.core.registry import find_robot, find_vendor
-from flyby.identification.fit import ParameterSet, PreparedRun, fit, prepare
+from flyby.identification.fit import Fit, ParameterSet, PreparedRun, fit, prepare
+from flyby.identification.fit.crew import Crew
+from flyby.identification.fit.emulation import Nuisance
+from flyby.identification.fit.fitting import minimise
 from flyby.identification.fit.outcome import predicted
 from flyby.identification.fit.parameters import fitted_before
-from flyby.identification.fit.selection import LeftOut, folds, leave_out
+from flyby.identification.fit.problem import first_nuisances
+from flyby.identification.fit.selection import LeftOut, leave_out
 from flyby.identification.logs import load_run
+from flyby.identification.logs.records import robot_of_record
+from flyby.identification.prediction import Prediction
 
 ABB = "abb/irb6640-180-255"
 WORKERS = 2
@@ -45,8 +60,6 @@ ROUGH = 1.25
 @cache
 def files() -> dict[str, list[Path]]:
     """Records by robot; none if FLYBY_LOGS is not set."""
-    from flyby.identification.logs.records import robot_of_record
-
     folder = os.environ.get("FLYBY_LOGS")
     if folder is None:
         print("FLYBY_LOGS is not set: no logged runs to fit to", file=sys.stderr)
@@ -60,52 +73,133 @@ def files() -> dict[str, list[Path]]:
 
 
 @cache
-def runs(robot: str) -> tuple[PreparedRun, ...]:
-    """All runs of a robot, laid on what is emulated today."""
-    arm, vendor = find_robot(robot), find_vendor(robot.split("/")[0])
-    model = vendor.motion_of(arm)
-    return tuple(prepare(load_run(path, find_robot), vendor, arm, model) for path in files()[robot])
-
-
 def parameters(robot: str) -> ParameterSet:
     """What the robot's figures were fitted by."""
-    arm = find_robot(robot)
-    model = find_vendor(robot.split("/")[0]).motion_of(arm)
+    model = find_vendor(robot.split("/")[0]).motion_of(find_robot(robot))
     return ParameterSet.named(model, fitted_before(model))
 
 
 @cache
-def predictions(robot: str, count: int) -> dict[str, tuple[PreparedRun, LeftOut, int]]:
-    """Each run by a fit in which it had no part."""
-    known = runs(robot)
-    made = {}
-    for left in leave_out(known, parameters(robot), folds(known, count), WORKERS):
-        for place, index in enumerate(left.indices):
-            made[known[index].name] = known[index], left, place
-    return made
+def prepared(path: Path) -> PreparedRun:
+    """A run, laid on what is emulated today."""
+    robot = robot_of_record(path)
+    assert robot is not None
+    arm, vendor = find_robot(robot), find_vendor(robot.split("/")[0])
+    return prepare(load_run(path, find_robot), vendor, arm, vendor.motion_of(arm))
 
 
-def left_out(case: str, count: int) -> Iterator[Figure]:
+@cache
+def lesson(robot: str) -> tuple[PreparedRun, ...]:
+    """The runs that the robot's figures are fitted to; none if it has none."""
+    if not parameters(robot).size:
+        return ()
+    known = [prepared(path) for path in files()[robot]]
+    source, _ = Counter(run.run.source for run in known).most_common(1)[0]
+    return tuple(run for run in known if run.run.source == source)
+
+
+@cache
+def whole_fit(robot: str) -> Fit:
+    """The fit to the whole lesson, from the shipped figures."""
+    return fit(parameters(robot), lesson(robot), WORKERS)
+
+
+def clocks(robot: str) -> dict[str | None, float]:
+    """What the whole fit says of the clocks of its runs."""
+    own = whole_fit(robot).nuisances
+    return {run.clock: one.clock for run, one in zip(lesson(robot), own, strict=True)}
+
+
+def left_out(case: str) -> Iterator[Figure]:
     """Figures of one run."""
-    robot, name = ROBOTS[case], case.split(":")[1]
-    run, left, place = predictions(robot, count)[name]
-    own = left.nuisances[place]
-    found = predicted(run, left.model, own)
-    f = found.figures
-    peer = "" if run.run.zones_known else "own radius"
-    yield Figure(case, "path_max_mm", 1e3 * f.path_max, "mm", peer, None if not peer else own.size)
-    yield Figure(case, "path_p99_mm", 1e3 * f.path_p99, "mm")
-    yield Figure(case, "joint_max_deg", float(np.degrees(f.joint_path_max)), "deg")
+    run = prepared(CASES[case])
+    robot = run.robot.name
+    if not run.run.zones_known:
+        yield from by_other_corners(case, run)
+    elif run in lesson(robot):
+        yield from by_other_runs(case, run, robot)
+    elif lesson(robot):
+        own = replace(first_nuisances([run])[0], clock=clocks(robot).get(run.clock, 1.0))
+        yield from figures(case, run, predicted(run, whole_fit(robot).model, own), own)
+    else:
+        own = replace(first_nuisances([run])[0], clock=1.0)
+        yield from figures(case, run, predicted(run, parameters(robot).base, own), own)
+
+
+def by_other_runs(case: str, run: PreparedRun, robot: str) -> Iterator[Figure]:
+    """The run predicted by a fit to the rest of the lesson."""
+    found, known = whole_fit(robot), lesson(robot)
+    index = known.index(run)
+    near = found.parameters.starting_at(found.values)
+    left: LeftOut = leave_out(known, found.nuisances, near, [(index,)], WORKERS)[0]
+    own = left.nuisances[0]
+    inside = predicted(run, found.model, found.nuisances[index])
+    yield from figures(case, run, predicted(run, left.model, own), own, inside)
+
+
+def by_other_corners(case: str, run: PreparedRun) -> Iterator[Figure]:
+    """Each half of the corners, predicted with the factor on zones that fits the other half."""
+    model = parameters(run.robot.name).base
+    path, joints, sizes = [], [], []
+    for half in (0, 1):
+        taught = run.cluster % 2 == half
+        part = replace(
+            run,
+            t=run.t[taught],
+            q=run.q[taught],
+            weight=run.weight[taught],
+            cluster=run.cluster[taught],
+        )
+        with Crew([part]) as crew:
+            (own,) = minimise(crew, ParameterSet(model, ()), first_nuisances([part])).nuisances
+        found = predicted(run, model, own)
+        other = nearest_waypoint(found) % 2 != half
+        path.append(found.residuals.path[other])
+        joints.append(np.abs(found.residuals.joint_path[other]).max(axis=1))
+        sizes.append(own.size)
+    told = "own radius", float(np.mean(sizes))
+    away = 1e3 * np.concatenate(path)
+    yield Figure(case, "path_max_mm", float(away.max()), "mm", *told)
+    yield Figure(case, "path_p99_mm", float(np.percentile(away, 99)), "mm", *told)
+    turned = np.degrees(np.concatenate(joints))
+    yield Figure(case, "joint_max_deg", float(turned.max()), "deg", *told)
+
+
+def nearest_waypoint(found: Prediction) -> np.ndarray:
+    """(K,) of the samples, as `PreparedRun.cluster` counts them."""
+    trajectory, path = found.driven.trajectory, found.driven.path
+    passed = np.interp(path.layout.waypoint, trajectory.sigma, trajectory.t)
+    return np.searchsorted(0.5 * (passed[1:] + passed[:-1]), found.alignment.time)
+
+
+def figures(
+    case: str,
+    run: PreparedRun,
+    found: Prediction,
+    own: Nuisance,
+    inside: Prediction | None = None,
+) -> Iterator[Figure]:
+    """Of a prediction, beside what the fit says of a run that takes part in it."""
+    f, known = found.figures, None if inside is None else inside.figures
+
+    def figure(name: str, key: str, scale: float, unit: str) -> Figure:
+        value = scale * getattr(f, key)
+        peer = None if known is None else scale * getattr(known, key)
+        return Figure(case, name, value, unit, "" if peer is None else "in the fit", peer)
+
+    yield figure("path_max_mm", "path_max", 1e3, "mm")
+    yield figure("path_p99_mm", "path_p99", 1e3, "mm")
+    yield figure("joint_max_deg", "joint_path_max", np.degrees(1.0), "deg")
     if run.by_place:
         return
-    yield Figure(case, "joint_p99_deg", float(np.degrees(f.joint_time_p99)), "deg")
-    yield Figure(case, "drift_ms", 1e3 * f.drift, "ms")
+    yield figure("joint_p99_deg", "joint_time_p99", np.degrees(1.0), "deg")
+    yield figure("drift_ms", "drift", 1e3, "ms")
     yield Figure(case, "cycle_time_ratio", f.cycle_time_ratio, "", "clock", own.clock)
 
 
 def fit_abb(case: str) -> Iterator[Figure]:
     """Wall time of the whole fit."""
-    known = [run for run in runs(ABB) if run.run.real is False]
+    known, shipped = lesson(ABB), whole_fit(ABB)
     rough = parameters(ABB)
     starts = np.array(
         [0.0 if p.name.startswith("blend.") else ROUGH * p.start for p in rough.parameters]
@@ -116,7 +210,8 @@ def fit_abb(case: str) -> Iterator[Figure]:
     yield Figure(case, "wall_s", seconds, "s", "target", 120.0)
     yield Figure(case, "cpu_s", _cpu() - spent, "s")
     yield Figure(case, "iterations", found.iterations, "")
-    yield Figure(case, "loss", found.after, "", "at the start", found.before)
+    yield Figure(case, "loss_at_start", found.before, "")
+    yield Figure(case, "loss", found.after, "", "from shipped", shipped.after)
     for one in found.intervals:
         yield Figure(case, one.name, one.value, "", "standard deviation", one.deviation)
 
@@ -126,16 +221,13 @@ def _cpu() -> float:
     return sum(os.times()[:4])
 
 
-def measure(case: str, folds: int) -> Iterator[Figure]:
+def measure(case: str) -> Iterator[Figure]:
     """Figures of one case."""
-    return fit_abb(case) if case == "fit-abb" else left_out(case, folds)
-
-
-def cases() -> dict[str, str]:
-    """The robot of each case that leaves out a run."""
-    return {f"{robot}:{path.stem}": robot for robot, paths in files().items() for path in paths}
+    return fit_abb(case) if case == "fit-abb" else left_out(case)
 
 
 if __name__ == "__main__":
-    ROBOTS = cases()
-    main(__doc__ or "", measure, [*(["fit-abb"] if ROBOTS else []), *ROBOTS], folds=10)
+    CASES = {
+        f"{path.parent.name}/{path.stem}": path for paths in files().values() for path in paths
+    }
+    main(__doc__ or "", measure, [*(["fit-abb"] if CASES else []), *CASES])

@@ -2,8 +2,9 @@
 
 ``2dof``: two joints round a box. ``stud``: the 24 motions of the stud welding station, from rest
 to rest; beside ``time_s`` stands the time of the motions that the searches began with.
-``6dof-clutter``: one planned motion of an IRB 6640 among things on a bench. Figures ``time_s``,
-``energy_ratio`` (squared torque over time, to that of the first guess),
+``6dof-clutter``: one planned motion of an IRB 6640 among things on a bench, under limits of speed,
+acceleration and torque; ``6dof-clutter-speeds``: the same without those of torque. Figures
+``time_s``, ``energy_ratio`` (squared torque over time, to that of the first guess),
 ``torque_violation_percent``, ``clearance_mm`` (proven), ``wall_s`` and ``cpu_s``.
 
 ``6dof-free``: a wide motion under torque limits, 60 intervals, no obstacles: ``time_s`` and
@@ -24,13 +25,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
+from free_motion import Question, configurations, questions
 from ipopt import Ipopt
 from numpy.typing import NDArray
 from report import Figure, main
 
 from flyby.core.collision.certificate import scenes_of
-from flyby.core.collision.scene import CollisionScene
-from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.registry import find_robot
 from flyby.core.robot.inertia import carried_inertia
@@ -55,16 +55,15 @@ from flyby.problems.optimal_control.start import Polyline, first_guess
 from flyby.problems.optimal_control.transcription import Bounds, Transcription
 from flyby.problems.planning.plan import PlanningOptions, plan_path
 from flyby.problems.scenes.clutter import clutter
-from flyby.problems.scenes.scene import Scene
 from flyby.problems.scenes.stud_welding import stud_welding
 from flyby.problems.scenes.two_joints import two_joints
 
 FloatArray = NDArray[np.float64]
-CASES = ("2dof", "stud", "6dof-clutter", "6dof-free", "6dof-free-energy")
+CASES = ("2dof", "stud", "6dof-clutter", "6dof-clutter-speeds", "6dof-free", "6dof-free-energy")
 
 FREE_START = (0.0, -15.0, 15.0, 0.0, 60.0, 0.0)
 FREE_END = (70.0, 20.0, -10.0, 40.0, -50.0, 90.0)
-FREE_TORQUE = (3000.0, 6000.0, 2500.0, 600.0, 500.0, 200.0)
+TORQUE = (3000.0, 6000.0, 2500.0, 600.0, 500.0, 200.0)
 CLUTTER_ENDS = (2, 10)
 """Moves of the tour whose ends are joined."""
 TOLERANCE = 1e-6
@@ -73,48 +72,19 @@ TOLERANCE = 1e-6
 def measure(case: str) -> Iterator[Figure]:
     """The figures of a case."""
     if case == "2dof":
-        yield from _scene_figures(case, [_of_program(two_joints(), 0)], Effort(intervals=70))
+        yield from _scene_figures(case, questions(two_joints()), Effort(intervals=70))
     elif case == "stud":
-        scene = stud_welding()
-        tasks = [_of_program(scene, k) for k in range(len(scene.programs))]
-        yield from _scene_figures(case, tasks, Effort(intervals=40))
-    elif case == "6dof-clutter":
-        yield from _scene_figures(case, [_clutter()], Effort(intervals=60, gain=1e-3))
+        yield from _scene_figures(case, questions(stud_welding()), Effort(intervals=40))
+    elif case.startswith("6dof-clutter"):
+        limits = ControlLimits(torque=None if case.endswith("speeds") else TORQUE)
+        effort = Effort(intervals=60, gain=1e-3, trials=0)
+        yield from _scene_figures(case, [_clutter(limits)], effort)
     else:
         weight = 0.5 if case.endswith("energy") else 1.0
         yield from _beside_ipopt(case, weight)
 
 
-Question = tuple[Task, Surroundings, list[FloatArray]]
-
-
-def _configurations(program: Program) -> FloatArray:
-    targets = [program.start, *(move.target for move in program.moves)]
-    assert all(isinstance(target, JointTarget) for target in targets)
-    return np.array([target.joints for target in targets if isinstance(target, JointTarget)])
-
-
-_SCENES: dict[int, Surroundings] = {}
-
-
-def _of_program(scene: Scene, index: int) -> Question:
-    """A motion of a scene, begun along its program."""
-    q = _configurations(scene.programs[index])
-    if id(scene) not in _SCENES:
-        found = CollisionScene(scene.cell, scene.tool)
-        _SCENES[id(scene)] = Surroundings(found, scene.cell.clearance)
-    task = Task(
-        scene.cell.robot,
-        q[0],
-        q[-1],
-        joints=scene.free,
-        tcp=scene.tool.tcp,
-        loads=(carried_inertia(scene.tool),),
-    )
-    return task, _SCENES[id(scene)], [q[1:-1]]
-
-
-def _clutter() -> Question:
+def _clutter(limits: ControlLimits) -> Question:
     scene = clutter()
     controller = scene.controller()
     ends = controller.plan(scene.programs[0]).route.ends.q[list(CLUTTER_ENDS), 0]
@@ -124,23 +94,24 @@ def _clutter() -> Question:
     planned = plan_path(
         scene.cell, start, goal, scene.tool, options=options, controller=controller, scenes=scenes
     )
-    q = _configurations(planned.program)
+    q = configurations(planned.program)
     task = Task(
         scene.cell.robot,
         q[0],
         q[-1],
         tcp=scene.tool.tcp,
         loads=(carried_inertia(scene.tool),),
+        limits=limits,
     )
     return task, Surroundings(scenes(scene.tool), scene.cell.clearance), [q[1:-1]]
 
 
-def _scene_figures(case: str, questions: list[Question], effort: Effort) -> Iterator[Figure]:
+def _scene_figures(case: str, asked: list[Question], effort: Effort) -> Iterator[Figure]:
     # What is compiled, and the shapes' hulls, are there before it counts.
-    task, around, vias = questions[0]
+    task, around, vias = asked[0]
     optimize(task, around, replace(effort, outer=1), vias=vias)
     wall, cpu = time.perf_counter(), time.process_time()
-    found = [optimize(task, around, effort, vias=vias) for task, around, vias in questions]
+    found = [optimize(task, around, effort, vias=vias) for task, around, vias in asked]
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
     first = sum(optimum.first.duration for optimum in found)
     yield Figure(case, "time_s", sum(o.time for o in found), "s", "first guess", first)
@@ -163,7 +134,7 @@ def _beside_ipopt(case: str, weight: float) -> Iterator[Figure]:
         find_robot("abb/irb6640-180-255"),
         np.radians(FREE_START),
         np.radians(FREE_END),
-        limits=ControlLimits(torque=FREE_TORQUE),
+        limits=ControlLimits(torque=TORQUE),
         objective=Objective(weight),
     )
     limits, plant = Limits.of(task), Plant(task)

@@ -14,8 +14,10 @@ figures of ``stud`` are sums over its 24 motions.
   energy as a share of the baseline's.
 - ``program_time_s@W``, ``program_energy_ratio@W``: via points, zones, speeds and accelerations
   chosen for the weight W, as RAPID that was written, read back, driven and proven.
-- ``program_energy_change_percent_joint1@W`` … ``6``: change of a joint's energy, program against
-  baseline; joints that take less than 0.5 % of the whole are left out.
+- ``free_time_s@W``, ``free_energy_ratio@W``: the motion that no program language binds, by optimal
+  control within the same limits, proven to keep the same clearance.
+- ``program_energy_change_percent_joint1@W`` … ``6``, and ``free_…``: change of a joint's energy
+  against the baseline; joints that take less than 0.5 % of the whole are left out.
 - ``wall_s``: of all programs of the scene, with their proofs.
 
 ``pareto``, one line a point: the front of the two-joint program, ``energy_ratio@T_s`` at the cycle
@@ -41,6 +43,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
+from free_motion import questions
 from numpy.typing import NDArray
 from report import Figure, main
 
@@ -51,6 +54,10 @@ from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_vendor
 from flyby.problems.energy import Front, Goal, Point, Scope, Task, optimize_energy, pareto
+from flyby.problems.optimal_control import SQUARED_TORQUE, Optimum, energy_of, optimize
+from flyby.problems.optimal_control import Effort as FreeEffort
+from flyby.problems.optimal_control import Objective as FreeObjective
+from flyby.problems.optimal_control import Task as FreeTask
 from flyby.problems.scenes.scene import SECOND_ORDER_BLENDS, UNHURRIED, Scene, with_zone
 from flyby.problems.scenes.stud_welding import stud_welding
 from flyby.problems.scenes.two_joints import two_joints
@@ -74,6 +81,7 @@ SCENES: dict[str, Callable[[], Scene]] = {"2dof": two_joints, "stud": stud_weldi
 WEIGHTS = (1.0, 0.5, 0.0)
 FRONT, TUNING = "pareto", "velocity-tuning"
 POINTS = 8
+FREE = FreeEffort(intervals=40)
 ABB = find_vendor("abb")
 _TOLD = 0.005
 
@@ -132,6 +140,7 @@ def measure_scene(case: str, starts: int) -> Iterator[Figure]:
     begin = time.perf_counter()
     yield from programs(case, base, starts)
     yield Figure(case, "wall_s", time.perf_counter() - begin, "s")
+    yield from free_motions(case, base)
 
 
 def velocity_tuned(case: str, base: Baseline) -> Iterator[Figure]:
@@ -152,10 +161,48 @@ def programs(case: str, base: Baseline, starts: int) -> Iterator[Figure]:
         by_joint = np.sum([point.by_joint for point in points], axis=0)
         yield Figure(case, f"program_time_s@{weight:g}", sum(p.duration for p in points), "s")
         yield Figure(case, f"program_energy_ratio@{weight:g}", total / base.energy, "")
-        for joint, (was, now) in enumerate(zip(base.by_joint, by_joint, strict=True), start=1):
-            if was > _TOLD * base.energy:
-                figure = f"program_energy_change_percent_joint{joint}@{weight:g}"
-                yield Figure(case, figure, float(100.0 * (now / was - 1.0)), "%")
+        yield from _changes(case, base, "program", weight, by_joint)
+
+
+def _changes(
+    case: str, base: Baseline, what: str, weight: float, by_joint: FloatArray
+) -> Iterator[Figure]:
+    for joint, (was, now) in enumerate(zip(base.by_joint, by_joint, strict=True), start=1):
+        if was > _TOLD * base.energy:
+            figure = f"{what}_energy_change_percent_joint{joint}@{weight:g}"
+            yield Figure(case, figure, float(100.0 * (now / was - 1.0)), "%")
+
+
+def free_motions(case: str, base: Baseline) -> Iterator[Figure]:
+    """Motions that no program language binds."""
+    asked = questions(base.scene)
+    fastest = [optimize(task, around, FREE, vias=vias) for task, around, vias in asked]
+    for weight in WEIGHTS:
+        found = fastest
+        if weight < 1.0:
+            found = [
+                optimize(_weighed(base, known, weight), around, FREE, vias=vias)
+                for known, (_, around, vias) in zip(fastest, asked, strict=True)
+            ]
+        assert all(optimum.proven for optimum in found)
+        by_joint = np.zeros(len(base.by_joint))
+        for optimum in found:
+            by_joint[optimum.task.moving] += optimum.energy()
+        ratio = float(by_joint.sum() / base.energy)
+        yield Figure(case, f"free_time_s@{weight:g}", sum(o.time for o in found), "s")
+        yield Figure(case, f"free_energy_ratio@{weight:g}", ratio, "")
+        yield from _changes(case, base, "free", weight, by_joint)
+
+
+def _weighed(base: Baseline, known: Optimum, weight: float) -> FreeTask:
+    """A motion's task with time and energy in the proportion that they have in the baseline.
+
+    Optimal control measures both by its first guess.
+    """
+    energy = float(energy_of(known.task, known.first, SQUARED_TORQUE).sum())
+    by_time = weight * known.first.duration / base.time
+    by_energy = (1.0 - weight) * energy / base.energy
+    return replace(known.task, objective=FreeObjective(by_time / (by_time + by_energy)))
 
 
 def _fastest(base: Baseline, program: Program, starts: int) -> Program:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.errors import FlybyError
+from .emission import written_anew
 from .outputs import check_outputs, writing
 
 if TYPE_CHECKING:
@@ -49,7 +49,8 @@ class FrontFiles:
         try:
             files = self._vendor.patch(program, self._robot, _OWN)
         except FlybyError:
-            read, texts = self._anew(program)
+            read, sources = written_anew(self._vendor, self._robot, program)
+            texts = {name: text.encode() for name, text in sources.items()}
         else:
             reading = reading_of(program)
             read, texts = reading.again(files), _bytes({**reading.files, **files})
@@ -102,17 +103,6 @@ class FrontFiles:
             if known is program:
                 return texts
         return _bytes(reading_of(self._original).files)
-
-    def _anew(self, program: Program) -> tuple[Program, dict[str, bytes]]:
-        sources = self._vendor.write(program, self._robot)
-        texts = {name: text.encode() for name, text in sources.items()}
-        with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            for file, data in texts.items():
-                (folder / file).write_bytes(data)
-            first = next(f for f in texts if Path(f).suffix.lower() in self._vendor.suffixes)
-            read = self._vendor.read_file(folder / first, robot=self._robot)
-        return read, texts
 
 
 def _bytes(files: Files) -> dict[str, bytes]:

@@ -113,7 +113,10 @@ def identify(
 
         each = outcomes(fitted)
         scores = [] if select is None else _select(fitted, select, workers, say)
-    text = _motion_file(fitted, logs, _Start(robot, cell, motion))
+    command = _command(
+        logs, arm, parameters, {"--cell": cell, "--motion": motion, "--columns": columns}
+    )
+    text = _motion_file(fitted, command, _Start(robot, cell, motion))
     _write("--out", out, lambda: text)
     _write("--report", report, lambda: _page(fitted, each, text))
     if json:
@@ -174,7 +177,9 @@ def _select(fitted: Fit, trait: str, workers: int, say: Any) -> list[Score]:
 
     parameters = fitted.parameters.starting_at(fitted.values)
     groups = grouped(fitted.runs, trait)
-    return compare_models(fitted.runs, candidates(parameters), groups, workers, say)
+    return compare_models(
+        fitted.runs, fitted.nuisances, candidates(parameters), groups, workers, say
+    )
 
 
 @dataclass(frozen=True)
@@ -201,13 +206,22 @@ class _Start:
         return found
 
 
-def _motion_file(fitted: Fit, logs: list[Path], start: _Start) -> str:
+def _command(
+    logs: list[Path], robot: Robot, parameters: list[str] | None, files: dict[str, Path | None]
+) -> str:
+    """The command that makes the same file, files by their names alone."""
+    words = ["flyby", "identify", *(path.name for path in logs), "--robot", robot.name]
+    for option, file in files.items():
+        words += [] if file is None else [option, file.name]
+    for text in parameters or ():
+        words += ["--fit", text]
+    return shlex.join(words)
+
+
+def _motion_file(fitted: Fit, command: str, start: _Start) -> str:
     from ..identification.fit import motion_file
 
     vendor, robot = robot_of(start.robot, start.cell)
-    command = shlex.join(
-        ["flyby", "identify", *(path.name for path in logs), "--robot", robot.name]
-    )
     heading = f"How {robot.name} is driven, fitted to {len(fitted.runs)} logged runs."
     return motion_file(fitted, command, heading, vendor.motion_of(robot), start.words())
 

@@ -9,20 +9,40 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.errors import InputError
-from .bystanders import bystander_notes, refuse_bystanders
-from .console import print_json, print_rich, print_table, progress
+from .console import print_json, print_table, progress
+from .delivery import deliver
 from .emission import Emission
 from .installed import registry
 from .loading import Source, start_of
-from .options import AnswersFile, AsJson, Entry, Force, OtherFiles, Out, ProgramFile, Start
+from .options import (
+    AnswersFile,
+    AsJson,
+    Axes,
+    Clearance,
+    Entry,
+    Force,
+    Freed,
+    InPlace,
+    Kept,
+    Limits,
+    OtherFiles,
+    Out,
+    Predefined,
+    ProgramFile,
+    Seed,
+    Start,
+    WholeCell,
+)
+from .other_vendor import OtherVendor
 from .outputs import check_outputs, check_plot_name, writing
-from .patching import check_places, write_patched
+from .patching import Places
 from .places import place_json, short_place
 from .solution_report import solution_json, tell_solution
 from .task_options import effort_of, task_of
+from .translation import party_for
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from ..core.cell.cell import Cell
     from ..core.motion.controller import Controller
@@ -38,9 +58,7 @@ CHANGE = "change"
 
 def optimize(
     program: ProgramFile,
-    cell: Annotated[
-        Path, typer.Option("--cell", help="Cell file: robot, tools, obstacles, clearance.")
-    ],
+    cell: WholeCell,
     entry: Entry = None,
     io: AnswersFile = None,
     others: OtherFiles = None,
@@ -55,41 +73,12 @@ def optimize(
     zones_only: Annotated[
         bool, typer.Option("--zones-only", help="Change zones alone; every point stays.")
     ] = False,
-    keep: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--keep",
-            help="A move whose path and speed the process fixes, by its number or by the name of "
-            "its speed; may be given several times.",
-        ),
-    ] = None,
-    free: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--free",
-            help="A stop that may be passed, by the number of its move, or 'all'; may be given "
-            "several times.",
-        ),
-    ] = None,
-    limit: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--limit",
-            help="How far a via point may move: MOVE=fixed, MOVE=free, MOVE=box:MM[,DEGREES], "
-            "MOVE=joints:DEGREES or MOVE=cone:DEGREES; MOVE may be 'all'.",
-        ),
-    ] = None,
-    axes: Annotated[
-        str | None,
-        typer.Option(help="Joints that joint targets may change, such as 2,3; all if unset."),
-    ] = None,
-    clearance: Annotated[
-        float | None,
-        typer.Option("--clearance", help="Clearance to keep, mm; the cell's own if unset."),
-    ] = None,
-    predefined: Annotated[
-        bool, typer.Option("--predefined", help="Choose among the vendor's predefined zones.")
-    ] = False,
+    keep: Kept = None,
+    free: Freed = None,
+    limit: Limits = None,
+    axes: Axes = None,
+    clearance: Clearance = None,
+    predefined: Predefined = False,
     vias: Annotated[
         str,
         typer.Option(help="keep: the number of via points stays; change: it may become another."),
@@ -100,17 +89,24 @@ def optimize(
     generations: Annotated[
         int | None, typer.Option(help="How often the best path is varied in turn; 0 is quickest.")
     ] = None,
-    seed: Annotated[int, typer.Option(help="Of the variations of the path.")] = 0,
+    seed: Seed = 0,
     own: Annotated[
         bool,
         typer.Option(
             "--own", help="Moves get data of their own where the text has no place for a change."
         ),
     ] = False,
+    other: Annotated[
+        str | None,
+        typer.Option(
+            "--vendor",
+            metavar="NAME",
+            help="With --out: code for another vendor's robot as well, such as kuka/kr30-3, as "
+            "'flyby translate' writes it.",
+        ),
+    ] = None,
     out: Out = None,
-    in_place: Annotated[
-        bool, typer.Option("--in-place", help="Change the program's own files.")
-    ] = False,
+    in_place: InPlace = False,
     plot: Annotated[
         Path | None, typer.Option(help="Draw the cell with both paths: PNG, PDF or SVG.")
     ] = None,
@@ -122,18 +118,14 @@ def optimize(
     Only a program that is proven to keep its clearance, as read from the new text, is written.
     """
     source = Source.of(program, entry, io, others)
-    inputs = source.inputs(cell)
-    check_places(out, in_place, inputs, force)
+    places = Places(out, in_place, source.inputs(cell), force)
+    places.check()
     check_plot_name(plot)
-    check_outputs({"--plot": plot}, inputs, force)
-    if zones_only and (limit or vias == CHANGE):
+    check_outputs({"--plot": plot}, places.inputs, force)
+    _check_options(zones_only, bool(limit), vias == CHANGE, in_place)
+    if other is not None and out is None:
         raise InputError(
-            "--zones-only leaves every point as it is: --limit and --vias change do not go with it"
-        )
-    if in_place and vias == CHANGE:
-        raise InputError(
-            "--in-place and --vias change: with other via points the program is written anew: name "
-            "a folder by --out"
+            f"--vendor {other}: its code goes beside the program's own: name a folder by --out"
         )
     with progress("reading the program") as say:
         from ..core.cell.file import load_cell
@@ -142,6 +134,10 @@ def optimize(
         where = load_cell(cell, registry())
         vendor = where.find_vendor(registry())
         parsed = source.read(vendor, where.robot)
+        beside = None
+        if other is not None and out is not None:
+            beside = OtherVendor((vendor, where.robot), party_for(other, "--vendor"), out, places)
+            beside.check(parsed)
         task = task_of(
             parsed,
             where,
@@ -156,39 +152,34 @@ def optimize(
             predefined=predefined,
             start=start_of(start, where.robot),
         )
+        effort = effort_of(starts, generations, seed)
         emission = Emission(vendor, where.robot, parsed, own)
         controller = Controller(vendor, where.robot)
-        made = _optimized(
-            controller,
-            parsed,
-            where,
-            task,
-            effort_of(starts, generations, seed),
-            emission,
-            zones_only,
-            say,
-        )
-        others_concerned = bystander_notes(made, vendor)
-        made = replace(made, notes=(*made.notes, *others_concerned))
-        written: list[Path] = []
-        if made.changed and not (in_place and others_concerned):
-            from ..core.source.patching import reading_of
-
-            read = reading_of(parsed).files
-            written = write_patched(emission.files, read, out, in_place, inputs, force)
+        made = _optimized(controller, parsed, where, task, effort, emission, zones_only, say)
+        delivery = deliver(made, vendor, emission.files, places, unproven=False)
+        if beside is not None:
+            delivery = beside.written(delivery)
         if plot is not None:
             say("drawing")
-            written += _draw(plot, where, controller, made, task)
+            drawn = _draw(plot, where, controller, made, task)
+            delivery = replace(delivery, written=[*delivery.written, *drawn])
     if json:
-        print_json(_json(made, where, written))
+        print_json(_json(delivery.made, where, delivery.written))
     else:
-        _tell(program, made, where, written)
-        if made.changed and not (out or in_place):
-            print_rich("nothing was written: --in-place or --out FOLDER writes the new program")
-    if in_place:
-        refuse_bystanders(others_concerned)
-    if not made.proven:
-        raise typer.Exit(1)
+        _tell(program, delivery.made, where, delivery.written)
+    delivery.end(told=not json)
+
+
+def _check_options(zones_only: bool, limited: bool, other_vias: bool, in_place: bool) -> None:
+    if zones_only and (limited or other_vias):
+        raise InputError(
+            "--zones-only leaves every point as it is: --limit and --vias change do not go with it"
+        )
+    if in_place and other_vias:
+        raise InputError(
+            "--in-place and --vias change: with other via points the program is written anew: name "
+            "a folder by --out"
+        )
 
 
 def _optimized(
@@ -224,7 +215,7 @@ def _draw(plot: Path, cell: Cell, controller: Controller, made: Solution, task: 
     return [plot]
 
 
-def _tell(program: Path, made: Solution, cell: Cell, written: list[Path]) -> None:
+def _tell(program: Path, made: Solution, cell: Cell, written: Sequence[Path]) -> None:
     print_table(COLUMNS, _rows(program, made))
     tell_solution(program, made, cell, written)
 
@@ -278,7 +269,7 @@ def _zone(before: Move | None, move: Move) -> str:
     return f"{shown(before.zone)} → {new}"
 
 
-def _json(made: Solution, cell: Cell, written: list[Path]) -> dict[str, Any]:
+def _json(made: Solution, cell: Cell, written: Sequence[Path]) -> dict[str, Any]:
     moves = [_move_json(index, move) for index, move in enumerate(made.program.moves)]
     return {**solution_json(made, cell, written), "moves": moves}
 

@@ -39,3 +39,45 @@ Start = Annotated[
 AsJson = Annotated[bool, typer.Option("--json", help="Print the report as JSON.")]
 Force = Annotated[bool, typer.Option("--force", help="Replace output files.")]
 Out = Annotated[Path | None, typer.Option("--out", help="Folder to write the files to.")]
+
+# What an optimisation may change.
+WholeCell = Annotated[
+    Path, typer.Option("--cell", help="Cell file: robot, tools, obstacles, clearance.")
+]
+Kept = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--keep",
+        help="A move whose path and speed the process fixes, by its number or by the name of "
+        "its speed; may be given several times.",
+    ),
+]
+Freed = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--free",
+        help="A stop that may be passed, by the number of its move, or 'all'; may be given "
+        "several times.",
+    ),
+]
+Limits = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--limit",
+        help="How far a via point may move: MOVE=fixed, MOVE=free, MOVE=box:MM[,DEGREES], "
+        "MOVE=joints:DEGREES or MOVE=cone:DEGREES; MOVE may be 'all'.",
+    ),
+]
+Axes = Annotated[
+    str | None,
+    typer.Option(help="Joints that joint targets may change, such as 2,3; all if unset."),
+]
+Clearance = Annotated[
+    float | None,
+    typer.Option("--clearance", help="Clearance to keep, mm; the cell's own if unset."),
+]
+Predefined = Annotated[
+    bool, typer.Option("--predefined", help="Choose among the vendor's predefined zones.")
+]
+Seed = Annotated[int, typer.Option(help="Of the variations of the path.")]
+InPlace = Annotated[bool, typer.Option("--in-place", help="Change the program's own files.")]

@@ -12,7 +12,15 @@ from ..core.errors import InputError
 from .console import print_json, progress, warn
 from .options import AsJson, Force, MotionFile, RobotName
 from .outputs import check_folder, check_outputs, writing
-from .paint_options import direction_of, drive_of, limits_of, plan_of, station_of, target_of
+from .paint_options import (
+    direction_of,
+    drive_of,
+    errors_of,
+    limits_of,
+    plan_of,
+    station_of,
+    target_of,
+)
 from .paint_report import pictures_of, report_json, tell
 
 if TYPE_CHECKING:
@@ -54,12 +62,19 @@ def paint(
         str | None, typer.Option(help="Direction of the sweeps; along the longer side if unset.")
     ] = None,
     method: Annotated[str, typer.Option(help="sideways or raster.")] = "sideways",
+    coats: Annotated[
+        str, typer.Option(help="one, or crossed: two of half the paint, at right angles.")
+    ] = "one",
     turns: Annotated[str, typer.Option(help="Whether the gun paints in turns: on, off.")] = "on",
     speed: Annotated[str, typer.Option(help="Least and largest speed, mm/s.")] = "50,800",
     tilt: Annotated[float, typer.Option(help="Of the gun off the normal at most, degrees.")] = 20.0,
     deviation: Annotated[
         float, typer.Option(help="Of waypoints from the first curve at most, mm.")
     ] = 100.0,
+    errors: Annotated[
+        str | None,
+        typer.Option(help="That the coat shall stand: height in mm, footprint's radius in %: 3,2."),
+    ] = None,
     points: Annotated[int, typer.Option(help="Of the part on which to optimise.")] = 2600,
     seed: Annotated[int, typer.Option(help="Of the choice of these points.")] = 0,
     robot: RobotName = None,
@@ -116,13 +131,14 @@ def paint(
             method=method,
             view=view,
             heading=heading,
+            coats=coats,
             turns=turns,
         )
         limits = limits_of(plan.distance, speed, tilt, deviation)
         if points < 100:
             raise InputError(f"--points {points}: a number from 100 on")
         shape = _sized(load_part, part, units, direction_of(view, "--view"), FINEST * gun.radius)
-        wishes = Wishes(wanted, plan, limits, points=points, seed=seed)
+        wishes = Wishes(wanted, plan, limits, errors=errors_of(errors), points=points, seed=seed)
         painting = find(shape, gun, wishes, say, _teller(say))
         made = None
         texts: dict[str, str] = {}

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from enum import StrEnum
+from typing import TYPE_CHECKING, TypeVar
 
 from ..core.errors import InputError
 from . import values
@@ -22,7 +23,9 @@ if TYPE_CHECKING:
     from ..problems.paint.footprint import Footprint
     from ..problems.paint.initial.plan import SweepPlan
     from ..problems.paint.optimize_options import PaintLimits
+    from ..problems.paint.robust import PaintErrors
 
+Choice = TypeVar("Choice", bound=StrEnum)
 _LENGTH = re.compile(r"\s*([0-9.eE+-]+)\s*(um|µm|μm|mm)\s*")
 _UNITS = {"um": 1e-6, "µm": 1e-6, "μm": 1e-6, "mm": 1e-3}
 SHARE = 0.72
@@ -70,6 +73,7 @@ def plan_of(
     method: str,
     view: str | None,
     heading: str | None,
+    coats: str,
     turns: str,
 ) -> SweepPlan:
     """The first curve that the options describe; lengths in mm.
@@ -77,9 +81,9 @@ def plan_of(
     Raises:
         InputError: naming the option.
     """
-    from ..problems.paint.initial.plan import Gun, Method, SweepPlan
+    from ..problems.paint.initial.plan import Coats, Gun, Method, SweepPlan
 
-    def one_of(kind: type[Method] | type[Gun], text: str, option: str) -> Method | Gun:
+    def one_of(kind: type[Choice], text: str, option: str) -> Choice:
         try:
             return kind(text)
         except ValueError:
@@ -96,10 +100,11 @@ def plan_of(
         footprint.reference_distance if distance is None else 1e-3 * distance,
         longest_segment=1e-3 * step,
         overhang=1e-3 * overhang,
-        method=Method(one_of(Method, method, "--method")),
+        method=one_of(Method, method, "--method"),
         view=direction_of(view, "--view"),
         heading=direction_of(heading, "--heading"),
-        turns=Gun(one_of(Gun, turns, "--turns")),
+        coats=one_of(Coats, coats, "--coats"),
+        turns=one_of(Gun, turns, "--turns"),
     )
 
 
@@ -130,6 +135,22 @@ def limits_of(distance: float, speed: str, tilt: float, deviation: float) -> Pai
         speed=(1e-3 * found[0], 1e-3 * found[1]),
         deviation=1e-3 * deviation,
     )
+
+
+def errors_of(text: str | None) -> PaintErrors:
+    """``--errors height,radius`` in mm and per cent; none if it was not given.
+
+    Raises:
+        InputError: they are not two numbers from 0 on.
+    """
+    from ..problems.paint.robust import NO_ERRORS, PaintErrors
+
+    if text is None:
+        return NO_ERRORS
+    found = values.numbers(text, "--errors")
+    if len(found) != 2 or not (0.0 <= found[0] < math.inf and 0.0 <= found[1] < 50.0):
+        raise InputError(f"--errors {text}: height in mm and radius in %, such as 3,2")
+    return PaintErrors(1e-3 * found[0], 1e-2 * found[1])
 
 
 def station_of(

@@ -15,14 +15,20 @@ from .loading import Source, robot_of, start_of
 from .options import (
     AnswersFile,
     AsJson,
+    Axes,
     CellFile,
+    Clearance,
     Entry,
     Force,
+    Freed,
+    Kept,
+    Limits,
     MotionFile,
     OtherFiles,
     Out,
     ProgramFile,
     RobotName,
+    Seed,
     Start,
 )
 from .outputs import check_folder, check_outputs, check_plot_name, writing
@@ -65,38 +71,15 @@ def pareto(
             "squared torque over time."
         ),
     ] = None,
-    keep: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--keep",
-            help="A move whose path and speed the process fixes, by its number or by the name of "
-            "its speed; may be given several times.",
-        ),
-    ] = None,
-    free: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--free",
-            help="A stop that may be passed, by the number of its move, or 'all'; may be given "
-            "several times.",
-        ),
-    ] = None,
-    limit: Annotated[
-        list[str] | None,
-        typer.Option("--limit", help="How far a via point may move; see 'flyby optimize'."),
-    ] = None,
-    axes: Annotated[
-        str | None,
-        typer.Option(help="Joints that joint targets may change, such as 2,3; all if unset."),
-    ] = None,
-    clearance: Annotated[
-        float | None,
-        typer.Option("--clearance", help="Clearance to keep, mm; the cell's own if unset."),
-    ] = None,
+    keep: Kept = None,
+    free: Freed = None,
+    limit: Limits = None,
+    axes: Axes = None,
+    clearance: Clearance = None,
     starts: Annotated[
         int, typer.Option(help="Paths to start from; with 1, the program's own alone.")
     ] = 1,
-    seed: Annotated[int, typer.Option(help="Of the variations of the path.")] = 0,
+    seed: Seed = 0,
     out: Out = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the front: PNG, PDF or SVG.")] = None,
     json: AsJson = False,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -43,74 +44,80 @@ class Patching:
         return reading_of(program).again(self.files)
 
 
-def check_places(
-    out: Path | None, in_place: bool, inputs: Sequence[Path], replace_existing: bool
-) -> None:
-    """Refuse, before work begins, places that patched files cannot go to.
+@dataclass(frozen=True)
+class Places:
+    """Where patched files go.
 
     Args:
-        out: folder for them, None for none.
+        out: folder for them, made if it is missing; None for none.
         in_place: whether they take the place of what is read.
         inputs: files that are read, the program first.
-        replace_existing: see `check_outputs`.
-
-    Raises:
-        InputError: both places are asked for, or the folder cannot take the program's file.
+        replace_existing: see `check_outputs`; with ``in_place`` inputs are replaced.
     """
-    check_folder("--out", out)
-    if out is None:
-        return
-    if in_place:
-        raise InputError("--out and --in-place: the files go to one place or the other")
-    if out.is_dir():
-        path = out / inputs[0].name
-        check_outputs({f"--out: {path.name}": path}, inputs, replace_existing)
 
+    out: Path | None
+    in_place: bool
+    inputs: Sequence[Path]
+    replace_existing: bool
 
-def write_patched(
-    files: Files,
-    read: Files,
-    out: Path | None,
-    in_place: bool,
-    inputs: Iterable[Path],
-    replace_existing: bool,
-) -> list[Path]:
-    """Write patched files.
+    @property
+    def anywhere(self) -> bool:
+        """Whether there is a place at all."""
+        return self.in_place or self.out is not None
 
-    Args:
-        files: by the names they were read by.
-        read: the files as they were read.
-        out: folder for them; it is made if it is missing.
-        in_place: whether they take the place of what was read.
-        inputs, replace_existing: see `check_outputs`; with ``in_place`` inputs are replaced.
+    def check(self) -> None:
+        """Refuse, before work begins, places that patched files cannot go to.
 
-    Returns:
-        The files that were written; none if neither place is given.
+        Raises:
+            InputError: both places are asked for, or the folder cannot take the program's file.
+        """
+        check_folder("--out", self.out)
+        if self.out is None:
+            return
+        if self.in_place:
+            raise InputError("--out and --in-place: the files go to one place or the other")
+        if self.out.is_dir():
+            path = self.out / self.inputs[0].name
+            check_outputs({f"--out: {path.name}": path}, self.inputs, self.replace_existing)
 
-    Raises:
-        InputError: one of them must not be written, cannot be encoded, or has changed since it was
-            read; then none is.
-    """
-    from ..core.motion.trajectory import write_whole
+    def write(self, files: Files, read: Files) -> list[Path]:
+        """Write patched files.
 
-    if out is None and not in_place:
-        return []
-    option = "--in-place" if out is None else "--out"
-    paths = {name: Path(name) if out is None else out / Path(name).name for name in files}
-    if out is not None:
-        _check_apart(paths)
-        with writing(option, out):
-            out.mkdir(exist_ok=True)
-        check_outputs(
-            {f"{option}: {path.name}": path for path in paths.values()}, inputs, replace_existing
-        )
-    else:
-        _check_unchanged(paths, read)
-    encoded = {path: files[name].data for name, path in paths.items()}
-    for path, data in encoded.items():
-        with writing(option, path):
-            write_whole(path, data)
-    return list(paths.values())
+        Args:
+            files: by the names they were read by.
+            read: the files as they were read.
+
+        Returns:
+            The files that were written; none if there is no place for them.
+
+        Raises:
+            InputError: one of them must not be written, cannot be encoded, or has changed since
+                it was read; then none is.
+        """
+        from ..core.motion.trajectory import write_whole
+
+        if not self.anywhere:
+            return []
+        option = "--in-place" if self.out is None else "--out"
+        paths = self._paths(files)
+        if self.out is None:
+            _check_unchanged(paths, read)
+        else:
+            _check_apart(paths)
+            with writing(option, self.out):
+                self.out.mkdir(exist_ok=True)
+            named = {f"{option}: {path.name}": path for path in paths.values()}
+            check_outputs(named, self.inputs, self.replace_existing)
+        encoded = {path: files[name].data for name, path in paths.items()}
+        for path, data in encoded.items():
+            with writing(option, path):
+                write_whole(path, data)
+        return list(paths.values())
+
+    def _paths(self, files: Files) -> dict[str, Path]:
+        if self.out is None:
+            return {name: Path(name) for name in files}
+        return {name: self.out / Path(name).name for name in files}
 
 
 def _check_unchanged(paths: Mapping[str, Path], read: Files) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,9 @@ from ..core.program.zone import Fine, Radius
 from ..core.robot.model import Robot
 
 FloatArray = NDArray[np.float64]
+
+_PICOSECONDS = 12
+"""Decimals of a second beyond which a difference of times is rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,10 +59,12 @@ class MoveReport:
         span: where the move stands in its source.
         driven: False for moves that go nowhere or are left out; all below is then empty.
         length: of the TCP's path in its work object, m.
-        begin: s, when the move's share of the path begins: at the waypoint before, or in the
-            middle of its zone.
-        duration: s of motion.
-        wait: s of standing still at its end.
+        begin: s, when the commanded motion enters the move's share of the path: at the waypoint
+            before, or in the middle of its zone.
+        duration: s of motion along it.
+        wait: s of programmed standing still at its end.
+        settling: s until the next move begins beyond both: what the joints, averaged over time,
+            take to catch up at a stop, and half their window in the first and in the last move.
         top_speed: greatest TCP speed in the work object, m/s.
         programmed_speed: of the TCP, m/s.
         zone: its end.
@@ -75,6 +81,7 @@ class MoveReport:
     begin: float
     duration: float
     wait: float
+    settling: float
     top_speed: float
     programmed_speed: float | None
     zone: ZoneReport
@@ -83,13 +90,15 @@ class MoveReport:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """A run.
+    """A run. The first wait and what all moves take are its cycle time.
 
     Args:
         program: its name.
         robot: name of the robot.
-        cycle_time: s, from the first motion to rest after the last, waits included.
-        waiting: s of it spent in programmed waits.
+        cycle_time: s, from the start to rest after the last motion, waits included.
+        first_wait: s of it in which the robot waits before the first move that is driven.
+        waiting: s of it spent in programmed waits, the first included.
+        settling: s of it that settling takes.
         length: of the TCP's path, m.
         top_speed: of the TCP, m/s.
         moves: one entry for each move of the program.
@@ -99,18 +108,25 @@ class Report:
     program: str
     robot: str
     cycle_time: float
+    first_wait: float
     waiting: float
+    settling: float
     length: float
     top_speed: float
     moves: tuple[MoveReport, ...]
     notes: tuple[Note, ...]
+
+    @property
+    def moving(self) -> float:
+        """s of the cycle time in which the robot follows its path."""
+        return sum(move.duration for move in self.moves)
 
 
 def make_report(run: Run, robot: Robot) -> Report:
     """The report of a run."""
     lengths, tops = lengths_and_speeds(run)
     zones = zone_reaches(run.path)
-    begins, durations = _begins(run), run.timing.segment_durations()
+    spans = _spans(run)
     limits = limit_shares(run, robot.axis_names)
     dwell = run.path.route.dwell
     segment_of = {move: k for k, move in enumerate(run.path.route.moves)}
@@ -127,9 +143,10 @@ def make_report(run: Run, robot: Robot) -> Report:
                 span=None if move.origin is None else move.origin.statement,
                 driven=driven,
                 length=0.0 if k is None else float(lengths[k]),
-                begin=0.0 if k is None else float(begins[k]),
-                duration=0.0 if k is None else float(durations[k]),
+                begin=0.0 if k is None else float(spans.begin[k]),
+                duration=0.0 if k is None else float(spans.duration[k]),
                 wait=0.0 if k is None else float(dwell[k + 1]),
+                settling=0.0 if k is None else float(spans.settling[k]),
                 top_speed=0.0 if k is None else float(tops[k]),
                 programmed_speed=move.speed.tcp,
                 zone=_zone(move, (0.0, 0.0) if k is None else zones[k]),
@@ -140,7 +157,9 @@ def make_report(run: Run, robot: Robot) -> Report:
         program=run.program.name,
         robot=robot.name,
         cycle_time=run.duration,
+        first_wait=float(dwell[0]),
         waiting=float(dwell.sum()),
+        settling=float(spans.settling.sum()),
         length=float(lengths.sum()),
         top_speed=float(tops.max()),
         moves=tuple(rows),
@@ -148,10 +167,26 @@ def make_report(run: Run, robot: Robot) -> Report:
     )
 
 
-def _begins(run: Run) -> FloatArray:
-    """(M,) s, when each segment is entered."""
-    first = np.searchsorted(run.timing.interval_segments, np.arange(len(run.path.route.moves)))
-    return run.timing.begin[first]
+class _Spans(NamedTuple):
+    """(M,) s, of each segment: when it is entered, and how long it takes, waits left out."""
+
+    begin: FloatArray
+    duration: FloatArray
+    settling: FloatArray
+
+
+def _spans(run: Run) -> _Spans:
+    """Segments on the clock of the commanded motion, as its samples belong to them."""
+    timing = run.timing
+    segments = np.arange(len(run.path.route.moves))
+    first = np.searchsorted(timing.interval_segments, segments)
+    last = np.searchsorted(timing.interval_segments, segments, side="right") - 1
+    entered = timing.start.driven(timing.begin[first])
+    duration = timing.start.driven(timing.end[last]) - entered
+    begin = np.concatenate([entered[:1], entered[1:] + timing.lag])
+    left = np.concatenate([begin[1:], [run.duration]])
+    settling = left - begin - duration - run.path.route.dwell[1:]
+    return _Spans(begin, duration, np.round(settling, _PICOSECONDS) + 0.0)
 
 
 def _zone(move: Move, reach: tuple[float, float]) -> ZoneReport:

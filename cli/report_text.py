@@ -17,6 +17,7 @@ COLUMNS = (
     ("length\nmm", "right"),
     ("time\ns", "right"),
     ("wait\ns", "right"),
+    ("settling\ns", "right"),
     ("top speed\nmm/s", "right"),
     ("programmed\nmm/s", "right"),
     ("zone", "left"),
@@ -34,10 +35,9 @@ CUT = 1e-6
 
 def print_report(report: Report) -> None:
     """Print tables on stdout, warnings on stderr."""
-    print_table(COLUMNS, [_row(move) for move in report.moves])
-    waits = f", {report.waiting:.2f} s of it waiting" if report.waiting else ""
+    print_table(COLUMNS, _rows(report))
     print_rich(
-        f"{report.program} on {report.robot}: cycle time {report.cycle_time:.3f} s{waits}; "
+        f"{report.program} on {report.robot}: cycle time {report.cycle_time:.3f} s; "
         f"TCP path {1e3 * report.length:.1f} mm, at most {1e3 * report.top_speed:.0f} mm/s"
     )
     print_notes(report)
@@ -49,16 +49,38 @@ def print_notes(report: Report) -> None:
         warn(str(note))
 
 
+def _rows(report: Report) -> list[tuple[str, ...]]:
+    """What the robot waits before, a line a move, and what all of that takes."""
+    before = _no_move("first wait", "", "", _seconds(report.first_wait), "")
+    length, moving = f"{1e3 * report.length:.1f}", f"{report.moving:.3f}"
+    rests = _seconds(report.waiting), _seconds(report.settling)
+    return [
+        *([before] if report.first_wait else []),
+        *(_row(move) for move in report.moves),
+        _no_move("together", length, moving, *rests),
+    ]
+
+
+def _no_move(what: str, length: str, time: str, wait: str, settling: str) -> tuple[str, ...]:
+    return ("", what, "", "", length, time, wait, settling, "", "", "", "")
+
+
+def _seconds(rest: float) -> str:
+    """A time of rest, empty for none."""
+    return f"{rest:.3f}" if rest else ""
+
+
 def _row(move: MoveReport) -> tuple[str, ...]:
     line = "" if move.span is None else str(move.span.line)
     head = (str(move.number), move.kind, _target(move), line)
     if not move.driven:
-        return (*head, "", "", "", "", "", "", "not driven")
+        return (*head, *[""] * (len(COLUMNS) - len(head) - 1), "not driven")
     return (
         *head,
         f"{1e3 * move.length:.1f}",
         f"{move.duration:.3f}",
-        f"{move.wait:.2f}" if move.wait else "",
+        _seconds(move.wait),
+        _seconds(move.settling),
         f"{1e3 * move.top_speed:.0f}",
         "" if move.programmed_speed is None else f"{1e3 * move.programmed_speed:.0f}",
         zone_text(move.zone),
@@ -94,7 +116,9 @@ def report_json(report: Report) -> dict[str, Any]:
         "program": report.program,
         "robot": report.robot,
         "cycle_time_s": report.cycle_time,
+        "first_wait_s": report.first_wait,
         "waiting_s": report.waiting,
+        "settling_s": report.settling,
         "length_m": report.length,
         "top_speed_m_s": report.top_speed,
         "moves": [_move_json(move) for move in report.moves],
@@ -114,6 +138,7 @@ def _move_json(move: MoveReport) -> dict[str, Any]:
         "begin_s": move.begin,
         "duration_s": move.duration,
         "wait_s": move.wait,
+        "settling_s": move.settling,
         "top_speed_m_s": move.top_speed,
         "programmed_speed_m_s": move.programmed_speed,
         "zone": {

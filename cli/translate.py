@@ -11,15 +11,15 @@ import typer
 from ..core.errors import InputError
 from . import values
 from .console import print_json, print_rich, print_table, progress
-from .installed import registry, vendor_of
+from .installed import registry
 from .loading import Source, robot_of
 from .options import AnswersFile, AsJson, CellFile, Entry, Force, OtherFiles, Out, ProgramFile
 from .outputs import check_folder, write_sources
 from .places import note_json, short_place
+from .translation import carried, party_of
 
 if TYPE_CHECKING:
     from ..core.errors import Note
-    from ..core.program.program import Program
     from ..core.robot.model import Robot
     from ..core.translation.translate import Translation
     from ..core.vendor import Vendor
@@ -59,11 +59,12 @@ def translate(
     """Carry a program to another robot: targets, zones and speeds in its vendor's terms."""
     check_folder("--out", out)
     source = Source.of(program, entry, io, others)
+    place = None if base is None else values.pose(base, "--base")
     with progress("reading the program") as say:
         before, after = _old(program, old, cell), _new(robot, to)
         parsed = source.read(*before)
         say(f"translating {len(parsed.moves)} moves")
-        made = _translated(parsed, before, after, base)
+        made = carried(parsed, before, after, place)
         sources = after[0].write(made.program, after[1])
         written: list[Path] = []
         if out is not None:
@@ -85,24 +86,10 @@ def _old(program: Path, name: str | None, cell: Path | None) -> tuple[Vendor, Ro
 
 
 def _new(robot: str, vendor: str | None) -> tuple[Vendor, Robot]:
-    name = robot if vendor is None or "/" in robot else f"{vendor}/{robot}"
-    found = vendor_of(name)
-    if vendor is not None and vendor != found.name:
-        raise InputError(f"--to {vendor}: {robot} is a robot of {found.name}")
-    arm = registry().find_robot(name)
-    found.check_written(arm)
-    return found, arm
-
-
-def _translated(
-    program: Program, before: tuple[Vendor, Robot], after: tuple[Vendor, Robot], base: str | None
-) -> Translation:
-    from ..core.translation.translate import TranslationOptions, translate
-
-    options = TranslationOptions()
-    if base is not None:
-        options = TranslationOptions(values.pose(base, "--base"))
-    return translate(program, before, after, options)
+    arm = party_of(robot if vendor is None or "/" in robot else f"{vendor}/{robot}")
+    if vendor is not None and vendor != arm[0].name:
+        raise InputError(f"--to {vendor}: {robot} is a robot of {arm[0].name}")
+    return arm
 
 
 def _tell(

@@ -3,23 +3,38 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .bystanders import bystander_notes, refuse_bystanders
-from .console import print_json, print_rich, print_table, progress
+from .console import print_json, print_table, progress
+from .delivery import deliver
 from .installed import registry
 from .loading import Source, start_of
-from .options import AnswersFile, AsJson, Entry, Force, OtherFiles, Out, ProgramFile, Start
-from .patching import Patching, check_places, write_patched
+from .options import (
+    AnswersFile,
+    AsJson,
+    Clearance,
+    Entry,
+    Force,
+    Freed,
+    InPlace,
+    OtherFiles,
+    Out,
+    Predefined,
+    ProgramFile,
+    Start,
+    WholeCell,
+)
+from .patching import Patching, Places
 from .places import place_json, short_place
 from .solution_report import solution_json, tell_solution
 from .task_options import clearance_of, freed_stops, move_index, rounding_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ..core.cell.cell import Cell
     from ..core.program.program import Program
     from ..core.program.zone import Zone
@@ -39,28 +54,14 @@ COLUMNS = (
 
 def zones(
     program: ProgramFile,
-    cell: Annotated[
-        Path, typer.Option("--cell", help="Cell file: robot, tools, obstacles, clearance.")
-    ],
+    cell: WholeCell,
     entry: Entry = None,
     io: AnswersFile = None,
     others: OtherFiles = None,
     start: Start = None,
-    clearance: Annotated[
-        float | None,
-        typer.Option("--clearance", help="Clearance to keep, mm; the cell's own if unset."),
-    ] = None,
-    predefined: Annotated[
-        bool, typer.Option("--predefined", help="Choose among the vendor's predefined zones.")
-    ] = False,
-    free: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--free",
-            help="A stop that may be passed, by the number of its move, or 'all'; may be given "
-            "several times.",
-        ),
-    ] = None,
+    clearance: Clearance = None,
+    predefined: Predefined = False,
+    free: Freed = None,
     keep: Annotated[
         list[int] | None,
         typer.Option("--keep", help="A move whose zone stays; may be given several times."),
@@ -72,9 +73,7 @@ def zones(
         ),
     ] = False,
     out: Out = None,
-    in_place: Annotated[
-        bool, typer.Option("--in-place", help="Change the program's own files.")
-    ] = False,
+    in_place: InPlace = False,
     unproven: Annotated[
         bool,
         typer.Option("--unproven", help="Write the program even if its clearance is not proven."),
@@ -87,7 +86,8 @@ def zones(
     The exit status is 1 if the new program is not proven to keep its clearance.
     """
     source = Source.of(program, entry, io, others)
-    check_places(out, in_place, source.inputs(cell), force)
+    places = Places(out, in_place, source.inputs(cell), force)
+    places.check()
     with progress("reading the program") as say:
         from ..core.cell.file import load_cell
         from ..core.motion.controller import Controller
@@ -100,31 +100,12 @@ def zones(
         patching = Patching(vendor, where.robot, own)
         controller = Controller(vendor, where.robot)
         made = maximize_zones(controller, parsed, where, options, patching.read_back, say)
-        others_concerned = bystander_notes(made, vendor)
-        made = replace(made, notes=(*made.notes, *others_concerned))
-        refused = in_place and bool(others_concerned)
-        written: list[Path] = []
-        if made.changed and (made.proven or unproven) and not refused:
-            from ..core.source.patching import reading_of
-
-            written = write_patched(
-                patching.files,
-                reading_of(parsed).files,
-                out,
-                in_place,
-                source.inputs(cell),
-                force,
-            )
+        delivery = deliver(made, vendor, patching.files, places, unproven)
     if json:
-        print_json(_json(made, where, written))
+        print_json(_json(delivery.made, where, delivery.written))
     else:
-        _tell(program, made, where, written)
-        if made.changed and not (out or in_place):
-            print_rich("nothing was written: --in-place or --out FOLDER writes the new program")
-    if in_place:
-        refuse_bystanders(others_concerned)
-    if not made.proven:
-        raise typer.Exit(1)
+        _tell(program, delivery.made, where, delivery.written)
+    delivery.end(told=not json)
 
 
 def _options(
@@ -153,7 +134,7 @@ def _options(
     )
 
 
-def _tell(program: Path, made: ZoneSolution, cell: Cell, written: list[Path]) -> None:
+def _tell(program: Path, made: ZoneSolution, cell: Cell, written: Sequence[Path]) -> None:
     print_table(COLUMNS, [_row(program, change) for change in made.zones])
     tell_solution(program, made, cell, written)
 
@@ -182,7 +163,7 @@ def zone_shown(zone: Zone) -> str:
     return "fine"
 
 
-def _json(made: ZoneSolution, cell: Cell, written: list[Path]) -> dict[str, Any]:
+def _json(made: ZoneSolution, cell: Cell, written: Sequence[Path]) -> dict[str, Any]:
     zones = [_change_json(change) for change in made.zones]
     return {**solution_json(made, cell, written), "zones": zones}
 

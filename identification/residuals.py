@@ -12,8 +12,8 @@ from ..core.program.tool import FLANGE, Tool
 from ..core.robot.joint import JointKind
 from ..core.robot.model import Robot
 from .alignment import Alignment
-from .comparison import distance_to_polyline, tcp_positions
 from .logs.cleaning import CleanLog
+from .tcp_path import distance_to_polyline, tcp_positions
 
 FloatArray = NDArray[np.float64]
 

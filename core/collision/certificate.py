@@ -18,7 +18,7 @@ from ..program.tool import Tool
 from .enclosure import Enclosure, Span
 from .findings import Budget, Cause, Finding
 from .scene import CollisionScene
-from .strays import smoothing_strays
+from .strays import strays_of
 from .subdivision import Prover
 from .verdict import CONTACT, MM, Certificate, Reader, nearest_of
 
@@ -102,10 +102,10 @@ def certify_stretch(
         if not first <= last:
             raise InputError(f"a stretch runs from a first to a last σ, not from {first} to {last}")
     enclosure = Enclosure.of(run.path)
-    astray = smoothing_strays(controller, run)
+    strays = strays_of(controller, run)
     left = Budget(budget)
     owners = _owners(run, scenes, spans)
-    provers = [Prover(enclosure, scene, astray, residual, left) for scene, _ in owners]
+    provers = [Prover(enclosure, scene, strays, residual, left) for scene, _ in owners]
     reader = Reader(run)
     wanted = max(clearance - TOLERANCE, CONTACT)
     findings = [

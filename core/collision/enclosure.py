@@ -53,22 +53,40 @@ class Intervals(NamedTuple):
 
 @dataclass(frozen=True)
 class Enclosure:
-    """Makes enclosures of one path.
+    """Makes enclosures of one trajectory of P pieces.
 
     Args:
-        path: the path.
+        edge: (P + 1,), σ of the pieces' ends.
         window: (P, 4), of the joints' curves; straight on TCP-space pieces.
+        joints: curves of joint-space pieces.
+        curve: (P,), which of them is a piece's own; -1 on TCP-space pieces.
+        path: where pieces are in TCP space, what they belong to; else None.
     """
 
-    path: Path
+    edge: FloatArray
     window: FloatArray
+    joints: Curves
+    curve: IntArray
+    path: Path | None = None
 
     @classmethod
     def of(cls, path: Path) -> Enclosure:
         """For a path."""
-        joint = path.pieces.joint_space[:, None]
-        own = path.joint.window[path.pieces.curve[:, POSITION]]
-        return cls(path, np.where(joint, own, np.array([0.0, 1.0, 1.0, 1.0])))
+        pieces = path.pieces
+        own = pieces.curve[:, POSITION]
+        straight = np.array([0.0, 1.0, 1.0, 1.0])
+        window = np.where(pieces.joint_space[:, None], path.joint.window[own], straight)
+        curve = np.where(pieces.joint_space, own, -1)
+        return cls(pieces.edge, window, path.joint, curve, path)
+
+    @property
+    def size(self) -> int:
+        """N."""
+        return int(self.joints.control.shape[2])
+
+    def whole(self, piece: IntArray) -> FloatArray:
+        """(M,), how long pieces are in their own parameters."""
+        return np.asarray(np.where(self.curve < 0, np.diff(self.edge), 1.0)[piece])
 
     def over(self, spans: Sequence[Span], pieces: Iterable[int] | None = None) -> Intervals:
         """One interval for every piece that spans of σ touch, no wider than needed.
@@ -81,7 +99,7 @@ class Enclosure:
             pieces: the pieces wanted; None for all.
         """
         owners, begins, ends, corners = [], [], [], []
-        edge = self.path.pieces.edge
+        edge = self.edge
         wanted = range(len(edge) - 1) if pieces is None else pieces
         for p, (first, last) in product(wanted, spans):
             if last < edge[p] or first > edge[p + 1]:
@@ -92,21 +110,20 @@ class Enclosure:
                 begins.append(begin)
                 ends.append(end)
                 corners.append(between)
-        size = self.path.q.shape[1]
         return self._enclosed(
             np.array(owners, dtype=np.int64),
             np.array(begins),
             np.array(ends),
-            np.array(corners).reshape(-1, 2, size),
+            np.array(corners).reshape(-1, 2, self.size),
         )
 
     def _placed(self, piece: int, first: float, last: float) -> tuple[float, float, FloatArray]:
         """A cut of a piece in the piece's own parameter, and the configurations at its ends."""
         path = self.path
-        if path.pieces.joint_space[piece]:
+        if path is None or self.curve[piece] >= 0:
             window = self.window[piece]
             begin, end = (min(max(parameter_jet(window, x)[0], 0.0), 1.0) for x in (first, last))
-            return begin, end, np.zeros((2, path.q.shape[1]))
+            return begin, end, np.zeros((2, self.size))
         rows = slice(*path.pieces.first_sample[piece : piece + 2])
         sigma, q = path.sigma[rows], path.q[rows]
         i = max(int(np.searchsorted(sigma, first, "right")) - 1, 0)
@@ -131,68 +148,68 @@ class Enclosure:
         s = parameter
         across = s * (1 - s)
         mapped = start + length * (s * s + d0 * across) / (1 + (d0 + d1 - 2) * across)
-        return np.asarray(np.where(self.path.pieces.joint_space[piece], mapped, s))
+        return np.asarray(np.where(self.curve[piece] < 0, s, mapped))
 
     def _enclosed(
         self, piece: IntArray, begin: FloatArray, end: FloatArray, ends: FloatArray
     ) -> Intervals:
-        boxes = Boxes.empty(len(piece), self.path.q.shape[1])
-        in_joints = self.path.pieces.joint_space[piece]
-        rows = np.flatnonzero(in_joints)
-        curve = self.path.pieces.curve[piece[rows], POSITION]
-        _enclose_joints(self.path.joint, curve, begin[rows], end[rows], rows, boxes)
-        rows = np.flatnonzero(~in_joints)
-        if len(rows):
-            self._enclose_tcp(piece, begin, end, ends, rows, boxes)
+        boxes = Boxes.empty(len(piece), self.size)
+        curve = self.curve[piece]
+        rows = np.flatnonzero(curve >= 0)
+        _enclose_joints(self.joints, curve[rows], begin[rows], end[rows], rows, boxes)
+        rows = np.flatnonzero(curve < 0)
+        if self.path is not None and len(rows):
+            _enclose_tcp(self.path, piece, begin, end, ends, rows, boxes)
         return Intervals(piece, begin, end, ends, boxes)
 
-    def _enclose_tcp(
-        self,
-        piece: IntArray,
-        begin: FloatArray,
-        end: FloatArray,
-        ends: FloatArray,
-        rows: IntArray,
-        boxes: Boxes,
-    ) -> None:
-        path = self.path
-        middle, half = 0.5 * (begin + end), 0.5 * (end - begin)
-        for chain, own in self._by_chain(piece, rows):
-            curves = (np.ascontiguousarray(c) for c in path.pieces.curve[piece[own]].T)
-            enclose(
-                chain,
-                path.route.solved,
-                path.route.prescribed,
-                path.tcp.curves,
-                Samples(middle[own], *curves),
-                half[own],
-                self._guess(piece[own], middle[own]),
-                ends[own],
-                own,
-                boxes,
-            )
 
-    def _by_chain(self, piece: IntArray, rows: IntArray) -> list[tuple[Chain, IntArray]]:
-        chains = self.path.route.chains
-        segment = self.path.pieces.segment[piece[rows]]
-        used = {id(chains[k]): chains[k] for k in np.unique(segment)}
-        if len(used) == 1:
-            return [(chain, rows) for chain in used.values()]
-        owner = np.array([id(chains[k]) for k in segment])
-        return [(chain, rows[owner == key]) for key, chain in used.items()]
+def _enclose_tcp(
+    path: Path,
+    piece: IntArray,
+    begin: FloatArray,
+    end: FloatArray,
+    ends: FloatArray,
+    rows: IntArray,
+    boxes: Boxes,
+) -> None:
+    middle, half = 0.5 * (begin + end), 0.5 * (end - begin)
+    for chain, own in _by_chain(path, piece, rows):
+        curves = (np.ascontiguousarray(c) for c in path.pieces.curve[piece[own]].T)
+        enclose(
+            chain,
+            path.route.solved,
+            path.route.prescribed,
+            path.tcp.curves,
+            Samples(middle[own], *curves),
+            half[own],
+            _guess(path, piece[own], middle[own]),
+            ends[own],
+            own,
+            boxes,
+        )
 
-    def _guess(self, piece: IntArray, sigma: FloatArray) -> FloatArray:
-        """(M, N), q by Taylor's formula from the nearest sample of the same piece."""
-        path = self.path
-        first = path.pieces.first_sample
-        # Samples of one piece only: those at its ends share σ with its neighbours'.
-        right = np.searchsorted(path.sigma, sigma)
-        right = np.clip(right, first[piece] + 1, first[piece + 1] - 1)
-        left_near = sigma - path.sigma[right - 1] < path.sigma[right] - sigma
-        near = right - left_near
-        step = (sigma - path.sigma[near])[:, None]
-        states = path.states
-        return np.asarray(states.q[near] + step * (states.dq[near] + 0.5 * step * states.ddq[near]))
+
+def _by_chain(path: Path, piece: IntArray, rows: IntArray) -> list[tuple[Chain, IntArray]]:
+    chains = path.route.chains
+    segment = path.pieces.segment[piece[rows]]
+    used = {id(chains[k]): chains[k] for k in np.unique(segment)}
+    if len(used) == 1:
+        return [(chain, rows) for chain in used.values()]
+    owner = np.array([id(chains[k]) for k in segment])
+    return [(chain, rows[owner == key]) for key, chain in used.items()]
+
+
+def _guess(path: Path, piece: IntArray, sigma: FloatArray) -> FloatArray:
+    """(M, N), q by Taylor's formula from the nearest sample of the same piece."""
+    first = path.pieces.first_sample
+    # Samples of one piece only: those at its ends share σ with its neighbours'.
+    right = np.searchsorted(path.sigma, sigma)
+    right = np.clip(right, first[piece] + 1, first[piece + 1] - 1)
+    left_near = sigma - path.sigma[right - 1] < path.sigma[right] - sigma
+    near = right - left_near
+    step = (sigma - path.sigma[near])[:, None]
+    states = path.states
+    return np.asarray(states.q[near] + step * (states.dq[near] + 0.5 * step * states.ddq[near]))
 
 
 @njit(cache=True, error_model="numpy")

@@ -66,9 +66,12 @@ class Sweeps(NamedTuple):
         lower: (K,) m, the pair keeps at least this distance on the interval.
         motion: (K,) m, how far one body moves at most against the other from where they are at
             the middle.
-        stray: (K,) m, of it what the joints' strays and the residual make.
+        travel: (K,) m, of it what the path makes.
+        stray: (K,) m, what the joints' strays and the residual may take of the distance at the
+            middle, along the plane's normal if there is one.
     """
 
     lower: FloatArray
     motion: FloatArray
+    travel: FloatArray
     stray: FloatArray

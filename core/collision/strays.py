@@ -1,79 +1,126 @@
-"""How far smoothing in time and elastic joints take a motion off its path, at most.
+"""How far smoothing in time and elastic joints take a motion off its path, place by place.
 
-Between two samples the emulated motion is a quintic q(ℓ) that is driven with ℓ̇² = x linear in ℓ
-(`motion.timing`). So its acceleration q'' x + q' ẍ is a polynomial of fourth degree, and lies
-within the range of its Bernstein coefficients: a bound for all times, not for samples of them.
-See R. T. Farouki, "The Bernstein polynomial basis: a centennial retrospective" (2012), section 4.
+See `motion.averaging` for the first and `motion.lead_bound` for the second. The bounds hold for all
+motions within the path's limits, so at every override.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from ..motion.allowed import Allowed, coefficients
+from ..motion.allowed import Allowed
+from ..motion.averaging import Averages
 from ..motion.controller import Controller, Run
-from ..motion.elasticity import LEAD_STEP, RIGID
-from ..motion.lead_bound import most_lead
-from ..motion.ramped import stamped_motion
-from ..motion.smoothing import Smoothing
-from ..motion.timing import Timing
-from ..motion.trajectory import sample_times
+from ..motion.course import Course
+from ..motion.elasticity import RIGID
+from ..motion.lead_bound import most_leads
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+_CELLS = 40
+"""Cells within what averages reach."""
+_STEP = 2e-3
+"""s of a cell where there are no averages."""
 
 
-def smoothing_strays(controller: Controller, run: Run) -> FloatArray:
-    """(N,) rad or m by which smoothing in time moves the joints off the path at most.
+class Strays(NamedTuple):
+    """How far joints may be from a path, in C stretches of it.
 
-    A mean with a symmetric kernel of variance s² over a motion with accelerations within ±a is at
-    most a s² / 2 from the motion at the kernel's middle; see `motion.smoothing`. What commanded
-    joints lead their links by comes on top (`motion.lead_bound`). a and leads are the greatest
-    that the program's limits allow, between samples too; no override drives outside of them. Where
-    accelerations are ramped besides, what this motion reaches counts if that is more.
+    The commanded joints are those of a place in the stretch and beside it a sum of ways, each times
+    a factor of its own, and of what is left.
+
+    Args:
+        edge: (C + 1,), σ of the stretches' ends; the first and last reach beyond.
+        ways: (C, W, N), rad or m.
+        share: (C, W, 2), least (≤ 0) and greatest (≥ 0) factor of each way.
+        rest: (C, N) rad or m, bounds of what is left.
+        most: (C, N) rad or m, bounds of all.
     """
+
+    edge: FloatArray
+    ways: FloatArray
+    share: FloatArray
+    rest: FloatArray
+    most: FloatArray
+
+    @staticmethod
+    def within(most: FloatArray) -> Strays:
+        """The same bounds (N,) everywhere."""
+        edge, most = np.array([-np.inf, np.inf]), most[None]
+        return Strays(edge, np.zeros((1, 0, most.shape[1])), np.zeros((1, 0, 2)), most, most)
+
+
+class Stretches(NamedTuple):
+    """Strays on M intervals of a path.
+
+    Args:
+        first, last: (M,), rows of the strays that an interval is in.
+        own: (M,), that of its middle.
+        most: (M, N) rad or m, bounds.
+    """
+
+    first: IntArray
+    last: IntArray
+    own: IntArray
+    most: FloatArray
+
+
+def stretches(strays: Strays, begin: FloatArray, end: FloatArray) -> Stretches:
+    """Where intervals of σ from begin (M,) to end (M,) are."""
+    top = len(strays.edge) - 2
+    first = np.clip(np.searchsorted(strays.edge, begin, "left") - 1, 0, top)
+    last = np.clip(np.searchsorted(strays.edge, end, "right") - 1, first, top)
+    own = np.clip(np.searchsorted(strays.edge, 0.5 * (begin + end), "right") - 1, first, last)
+    return Stretches(first, last, own, _greatest(strays.most, first, last))
+
+
+@njit(cache=True, error_model="numpy")
+def _greatest(most: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
+    """(M, N), the greatest of rows (C, N) from first (M,) to last (M,)."""
+    out = np.zeros((first.size, most.shape[1]))
+    for m in range(first.size):
+        for c in range(first[m], last[m] + 1):
+            for j in range(most.shape[1]):
+                out[m, j] = max(out[m, j], most[c, j])
+    return out
+
+
+def strays_of(controller: Controller, run: Run) -> Strays:
+    """How far the commanded joints of a run may be from its path, at every override."""
     smoothing = controller.smoothing(run.program, run.path)
-    elasticity = controller.model.elasticity
-    size = run.path.q.shape[1]
-    if smoothing.window == 0.0 and elasticity == RIGID:
-        return np.zeros(size)
-    allowed, start = Allowed.of(run.timing), run.timing.start
-    most = allowed.greatest(allowed.accelerations, np.abs).max(axis=0)
-    strays = start.most_acceleration * most * smoothing.stray
-    leads = np.zeros(size)
+    elasticity, timing = controller.model.elasticity, run.timing
+    if not smoothing.widths and elasticity == RIGID:
+        return Strays.within(np.zeros(run.path.q.shape[1]))
+    reach = smoothing.window + timing.ramp
+    step = reach / _CELLS if reach > 0.0 else _STEP
+    allowed = Allowed.of(timing)
+    course = Course.of(timing, allowed, step, max(reach, step))
+    averages = Averages(course, smoothing, timing.ramp)
+    offsets = averages.offsets()
+    ways, share, rest = offsets.axis[:, None], offsets.along[:, None], offsets.aside
     if elasticity != RIGID:
-        leads = most_lead(elasticity, controller.robot, allowed, smoothing, start)
-    if run.timing.ramp > 0.0:
-        reached = _reached(controller, run, smoothing)
-        strays, leads = np.maximum(strays, reached[0]), np.maximum(leads, reached[1])
-    return np.asarray(strays + leads)
-
-
-def _reached(
-    controller: Controller, run: Run, smoothing: Smoothing
-) -> tuple[FloatArray, FloatArray]:
-    """(N,) each, strays and leads of this motion.
-
-    A ramp takes accelerations along the path to where the path bends otherwise.
-    """
-    motion = stamped_motion(run.timing)
-    accelerations = np.abs(np.gradient(motion.dq, motion.t, axis=0)).max(axis=0)
-    even = sample_times(0.0, float(motion.t[-1]), LEAD_STEP)
-    states = smoothing.command(motion, even)
-    leads = np.abs(controller.model.elasticity.leads(controller.robot, *states)).max(axis=0)
-    return accelerations * smoothing.stray, leads
-
-
-def greatest_rates(timing: Timing) -> tuple[FloatArray, FloatArray]:
-    """Bounds of |dq/dt| and |d²q/dt²| (N,) over a whole motion."""
-    _, slope, bend = coefficients(timing)
-    x = timing.stamp.x
-    before, after = x[:-1, None], x[1:, None]
-    push = ((after - before) / (2.0 * timing.along.spacing[:, None]))[None]
-    share = np.arange(5)[:, None, None] / 4.0
-    raised = np.zeros((5, *bend.shape[1:]))
-    raised[:4] += (1.0 - share[:4]) * bend * before
-    raised[1:] += share[1:] * bend * after
-    fastest = np.sqrt(np.maximum(before, after)) * np.abs(slope).max(axis=0)
-    strongest = np.abs(raised + push * slope).max(axis=0)
-    return fastest.max(axis=0, initial=0.0), strongest.max(axis=0, initial=0.0)
+        leads = most_leads(
+            elasticity,
+            controller.robot,
+            allowed,
+            course,
+            averages,
+            offsets,
+            smoothing,
+            timing.start,
+        )
+        ways = np.concatenate([ways, leads.ways], axis=1)
+        share = np.concatenate([share, leads.share], axis=1)
+        rest = rest + leads.rest
+    most = rest + np.einsum("cwn,cw->cn", np.abs(ways), np.abs(share).max(axis=2))
+    # What cannot be told is not small.
+    unknown = ~np.isfinite(most).all(axis=1)
+    ways[unknown], share[unknown], rest[unknown], most[unknown] = 0.0, 0.0, np.inf, np.inf
+    moves = course.moves
+    edge = np.append(course.sigma[:-1][moves], course.sigma[-1])
+    return Strays(edge, ways[moves], share[moves], rest[moves], most[moves])

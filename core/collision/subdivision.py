@@ -19,6 +19,7 @@ from .enclosure import Enclosure, Intervals, Span
 from .findings import Budget, Cause, Finding, Nearest
 from .items import Items, Sweeps
 from .scene import CollisionScene
+from .strays import Strays, stretches
 from .sweep import sweep
 
 FloatArray = NDArray[np.float64]
@@ -44,14 +45,14 @@ class Prover:
     Args:
         enclosure: of the path.
         scene: the bodies.
-        astray: (N,), rad or m by which joints may leave the path.
+        strays: how far joints may be from the path.
         residual: m by which moving bodies may be elsewhere.
         budget: shared by all provers of a certificate.
     """
 
     enclosure: Enclosure
     scene: CollisionScene
-    astray: FloatArray
+    strays: Strays
     residual: float
     budget: Budget
 
@@ -79,15 +80,16 @@ class Prover:
         self.proven = before if finding is not None else max(before, self.proven)
         return finding
 
-    def sweep(self, boxes: Boxes, items: Items) -> Sweeps:
-        """Lower bounds of distances on intervals with these enclosures."""
+    def sweep(self, boxes: Boxes, begin: FloatArray, end: FloatArray, items: Items) -> Sweeps:
+        """Lower bounds of distances on intervals with these enclosures, from σ to σ (M,)."""
         found = Sweeps(*(np.empty(len(items.pair)) for _ in Sweeps._fields))
         sweep(
             self.scene.frames,
             self.scene.outlines,
             self.scene.pairs,
             boxes,
-            self.astray,
+            self.strays,
+            stretches(self.strays, begin, end),
             self.residual,
             items,
             found,
@@ -137,7 +139,7 @@ class _Search:
         """Measure at the middles, so that there is a least distance to go by."""
         if self._prover.nearest.kept == math.inf:
             sound = items.chosen(intervals.boxes.verified[items.interval])
-            self._measured(intervals, sound, self._prover.sweep(intervals.boxes, sound))
+            self._measured(intervals, sound, self._swept(intervals, sound))
 
     @property
     def _goal(self) -> float:
@@ -148,23 +150,29 @@ class _Search:
 
     def _open(self, intervals: Intervals, items: Items) -> Items:
         """Prove what can be proven; the rest."""
-        prover = self._prover
         verified = intervals.boxes.verified[items.interval]
         unknown, known = items.chosen(~verified), items.chosen(verified)
-        found = prover.sweep(intervals.boxes, known)
+        found = self._swept(intervals, known)
         left = self._left(found)
         wide = found.motion > _WIDE
         near = left & ~wide
         asked = self._measured(intervals, known.chosen(near), Sweeps(*(a[near] for a in found)))
-        again = prover.sweep(intervals.boxes, asked)
+        again = self._swept(intervals, asked)
         near = self._left(again)
         near &= self._judged(intervals, asked, again, near)
         return Items.joined(unknown, known.chosen(left & wide), asked.chosen(near))
 
+    def _swept(self, intervals: Intervals, items: Items) -> Sweeps:
+        """Lower bounds of the items' distances."""
+        of = self._prover.enclosure.sigma
+        begin, end = (of(intervals.piece, edge) for edge in (intervals.begin, intervals.end))
+        return self._prover.sweep(intervals.boxes, begin, end, items)
+
     def _left(self, found: Sweeps) -> NDArray[np.bool_]:
         """Which items are still open; the others count as proven."""
         left = found.lower < self._goal
-        self._prover.proven = min(self._prover.proven, found.lower[~left].min(initial=math.inf))
+        least = float(found.lower[~left].min(initial=math.inf))
+        self._prover.proven = min(self._prover.proven, least)
         return np.asarray(left)
 
     def _measured(self, intervals: Intervals, items: Items, found: Sweeps) -> Items:
@@ -180,24 +188,26 @@ class _Search:
         met = np.flatnonzero(distance < within)
         if len(met):
             nearest = met[np.argmin((distance - found.stray)[met])]
-            self._remember(intervals, items, int(nearest), float(distance[nearest]))
+            self._remember(intervals, items._replace(distance=distance, normal=normal), nearest)
         return items._replace(distance=distance - ROUNDING, normal=normal)
 
-    def _remember(self, intervals: Intervals, items: Items, k: int, distance: float) -> None:
+    def _remember(self, intervals: Intervals, items: Items, k: np.int64) -> None:
         """Keep the k-th item if it is the nearest so far."""
         prover, row = self._prover, int(items.interval[k])
-        pair, q = items.pair[k : k + 1], intervals.boxes.q[row]
-        alone = Items(np.zeros(1, np.int64), pair, np.zeros((1, 3)), np.array([distance]))
-        kept = distance - float(prover.sweep(Boxes.at(q), alone).stray[0])
+        q, sigma = intervals.boxes.q[row], self._middle(intervals, row)
+        here, asked = np.array([sigma]), np.arange(len(items.pair)) == k
+        alone = items.chosen(asked)._replace(interval=np.zeros(1, np.int64))
+        distance = float(items.distance[k])
+        kept = distance - float(prover.sweep(Boxes.at(q), here, here, alone).stray[0])
         if kept < prover.nearest.kept:
-            sigma, piece = self._middle(intervals, row), int(intervals.piece[row])
-            prover.nearest = Nearest(kept, distance, sigma, piece, int(pair[0]), q)
+            piece, pair = int(intervals.piece[row]), int(items.pair[k])
+            prover.nearest = Nearest(kept, distance, sigma, piece, pair, q)
 
     def _judged(
         self, intervals: Intervals, items: Items, found: Sweeps, near: NDArray[np.bool_]
     ) -> NDArray[np.bool_]:
         """Note which open items are too near; whether halving them can tell more."""
-        travel = found.motion - found.stray
+        travel = found.travel
         stalled = near & (travel < _STALLED)
         if self._resolution is not None:
             self._note(intervals, items, stalled, Cause.STALLED)
@@ -224,9 +234,7 @@ class _Search:
         """Which items lie before the first violation and are not too narrow to be halved."""
         row = items.interval
         piece, begin, end = intervals.piece[row], intervals.begin[row], intervals.end[row]
-        pieces = self._prover.enclosure.path.pieces
-        whole = np.where(pieces.joint_space, 1.0, np.diff(pieces.edge))[piece]
-        narrow = end - begin < _NARROWEST * whole
+        narrow = end - begin < _NARROWEST * self._prover.enclosure.whole(piece)
         sound = intervals.boxes.verified[row]
         self._note(intervals, items, narrow & sound, Cause.STALLED)
         self._note(intervals, items, narrow & ~sound, Cause.UNVERIFIED)

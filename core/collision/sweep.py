@@ -40,9 +40,13 @@ from .boxes import Boxes
 from .frames import FrameTree, place_frames
 from .items import Items, Sweeps
 from .outline import Outlines, lever, support
+from .strays import Strays, Stretches
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+_FEW = 4
+"""Stretches of strays on an interval up to which each is looked at for itself."""
 
 
 class _Travel(NamedTuple):
@@ -50,7 +54,7 @@ class _Travel(NamedTuple):
 
     Args:
         reach: m, from where it is at the middle.
-        bend: m, bound of |a''|.
+        bend: m, bound of |a''|, with what strays of the joints do to it.
         stray: m, what strays of the joints and the residual add.
         omega, origin: angular velocity, and velocity of the point at the world's origin, by t at
             the middle.
@@ -69,7 +73,8 @@ def sweep(
     outlines: Outlines,
     pairs: IntArray,
     boxes: Boxes,
-    astray: FloatArray,
+    strays: Strays,
+    stretches: Stretches,
     residual: float,
     items: Items,
     found: Sweeps,
@@ -81,7 +86,8 @@ def sweep(
         outlines: the bodies.
         pairs: (P, 2), indices of bodies.
         boxes: enclosures of the intervals; the items' ones are verified.
-        astray: (N,), rad or m by which joints may leave the path.
+        strays: how far joints may be from the path.
+        stretches: where among them the intervals are.
         residual: m by which a moving body may be elsewhere.
         items: the questions.
         found: written.
@@ -97,21 +103,141 @@ def sweep(
         if i != current:
             current = i
             _place(tree, outlines, boxes.q[i], R, p, axis, centre, edges)
-            _measure_levers(tree, outlines, boxes.reach[i], astray, R, p, axis, levers)
+            _measure_levers(tree, outlines, boxes.reach[i], stretches.most[i], R, p, axis, levers)
         a, b = pairs[items.pair[k], 0], pairs[items.pair[k], 1]
-        first = _travel(tree, outlines, boxes, astray, residual, levers, axis, p, i, a, b)
-        second = _travel(tree, outlines, boxes, astray, residual, levers, axis, p, i, b, a)
-        stray = first.stray + second.stray
-        motion = first.reach + second.reach + stray
-        found.motion[k], found.stray[k] = motion, stray
+        first = _travel(
+            tree, outlines, boxes, stretches.most[i], residual, levers, axis, p, i, a, b
+        )
+        second = _travel(
+            tree, outlines, boxes, stretches.most[i], residual, levers, axis, p, i, b, a
+        )
+        found.travel[k] = first.reach + second.reach
+        motion = first.reach + second.reach + first.stray + second.stray
+        found.motion[k] = motion
+        own = stretches.own[i]
+        found.stray[k] = _stray(tree, outlines, strays.most[own], levers, residual, a, b)
         n = load_row(items.normal, k)
         lower = items.distance[k] - motion
         if dot(n, n) > 0.0:
             gap = _planar_gap(outlines, R, p, a, b, first, second, n)
-            lower = max(lower, gap - stray)
+            off = first.stray + second.stray
+            if stretches.last[i] - stretches.first[i] < _FEW:
+                most = 0.0
+                for c in range(stretches.first[i], stretches.last[i] + 1):
+                    lost = _lost(tree, outlines, strays, c, residual, levers, axis, R, p, a, b, n)
+                    most = max(most, lost)
+                off = min(off, most)
+            bend = _stray_bend(tree, outlines, strays.most[own], levers, a, b)
+            lost = _lost(tree, outlines, strays, own, residual, levers, axis, R, p, a, b, n)
+            found.stray[k] = min(found.stray[k], lost + bend)
+            lower = max(lower, gap - off)
         else:
             lower = max(lower, _box_gap(outlines, centre, edges, a, b) - motion)
         found.lower[k] = lower
+
+
+@njit(cache=True, error_model="numpy")
+def _apart(tree: FrameTree, outlines: Outlines, body: int, other: int, f: int) -> bool:
+    """Whether frame f moves ``body`` against ``other``."""
+    return f > 0 and not tree.moves[outlines.frame[other], f - 1]
+
+
+@njit(cache=True, error_model="numpy")
+def _stray(
+    tree: FrameTree,
+    outlines: Outlines,
+    astray: FloatArray,
+    levers: FloatArray,
+    residual: float,
+    a: int,
+    b: int,
+) -> float:
+    """m by which strays within ``astray`` (N,) and the residual move two bodies at most."""
+    total = 0.0
+    for body, other in ((a, b), (b, a)):
+        f = outlines.frame[body]
+        if _apart(tree, outlines, body, other, f):
+            total += residual
+        while _apart(tree, outlines, body, other, f):
+            total += astray[f - 1] * levers[body, f]
+            f = tree.parent[f]
+    return total
+
+
+@njit(cache=True, error_model="numpy")
+def _stray_bend(
+    tree: FrameTree, outlines: Outlines, astray: FloatArray, levers: FloatArray, a: int, b: int
+) -> float:
+    """m by which they move them at most beside what is linear in them."""
+    total = 0.0
+    for body, other in ((a, b), (b, a)):
+        f, speed = outlines.frame[body], 0.0
+        while _apart(tree, outlines, body, other, f):
+            d, far = astray[f - 1], levers[body, f]
+            if not tree.prismatic[f]:
+                total += 0.5 * (2.0 * d * speed + d * d * far)
+            speed += d * far
+            f = tree.parent[f]
+    return total
+
+
+@njit(cache=True, error_model="numpy")
+def _lost(
+    tree: FrameTree,
+    outlines: Outlines,
+    strays: Strays,
+    c: int,
+    residual: float,
+    levers: FloatArray,
+    axis: FloatArray,
+    R: FloatArray,
+    p: FloatArray,
+    a: int,
+    b: int,
+    n: Vector,
+) -> float:
+    """m that strays and the residual may take along n, as far as it is linear in them."""
+    total: float = _stray(tree, outlines, strays.rest[c], levers, residual, a, b)
+    for w in range(strays.ways.shape[1]):
+        way, least, most = strays.ways[c, w], strays.share[c, w, 0], strays.share[c, w, 1]
+        if least == 0.0 and most == 0.0:
+            continue
+        low, high = _extent(tree, outlines, way, axis, R, p, a, b, n)
+        total += max(-most * low, -least * high, 0.0)
+        low, high = _extent(tree, outlines, way, axis, R, p, b, a, n)
+        total += max(most * high, least * low, 0.0)
+    return total
+
+
+@njit(cache=True, error_model="numpy")
+def _extent(
+    tree: FrameTree,
+    outlines: Outlines,
+    way: FloatArray,
+    axis: FloatArray,
+    R: FloatArray,
+    p: FloatArray,
+    body: int,
+    other: int,
+    n: Vector,
+) -> tuple[float, float]:
+    """How far along n the points of a body go against another, joints going a way (N,)."""
+    f = own = outlines.frame[body]
+    omega, origin, moved = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), False
+    while _apart(tree, outlines, body, other, f):
+        rate = scale(way[f - 1], load_row(axis, f))
+        if tree.prismatic[f]:
+            origin = add(origin, rate)
+        else:
+            omega = add(omega, rate)
+            origin = add(origin, cross(load_row(p, f), rate))
+        moved = True
+        f = tree.parent[f]
+    if not moved:
+        return 0.0, 0.0
+    across, along = cross(n, omega), dot(n, origin)
+    low = along - support(outlines, body, R[own], p[own], scale(-1.0, across))
+    return low, along + support(outlines, body, R[own], p[own], across)
 
 
 @njit(cache=True, error_model="numpy")
@@ -203,7 +329,7 @@ def _travel(
     omega, origin = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     while f > 0 and not shared[f - 1]:
         j, far = f - 1, levers[body, f]
-        d1, d2 = boxes.first[i, j], boxes.second[i, j]
+        d1, d2 = boxes.first[i, j] + astray[j], boxes.second[i, j]
         s = load_row(axis, f)
         reach += boxes.reach[i, j] * far
         stray += astray[j] * far

@@ -41,7 +41,7 @@ class Certificate:
         move: index in the program of the move concerned: of the first violation, of the first
             stretch that is not proven, or where the least distance was met; None if none was.
         sigma: first and last σ of that stretch of the path.
-        time: s, when the commanded motion (before smoothing) is at ``configuration``.
+        time: s, when the emulated motion passes ``configuration``, or what is on the path there.
         pair: names of the two bodies concerned; None if no pair is to blame.
         distance: m between them at ``configuration``; None if it was not measured.
         configuration: (N,), on the stretch.
@@ -179,11 +179,13 @@ class Reader:
         return path.route.moves[int(path.pieces.segment[piece])]
 
     def _time(self, sigma: float) -> float:
-        """s; between samples as if the speed over σ were constant."""
+        """s, as trajectories have it; between samples as if the speed over σ were constant."""
         path, timing = self.run.path, self.run.timing
         left = interval_samples(path.pieces)
         knots = np.stack([path.sigma[left], path.sigma[left + 1]], 1).ravel()
-        return float(np.interp(sigma, knots, np.stack([timing.begin, timing.end], 1).ravel()))
+        times = np.stack([timing.begin, timing.end], 1).ravel()
+        stamped = np.interp(np.array([sigma]), knots, times)
+        return float(timing.start.driven(stamped)[0] + timing.lag)
 
 
 def _shown(distance: float) -> str:

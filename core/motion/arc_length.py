@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from .layout import flat_corners
 from .limits import interval_samples
-from .path import Path
+from .path import Path, zone_pieces
 from .tcp_samples import States
 from .zones import JOINT_CORNER, POSITION
 
@@ -119,15 +119,12 @@ def _zones(path: Path) -> IntArray:
     """Samples and space of every zone that has an extent and whose law is flat at its ends."""
     pieces, layout, model = path.pieces, path.layout, path.model
     live = np.flatnonzero(flat_corners(layout, model))
-    before, after = layout.extent[live, POSITION, 0], layout.extent[live, POSITION, 1]
-    live = live[(before > 0) & (after > 0)]
-    at = layout.waypoint[live + 1]
-    middle = 0.5 * (pieces.edge[1:] + pieces.edge[:-1])
-    first = np.searchsorted(middle, at - layout.extent[live, POSITION, 0])
-    last = np.searchsorted(middle, at + layout.extent[live, POSITION, 1])
+    extent = layout.extent[live, POSITION]
+    live = live[(extent > 0).all(axis=1)]
+    first, _, last = zone_pieces(path, live).T
     joint = layout.corners.kind[live] == JOINT_CORNER
     samples = pieces.first_sample
-    return np.stack([samples[first], samples[last] - 1, joint], -1).astype(np.int64)
+    return np.stack([samples[first], samples[last + 1] - 1, joint], -1).astype(np.int64)
 
 
 @njit(cache=True, error_model="numpy")

@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .controller import Run
+from .limits import CENTRIPETAL
 from .stamping import CEILING, NEXT
+from .superposed import ZONE
 
-STOP = "stop"
+STOP, CORNER = "stop", "corner"
 PROGRAMMED = {
     "tcp": "programmed TCP speed",
     "reorientation": "programmed reorientation speed",
@@ -68,6 +70,10 @@ def _acceleration(run: Run, row: int, axis_names: Sequence[str]) -> str:
 def _velocity(run: Run, knot: int, axis_names: Sequence[str]) -> str:
     """The velocity limit that is the ceiling at a knot."""
     _, row, owner = (int(i) for i in run.timing.path_limits.binding[knot])
+    if row == ZONE:
+        return CORNER
+    if row == CENTRIPETAL:
+        return "centripetal acceleration"
     if row < 0:
         return STOP
     if run.program.moves[run.path.route.moves[owner]].speed.duration is not None:

@@ -28,7 +28,7 @@ from .limits import SegmentLimits
 from .model import DurationRule, MotionModel
 from .path import Path, build_path
 from .pieces import Sampling
-from .ramped import stamped_motion as stamped_motion
+from .ramped import stamped_motion
 from .route import RouteFinder
 from .smoothing import Motion, Smoothing, States
 from .start_ramp import SUDDEN, StartRamp
@@ -151,7 +151,7 @@ class Controller:
         """
         moves = self._moves(program, path)
         limits = SegmentLimits.of(
-            self.robot, self.model, [move.speed for move in moves], path.route.ends.kind
+            self.robot, self.model, [move.speed for move in moves], path.segments
         )
         timed = [k for k, move in enumerate(moves) if move.speed.duration is not None]
         settling = self._settling(program, path)
@@ -184,9 +184,7 @@ class Controller:
             q, dq, ddq, sigma = timing.driven_at(t)
         else:
             q, dq, ddq = self._commanded(smoothing, stamped_motion(timing), t)
-            middle = t - 0.5 * (smoothing.window + timing.ramp)
-            middle = np.clip(middle, 0.0, timing.duration)
-            sigma = timing.driven_at(middle)[3]
+            sigma = timing.driven_at(np.clip(t - timing.lag, 0.0, timing.duration))[3]
         path = timing.path
         last = len(path.route.moves) - 1
         segment = np.clip(np.searchsorted(path.layout.waypoint, sigma, "right") - 1, 0, last)

@@ -21,7 +21,7 @@ from .configurations import located
 from .consumption import SQUARED_TORQUE, Consumption
 from .controller import Controller
 from .energy import pull_energy
-from .limits import SpeedGradient, interval_samples, pull_path_limits
+from .limits import SpeedGradient, interval_samples, pull_path_limits, pull_turning
 from .path import Path, RouteGradient, pull_path
 from .stamping_adjoint import stamp_adjoint
 from .tcp_samples import States
@@ -193,7 +193,7 @@ class Derivatives:
         speeds = SpeedGradient.zeros(len(path.route.moves))
         bar = stamp_adjoint(timing.stamp, seeds.x, seeds.t)
         bar.spacing[:] += seeds.spacing
-        shares_bar = pull_path_limits(
+        shares_bar, turning_bar = pull_path_limits(
             timing.along.states,
             path.pieces,
             timing.limits,
@@ -209,7 +209,8 @@ class Derivatives:
             )
         sigma_bar = np.zeros(len(path.sigma))
         states_bar = timing.along.pull(path, seeds.states, bar.spacing, sigma_bar)
-        return self._gather(pull_path(path, states_bar, sigma_bar), speeds)
+        turn_bar = pull_turning(path.model, path.segments, turning_bar)
+        return self._gather(pull_path(path, states_bar, sigma_bar, turn_bar), speeds)
 
     def _gather(self, route_bar: RouteGradient, speeds: SpeedGradient) -> ProgramGradient:
         """From segments and waypoints to the moves of the program."""
@@ -220,6 +221,8 @@ class Derivatives:
         zone = ZoneGradient.zeros(count)
         for name in ZoneGradient.__dataclass_fields__:
             np.add.at(getattr(zone, name), owners, getattr(route_bar.zones, name))
+        speeds.tcp += route_bar.ends.speed
+        speeds.tcp_acceleration += route_bar.ends.acceleration
         by_move = SpeedGradient.zeros(count)
         for name in SpeedGradient.__dataclass_fields__:
             np.add.at(getattr(by_move, name), moves, getattr(speeds, name))

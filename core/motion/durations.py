@@ -13,6 +13,7 @@ from .limits import SegmentLimits, path_limits
 from .path import Path
 from .segments import JOINT_SEGMENT, TURN_LENGTH, Segments
 from .stamping import StampingError, stamp
+from .superposed import superposed_zones
 from .timing import Settling, Timing
 from .torque import Shares
 
@@ -37,7 +38,8 @@ def stamp_path(
     Raises:
         MotionError: the limits leave a move no speed.
     """
-    made = path_limits(along.states, along.spacing, path.pieces, limits, shares)
+    zones = superposed_zones(path)
+    made = path_limits(along.states, along.spacing, path.pieces, limits, zones, shares)
     try:
         found = stamp(made.rows)
     except StampingError as error:

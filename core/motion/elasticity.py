@@ -119,44 +119,6 @@ class Elasticity:
                 out[:, joint] += slack * np.tanh(out[:, joint] / slack)
         return np.asarray(out + filled(self.lag, q.shape[1]) * dq)
 
-    def most(
-        self,
-        robot: Robot,
-        q: FloatArray,
-        velocity: FloatArray,
-        acceleration: FloatArray,
-        strays: FloatArray,
-    ) -> FloatArray:
-        """(N,), what no lead on a path exceeds.
-
-        Args:
-            robot: that drives it.
-            q: (S, N), samples of the path.
-            velocity, acceleration: (N,), bounds of the links'.
-            strays: (N,), how far the links may be from the path.
-        """
-        size = q.shape[1]
-        out = np.abs(filled(self.own, size)) * acceleration
-        # No lever is longer than the chain, and none turns by more than the joints do.
-        between = np.abs(np.diff(q, axis=0, append=q[-1:])).max(axis=0)
-        turned = float(np.sum(strays + between))
-        for mass in self.carried:
-            chain = chain_to_axis(robot, mass.joint, "elasticity.carried")
-            longest = float(np.linalg.norm(chain.translation, axis=1).sum())
-            longest += float(np.linalg.norm(chain.end_translation))
-            moving = np.isin(np.arange(size), chain.joint)
-            J = jacobians(chain, np.ascontiguousarray(q))[:, :3]
-            lever = np.linalg.norm(J, axis=1)
-            more = longest * turned * moving
-            product = np.abs(np.einsum("tij,tik->tjk", J, J))
-            product += lever[:, :, None] * more + more[:, None] * lever[:, None, :]
-            product += more[:, None] * more
-            centrifugal = longest * float(velocity[moving].sum()) ** 2
-            torque = (product @ acceleration + (lever + more) * centrifugal).max(axis=0)
-            out = out + np.abs(filled(mass.lead, size)) * torque
-        out = out + np.minimum(filled(self.slack, size), out)
-        return np.asarray(out + np.abs(filled(self.lag, size)) * velocity)
-
 
 RIGID = Elasticity()
 

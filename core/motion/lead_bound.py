@@ -1,40 +1,36 @@
-"""What the lead of elastic joints does not exceed on a path, at any speed.
+"""What elastic joints lead their links by at most, place by place, at any speed.
 
-All joints move along one path, so what they ask of each other is bounded at once, interval by
-interval (`allowed`), and not as if each were at its own limit. With J the Jacobian of a mass, J_j
-its column of joint j and |·| of joints their sum (‖q̇‖₁ ≤ V, ‖q̈‖₁ ≤ A), two facts do the rest:
+With q_s the smoothed motion, the lead is A(q_s) q̈_s + c(q_s, q̇_s). At a cell of the course
+(`course`, `averaging`) with the tangent d, q̇_s = d v + y, and with A and c at the cell's middle the
+lead is A q̈_s + v² c(d), but for
 
-- derivatives of a column, and of p in general, are at most as long as the longest column λ,
-  |∂J_j/∂q_i| = |a_min(i,j) × J_max(i,j)| ≤ λ, and so λ grows by at most exp ‖δq‖₁ over a change δq;
-- a symmetric kernel of variance s² keeps a function with slope V within V s of its mean, on
-  average.
+- how far q_s is from there, δ in the sum over joints: derivatives of a Jacobian's column, and of a
+  mass's place in general, are at most as long as its longest column λ,
+  |∂J_j/∂q_i| = |a_min(i,j) × J_max(i,j)| ≤ λ, and so λ grows by at most exp δ;
+- y in the centrifugal terms, at most λ (2 v ‖d‖₁ + ‖y‖₁) ‖y‖₁;
+- slack, which adds as much as there is of it at most, and lag, |lag| |q̇_s|.
 
-**Between samples** the lead is that of the middle's Jacobian and q' with the interval's own
-accelerations, plus what either changes by.
-
-**Smoothing in time** makes q̈ and q̇ their means, where the lead is not linear. With q̈ₛ the mean and
-p̈ₛ what the mass does on the smoothed motion, p̈ₛ differs from the mean of p̈ by at most
-
-    λ (D A + 2 s² A² + D V²),    D = V s + A s²/2:
-
-the change of J under q̈, of q̇ about its mean under the centrifugal terms, and of these with q. The
-lead J_jᵀ p̈ differs by that times the lever, and by λ D times the greatest |p̈|.
+Where the path is straight within reach, A q̈_s is A d times an acceleration, and that one way is
+told from what is left; elsewhere joints are bounded one by one.
 
 **Leads are worked out every** `LEAD_STEP`; a cubic spline through values within ±F stays within
-0.549 F more (its Lebesgue constant is (1 + 3 √3)/4), or, with slopes M, within 0.275 M `LEAD_STEP`.
+1.549 F (its Lebesgue constant is (1 + 3 √3)/4); with slopes M it is within 0.275 M `LEAD_STEP`.
+Values n steps away count (2 − √3)ⁿ, so that those of `_SPLINE` around are all that matters.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..robot.chain_kernels import jacobians, motions
 from ..robot.model import Robot
-from .allowed import Allowed, Linear
+from .allowed import Allowed
+from .averaging import Averages, Rates, near
+from .averaging_kernels import Offsets
+from .course import Course
 from .elasticity import LEAD_STEP, Carried, Elasticity
 from .point_masses import chain_to_axis, filled
 from .smoothing import Smoothing
@@ -42,165 +38,204 @@ from .start_ramp import StartRamp
 
 FloatArray = NDArray[np.float64]
 
-Near = Callable[[FloatArray], FloatArray]
+_SPLINE_MOST, _SPLINE_BY_SLOPE = 1.55, 0.275
+_SPLINE = 24 * LEAD_STEP
+"""s: (2 − √3)²⁴ is 2e-14."""
 
-_OVER, _OVER_BY_SLOPE = 0.55, 0.275
+
+@dataclass(frozen=True)
+class Leads:
+    """Leads at C cells of a course: sums of ways and of what is left.
+
+    Args:
+        ways: (C, 2, N), by acceleration along the path, by velocity.
+        share: (C, 2, 2), least (≤ 0) and greatest (≥ 0) factor of each.
+        rest: (C, N), bounds of what is left.
+    """
+
+    ways: FloatArray
+    share: FloatArray
+    rest: FloatArray
+
+    @property
+    def most(self) -> FloatArray:
+        """(C, N), bounds of the leads."""
+        factor = np.abs(self.share).max(axis=2)
+        return np.asarray(self.rest + np.einsum("cwn,cw->cn", np.abs(self.ways), factor))
 
 
 @dataclass(frozen=True)
 class _Mass:
-    """A mass on a path: its share of the leads, and bounds for what smoothing makes of them.
+    """A mass at the cells' middles.
 
     Args:
-        lead: (5, K, N) of either corner, of what leads the middle's Jacobian makes.
-        error: (K, N), how far leads in the interval may be from that.
-        factor: (N,), |lead| per J_jᵀ p̈.
-        lever: (K, N), greatest |J_j| in each interval.
-        longest: (K,), λ.
-        speed, acceleration: (K,), V and A nearby, of the joints that move it.
-        pull: (K,), greatest |p̈| nearby.
+        moving: (N,) bool, the joints that move it.
+        given: (N,), its leads.
+        J: (C, 3, N), its Jacobian.
+        turn: (C, 3), its acceleration at a steady dq/dt = d.
     """
 
-    lead: Linear
-    error: FloatArray
-    factor: FloatArray
-    lever: FloatArray
-    longest: FloatArray
-    speed: FloatArray
+    moving: NDArray[np.bool_]
+    given: FloatArray
+    J: FloatArray
+    turn: FloatArray
+
+    @classmethod
+    def of(cls, mass: Carried, robot: Robot, course: Course) -> _Mass:
+        chain = chain_to_axis(robot, mass.joint, "elasticity.carried")
+        q, d = np.ascontiguousarray(course.middle), np.ascontiguousarray(course.tangent)
+        size = q.shape[1]
+        return cls(
+            np.isin(np.arange(size), chain.joint),
+            filled(mass.lead, size),
+            jacobians(chain, q)[:, :3],
+            motions(chain, q, d, np.zeros_like(d))[1][:, :3],
+        )
+
+    @property
+    def matrix(self) -> FloatArray:
+        """(C, N, N), its part of A."""
+        return np.asarray(self.given[:, None] * np.einsum("cin,cim->cnm", self.J, self.J))
+
+    @property
+    def centrifugal(self) -> FloatArray:
+        """(C, N), its part of c(d)."""
+        return np.asarray(self.given * np.einsum("cin,ci->cn", self.J, self.turn))
+
+    def total(self, values: FloatArray) -> FloatArray:
+        """(C,), sums of values (C, N) ≥ 0 over the joints that move it."""
+        return np.asarray(values[:, self.moving].sum(axis=1))
+
+
+@dataclass(frozen=True)
+class _Bounds:
+    """Bounds of the smoothed joints at each cell, (C, N) each.
+
+    Args:
+        off: how far they are from the cell's middle.
+        tangent: |d|.
+        velocity, veer: |q̇_s|, and |y|.
+        acceleration, jerk: |q̈_s|, and how it changes.
+        speed: (C,), v.
+    """
+
+    off: FloatArray
+    tangent: FloatArray
+    velocity: FloatArray
+    veer: FloatArray
     acceleration: FloatArray
-    pull: FloatArray
-
-    def started(self, start: StartRamp) -> _Mass:
-        """The same where time comes up to speed: q̈ and p̈ by at most as much as accelerations."""
-        more = start.most_acceleration
-        return replace(self, acceleration=more * self.acceleration, pull=more * self.pull)
-
-    def turned(self, start: StartRamp) -> FloatArray:
-        """(N,) by which leads exceed the same share where time comes up to speed.
-
-        There q̈ = ṡ² q̈(s) + q̇(s) / T, and J_jᵀ ṗ(s) is the sum of J_jᵀ p̈ up to then but for how
-        J_j changes since.
-        """
-        since = 0.5 * start.length
-        V, A = self.speed.max(), self.acceleration.max()
-        moved = min(V * since, 0.5 * A * since**2)
-        return np.asarray(0.5 * self.factor * self.longest.max() * moved * self.pull.max())
-
-    def smoothed(self, smoothing: Smoothing) -> tuple[FloatArray, FloatArray]:
-        """(K, N) by which leads may be beyond those unsmoothed, and (K, N) how fast they change."""
-        variance, A, V = 2.0 * smoothing.stray, self.acceleration, self.speed
-        off = 0.5 * variance * A
-        apart = V * np.sqrt(variance) + off
-        longest = self.longest * np.exp(0.5 * V * smoothing.window + off)
-        lever = self.lever + (longest * off)[:, None]
-        pull = longest * (apart * A + 2.0 * variance * A**2 + apart * V**2)
-        more = self.factor * (lever * pull[:, None] + (longest * apart * self.pull)[:, None])
-        if not smoothing.widths:
-            return more, np.full_like(more, np.inf)
-        jerk = 2.0 * A / max(smoothing.widths)
-        change = longest * (jerk + 3.0 * V * A + V**3)
-        slope = lever * change[:, None] + (longest * V * (self.pull + pull))[:, None]
-        return more, self.factor * slope
+    jerk: FloatArray
+    speed: FloatArray
 
 
-def most_lead(
+def most_leads(
     elasticity: Elasticity,
     robot: Robot,
     allowed: Allowed,
+    course: Course,
+    averages: Averages,
+    offsets: Offsets,
     smoothing: Smoothing,
     start: StartRamp,
-) -> FloatArray:
-    """(N,) rad or m, what no commanded joint leads its link by.
+) -> Leads:
+    """Bounds of what commanded joints lead their links by.
 
     Args:
         elasticity: of the joints.
         robot: that drives the path.
         allowed: what its limits allow.
+        course: of the path.
+        averages, offsets: of the motion.
         smoothing: in time, of the commanded motion.
         start: how time comes up to speed.
     """
-    ddq = allowed.accelerations
-    size = ddq.left.shape[2]
-    near = _near(allowed, 0.5 * smoothing.window + start.length)
+    count, size = course.tangent.shape
+    late = start.length, start.most_acceleration
+    rates = averages.rates(*late)
     own = filled(elasticity.own, size)
-    masses = [_mass(mass, robot, allowed, ddq, near) for mass in elasticity.carried]
-    lead = Linear(
-        *(
-            own * part + sum(more)
-            for part, *more in zip(ddq, *(m.lead for m in masses), strict=True)
-        )
-    )
-    error = sum((mass.error for mass in masses), np.zeros(lead.left.shape[1:]))
-    most = start.most_acceleration * near(allowed.greatest(lead, np.abs) + error)
-    a = start.most_acceleration * allowed.greatest(ddq, np.abs).max(axis=0)
-    lag = np.abs(filled(elasticity.lag, size))
-    slope = np.abs(own) * 2.0 * a / max(smoothing.widths, default=np.inf)
+    masses = [_Mass.of(mass, robot, course) for mass in elasticity.carried]
+    A = np.tile(np.diag(own), (count, 1, 1)) + sum(mass.matrix for mass in masses)
+    none = np.zeros_like(course.tangent)
+    along = np.einsum("cnm,cm->cn", A, course.tangent)
+    apart = averages.accelerations(allowed, A, course.tangent, *late)
+    whole = averages.accelerations(allowed, A, none, *late)
+    # One way and the rest, or all joints for themselves, whichever leaves less.
+    straight = apart.sum(axis=1) < 0.5 * whole.sum(axis=1)
+    rest = np.where(straight[:, None], apart, whole)
+    rest += np.einsum("cnm,cm->cn", np.abs(A), rates.ramped)
+    push = np.where(straight, rates.push, 0.0)
+    still = np.zeros_like(push)
+    share = np.stack([np.stack([-push, push], -1), np.stack([still, rates.speed**2], -1)], 1)
+    turned = sum((mass.centrifugal for mass in masses), none)
+    bounds = _bounds(averages, allowed, course, offsets, rates, smoothing, late)
     for mass in masses:
-        most += mass.turned(start)
-        more, change = mass.started(start).smoothed(smoothing)
-        most, slope = most + more, slope + change.max(axis=0)
-    most = most.max(axis=0)
-    slack = filled(elasticity.slack, size)
-    slope = np.where(slack > 0.0, 2.0, 1.0) * slope + lag * a
-    most = most + np.minimum(slack, most) + lag * allowed.velocities.max(axis=0)
-    if not smoothing.widths:
-        return np.asarray((1.0 + _OVER) * most)
-    return np.asarray(most + np.minimum(_OVER * most, _OVER_BY_SLOPE * LEAD_STEP * slope))
+        rest = rest + _change(mass, bounds)
+    leads = Leads(np.stack([along, turned], axis=1), share, rest)
+    slope = np.full_like(none, np.inf)
+    if smoothing.widths:
+        slope = np.abs(own) * bounds.jerk + sum(_slope(mass, bounds) for mass in masses)
+    more = _beside(elasticity, course, bounds, leads.most, slope)
+    return Leads(leads.ways, share, rest + more)
 
 
-def _near(allowed: Allowed, away: float) -> Near:
-    """What finds the greatest of values (K, …) on intervals that s are enough to come from."""
-    edge = np.concatenate(
-        [[0.0], np.cumsum(allowed.spacing / np.sqrt(np.maximum(allowed.fastest, 1e-12)))]
+def _bounds(
+    averages: Averages,
+    allowed: Allowed,
+    course: Course,
+    offsets: Offsets,
+    rates: Rates,
+    smoothing: Smoothing,
+    late: tuple[float, float],
+) -> _Bounds:
+    tangent, (start, more) = np.abs(course.tangent), late
+    most = allowed.greatest(allowed.accelerations, np.abs)[course.interval]
+    most[~course.moves] = 0.0
+    acceleration = more * averages.mean(most, start) + rates.ramped
+    off = course.half + offsets.aside
+    off += np.abs(offsets.axis) * np.abs(offsets.along).max(axis=1, keepdims=True)
+    # Differences over the longest average; less averaged there, but within reach.
+    nearby = np.stack([near(course, a, smoothing.window) for a in acceleration.T], -1)
+    jerk = 2.0 * nearby / max(smoothing.widths, default=1.0)
+    velocity = tangent * rates.speed[:, None] + rates.veer
+    return _Bounds(off, tangent, velocity, rates.veer, acceleration, jerk, rates.speed)
+
+
+def _change(mass: _Mass, bounds: _Bounds) -> FloatArray:
+    """(C, N), by how much a mass's part is another than at the cells' middles."""
+    lever = np.linalg.norm(mass.J, axis=1)
+    D, y, A, off = map(mass.total, (bounds.tangent, bounds.veer, bounds.acceleration, bounds.off))
+    v, longest = bounds.speed, lever.max(axis=1) * np.exp(off)
+    bent = (v * D + y) ** 2
+    apart = longest * (off * (A + bent) + (2.0 * v * D + y) * y)
+    more = lever * apart[:, None] + (longest**2 * off * (A + bent))[:, None]
+    return np.asarray(np.abs(mass.given) * more * mass.moving)
+
+
+def _slope(mass: _Mass, bounds: _Bounds) -> FloatArray:
+    """(C, N), what a mass's part changes by in a second."""
+    lever = np.linalg.norm(mass.J, axis=1)
+    V, A, jerk, off = map(
+        mass.total, (bounds.velocity, bounds.acceleration, bounds.jerk, bounds.off)
     )
-    first = np.searchsorted(edge[1:], edge[:-1] - away)
-    last = np.searchsorted(edge[:-1], edge[1:] + away, "right")
-
-    def near(values: FloatArray) -> FloatArray:
-        return np.stack([values[i:j].max(axis=0) for i, j in zip(first, last, strict=True)])
-
-    return near
+    longest = lever.max(axis=1) * np.exp(off)
+    change = longest**2 * (jerk + 3.0 * V * A + V**3 + V * (A + V**2))
+    return np.asarray(np.abs(mass.given) * change[:, None] * mass.moving)
 
 
-def _mass(mass: Carried, robot: Robot, allowed: Allowed, ddq: Linear, near: Near) -> _Mass:
-    chain = chain_to_axis(robot, mass.joint, "elasticity.carried")
-    size = allowed.slope.shape[2]
-    moving = np.isin(np.arange(size), chain.joint)
-    middle = np.tensordot(np.array([1, 5, 10, 10, 5, 1]) / 32.0, allowed.points, 1)
-    rate = np.tensordot(np.array([1, 4, 6, 4, 1]) / 16.0, allowed.slope, 1)
-    J = jacobians(chain, middle)[:, :3]
-    turn = motions(chain, middle, rate, np.zeros_like(rate))[1][:, :3]
-    share = np.arange(5)[:, None, None] / 4.0
-    pull = Linear(
-        np.einsum("kin,ckn->cki", J, ddq.push),
-        np.einsum("kin,ckn->cki", J, ddq.left) + (1.0 - share) * turn,
-        np.einsum("kin,ckn->cki", J, ddq.right) + share * turn,
-    )
+def _beside(
+    elasticity: Elasticity,
+    course: Course,
+    bounds: _Bounds,
+    most: FloatArray,
+    slope: FloatArray,
+) -> FloatArray:
+    """(C, N), what slack, lag and interpolation add to leads within ``most``.
 
-    def joints(values: FloatArray) -> FloatArray:
-        return np.asarray(np.abs(values[..., moving]).sum(axis=-1))
-
-    def length(values: FloatArray) -> FloatArray:
-        return np.asarray(np.linalg.norm(values, axis=-1))
-
-    steepest, x = joints(allowed.slope).max(axis=0), allowed.fastest
-    reach = 0.5 * allowed.spacing * steepest
-    lever = np.linalg.norm(J, axis=1)
-    longest = lever.max(axis=1) * np.exp(reach)
-    bent = joints(allowed.slope - rate).max(axis=0)
-    acceleration = allowed.greatest(ddq, joints)
-    off = reach * (acceleration + steepest**2 * x) + (2.0 * joints(rate) + bent) * bent * x
-    off *= longest
-    most = allowed.greatest(pull, length) + off
-    given = filled(mass.lead, size)
-    error = np.abs(given) * ((longest * reach * most)[:, None] + lever * off[:, None])
-    return _Mass(
-        Linear(*(given * np.einsum("kin,cki->ckn", J, part) for part in pull)),
-        error,
-        np.abs(given),
-        lever + (longest * reach)[:, None],
-        longest,
-        near(steepest * np.sqrt(x)),
-        near(acceleration),
-        near(most),
-    )
+    ``slope`` (C, N) bounds what these change by in a second.
+    """
+    size = most.shape[1]
+    slack, lag = filled(elasticity.slack, size), np.abs(filled(elasticity.lag, size))
+    more = np.minimum(slack, most) + lag * bounds.velocity
+    slope = np.where(slack > 0.0, 2.0, 1.0) * slope + lag * bounds.acceleration
+    over = np.minimum(_SPLINE_MOST * (most + more), _SPLINE_BY_SLOPE * LEAD_STEP * slope)
+    return more + np.stack([near(course, values, _SPLINE) for values in over.T], -1)

@@ -3,7 +3,8 @@
 Velocities bound x = σ̇² at the knots: joints |q'| √x ≤ v, TCP |p'| √x ≤ v_tcp, tool |ω| √x ≤ v_ori.
 Accelerations are rows on u = σ̈ and x: joints q' u + q'' x, and along the path the change of the
 TCP's speed |p'| u + (p' · p'' / |p'|) x and of the tool's rate of turn likewise. Joints that torque
-limits (`torque.Torque`) have rows of their own behind these.
+limits (`torque.Torque`) have rows of their own behind these. Centripetal acceleration |p''⊥| x is a
+ceiling again, and so is how fast legs that overlap drive zones (`superposed`).
 """
 
 from __future__ import annotations
@@ -20,9 +21,12 @@ from ..program.speed import Speed
 from ..robot.joint import JointKind
 from ..robot.model import Robot
 from . import stamping, stamping_adjoint
-from .model import MotionModel
+from .model import MotionModel, TurnLimit
 from .pieces import Pieces
-from .segments import JOINT_SEGMENT
+from .rates import pull_rates, pull_sideways, rates, sideways
+from .segments import JOINT_SEGMENT, LINE_SEGMENT, Segments
+from .superposed import lower_ceilings, pull_ceilings, room_along
+from .swivel import pull_turn_shares, turn_shares
 from .tcp_samples import States
 from .torque import Shares
 from .torque_rows import pull_torque_rows, torque_rows
@@ -30,8 +34,8 @@ from .torque_rows import pull_torque_rows, torque_rows
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-_STILL = 1e-9
-"""Rates (m or rad per σ) below which the TCP or the tool does not move."""
+CENTRIPETAL = -3
+"""Stands for a row in `PathLimits.binding` where centripetal acceleration is the ceiling."""
 
 
 @dataclass
@@ -63,6 +67,8 @@ class SegmentLimits:
         velocity: (M, N + 2), of the joints, the TCP (m/s) and the tool (rad/s); may be inf.
         acceleration: (M, N + 2), likewise.
         torque: (M,), the share of the torques' limits that may be used.
+        centripetal: greatest centripetal acceleration of the TCP, in limits of that along the path.
+        turning: (M,), what share of its turn a segment's limits of turning count; see `swivel`.
         velocity_source, acceleration_source: (M, N + 2), name of the speed's number behind each
             and its derivative; used in reverse.
     """
@@ -70,25 +76,34 @@ class SegmentLimits:
     velocity: FloatArray
     acceleration: FloatArray
     torque: FloatArray
+    centripetal: float
+    turning: FloatArray
     velocity_source: tuple[tuple[tuple[str, float] | None, ...], ...]
     acceleration_source: tuple[tuple[tuple[str, float] | None, ...], ...]
 
     @classmethod
     def of(
-        cls, robot: Robot, model: MotionModel, speeds: Sequence[Speed], kinds: IntArray
+        cls, robot: Robot, model: MotionModel, speeds: Sequence[Speed], segments: Segments
     ) -> SegmentLimits:
         """The limits of segments driven at these speeds."""
+        kinds, turning = segments.ends.kind, _turning(model, segments)
         known: dict[tuple[Speed, int], tuple[list[_Limit], list[_Limit]]] = {}
         for key in zip(speeds, map(int, kinds), strict=True):
             if key not in known:
                 known[key] = _limits(robot, model, *key)
         made = [known[key] for key in zip(speeds, map(int, kinds), strict=True)]
+        velocity = np.array([[value for value, _ in limits] for limits, _ in made])
+        acceleration = np.array([[value for value, _ in limits] for _, limits in made])
+        velocity[:, -1] /= turning
+        acceleration[:, -1] /= turning
         return cls(
-            np.array([[value for value, _ in velocity] for velocity, _ in made]),
-            np.array([[value for value, _ in acceleration] for _, acceleration in made]),
+            velocity,
+            acceleration,
             np.array([speed.joint_acceleration_fraction for speed in speeds]),
-            tuple(tuple(source for _, source in velocity) for velocity, _ in made),
-            tuple(tuple(source for _, source in acceleration) for _, acceleration in made),
+            math.inf if model.centripetal is None else model.centripetal,
+            turning,
+            tuple(tuple(source for _, source in limits) for limits, _ in made),
+            tuple(tuple(source for _, source in limits) for _, limits in made),
         )
 
     def with_velocities_scaled(self, segments: Sequence[int], factor: float) -> SegmentLimits:
@@ -103,17 +118,33 @@ class SegmentLimits:
         acceleration_bar: FloatArray,
         torque_bar: FloatArray,
         out: SpeedGradient,
-    ) -> None:
-        """Reverse of `of` with respect to the speeds."""
+    ) -> FloatArray:
+        """Reverse of `of`: adds to the gradient of the speeds, returns that (M,) of `turning`."""
         out.joint_acceleration_fraction += torque_bar
-        for bars, sources in (
-            (velocity_bar, self.velocity_source),
-            (acceleration_bar, self.acceleration_source),
+        turning_bar = np.zeros(len(self.turning))
+        for bars, values, sources in (
+            (velocity_bar, self.velocity, self.velocity_source),
+            (acceleration_bar, self.acceleration, self.acceleration_source),
         ):
+            bars[:, -1] /= self.turning
+            turning_bar -= bars[:, -1] * np.where(bars[:, -1] == 0.0, 0.0, values[:, -1])
             for k, j in zip(*np.nonzero(bars), strict=True):
                 source = sources[k][j]
                 if source is not None:
                     getattr(out, source[0])[k] += bars[k, j] * source[1]
+        return turning_bar
+
+
+def _turning(model: MotionModel, segments: Segments) -> FloatArray:
+    """(M,), the share of its turn that each segment's limits of turning count."""
+    split = _split(model, segments)
+    return np.where(split, turn_shares(segments.turn_b), 1.0)
+
+
+def _split(model: MotionModel, segments: Segments) -> NDArray[np.bool_]:
+    """(M,), lines on which swivel and rotation are limited, each for itself."""
+    apart = model.turn is TurnLimit.SPLIT
+    return np.asarray((segments.ends.kind == LINE_SEGMENT) & apart)
 
 
 _Limit = tuple[float, tuple[str, float] | None]
@@ -171,23 +202,6 @@ def _limits(
 
 
 @njit(cache=True, error_model="numpy")
-def _rates(states: States, k: int, axes: int, rate: FloatArray, bend: FloatArray) -> None:
-    """Write a and b (N + 2) of the rows at sample k."""
-    for j in range(axes):
-        rate[j], bend[j] = states.dq[k, j], states.ddq[k, j]
-    for part in range(2):
-        square = mixed = 0.0
-        for i in range(3 * part, 3 * part + 3):
-            square += states.v[k, i] * states.v[k, i]
-            mixed += states.v[k, i] * states.a[k, i]
-        size = math.sqrt(square)
-        if size > _STILL:
-            rate[axes + part], bend[axes + part] = size, mixed / size
-        else:
-            rate[axes + part] = bend[axes + part] = 0.0
-
-
-@njit(cache=True, error_model="numpy")
 def _fill(
     states: States,
     first_sample: IntArray,
@@ -195,6 +209,8 @@ def _fill(
     segment: IntArray,
     velocity: FloatArray,
     acceleration: FloatArray,
+    centripetal: float,
+    room: FloatArray,
     a: FloatArray,
     b: FloatArray,
     bound: FloatArray,
@@ -210,13 +226,17 @@ def _fill(
         for i in range(count + 1):
             k = first_sample[p] + i
             knot = first_interval[p] + i
-            _rates(states, k, axes, rate, bend)
+            rates(states, k, axes, rate, bend)
             for j in range(axes + 2):
                 if rate[j] != 0.0:
                     x = (velocity[s, j] / rate[j]) ** 2
                     if x < ceiling[knot]:
                         ceiling[knot] = x
                         binding[knot, 0], binding[knot, 1], binding[knot, 2] = k, j, s
+            most = centripetal * acceleration[s, axes]
+            if most < np.inf and sideways(states, k) * ceiling[knot] > most:
+                ceiling[knot] = most / sideways(states, k)
+                binding[knot, 0], binding[knot, 1], binding[knot, 2] = k, CENTRIPETAL, s
             for end in range(2):
                 interval = knot - end
                 if interval < first_interval[p] or interval >= first_interval[p + 1]:
@@ -225,7 +245,7 @@ def _fill(
                     limited = acceleration[s, j] < np.inf
                     a[interval, end, j] = rate[j] if limited else 0.0
                     b[interval, end, j] = bend[j] if limited else 0.0
-                    bound[interval, end, j] = acceleration[s, j]
+                    bound[interval, end, j] = acceleration[s, j] * (room[p] if j >= axes else 1.0)
 
 
 @dataclass(frozen=True)
@@ -235,12 +255,15 @@ class PathLimits:
     Args:
         rows: for `stamping.stamp`; those of torque, 2 L of them, are the last.
         shares: (S, L), what the rows of torque are made of; None where torque limits nothing.
+        zones: (Z, 4), zones that legs drive superposed; see `superposed`.
         binding: (K + 1, 3), at each knot the sample, the row and the segment whose velocity
-            limit is the ceiling; -1 at stops.
+            limit is the ceiling; `CENTRIPETAL` in the place of the row where that is; `ZONE` with
+            the zone in the place of the segment where a zone is; -1 at stops.
     """
 
     rows: stamping.Limits
     shares: Shares | None
+    zones: IntArray
     binding: IntArray
 
 
@@ -249,6 +272,7 @@ def path_limits(
     spacing: FloatArray,
     pieces: Pieces,
     limits: SegmentLimits,
+    zones: IntArray,
     shares: Shares | None = None,
 ) -> PathLimits:
     """Rows and ceilings for stamping a path.
@@ -258,6 +282,7 @@ def path_limits(
         spacing: (K,), of the intervals in that parameter.
         pieces: the path's pieces.
         limits: of the segments.
+        zones: (Z, 4), zones that legs drive superposed.
         shares: (S, L), what share of its torque's limit each joint takes; None if none is limited.
     """
     first_sample, first_interval = pieces.first_sample, pieces.first_interval
@@ -272,12 +297,15 @@ def path_limits(
         pieces.segment,
         limits.velocity,
         limits.acceleration,
+        limits.centripetal,
+        room_along(zones, pieces),
         a,
         b,
         bound,
         ceiling,
         binding,
     )
+    lower_ceilings(states, spacing, pieces, limits.acceleration, zones, ceiling, binding)
     stops = first_interval[pieces.stop]
     ceiling[stops] = 0.0
     binding[stops] = -1
@@ -287,7 +315,7 @@ def path_limits(
         a, b, lower, upper = (
             np.concatenate(pair, axis=2) for pair in zip((a, b, lower, upper), part, strict=True)
         )
-    return PathLimits(stamping.Limits(spacing, a, b, lower, upper, ceiling), shares, binding)
+    return PathLimits(stamping.Limits(spacing, a, b, lower, upper, ceiling), shares, zones, binding)
 
 
 def _torque_left(pieces: Pieces, limits: SegmentLimits) -> FloatArray:
@@ -308,29 +336,6 @@ def interval_ends(pieces: Pieces) -> IntArray:
 
 
 @njit(cache=True, error_model="numpy")
-def _pull_rates(
-    states: States, k: int, axes: int, rate_bar: FloatArray, bend_bar: FloatArray, out: States
-) -> None:
-    """Reverse of `_rates`."""
-    for j in range(axes):
-        out.dq[k, j] += rate_bar[j]
-        out.ddq[k, j] += bend_bar[j]
-    for part in range(2):
-        square = mixed = 0.0
-        for i in range(3 * part, 3 * part + 3):
-            square += states.v[k, i] * states.v[k, i]
-            mixed += states.v[k, i] * states.a[k, i]
-        size = math.sqrt(square)
-        if size <= _STILL:
-            continue
-        by_rate, by_bend = rate_bar[axes + part] / size, bend_bar[axes + part] / size
-        by_rate -= by_bend * mixed / square
-        for i in range(3 * part, 3 * part + 3):
-            out.v[k, i] += by_rate * states.v[k, i] + by_bend * states.a[k, i]
-            out.a[k, i] += by_bend * states.v[k, i]
-
-
-@njit(cache=True, error_model="numpy")
 def _pull_fill(
     states: States,
     first_sample: IntArray,
@@ -338,6 +343,8 @@ def _pull_fill(
     segment: IntArray,
     velocity: FloatArray,
     acceleration: FloatArray,
+    centripetal: float,
+    room: FloatArray,
     binding: IntArray,
     a_bar: FloatArray,
     b_bar: FloatArray,
@@ -359,9 +366,14 @@ def _pull_fill(
             knot = first_interval[p] + i
             rate_bar[:] = 0.0
             bend_bar[:] = 0.0
-            if binding[knot, 0] == k and ceiling_bar[knot] != 0.0:
-                j = binding[knot, 1]
-                _rates(states, k, axes, rate, bend)
+            j = binding[knot, 1]
+            live = binding[knot, 0] == k and ceiling_bar[knot] != 0.0
+            if live and j == CENTRIPETAL:
+                x = centripetal * acceleration[s, axes] / sideways(states, k)
+                pull_sideways(states, k, -x / sideways(states, k) * ceiling_bar[knot], states_bar)
+                acceleration_bar[s, axes] += x / acceleration[s, axes] * ceiling_bar[knot]
+            if live and j >= 0:
+                rates(states, k, axes, rate, bend)
                 x = (velocity[s, j] / rate[j]) ** 2
                 rate_bar[j] -= 2 * x / rate[j] * ceiling_bar[knot]
                 velocity_bar[s, j] += 2 * x / velocity[s, j] * ceiling_bar[knot]
@@ -373,8 +385,9 @@ def _pull_fill(
                     if acceleration[s, j] < np.inf:
                         rate_bar[j] += a_bar[interval, end, j]
                         bend_bar[j] += b_bar[interval, end, j]
-                        acceleration_bar[s, j] += bound_bar[interval, end, j]
-            _pull_rates(states, k, axes, rate_bar, bend_bar, states_bar)
+                        times = room[p] if j >= axes else 1.0
+                        acceleration_bar[s, j] += times * bound_bar[interval, end, j]
+            pull_rates(states, k, axes, rate_bar, bend_bar, states_bar)
 
 
 def pull_path_limits(
@@ -385,16 +398,28 @@ def pull_path_limits(
     bar: stamping_adjoint.StampGradient,
     states_bar: States,
     speeds_bar: SpeedGradient,
-) -> Shares | None:
-    """Reverse of `path_limits`; adds to the gradients of states and speeds.
+) -> tuple[Shares | None, FloatArray]:
+    """Reverse of `path_limits`; adds to the gradients of states, speeds and, in ``bar``, spacing.
 
     Returns:
-        The gradient of the shares of torque, None without.
+        The gradients of the shares of torque, None without, and of the segments' `turning` (M,).
     """
     velocity_bar = np.zeros_like(limits.velocity)
     acceleration_bar = np.zeros_like(limits.acceleration)
     torque_bar = np.zeros_like(limits.torque)
     plain = states.q.shape[1] + 2
+    pull_ceilings(
+        states,
+        made.rows.spacing,
+        pieces,
+        limits.acceleration,
+        made.zones,
+        made.binding,
+        bar.ceiling,
+        states_bar,
+        bar.spacing,
+        acceleration_bar,
+    )
     _pull_fill(
         states,
         pieces.first_sample,
@@ -402,6 +427,8 @@ def pull_path_limits(
         pieces.segment,
         limits.velocity,
         limits.acceleration,
+        limits.centripetal,
+        room_along(made.zones, pieces),
         made.binding,
         np.ascontiguousarray(bar.a[:, :, :plain]),
         np.ascontiguousarray(bar.b[:, :, :plain]),
@@ -416,5 +443,10 @@ def pull_path_limits(
         ends, left = interval_ends(pieces), _torque_left(pieces, limits)
         shares_bar, left_bar = pull_torque_rows(made.shares, ends, left, bar)
         np.add.at(torque_bar, np.repeat(pieces.segment, pieces.intervals), left_bar)
-    limits.pull(velocity_bar, acceleration_bar, torque_bar, speeds_bar)
-    return shares_bar
+    turning_bar = limits.pull(velocity_bar, acceleration_bar, torque_bar, speeds_bar)
+    return shares_bar, turning_bar
+
+
+def pull_turning(model: MotionModel, segments: Segments, turning_bar: FloatArray) -> FloatArray:
+    """Gradient (M, 3) of the segments' turns from that of `SegmentLimits.turning`."""
+    return pull_turn_shares(segments.turn_b, np.where(_split(model, segments), turning_bar, 0.0))

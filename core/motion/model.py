@@ -57,6 +57,24 @@ class DurationRule(StrEnum):
     """Accelerating over the first third of the time, braking over the last (UR)."""
 
 
+class TurnLimit(StrEnum):
+    """What limits of the tool's turning hold for, on lines."""
+
+    WHOLE = "whole"
+    """The whole turn."""
+    SPLIT = "split"
+    """The swivel of the tool's x axis and the rotation about it, each for itself (KUKA)."""
+
+
+class Pace(StrEnum):
+    """How fast zones are driven."""
+
+    LIMITS = "limits"
+    """As fast as the limits along the path allow."""
+    SUPERPOSED = "superposed"
+    """As fast as legs from rest to rest that overlap in time; see `superposed` (KUKA, UR)."""
+
+
 @dataclass(frozen=True)
 class Provenance:
     """Where a figure comes from.
@@ -84,8 +102,12 @@ class MotionModel:
         orientation_zone: see `OrientationZone`.
         mixed_space: see `Space`.
         stops_at_pure_reorientation: no zone between a TCP move and a mere reorientation.
+        pace: see `Pace`.
         tcp_acceleration: m/s² along the path where the program states none; None for no limit.
         reorientation_acceleration: rad/s², likewise.
+        turn: see `TurnLimit`.
+        centripetal: greatest centripetal acceleration of the TCP, as a multiple of the
+            acceleration along the path; None for no limit.
         joint_acceleration_scale: what the robot's own acceleration limits are multiplied by, from
             the first joint of the arm on; joints beyond the last keep theirs.
         torque: what limits the acceleration of joints in the place of the robot's own figures; see
@@ -114,8 +136,11 @@ class MotionModel:
     orientation_zone: OrientationZone = OrientationZone.TCP
     mixed_space: Space = Space.JOINT
     stops_at_pure_reorientation: bool = False
+    pace: Pace = Pace.LIMITS
     tcp_acceleration: float | None = None
     reorientation_acceleration: float | None = None
+    turn: TurnLimit = TurnLimit.WHOLE
+    centripetal: float | None = None
     joint_acceleration_scale: tuple[float, ...] = ()
     torque: Torque = WITHOUT_LIMIT
     duration: DurationRule = DurationRule.SCALED
@@ -184,22 +209,24 @@ class MotionModel:
         """The dotted keys of all that the model states; each of them needs a provenance."""
         blends = (f"blend.{name}.{key}" for name in _BLENDS for key in ("kind", "alpha", "beta"))
         limits = (f"limit.{name}" for name in _LIMITS if getattr(self, name) is not None)
-        time = [f"time.{key}" for key, name, no in _TIMES if getattr(self, name) != no]
+        optional = [key for key, name, no in _OPTIONAL if getattr(self, name) != no]
         parts = (*self.elasticity.figures, *self.torque.figures)
         scale = ("limit.joint_acceleration_scale",) if self.joint_acceleration_scale else ()
-        return frozenset((*_SINGLE_FIGURES, *blends, *limits, *scale, *time, *parts))
+        return frozenset((*_SINGLE_FIGURES, *blends, *limits, *scale, *optional, *parts))
 
 
 _TABLES = ("blend", "zone", "time", "limit", "torque", "elasticity", "provenance")
 _BLENDS = ("tcp", "joint", "orientation")
-_LIMITS = ("tcp_acceleration", "reorientation_acceleration")
-_TIMES = (
-    ("duration", "duration", DurationRule.SCALED),
-    ("start_ramp_s", "start_ramp", 0.0),
-    ("ramp_s", "ramp", 0.0),
-    ("settling_s", "settling", None),
+_LIMITS = ("tcp_acceleration", "reorientation_acceleration", "centripetal")
+_OPTIONAL = (
+    ("zone.pace", "pace", Pace.LIMITS),
+    ("limit.turn", "turn", TurnLimit.WHOLE),
+    ("time.duration", "duration", DurationRule.SCALED),
+    ("time.start_ramp_s", "start_ramp", 0.0),
+    ("time.ramp_s", "ramp", 0.0),
+    ("time.settling_s", "settling", None),
 )
-"""Keys and fields of what takes time, and the values that stand for nothing."""
+"""Keys and fields of what most do without, and the values that stand for nothing."""
 _SINGLE_FIGURES = (
     "period_s",
     "zone.overlap",
@@ -260,6 +287,7 @@ def _model(data: dict[str, Any], base: MotionModel) -> MotionModel:
             "orientation": ("orientation_zone", OrientationZone),
             "mixed_space": ("mixed_space", Space),
             "stops_at_pure_reorientation": ("stops_at_pure_reorientation", _truth),
+            "pace": ("pace", Pace),
         },
     )
     _take(
@@ -282,6 +310,8 @@ def _model(data: dict[str, Any], base: MotionModel) -> MotionModel:
         {
             "tcp_acceleration": ("tcp_acceleration", _number),
             "reorientation_acceleration": ("reorientation_acceleration", _number),
+            "turn": ("turn", TurnLimit),
+            "centripetal": ("centripetal", _number),
             "joint_acceleration_scale": ("joint_acceleration_scale", _row),
         },
     )

@@ -140,6 +140,17 @@ class Path:
         return moves[self.pieces.segment[self.pieces.sample_pieces]]
 
 
+def zone_pieces(path: Path, corners: IntArray) -> IntArray:
+    """(C, 3), the first piece, the first behind the waypoint and the last piece of C zones of the
+    TCP (of the joints, where joints are blended)."""
+    layout, edge = path.layout, path.pieces.edge
+    middle = 0.5 * (edge[1:] + edge[:-1])
+    at = layout.waypoint[corners + 1]
+    before, after = layout.extent[corners, POSITION].T
+    places = np.stack([at - before, at, at + after], -1)
+    return np.asarray(np.searchsorted(middle, places) - np.array([0, 0, 1]))
+
+
 def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
     """The path along a route of at least one segment.
 
@@ -338,7 +349,9 @@ class RouteGradient:
     orientation: BlendGradient = field(repr=False)
 
 
-def pull_path(path: Path, states_bar: States, sigma_bar: FloatArray) -> RouteGradient:
+def pull_path(
+    path: Path, states_bar: States, sigma_bar: FloatArray, turn_bar: FloatArray
+) -> RouteGradient:
     """Carry a gradient with respect to the samples back to the route.
 
     Args:
@@ -346,11 +359,14 @@ def pull_path(path: Path, states_bar: States, sigma_bar: FloatArray) -> RouteGra
         states_bar: gradient with respect to ``path.states``; used up.
         sigma_bar: (S,), gradient with respect to σ of the samples where it enters directly (the
             spacing of intervals); added to.
+        turn_bar: (M, 3), gradient with respect to the turns of segments where they enter directly
+            (limits of their parts).
     """
     route, layout, pieces = path.route, path.layout, path.pieces
     model = path.model
     layout_bar = LayoutGradient.zeros(layout)
     segments_bar = SegmentsGradient.zeros(layout.segments)
+    segments_bar.turn_b += turn_bar
     reach_bar = np.zeros_like(layout.corners.reach)
     gradient = RouteGradient(
         EndsGradient.zeros(route.ends),

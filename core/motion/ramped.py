@@ -59,12 +59,17 @@ def ramped(timing: Timing) -> Motion:
     return Motion(t, q, dq)
 
 
-def _way(timing: Timing, sigma: FloatArray) -> FloatArray:
-    """λ (T,) at places σ (T,) on the path; its slope is linear between samples."""
-    states, path = timing.along.states, timing.path
+def way_slopes(timing: Timing) -> FloatArray:
+    """(S,), dλ/dσ at the samples of a path."""
+    states = timing.along.states
     squares = np.sum(states.v[:, :3] ** 2, axis=1) + np.sum((_SWAYING * states.dq) ** 2, axis=1)
     squares += np.sum((_TURNING * states.v[:, 3:]) ** 2, axis=1)
-    slope = np.sqrt(squares) * timing.along.rate
+    return np.asarray(np.sqrt(squares) * timing.along.rate)
+
+
+def _way(timing: Timing, sigma: FloatArray) -> FloatArray:
+    """λ (T,) at places σ (T,) on the path; its slope is linear between samples."""
+    path, slope = timing.path, way_slopes(timing)
     left = interval_samples(path.pieces)
     begin, step = path.sigma[left], path.sigma[left + 1] - path.sigma[left]
     first, last = slope[left], slope[left + 1]

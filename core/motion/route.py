@@ -5,6 +5,7 @@ Where a move of the TCP arrives is found by walking down its nominal path.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
@@ -216,6 +217,7 @@ class RouteFinder:
                 _check_arc(move, i, position[k], via[k], position[k + 1])
         pairs = np.stack([np.arange(count), np.arange(count) + 1], -1)
         prescribed = known[:, self._targets.prescribed]
+        speeds = [moves[i].speed for i in stage.moves]
         return Ends(
             kind,
             np.zeros((count, 2, size)),
@@ -225,6 +227,8 @@ class RouteFinder:
             via,
             via_rotation,
             follows,
+            np.array([math.inf if v.tcp is None else v.tcp for v in speeds]),
+            np.array([math.inf if (a := v.tcp_acceleration) is None else a for v in speeds]),
         )
 
     def _joint_end(self, move: Move, i: int, q: FloatArray) -> FloatArray:

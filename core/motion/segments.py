@@ -44,6 +44,8 @@ class Ends:
         via: (M, 3) m, the auxiliary point of arcs.
         via_rotation: (M, 3, 3), orientation at the auxiliary point, which tells the way round.
         follows: (M,) bool, arcs whose tool follows the tangent.
+        speed: (M,) m/s, programmed of the TCP; inf where none is.
+        acceleration: (M,) m/s², programmed of the TCP along its path; inf where none is.
     """
 
     kind: IntArray
@@ -54,6 +56,8 @@ class Ends:
     via: FloatArray
     via_rotation: FloatArray
     follows: NDArray[np.bool_]
+    speed: FloatArray
+    acceleration: FloatArray
 
 
 @dataclass
@@ -65,6 +69,8 @@ class EndsGradient:
     turn: FloatArray
     prescribed: FloatArray
     via: FloatArray
+    speed: FloatArray
+    acceleration: FloatArray
 
     @classmethod
     def zeros(cls, ends: Ends) -> EndsGradient:
@@ -76,6 +82,8 @@ class EndsGradient:
             np.zeros(shape),
             np.zeros_like(ends.prescribed),
             np.zeros_like(ends.via),
+            np.zeros_like(ends.speed),
+            np.zeros_like(ends.acceleration),
         )
 
 

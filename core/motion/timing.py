@@ -52,6 +52,8 @@ class Timing:
         ramp: s, what the place on the path is averaged over afterwards; see `ramped.ramped`.
         start: how the controller's time comes up to speed; `begin`, `end` and `states_at` are
             without, see `driven_at`.
+        lag: s by which the commanded joints pass a place on the path later, as they are averaged
+            over time: half of what they take to settle.
     """
 
     path: Path
@@ -64,6 +66,7 @@ class Timing:
     duration: float
     ramp: float = 0.0
     start: StartRamp = SUDDEN
+    lag: float = 0.0
 
     @classmethod
     def of(
@@ -95,7 +98,17 @@ class Timing:
         start = settling.start.begun_at(float(begin[0]))
         duration = float(stamp.t[-1] + delay[-1]) + start.delay
         return cls(
-            path, limits, along, path_limits, stamp, begin, end, duration, settling.ramp, start
+            path,
+            limits,
+            along,
+            path_limits,
+            stamp,
+            begin,
+            end,
+            duration,
+            settling.ramp,
+            start,
+            0.5 * settling.end,
         )
 
     @property

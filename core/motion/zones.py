@@ -18,8 +18,11 @@ from ..errors import MotionError, Note
 from ..program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction, Zone
 from ..robot.chain import Chain
 from .joint_lines import first_exit, tcp_apart
-from .model import MotionModel, OrientationZone, Overlap, Space
+from .model import MotionModel, OrientationZone, Overlap, Pace, Space
+from .reach import Part, least
+from .reach import Reach as Reach
 from .segments import ARC_SEGMENT, JOINT_SEGMENT, EndsGradient, Segments, SegmentsGradient
+from .sharp_corners import share_kept
 
 FloatArray = NDArray[np.float64]
 
@@ -29,29 +32,6 @@ _STILL = 1e-7
 """m of TCP path below which a move counts as pure reorientation."""
 _NOTHING = 1e-9
 """A reach below is no zone."""
-
-Part = tuple[str, int, float | FloatArray]
-
-
-@dataclass(frozen=True, slots=True)
-class Reach:
-    """A number and its sparse derivatives: (name of a quantity, its index, derivative)."""
-
-    value: float
-    parts: tuple[Part, ...] = ()
-
-    def __mul__(self, other: Reach) -> Reach:
-        parts = [(n, i, p * other.value) for n, i, p in self.parts]
-        parts += [(n, i, p * self.value) for n, i, p in other.parts]
-        return Reach(self.value * other.value, tuple(parts))
-
-    def __add__(self, other: Reach) -> Reach:
-        return Reach(self.value + other.value, self.parts + other.parts)
-
-    def inverse(self) -> Reach:
-        """1 / self."""
-        slope = -1.0 / self.value**2
-        return Reach(1.0 / self.value, tuple((n, i, p * slope) for n, i, p in self.parts))
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,10 +45,6 @@ class Room:
 
     left: Reach
     corner: int
-
-
-def _least(*reaches: Reach) -> Reach:
-    return min(reaches, key=lambda reach: reach.value)
 
 
 @dataclass
@@ -145,6 +121,7 @@ class ZonePlanner:
             wanted = self._shrunk(wanted)
         elif self._model.overlap is Overlap.SKIP:
             overlapping = self._overlapping(wanted)
+        wanted = [self._sharpened(i, pairs) for i, pairs in enumerate(wanted)]
         kind = np.zeros(len(zones), dtype=np.int64)
         reach = np.zeros((len(zones), 3, 2))
         for i, pairs in enumerate(wanted):
@@ -258,7 +235,7 @@ class ZonePlanner:
             ("angle", corner, 1.0 / turn),
             ("turn_b", segment, slope * unit),
         )
-        return _least(Reach(angle / turn, parts), limit)
+        return least(Reach(angle / turn, parts), limit)
 
     def _by_radius(self, i: int, zone: Radius, radius: float, name: str) -> tuple[Reach, Reach]:
         """Reaches of a sphere of ``radius`` m round waypoint i, the same on both sides."""
@@ -322,7 +299,7 @@ class ZonePlanner:
             return self._by_angle(segment, zone.angle, corner)
         if s.ends.kind[segment] != ARC_SEGMENT:
             share = size * Reach(length, (("length", segment, 1.0),)).inverse()
-            return _least(share, limit)
+            return least(share, limit)
         swept = float(s.angle[segment])
         r = length / swept
         if size.value >= 2 * r:
@@ -332,7 +309,7 @@ class ZonePlanner:
         parts: list[Part] = [(n, k, p * slope) for n, k, p in size.parts]
         parts.append(("length", segment, -slope * size.value / length))
         parts.append(("arc", segment, slope * size.value / swept - 2 * half / swept**2))
-        return _least(Reach(2 * half / swept, tuple(parts)), limit)
+        return least(Reach(2 * half / swept, tuple(parts)), limit)
 
     def _joint_exit(self, segment: int, corner: int, size: Reach, limit: Reach) -> Reach:
         """First exit from the sphere on a joint line; derivatives by the implicit function."""
@@ -351,6 +328,27 @@ class ZonePlanner:
         parts.append((f"q{far}", segment, -share * pull / speed))
         return Reach(share, tuple(parts))
 
+    def _sharpened(
+        self, i: int, pairs: tuple[tuple[Reach, Reach], ...]
+    ) -> tuple[tuple[Reach, Reach], ...]:
+        """A zone made smaller where its corner is too sharp for the speed; see `sharp_corners`."""
+        model, s = self._model, self._segments
+        superposed = model.tcp.kind == "arc" and model.pace is Pace.SUPERPOSED
+        if not superposed or model.centripetal is None or pairs[POSITION][0].value <= _NOTHING:
+            return pairs
+        if self._kind(i) != TCP_CORNER:
+            return pairs
+        kept = share_kept(s, i, pairs[POSITION][0], model.tcp_acceleration, model.centripetal)
+        if kept is None:
+            return pairs
+        radius = 1e3 * pairs[POSITION][0].value * s.length[i]
+        self._note(
+            i,
+            f"blend of {radius:.4g} mm made {kept.value * radius:.4g} mm: its corner is too sharp "
+            "for the speed",
+        )
+        return tuple((before * kept, after * kept) for before, after in pairs)
+
     def _shrunk(
         self, wanted: list[tuple[tuple[Reach, Reach], ...]]
     ) -> list[tuple[tuple[Reach, Reach], ...]]:
@@ -360,8 +358,8 @@ class ZonePlanner:
             total = wanted[segment - 1][POSITION][1] + wanted[segment][POSITION][0]
             if total.value > 1.0:
                 factor = total.inverse()
-                factors[segment - 1] = _least(factors[segment - 1], factor)
-                factors[segment] = _least(factors[segment], factor)
+                factors[segment - 1] = least(factors[segment - 1], factor)
+                factors[segment] = least(factors[segment], factor)
         for i, factor in enumerate(factors):
             if factor.value < 1.0 - 1e-9:
                 self._note(i, f"overlapping blend shrunk to {100 * factor.value:.4g} %")
@@ -410,6 +408,10 @@ def pull_corners(
         "tcp": zones_bar.tcp,
         "reorientation": zones_bar.reorientation,
         "external": zones_bar.external,
+        "position0": ends_bar.position[:, 0],
+        "position1": ends_bar.position[:, 1],
+        "speed": ends_bar.speed,
+        "acceleration": ends_bar.acceleration,
     }
     for i, pairs in enumerate(corners.sources):
         if corners.kind[i] == STOP:

@@ -264,9 +264,12 @@ class Robot:
             InputError: the links' inertias are not known.
         """
         if not self.links:
+            origin = self.origins.get("inertia", "")
+            which = f" ({origin})" if origin.startswith("unknown") else ""
             raise InputError(
-                f"the dynamics of {self.name} need the inertias of its links, which are not known; "
-                "add them to its description ([[link]] in a catalogue file, <inertial> in URDF)"
+                f"the dynamics of {self.name} need the inertias of its links, which are not known"
+                f"{which}; add them to its description ([[link]] in a catalogue file, <inertial> "
+                "in URDF)"
             )
         return Dynamics.of(self._tree(load or Inertia(0.0)))
 

@@ -90,7 +90,12 @@ class _Reader:
             if name is not None and name not in self.links:
                 raise UnknownNameError(f"link in {self.path}", name, self.links)
         way = self.way(base, tip or self.leaf(base))
-        assumed: dict[str, list[str]] = {"range": [], "velocity": [], "effort": []}
+        assumed: dict[str, list[str]] = {
+            "range": [],
+            "velocity": [],
+            "effort": [],
+            "inertia": [],
+        }
         joints, bodies, pending = [], [], IDENTITY
         for element in way:
             placement = pending @ _pose(element.origin)
@@ -99,6 +104,8 @@ class _Reader:
                 continue
             joints.append(self.joint(element, placement, assumed))
             bodies.append(self.body(element.child, way))
+            if bodies[-1] is None:
+                assumed["inertia"].append(element.child)
             pending = IDENTITY
         if not joints:
             raise self.error("there is no moving joint between base and tip")
@@ -108,7 +115,7 @@ class _Reader:
             joints=tuple(joints),
             flange=pending,
             links=tuple(known) if len(known) == len(joints) else (),
-            origins=self.origins(assumed, len(known) == len(joints)),
+            origins=self.origins(assumed),
         )
 
     def leaf(self, base: str) -> str:
@@ -204,12 +211,13 @@ class _Reader:
             total = total + body
         return total
 
-    def origins(self, assumed: dict[str, list[str]], inertias: bool) -> dict[str, str]:
+    def origins(self, assumed: dict[str, list[str]]) -> dict[str, str]:
         file = f"published: {self.path.name}"
         rules = {
             "range": f"assumed: ±{math.degrees(CONTINUOUS_RANGE):.0f}° for continuous joints",
             "velocity": "assumed: 180 °/s where not given",
             "effort": "unknown: not given",
+            "inertia": "unknown: links without <inertial>",
         }
         origins = {
             "geometry": file,
@@ -218,8 +226,6 @@ class _Reader:
         for group, rule in rules.items():
             names = assumed[group]
             origins[group] = f"{rule} ({', '.join(names)}); else {file}" if names else file
-        if inertias:
-            origins["inertia"] = file
         return origins
 
 

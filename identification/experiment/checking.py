@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ...core.errors import FlybyError
 from ...core.motion.controller import Controller, Run
+from ...core.motion.model import Overlap
 from ...core.motion.reached import zone_reaches
 from ...core.program.move import MoveJ
 from ...core.program.program import Program
@@ -93,6 +94,8 @@ def _check_zones(run: Run) -> None:
     """Every zone reaches as far as it is programmed, and no waypoint is left out."""
     if run.path.route.left_out:
         raise Refused("a waypoint would be left out", longer_legs_help=True)
+    if run.path.model.overlap is Overlap.SKIP:
+        return  # Zones are whole, or smaller because their corner is too sharp for the speed.
     for reach, move in zip(zone_reaches(run.path), run.path.route.moves, strict=True):
         zone = run.program.moves[move].zone
         if zone == FINE:

@@ -25,10 +25,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.motion.blend import Blend
-from ...core.motion.controller import Controller, stamped_motion
+from ...core.motion.controller import Controller
 from ...core.motion.elasticity import RIGID
 from ...core.motion.model import MotionModel
 from ...core.motion.path import Path
+from ...core.motion.ramped import stamped_motion
 from ...core.motion.timing import Timing
 from ...core.program.move import Move, MoveC, MoveJ, MoveL
 from ...core.program.program import Program

@@ -13,10 +13,11 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.motion.controller import Controller, stamped_motion
+from ...core.motion.controller import Controller
 from ...core.motion.elasticity import RIGID
 from ...core.motion.model import MotionModel
 from ...core.motion.path import Path
+from ...core.motion.ramped import stamped_motion
 from ...core.motion.smoothing import Motion, Smoothing, States
 from ..matching import Match, match
 from ..prediction import PERIOD, start_of

@@ -6,7 +6,7 @@ robot = "abb/irb6640-180-255"
 beta = [-0.54]
 
 [provenance]
-"blend.tcp.beta" = { status = "fitted", source = "…", runs = 29, interval = [[-0.55, -0.53]] }
+"blend.tcp.beta" = { status = "fitted", command = "…", runs = 29, interval = [[-0.55, -0.53]] }
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .parameters import Parameter
 
 def motion_file(
     fitted: Fit,
-    source: str,
+    command: str,
     heading: str = "",
     reference: MotionModel | None = None,
     words: Iterable[str] = (),
@@ -32,7 +32,7 @@ def motion_file(
 
     Args:
         fitted: the fit.
-        source: where the figures come from: the command, and on what.
+        command: that gives the same figures from the same logs.
         heading: comment above all.
         reference: what the file will be laid on; figures that differ from it are written though
             they were not fitted. None if all but the fitted ones agree.
@@ -60,35 +60,42 @@ def motion_file(
         lines += ["", f"[{table}]", *entries]
     lines += ["", "[provenance]"]
     lines += [
-        f"{_string(figure)} = {_text(_origin(fitted, figure, source, members), names)}"
+        f"{_string(figure)} = {_text(_origin(fitted, figure, command, members), names)}"
         for figure, members in figures.items()
     ]
     return "\n".join(lines) + "\n"
 
 
-def _origin(fitted: Fit, figure: str, source: str, members: list[int]) -> dict[str, Any]:
+def _origin(fitted: Fit, figure: str, command: str, members: list[int]) -> dict[str, Any]:
     """The provenance of a figure, fitted or not."""
     if members:
-        return _provenance(fitted, source, members)
+        return _provenance(fitted, command, members)
     known = fitted.model.provenance.get(figure)
     if known is None:
         return {"status": "assumed", "source": "stated where the fit began"}
     return {"status": known.status, "source": known.source, **known.details}
 
 
-def _provenance(fitted: Fit, source: str, members: list[int]) -> dict[str, Any]:
+def _provenance(fitted: Fit, command: str, members: list[int]) -> dict[str, Any]:
     fitted_keys = [_told(fitted.parameters.parameters[k]) for k in members]
     known = [fitted.intervals[k] for k in members]
     return {
         "status": "fitted",
-        "source": source,
-        "command": source,
+        "source": _source(fitted),
+        "command": command,
         "runs": len(fitted.runs),
         "fitted": fitted_keys,
         "interval": [[_rounded(one.lower, one), _rounded(one.upper, one)] for one in known],
         "confidence": 0.95,
         "loss": float(f"{fitted.after:.4g}"),
     }
+
+
+def _source(fitted: Fit) -> str:
+    """Where the runs come from, as far as their records say."""
+    runs = fitted.runs
+    sources = dict.fromkeys(run.run.source for run in runs if run.run.source)
+    return "; ".join([f"{len(runs)} logged run{'s' * (len(runs) != 1)}", *sources])
 
 
 def _told(one: Parameter) -> str:

@@ -26,10 +26,10 @@ from ...core.program.tool import FLANGE, Tool
 from ...core.program.zone import Radius
 from ...core.robot.model import Robot
 from ...core.vendor import Vendor
-from ..comparison import tcp_positions
 from ..logs.cleaning import CleanLog, clean
 from ..logs.run import LoggedRun
 from ..prediction import Prediction, predict
+from ..tcp_path import tcp_positions
 from .zone_sizes import COARSE, guess, resized
 
 FloatArray = NDArray[np.float64]

@@ -23,7 +23,6 @@ from .fitting import Minimum, minimise
 from .keys import figure_of
 from .loss import loss
 from .parameters import ParameterSet
-from .problem import first_nuisances
 from .runs import PreparedRun
 
 FloatArray = NDArray[np.float64]
@@ -101,12 +100,6 @@ def grouped(runs: Sequence[PreparedRun], trait: str) -> list[tuple[int, ...]]:
     return [tuple(group) for group in found.values()]
 
 
-def folds(runs: Sequence[PreparedRun], count: int) -> list[tuple[int, ...]]:
-    """Indices of runs in ``count`` groups, so that neighbours in the list come apart."""
-    count = min(count, len(runs))
-    return [tuple(range(k, len(runs), count)) for k in range(count)]
-
-
 @dataclass(frozen=True, eq=False)
 class LeftOut:
     """Runs predicted by a fit in which they had no part.
@@ -125,9 +118,53 @@ class LeftOut:
     loss: tuple[float, ...]
     fitted: float
 
+    @classmethod
+    def of(
+        cls,
+        runs: Sequence[PreparedRun],
+        indices: tuple[int, ...],
+        nuisances: Sequence[Nuisance],
+        parameters: ParameterSet,
+        end: Minimum,
+    ) -> LeftOut:
+        """What a fit to others makes of runs.
+
+        Args:
+            runs: that had no part in the fit.
+            indices: of them.
+            nuisances: of them, where the search for their own begins.
+            parameters: that were fitted.
+            end: of the fit.
+
+        Raises:
+            InputError: a program cannot be driven by the fitted model.
+        """
+        model = parameters.model(end.values)
+        clocks = {
+            run.clock: one.clock
+            for run, one in zip(end.variables.runs, end.nuisances, strict=True)
+            if run.clock is not None
+        }
+        start = [
+            replace(one, clock=clocks.get(run.clock or "", one.clock))
+            for run, one in zip(runs, nuisances, strict=True)
+        ]
+        # The clock is known: the run may shift its offset, and the sizes of zones nobody recorded.
+        still = [replace(run, run=replace(run.run, real=None)) for run in runs]
+        with Crew(still, 1) as crew:
+            alone = minimise(crew, ParameterSet(model, ()), start)
+            found = crew.residuals(model, alone.nuisances)
+        each = []
+        for run, one in zip(runs, found, strict=True):
+            if isinstance(one, FlybyError):
+                raise InputError(f"{run.name}: {one}") from one
+            each.append(float(loss(one).mean()))
+        return cls(indices, alone.nuisances, model, tuple(each), end.last)
+
 
 def leave_out(
     runs: Sequence[PreparedRun],
+    nuisances: Sequence[Nuisance],
     parameters: ParameterSet,
     groups: Sequence[tuple[int, ...]],
     workers: int = 1,
@@ -135,9 +172,12 @@ def leave_out(
 ) -> list[LeftOut]:
     """Fit to all runs but a group, and predict the group; each group in its turn.
 
+    A fit that went as far as it could does not tell where it began: begin near, to save time.
+
     Args:
         runs: all of one robot.
-        parameters: to be fitted; start near the fit to all runs, to save time.
+        nuisances: of each run, where fits begin: those of a fit to all, or `first_nuisances`.
+        parameters: to be fitted, likewise.
         groups: indices of runs to leave out together.
         workers: processes.
         tell: is told how far the work is.
@@ -145,7 +185,7 @@ def leave_out(
     Raises:
         InputError: a group holds all runs, or a program cannot be driven.
     """
-    first, found = first_nuisances(runs), []
+    found = []
     for number, group in enumerate(groups):
         if tell is not None:
             tell(f"leaving out group {number + 1} of {len(groups)}")
@@ -153,19 +193,21 @@ def leave_out(
         if not rest:
             raise InputError("no run would be left to fit to")
         with Crew([runs[k] for k in rest], workers) as crew:
-            end = minimise(crew, parameters, [first[k] for k in rest])
-        found.append(_judge([runs[k] for k in group], group, parameters, end))
+            end = minimise(crew, parameters, [nuisances[k] for k in rest])
+        begin = [nuisances[k] for k in group]
+        found.append(LeftOut.of([runs[k] for k in group], group, begin, parameters, end))
     return found
 
 
 def compare_models(
     runs: Sequence[PreparedRun],
+    nuisances: Sequence[Nuisance],
     candidates: Sequence[Candidate],
     groups: Sequence[tuple[int, ...]],
     workers: int = 1,
     tell: Callable[[str], None] | None = None,
 ) -> list[Score]:
-    """Score candidates by the runs that they were not fitted to.
+    """Score candidates by the runs that they were not fitted to; see `leave_out`.
 
     Raises:
         InputError: as `leave_out` does.
@@ -173,7 +215,7 @@ def compare_models(
     scores: list[Score] = []
     for candidate in candidates:
         say = _named(tell, candidate.name)
-        made = leave_out(runs, candidate.parameters, groups, workers, say)
+        made = leave_out(runs, nuisances, candidate.parameters, groups, workers, say)
         each = np.empty(len(runs))
         for left in made:
             each[list(left.indices)] = left.loss
@@ -194,34 +236,6 @@ def compare_models(
 
 def _named(tell: Callable[[str], None] | None, name: str) -> Callable[[str], None] | None:
     return None if tell is None else lambda text: tell(f"{name}: {text}")
-
-
-def _judge(
-    runs: Sequence[PreparedRun], indices: tuple[int, ...], parameters: ParameterSet, end: Minimum
-) -> LeftOut:
-    """What a fit to others makes of runs."""
-    model = parameters.model(end.values)
-    clocks = {
-        run.clock: one.clock
-        for run, one in zip(end.variables.runs, end.nuisances, strict=True)
-        if run.clock is not None
-    }
-    start = [
-        replace(one, clock=clocks.get(run.clock or "", one.clock))
-        for run, one in zip(runs, first_nuisances(runs), strict=True)
-    ]
-    # The clock is known: the run may shift its offset, and the sizes of zones nobody recorded.
-    still = [replace(run, run=replace(run.run, real=None)) for run in runs]
-    nothing = ParameterSet(model, ())
-    with Crew(still, 1) as crew:
-        alone = minimise(crew, nothing, start)
-        found = crew.residuals(model, alone.nuisances)
-    each = []
-    for run, one in zip(runs, found, strict=True):
-        if isinstance(one, FlybyError):
-            raise InputError(f"{run.name}: {one}") from one
-        each.append(float(loss(one).mean()))
-    return LeftOut(indices, alone.nuisances, model, tuple(each), end.last)
 
 
 def _zone(run: PreparedRun) -> float:

@@ -27,6 +27,7 @@ from ...core.program.zone import FINE, Radius, Zone
 from ...core.robot.model import Robot
 from ...core.spatial.pose import Pose
 from ...core.spatial.rotation import matrix_from_rotation_vector, quaternion_from_matrix
+from .orientations import orientations_at
 from .reading import read_samples
 from .run import LoggedRun
 
@@ -67,8 +68,8 @@ to end, to 0.01°, and leave the auxiliary point's orientation aside."""
 def load_run(path: Path, robots: Callable[[str], Robot]) -> LoggedRun:
     """Read a run from its JSON file; the log is the one that it names, beside it.
 
-    Where the record gives a target's position alone, its orientation is that of the logged
-    sample nearest to it; where it says that the first or last point was moved before the run, the
+    Where the record gives a target's position alone, its orientation is what the log shows, see
+    `orientations_at`; where it says that the first or last point was moved before the run, the
     log's first or last sample takes its place. So does the first one where it states no start.
 
     Args:
@@ -132,18 +133,34 @@ def _completed(data: dict[str, Any], robot: Robot, q: FloatArray) -> dict[str, A
     rotation, position = robot.forward(q)
     tcp = _tool(data).tcp.matrix()
     position = position + rotation @ tcp[:3, 3]
-    quaternion = quaternion_from_matrix(rotation @ tcp[:3, :3])
-    for entry in moves:
+    rotation = rotation @ tcp[:3, :3]
+    points = [position[0], *(_place(entry, robot, tcp) for entry in moves)]
+    reach = [0.0, *(_blended(entry.get("zone", {})) for entry in moves)]
+    shown = orientations_at(np.array(points), np.array(reach), position, rotation)
+    quaternion = quaternion_from_matrix(shown)
+    for entry, own in zip(moves, quaternion[1:], strict=True):
         pose = entry.get("target_pose")
-        if pose is None or "quat_wxyz" in pose or "rotvec" in pose:
-            continue
-        nearest = np.argmin(np.linalg.norm(position - np.array(pose["xyz_m"]), axis=1))
-        entry["target_pose"] = {**pose, "quat_wxyz": quaternion[nearest].tolist()}
+        if pose is not None and "quat_wxyz" not in pose and "rotvec" not in pose:
+            entry["target_pose"] = {**pose, "quat_wxyz": own.tolist()}
     if moved:
-        end = {"xyz_m": position[-1].tolist(), "quat_wxyz": quaternion[-1].tolist()}
+        last = quaternion_from_matrix(rotation[-1:])[0]
+        end = {"xyz_m": position[-1].tolist(), "quat_wxyz": last.tolist()}
         moves[-1]["target_pose"] = end
         moves[-1].pop("target_joints_rad", None)
     return {**data, "moves": moves}
+
+
+def _place(entry: dict[str, Any], robot: Robot, tcp: FloatArray) -> FloatArray:
+    """(3,) m, where a move ends."""
+    if "target_pose" in entry:
+        return np.array(entry["target_pose"]["xyz_m"], dtype=float)
+    rotation, position = robot.forward(np.array([entry["target_joints_rad"]], dtype=float))
+    return np.asarray(position[0] + rotation[0] @ tcp[:3, 3])
+
+
+def _blended(zone: Mapping[str, Any]) -> float:
+    """m, how far from a waypoint orientations may blend."""
+    return max(float(zone.get(key, 0.0)) for key in ("radius_m", "rule_radius_m", "pzone_ori_m"))
 
 
 def robot_of_record(path: Path) -> str | None:

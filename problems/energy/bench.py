@@ -21,6 +21,7 @@ from ..waypoints.driving import crowd, rooms_of
 from ..waypoints.evaluation import BlockProblem
 from ..waypoints.search import Memory, Settings, search, violation
 from ..waypoints.variables import Variables
+from ..waypoints.workshop import wider_margin
 from .options import Effort, Goal, Task
 from .pacing import Pacing
 from .problem import Evaluated, Fixed, PacedProblem
@@ -35,7 +36,6 @@ _NEAR, _NEAR_BOX = 45, 0.3
 """Iterations at most and first trust box of a search that begins at a neighbour's values."""
 _REFINING, _SETTLING = Settings(20, 0.2), Settings(10, 0.1)
 """Of a refinement, and of one with accelerations rounded."""
-_WIDER = 1.3
 _FEASIBLE = 1e-5
 _EARLY = 2e-5
 """Share of the latest end by which a search aims to be earlier, so that rounding leaves room."""
@@ -318,10 +318,8 @@ class Bench:
 
     def _wider(self, manner: _Manner, run: Run, proof: Certificate) -> _Manner:
         """How to search where a proof has failed: with more room, and closer there."""
-        distance = proof.clearance if proof.distance is None else proof.distance
-        short = max(self.clearance - distance, 0.0)
         margin = self.effort.margin + manner.margin
-        wider = max(_WIDER * margin, margin + _WIDER * short) - self.effort.margin
+        wider = wider_margin(margin, self.clearance, proof) - self.effort.margin
         more = manner.more
         if proof.sigma is not None and proof.configuration is not None:
             q = np.array(proof.configuration)

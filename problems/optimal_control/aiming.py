@@ -31,19 +31,30 @@ _LITTLE = 10
 _SIZES = (4.0, 2.0, 1.0, 0.35)
 """Intervals by which tangents are taken earlier or later at the motion's beginning and end."""
 
+MOST_TRIALS = len(_PATTERNS) * len(_SIZES)
+"""Ways to look beside a motion."""
+
 
 class Aim:
     """The choice of one search; it learns from what comes of it.
+
+    Args:
+        trials: ways to look beside the motion.
 
     Attributes:
         exhausted: whether tangents about the motion itself give nothing any more.
     """
 
-    def __init__(self) -> None:
-        self.forget()
+    def __init__(self, trials: int) -> None:
+        self._trials = trials
+        self._begin()
 
-    def forget(self) -> None:
-        """Begin anew."""
+    def settle(self) -> None:
+        """From now on, about the motion itself alone: what can be had beside it is known."""
+        self._trials = 0
+        self._begin()
+
+    def _begin(self) -> None:
         self._ahead = 0.0
         self._before: FloatArray | None = None
         self._beside = 0
@@ -67,8 +78,8 @@ class Aim:
         if self._small >= _LITTLE:
             return True
         if little:
-            self._ahead, self._beside = 0.0, self._beside + 1
-            return self._beside > len(_PATTERNS) * len(_SIZES)
+            self._ahead = 0.0
+            return self._next_beside()
         if self._beside == 0:
             self._ahead = min(_FARTHEST, max(1.0, _FASTER * self._ahead))
         return False
@@ -78,8 +89,12 @@ class Aim:
         if self._ahead > 0.0:
             self._ahead = 0.25 * self._ahead if self._ahead > 1.0 else 0.0
             return False
+        return self._next_beside()
+
+    def _next_beside(self) -> bool:
+        """Look elsewhere beside the motion; whether nothing is left."""
         self._beside += 1
-        return self._beside > len(_PATTERNS) * len(_SIZES)
+        return self._beside > self._trials
 
     def exhaust(self, touching: bool) -> None:
         """About the motion itself there is nothing to be had: look beside.
@@ -88,7 +103,7 @@ class Aim:
             touching: whether any distance holds the motion back; else there is nothing to look for.
         """
         self.exhausted = True
-        self._beside = 0 if touching else len(_PATTERNS) * len(_SIZES)
+        self._beside = 0 if touching else self._trials
 
     def configurations(self, task: Task, base: Guess, places: Places) -> FloatArray:
         """(M, N), where the distances at places are to be linearised."""

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from ...core.errors import InputError
+from .aiming import MOST_TRIALS
 from .scheme import SchemeKind
 
 
@@ -25,6 +26,8 @@ class Effort:
         box: rad or m by which joints may move at first in an outer iteration, near obstacles.
         places: on each interval, where distances are linearised.
         slots: pairs of bodies at most whose distance is linearised at a place.
+        trials: ways of taking tangents beside the motion that are tried where it is stuck; fewer
+            are quicker.
         qp: back end of the SQP solver.
 
     Raises:
@@ -41,12 +44,16 @@ class Effort:
     box: float = 0.2
     places: int = 2
     slots: int = 3
+    trials: int = MOST_TRIALS
     qp: str = "interior_point"
 
     def __post_init__(self) -> None:
         for name in ("intervals", "outer", "places", "slots"):
-            if getattr(self, name) < 1:
-                raise InputError(f"Effort.{name} is one or more, not {getattr(self, name)}")
+            count = getattr(self, name)
+            if not isinstance(count, int) or count < 1:
+                raise InputError(f"Effort.{name} is a whole number, one or more, not {count}")
+        if not 0 <= self.trials <= MOST_TRIALS:
+            raise InputError(f"Effort.trials is from 0 to {MOST_TRIALS}, not {self.trials}")
         if self.group is not None and self.group < 1:
             raise InputError(f"Effort.group is one or more, or None, not {self.group}")
         for name in ("tolerance", "solver_tolerance", "gain", "box"):

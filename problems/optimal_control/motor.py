@@ -33,10 +33,14 @@ class RunningCost(Protocol):
 
     Attributes:
         unit: of its integral over time.
+        joints: number of joints that it has figures of; None for as many as there are.
     """
 
     @property
     def unit(self) -> str: ...
+
+    @property
+    def joints(self) -> int | None: ...
 
     def __call__(self, torque: FloatArray, speed: FloatArray) -> Cost:
         """The cost of torques and speeds (..., n) of the n joints that move."""
@@ -60,6 +64,10 @@ class SquaredTorque:
     @property
     def unit(self) -> str:
         return "N² m² s"
+
+    @property
+    def joints(self) -> int | None:
+        return len(self.weights) or None
 
     def __call__(self, torque: FloatArray, speed: FloatArray) -> Cost:
         weight = np.broadcast_to(np.array(self.weights or 1.0), torque.shape)
@@ -105,6 +113,10 @@ class Motors:
     @property
     def unit(self) -> str:
         return "J"
+
+    @property
+    def joints(self) -> int | None:
+        return len(self.copper)
 
     def __call__(self, torque: FloatArray, speed: FloatArray) -> Cost:
         copper = np.array(self.copper)

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from ...core.errors import InputError, MotionError, Note
+from ...core.errors import MotionError, Note
 from .audit import audit
 from .effort import Effort
 from .limits import Limits
+from .opening import opening
 from .proof import prove
 from .refusal import check_task
 from .result import Optimum
 from .sampled import Plant
 from .scheme import Scheme
 from .search import Report, Search
-from .start import Guess, Polyline, first_guess
+from .start import Guess, first_guess
 from .surroundings import Surroundings
 from .task import Task
 
@@ -36,7 +36,8 @@ def optimize(
         around: what to keep clear of; None for nothing.
         effort: how hard to try.
         vias: corners (c, N) of a path of joint lines that is free, for each leg between
-            waypoints; None for straight lines.
+            waypoints; None for straight lines where they are free, and planned ones elsewhere
+            (OMPL, the extra ``planning``).
         report: is told of every outer iteration; True ends the search, as Ctrl-C does, with the
             best motion so far.
 
@@ -50,7 +51,7 @@ def optimize(
     needed = limits.dynamic or task.objective.time_weight < 1.0
     plant = Plant(task) if needed else None
     check_task(task, limits, plant, around, effort.scheme)
-    line = _line(task, vias)
+    line = opening(task, around, vias)
     scheme = Scheme(effort.scheme)
     guess = first_guess(task, limits, plant, line, scheme, effort.intervals, effort.group)
     if around is not None:
@@ -60,23 +61,12 @@ def optimize(
     return _optimum(search, guess, converged)
 
 
-def _line(task: Task, vias: Sequence[ArrayLike] | None) -> Polyline:
-    if vias is None:
-        return Polyline.direct(task)
-    if len(vias) != task.legs:
-        raise InputError(
-            f"corners of {len(vias)} legs were given; there are {task.legs} between waypoints"
-        )
-    return Polyline.through(task, [np.asarray(rows, dtype=float) for rows in vias])
-
-
 def _check_first(task: Task, guess: Guess, around: Surroundings) -> None:
     found = prove(task, guess.motion, around.scene, around.clearance)
     if not found.certificate.proven:
         raise MotionError(
             "the path to begin with does not keep the clearance: "
-            f"{found.certificate}; plan one (flyby.problems.planning), or give corners of a free "
-            "path"
+            f"{found.certificate}; give corners of a free path (vias)"
         )
 
 
@@ -86,9 +76,13 @@ def _optimum(search: Search, guess: Guess, converged: bool) -> Optimum:
             search.task, search.limits, search.plant, search.base.motion, search.effort.tolerance
         )
         reason = search.steps[-1].what if search.steps else "the search was ended"
+        longest = search.task.objective.longest
+        within = "" if longest is None else f" that takes {longest:g} s at most"
         raise MotionError(
-            f"no motion within the limits was found: the best one uses {100 * seen.used:.1f} % of "
-            f"one of them ({reason}); allow more intervals, or begin with another path"
+            f"no motion within the limits{within} was found: the best one takes "
+            f"{search.base.motion.duration:.4g} s and uses {100 * seen.used:.1f} % of a limit "
+            f"({reason}); allow more {'time or ' if within else ''}intervals, or begin with "
+            "another path"
         )
     _, motion, seen, proof = search.best
     notes = []

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from types import SimpleNamespace
-from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +16,11 @@ from ...core.collision.certificate import BUDGET, TOLERANCE
 from ...core.collision.enclosure import Enclosure
 from ...core.collision.findings import Budget, Cause, Finding
 from ...core.collision.scene import CollisionScene
+from ...core.collision.strays import Strays
 from ...core.collision.subdivision import Prover
 from ...core.collision.verdict import CONTACT, MM, Certificate, Verdict
 from ...core.motion.blend import BASIS
 from ...core.motion.curves import POLYNOMIAL, Curves
-from ...core.motion.path import Path
 from .motion import Motion
 from .task import Task
 
@@ -63,7 +61,7 @@ def prove(
     """
     enclosure = enclosure_of(task, motion)
     left = Budget(BUDGET)
-    prover = Prover(enclosure, scene, np.zeros(task.robot.size), 0.0, left)
+    prover = Prover(enclosure, scene, Strays.within(np.zeros(task.robot.size)), 0.0, left)
     wanted = max(clearance - TOLERANCE, CONTACT)
     spans, pieces = [(0.0, motion.duration)], range(len(motion))
     finding = prover.prove(spans, pieces, wanted)
@@ -89,15 +87,7 @@ def enclosure_of(task: Task, motion: Motion) -> Enclosure:
     window = np.stack([motion.knots[:-1], motion.durations, one, one], axis=1)
     kind = np.full(count, POLYNOMIAL, dtype=np.int64)
     curves = Curves(kind, window, control, np.zeros(count), np.eye(BASIS))
-    own = np.arange(count)
-    pieces = SimpleNamespace(
-        edge=motion.knots,
-        joint_space=np.ones(count, dtype=np.bool_),
-        curve=np.stack([own, own, own], axis=1),
-    )
-    # Of a path in joint space the enclosure reads nothing but this.
-    path = SimpleNamespace(pieces=pieces, joint=curves, q=np.zeros((1, size)))
-    return Enclosure(cast(Path, path), window)
+    return Enclosure(motion.knots, window, curves, np.arange(count))
 
 
 def _refused(scene: CollisionScene, finding: Finding, wanted: float, measured: int) -> Proof:

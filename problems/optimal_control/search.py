@@ -22,6 +22,7 @@ from .effort import Effort
 from .layout import Layout
 from .limits import Limits
 from .motion import Motion
+from .patience import Patience
 from .proof import Proof, prove
 from .refinement import PieceMargins, refined, too_coarse
 from .result import Step
@@ -44,7 +45,8 @@ _LOOKED = 8
 """Places on each interval where a motion is looked at before it is proven."""
 _INFEASIBLE = 1e-4
 _IDLE = 1e-7
-_SOLVER_ITERATIONS = 60
+_SOLVER_ITERATIONS, _OUTER_ITERATIONS = 60, 12
+"""At most; the second where there is a motion already that is to be made better."""
 _ROUNDS = 8
 
 
@@ -82,6 +84,8 @@ class Search:
         self.base = guess
         self.steps: list[Step] = []
         self.best: tuple[float, Motion, Audit, Proof | None] | None = None
+        longest = task.objective.longest
+        self._longest = np.inf if longest is None else longest * (1.0 + effort.tolerance)
         self._box = effort.box
         self._clean = False
         self._energy_unit = self._first_energy(guess)
@@ -89,7 +93,7 @@ class Search:
         self._rounds = 0
         self._most_intervals = 4 * len(guess.layout.grid)
         self._warm: Result | None = None
-        self.aim = Aim()
+        self.aim = Aim(effort.trials)
 
     def _first_energy(self, guess: Guess) -> float | None:
         if self.task.objective.time_weight == 1.0:
@@ -134,9 +138,8 @@ class Search:
         if self.around is None:
             return was_clean and gain < self.effort.gain and self._settled()
         self._box = min(_GROW * self._box, _LARGEST)
-        enough = was_clean and gain < self.effort.gain
-        done = self.aim.gained(previous.x, enough)
-        return done and self._settled()
+        little = was_clean and gain < self.effort.gain
+        return self.aim.gained(previous.x, little) and self._settled()
 
     def _failed(self, step: Step) -> bool:
         """Try something else; whether nothing is left to try."""
@@ -161,7 +164,7 @@ class Search:
             self._warm = None
             self._margins = self._margins.split(parts)
         self._clean = False
-        self.aim.forget()
+        self.aim.settle()
         self._box = max(self._box, 0.1 * self.effort.box)
         return False
 
@@ -217,18 +220,25 @@ class Search:
         rows: PlaceRows | None,
         x: FloatArray,
     ) -> Result:
+        tolerance, patience = self.effort.solver_tolerance, None
+        if rows is not None or transcription.layout.stretches:
+            beat = transcription.objective(self.base.x) if self._clean else None
+            most = _SOLVER_ITERATIONS if beat is None else _OUTER_ITERATIONS
+            patience = Patience(tolerance, most, self.effort.gain, beat)
         result = solve(
             transcription.nlp(bounds, rows),
             x,
-            tolerance=self.effort.solver_tolerance,
+            tolerance=tolerance,
             max_iterations=_SOLVER_ITERATIONS,
+            callback=patience,
             qp=self.effort.qp,
             warm_start=self._warm,
         )
-        if result.status is Status.INTERRUPTED:
+        ended = patience is not None and patience.ended
+        if result.status is Status.INTERRUPTED and not ended:
             raise Interrupted
         self._warm = result
-        return result
+        return result if patience is None else patience.outcome(result)
 
     def _transcription(self, layout: Layout) -> Transcription:
         return Transcription(
@@ -282,7 +292,7 @@ class Search:
         if self.best is not None and objective >= self.best[0]:
             return
         seen = self._audited(motion)
-        if not seen.holds(self.effort.tolerance):
+        if not seen.holds(self.effort.tolerance) or motion.duration > self._longest:
             return
         if self.around is not None and proof is None:
             proof = prove(self.task, motion, self.around.scene, self.around.clearance)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.collision.scene import CollisionScene
+from ...core.errors import InputError
 from .layout import Layout
 from .motion import Motion
 from .rows import PlaceRows
@@ -36,11 +38,20 @@ class Surroundings:
         scene: bodies and their distances.
         clearance: m to be kept everywhere.
         margin: m more that is aimed at, so that the proof ends.
+
+    Raises:
+        InputError: a distance is negative or not finite.
     """
 
     scene: CollisionScene
     clearance: float
     margin: float = 5e-5
+
+    def __post_init__(self) -> None:
+        for name in ("clearance", "margin"):
+            value = getattr(self, name)
+            if not 0.0 <= value < math.inf:
+                raise InputError(f"Surroundings.{name} is zero or more metres, not {value}")
 
     @property
     def wanted(self) -> float:

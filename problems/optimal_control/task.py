@@ -156,6 +156,11 @@ class Task:
                 f"{len(self.loads)} loads were given for {self.legs} legs between waypoints; give "
                 "one for all, or one a leg"
             )
+        known = self.objective.cost.joints
+        if known not in (None, len(joints)):
+            raise InputError(
+                f"the running cost has figures of {known} joints; {len(joints)} joints move"
+            )
         self._check_still()
 
     @property

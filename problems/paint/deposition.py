@@ -21,7 +21,14 @@ from scipy import sparse
 
 from ...core.errors import InputError
 from .deposition_kernels import Brush, Cone, Guns
-from .deposition_loops import add_adjoint, add_coat, fill_jacobian, fill_rates, live_segments
+from .deposition_loops import (
+    add_adjoint,
+    add_block,
+    add_coat,
+    fill_jacobian,
+    fill_rates,
+    live_segments,
+)
 from .footprint import Footprint
 from .samples import SurfaceSamples
 from .surface_blocks import grouped
@@ -66,24 +73,6 @@ class RateRows:
     """
 
     points: IntArray
-    segments: IntArray
-    values: FloatArray
-
-
-@dataclass(frozen=True, eq=False)
-class JacobianRows:
-    """Derivatives of the thickness of some points.
-
-    Args:
-        points: (b,) index of the points.
-        waypoints: (w,) those that count, in rising order.
-        segments: (c,) likewise.
-        values: (b, 5 w + c) by each waypoint's position and two angles, then by the segments'
-            durations.
-    """
-
-    points: IntArray
-    waypoints: IntArray
     segments: IntArray
     values: FloatArray
 
@@ -197,44 +186,42 @@ class Deposition:
             position, nozzle, by_amount * trajectory.flow, by_amount * trajectory.duration
         )
 
-    def jacobian_rows(
-        self, trajectory: PaintTrajectory, turns: FloatArray
-    ) -> Iterator[JacobianRows]:
-        """The derivatives of the thickness in compact pieces, each point once.
+    def normal_matrix(
+        self, trajectory: PaintTrajectory, turns: FloatArray, weights: FloatArray
+    ) -> FloatArray:
+        """Jᵀ diag(weights) J of the thickness (5 W + S, 5 W + S): by position and two angles of
+        each waypoint, then by durations.
 
         Args:
-            turns: (W, 2, 3) derivatives of each waypoint's direction by two angles.
+            turns: (W, 2, 3) derivatives of each waypoint's direction by its angles.
+            weights: (V,) of the points, >= 0.
         """
         guns = self._guns(trajectory)
         amount = trajectory.duration * trajectory.flow
         turns = np.ascontiguousarray(turns)
+        roots = np.sqrt(weights)
+        waypoints = len(trajectory.position)
 
-        def fill(first: int, last: int) -> JacobianRows:
+        def squared(first: int, last: int) -> tuple[IntArray, FloatArray]:
+            """The columns that some points have entries in, and their product."""
             live = self._live(guns, trajectory.flow, first, last)
-            waypoints = np.union1d(live, live + 1)
+            near = np.union1d(live, live + 1)
+            place, column = np.full(waypoints, -1), np.full(trajectory.segments, -1)
+            place[near] = 5 * np.arange(len(near))
+            column[live] = 5 * len(near) + np.arange(len(live))
             points = self._order[self._points(first, last)]
-            place = np.full(len(trajectory.position), -1)
-            place[waypoints] = 5 * np.arange(len(waypoints))
-            column = np.full(trajectory.segments, -1)
-            column[live] = 5 * len(waypoints) + np.arange(len(live))
-            values = np.zeros((len(points), 5 * len(waypoints) + len(live)))
-            fill_jacobian(
-                self._brush,
-                guns,
-                self._blocks,
-                self._visible,
-                amount,
-                turns,
-                place,
-                column,
-                first,
-                last,
-                values,
-            )
-            values[:, 5 * len(waypoints) :] *= trajectory.flow[live]
-            return JacobianRows(points, waypoints, live, values)
+            rows = np.zeros((len(points), 5 * len(near) + len(live)))
+            surface = self._brush, guns, self._blocks, self._visible
+            fill_jacobian(*surface, amount, turns, place, column, first, last, rows)
+            rows[:, 5 * len(near) :] *= trajectory.flow[live]
+            rows *= roots[points, None]
+            columns = (5 * near[:, None] + np.arange(5)).ravel()
+            return np.concatenate((columns, 5 * waypoints + live)), rows.T @ rows
 
-        return self._pieces(fill)
+        found = np.zeros((5 * waypoints + trajectory.segments,) * 2)
+        for columns, product in self._pieces(squared):
+            add_block(columns, product, found)
+        return found
 
     # ------------------------------------------------------------------------------ parts
 

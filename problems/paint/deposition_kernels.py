@@ -215,6 +215,8 @@ def slope_over_radius(knots: FloatArray, coefficients: FloatArray, r: float) -> 
 
 @_njit
 def slopes_of(
+    knots: FloatArray,
+    coefficients: FloatArray,
     cone: Cone,
     gun: Gun,
     px: float,
@@ -223,15 +225,16 @@ def slopes_of(
     nx: float,
     ny: float,
     nz: float,
-    f: float,
-    slope: float,
+    r: float,
 ) -> Slopes:
     """B at a point that paint arrives at, and its derivatives.
 
     Args:
         px, py, pz, nx, ny, nz: the point and its normal.
-        f, slope: f(r) and f'(r) / r.
+        r: radius at which it is seen.
     """
+    f = profile(knots, coefficients, r)
+    slope = slope_over_radius(knots, coefficients, r)
     x, y, z = px - gun.x, py - gun.y, pz - gun.z
     s = x * gun.ax + y * gun.ay + z * gun.az
     inverse = 1.0 / (s * s)

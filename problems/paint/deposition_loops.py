@@ -21,7 +21,6 @@ from .deposition_kernels import (
     meets,
     profile,
     ray,
-    slope_over_radius,
     slopes_of,
 )
 
@@ -157,9 +156,7 @@ def add_adjoint(
                 r, _ = ray(cone, gun, px, py, pz, nx, ny, nz)
                 if r < 0.0:
                     continue
-                f = profile(knots, coefficients, r)
-                slope = slope_over_radius(knots, coefficients, r)
-                slopes = slopes_of(cone, gun, px, py, pz, nx, ny, nz, f, slope)
+                slopes = slopes_of(knots, coefficients, cone, gun, px, py, pz, nx, ny, nz, r)
                 total += adjoint[k] * slopes.value
                 x += adjoint[k] * slopes.x
                 y += adjoint[k] * slopes.y
@@ -225,9 +222,7 @@ def fill_jacobian(
                 r, _ = ray(cone, gun, px, py, pz, nx, ny, nz)
                 if r < 0.0:
                     continue
-                f = profile(knots, coefficients, r)
-                slope = slope_over_radius(knots, coefficients, r)
-                slopes = slopes_of(cone, gun, px, py, pz, nx, ny, nz, f, slope)
+                slopes = slopes_of(knots, coefficients, cone, gun, px, py, pz, nx, ny, nz, r)
                 n = k - start
                 a, b, c = across(gun, guns.length[p], slopes.a, slopes.b, slopes.c)
                 rows[n, own] += weight * slopes.value
@@ -241,3 +236,11 @@ def fill_jacobian(
                 rows[n, there + 2] += front * slopes.z
                 rows[n, there + 3] += front * (a * v[0, 0] + b * v[0, 1] + c * v[0, 2])
                 rows[n, there + 4] += front * (a * v[1, 0] + b * v[1, 1] + c * v[1, 2])
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def add_block(columns: IntArray, block: FloatArray, found: FloatArray) -> None:
+    """Add a block (k, k) at the rows and columns (k,) of a matrix (n, n)."""
+    for i in range(len(columns)):
+        for j in range(len(columns)):
+            found[columns[i], columns[j]] += block[i, j]

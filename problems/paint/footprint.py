@@ -104,6 +104,8 @@ class Footprint:
         """
         radii = np.asarray(knots, dtype=np.float64)
         rim = float(radii[-1])
+        if not math.isfinite(reference_distance):
+            raise InputError(f"reference_distance: a finite number, not {reference_distance!r}")
         if not (reference_distance > near_distance and rim > near_radius > 0.0):
             raise InputError(
                 f"the cone has to widen: radius {near_radius:g} m at {near_distance:g} m, "

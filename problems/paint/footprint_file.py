@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from ...core.errors import InputError, Note
 from .footprint import Footprint
@@ -64,13 +67,17 @@ def load_footprint(file: Path) -> FootprintSource:
 
 def _given(table: dict[str, Any]) -> FootprintSource:
     _check_keys(table, _CONE | _PROFILE)
+    lists = {key: _list(table, key) for key in ("radius_mm", "growth_um_s")}
     slopes = None
     if "slope_um_s_mm" in table:
-        slopes = [_MICRON / _MM * slope for slope in _list(table, "slope_um_s_mm")]
+        lists["slope_um_s_mm"] = _list(table, "slope_um_s_mm")
+        slopes = [_MICRON / _MM * slope for slope in lists["slope_um_s_mm"]]
+    if len({len(values) for values in lists.values()}) > 1 or len(lists["radius_mm"]) < 2:
+        raise InputError(f"{', '.join(lists)}: as many numbers in each, from the centre to the rim")
     return FootprintSource(
         Footprint.of_cone(
-            [_MM * radius for radius in _list(table, "radius_mm")],
-            [_MICRON * growth for growth in _list(table, "growth_um_s")],
+            [_MM * radius for radius in lists["radius_mm"]],
+            [_MICRON * growth for growth in lists["growth_um_s"]],
             _MM * _value(table, "reference_distance_mm"),
             _MM * _value(table, "near_radius_mm"),
             _MM * _value(table, "near_distance_mm", 0.0),
@@ -101,8 +108,8 @@ def _stroke(row: dict[str, Any], number: int) -> Stroke:
     try:
         _check_keys(row, _STROKE)
         return Stroke(
-            [_MM * place for place in _list(row, "across_mm")],  # type: ignore[arg-type]
-            [_MICRON * value for value in _list(row, "thickness_um")],  # type: ignore[arg-type]
+            _MM * np.array(_list(row, "across_mm")),
+            _MICRON * np.array(_list(row, "thickness_um")),
             _MM * _value(row, "distance_mm"),
             _MM * _value(row, "speed_mm_s"),
             _value(row, "flow", 1.0),
@@ -122,7 +129,7 @@ def _value(table: dict[str, Any], key: str, default: float | None = None) -> flo
     if value is None:
         raise InputError(f"{key} is missing")
     if not _is_number(value):
-        raise InputError(f"{key} is a number, not {value!r}")
+        raise InputError(f"{key} is a finite number, not {value!r}")
     return float(value)
 
 
@@ -131,9 +138,10 @@ def _list(table: dict[str, Any], key: str) -> list[float]:
     if values is None:
         raise InputError(f"{key} is missing")
     if not isinstance(values, list) or not all(map(_is_number, values)):
-        raise InputError(f"{key} is a list of numbers, not {values!r}")
+        raise InputError(f"{key} is a list of finite numbers, not {values!r}")
     return [float(value) for value in values]
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return number and math.isfinite(value)

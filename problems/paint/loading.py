@@ -95,6 +95,8 @@ def _read(file: Path) -> Any:
     """The file's triangles as one `trimesh.Trimesh`, as they stand there."""
     import trimesh
 
+    if not file.is_file():
+        raise InputError(f"{file}: there is no such file")
     try:
         with np.errstate(all="ignore"):
             scene = trimesh.load_scene(file, process=False)

@@ -42,7 +42,7 @@ class PaintConstraints:
     @property
     def lower(self) -> FloatArray:
         """(m,)."""
-        return self._sides(0.0, self._limits.step[0], self._limits.distance[0], 0.0)
+        return self._sides(0.0, self._limits.step[0], self._limits.distance[0], -np.inf)
 
     @property
     def upper(self) -> FloatArray:

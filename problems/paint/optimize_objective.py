@@ -4,8 +4,7 @@
 
 with scenarios s of weight p_s (one, unless the coat has to stand errors), thickness T_sk at the
 points k, target T, and the path's residuals r (see `optimize_path`). The Jacobian of the thickness
-exists in pieces of some hundred points only, each of which adds its product to the normal matrix
-and is dropped.
+exists in pieces of some hundred points only (see `Deposition.normal_matrix`).
 """
 
 from __future__ import annotations
@@ -102,16 +101,10 @@ class PaintObjective:
         turns = self._variables.turns(z)
         path = self._path.jacobian(trajectory, turns)
         found: FloatArray = (path.T @ path).toarray()
-        first = 5 * self._variables.waypoints
         for scenario in self._scenarios:
-            for rows in scenario.deposition.jacobian_rows(trajectory, turns):
-                weights = np.sqrt(scenario.weight * self._shares[rows.points])
-                at = (5 * rows.waypoints[:, None] + np.arange(5)).ravel()
-                columns = np.concatenate((at, first + rows.segments))
-                weighted = rows.values * weights[:, None]
-                found[np.ix_(columns, columns)] += weighted.T @ weighted
-        found *= self._units[:, None]
-        found *= self._units
+            weights = scenario.weight * self._shares
+            found += scenario.deposition.normal_matrix(trajectory, turns, weights)
+        found *= np.outer(self._units, self._units)
         return found
 
     # ------------------------------------------------------------------------------ parts

@@ -74,7 +74,7 @@ class OuterLoop:
         rounds: outer iterations, at most.
         iterations: of the SQP solver in each, at most.
         position: the box's half width for positions, m.
-        angle: for the nozzle's two angles, rad.
+        angle: for the nozzle's two angles, rad; as far as ``position`` at the gun's distance.
         duration: for durations, as a share of them; below 1.
         enough: rounds end where the objective falls by less than this share.
     """
@@ -82,7 +82,7 @@ class OuterLoop:
     rounds: int = 5
     iterations: int = 3
     position: float = 0.03
-    angle: float = math.radians(15.0)
+    angle: float = math.radians(7.0)
     duration: float = 0.7
     enough: float = 0.25
 

@@ -93,7 +93,7 @@ class Round:
             return bool(progress is not None and progress(self.number, iteration))
 
         result = solve(
-            self._program(),
+            self.program,
             np.zeros(self.variables.size),
             tolerance=TOLERANCE,
             max_iterations=self.loop.iterations,
@@ -104,7 +104,9 @@ class Round:
         seen.append(self.judged(result.x))
         return result, seen
 
-    def _program(self) -> NLP:
+    @property
+    def program(self) -> NLP:
+        """What the solver is given: the cost over its variables within the box and the limits."""
         box = self._box()
         constraints = self.constraints
         return NLP(

@@ -33,16 +33,16 @@ def reach_notes(
     if thickest < _NEARLY * target:
         return (
             Note(
-                f"at the least speed of {speed[0]:g} m/s the coat is {thickest * 1e6:.3g} µm on "
-                f"average, less than the target of {target * 1e6:.3g} µm: more flow, a second "
+                f"at the least speed of {speed[0]:g} m/s the coat is {thickest * 1e6:.4g} µm on "
+                f"average, less than the target of {target * 1e6:.4g} µm: more flow, a second "
                 "coat, closer sweeps or a lower speed would reach it"
             ),
         )
     if thinnest * _NEARLY > target:
         return (
             Note(
-                f"at the largest speed of {speed[1]:g} m/s the coat is {thinnest * 1e6:.3g} µm on "
-                f"average, more than the target of {target * 1e6:.3g} µm: less flow, wider sweeps "
+                f"at the largest speed of {speed[1]:g} m/s the coat is {thinnest * 1e6:.4g} µm on "
+                f"average, more than the target of {target * 1e6:.4g} µm: less flow, wider sweeps "
                 "or a higher speed would reach it"
             ),
         )

@@ -134,17 +134,6 @@ class PaintTrajectory:
         values = np.broadcast_to(_numbers("flow", flow), (self.segments,))
         return replace(self, flow=values.copy())
 
-    def reversed(self) -> Self:
-        """The same path driven from its end to its start."""
-        return replace(
-            self,
-            position=self.position[::-1],
-            nozzle=self.nozzle[::-1],
-            duration=self.duration[::-1],
-            flow=self.flow[::-1],
-            fan=None if self.fan is None else self.fan[::-1],
-        )
-
     def moved(self, pose: Pose) -> Self:
         """The trajectory in a frame in which its own one stands at ``pose``."""
         matrix = pose.matrix()
@@ -155,50 +144,6 @@ class PaintTrajectory:
             nozzle=_unit(self.nozzle @ rotation.T),
             fan=None if self.fan is None else _unit(self.fan @ rotation.T),
         )
-
-    def followed_by(self, other: PaintTrajectory, duration: float) -> PaintTrajectory:
-        """This trajectory, a segment with the gun off of the given duration (s), and ``other``.
-
-        Raises:
-            InputError: one of them has a fan and the other has none.
-        """
-        if (self.fan is None) != (other.fan is None):
-            raise InputError("one of two coats has a fan's direction and the other has none")
-        fan = None
-        if self.fan is not None and other.fan is not None:
-            fan = np.concatenate((self.fan, other.fan))
-        return PaintTrajectory(
-            np.concatenate((self.position, other.position)),
-            np.concatenate((self.nozzle, other.nozzle)),
-            np.concatenate((self.duration, [duration], other.duration)),
-            np.concatenate((self.flow, [0.0], other.flow)),
-            fan,
-        )
-
-    def subdivided(self, longest: float) -> PaintTrajectory:
-        """The same motion with segments of at most ``longest`` m: they are cut into equal parts.
-
-        Where the nozzle turns along a segment, the parts' directions lie on the same arc.
-        """
-        if not longest > 0.0:
-            raise InputError(f"longest: a length above zero is needed, not {longest!r}")
-        parts = np.maximum(np.ceil(self.lengths / longest * (1.0 - 1e-12)), 1.0).astype(np.int64)
-        index = np.repeat(np.arange(self.segments), parts)
-        first = np.concatenate(([0], np.cumsum(parts)[:-1]))
-        share = (np.arange(len(index)) - first[index]) / parts[index]
-        return PaintTrajectory(
-            _between(self.position, index, share),
-            _unit(_between(self.nozzle, index, share)),
-            (self.duration / parts)[index],
-            self.flow[index],
-            None if self.fan is None else _unit(_between(self.fan, index, share)),
-        )
-
-
-def _between(values: FloatArray, index: NDArray[np.int64], share: FloatArray) -> FloatArray:
-    """Linear interpolation of ``values`` (W, 3) at shares of segments, and the last one."""
-    inner = values[index] + share[:, None] * (values[index + 1] - values[index])
-    return np.concatenate((inner, values[-1:]))
 
 
 def _unit(vectors: FloatArray) -> FloatArray:

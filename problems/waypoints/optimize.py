@@ -205,14 +205,23 @@ class _Optimization:
 
         def improved(program: Program, task: Task, effort: Effort) -> Counted | None:
             try:
-                return self._improved(program, task, effort, scenes, [])
+                found = self._improved(program, task, effort, scenes, [])
             except MotionError:
                 return None
+            return found or self._as_it_is(program, task, scenes)
 
         def selected(counted: Counted) -> Selection:
             return select(counted.run.program, counted.run.path, counted.task, self.freedom)
 
         return change_count(found, improved, selected, self.effort)
+
+    def _as_it_is(self, program: Program, task: Task, scenes: SceneOf) -> Counted | None:
+        """A program in which nothing is left to change, or to better; None if it is not proven."""
+        run = self._driven(program, task)
+        proof = None if run is None else self._proof(run, scenes)
+        if run is None or proof is None or not proof.proven:
+            return None
+        return Counted(run, proof, self._cost(run), task)
 
     def _idle(self, found: Counted, scenes: SceneOf) -> list[Note]:
         """An offer to leave out via points that serve nothing."""

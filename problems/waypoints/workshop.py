@@ -197,7 +197,7 @@ def _proven(shop: Workshop, job: Job) -> Answer:
         answer = replace(answer, certificate=certificate)
         if answer.proven:
             return answer
-        wider = _wider(shop.effort.margin + manner.margin, shop.clearance, certificate)
+        wider = wider_margin(shop.effort.margin + manner.margin, shop.clearance, certificate)
         manner = replace(
             manner, margin=wider - shop.effort.margin, more=_more(manner.more, run, certificate)
         )
@@ -261,7 +261,7 @@ def _more(known: Places | None, run: Run, certificate: Certificate) -> Places | 
     return found if known is None else known.with_more(found)
 
 
-def _wider(margin: float, clearance: float, certificate: Certificate) -> float:
+def wider_margin(margin: float, clearance: float, certificate: Certificate) -> float:
     """The margin to aim at after a proof has failed.
 
     Where the path keeps the clearance and the proof fails all the same, for what smoothing in time

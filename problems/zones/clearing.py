@@ -157,7 +157,7 @@ class Clearing:
         around = self._around(sampled) if paths else along
         travel = moved(self._outlines, centre, around)
         by_sigma = moved(self._outlines, centre, along) if paths else travel
-        wanted = self._wanted + self._both(self._stray(centre))
+        wanted = self._wanted + self._stray(centre)
         needed = wanted + MARGIN * self._both(travel)
         cell, pair = np.nonzero(cells.open)
         distance, normal = self._scene.chosen_distances(q, (cell, pair), needed[cell, pair])
@@ -186,9 +186,13 @@ class Clearing:
         return np.asarray(of_body[:, pairs[:, 0]] + of_body[:, pairs[:, 1]])
 
     def _stray(self, centre: Placed) -> FloatArray:
+        """(C, P) m."""
+        scene = self._scene
         if self._deviation is None:
-            return np.zeros((len(centre.position), len(self._scene.bodies)))
-        return np.asarray(strayed(self._scene.frames, self._outlines, centre, self._deviation))
+            return np.zeros((len(centre.position), len(scene.pairs)))
+        return np.asarray(
+            strayed(scene.frames, self._outlines, scene.pairs, centre, self._deviation)
+        )
 
     def _shortfall(
         self, distance: FloatArray, wanted: FloatArray, pair: IntArray, sigma: FloatArray

@@ -13,7 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ...core.collision.frames import FrameTree, place_frames
-from ...core.collision.outline import Outlines, support
+from ...core.collision.outline import Outlines, lever, support
 from ...core.robot.vectors import load_row, scale
 
 FloatArray = NDArray[np.float64]
@@ -135,30 +135,64 @@ def _gap(outlines: Outlines, at: Placed, m: int, pair: IntArray, normal: FloatAr
 
 @njit(cache=True, error_model="numpy")
 def strayed(
-    tree: FrameTree, outlines: Outlines, centre: Placed, deviation: FloatArray
+    tree: FrameTree, outlines: Outlines, pairs: IntArray, centre: Placed, deviation: FloatArray
 ) -> FloatArray:
-    """How far (C, B) m bodies move at most if joints stray by ``deviation`` (N,), either way.
+    """How much nearer (C, P) m bodies come if joints stray by up to ``deviation`` (N,) either way.
 
-    Joints move one after the other, the one nearest to the world first: each then carries the
-    body round an axis from which it is as far as it was before.
+    Joints that carry both bodies of a pair leave their distance alone, as in the certificate.
     """
     cells, bodies = centre.rotation.shape[0], outlines.frame.size
-    total = np.zeros((cells, bodies))
+    levers = np.zeros((bodies, tree.parent.size))
+    total = np.zeros((cells, len(pairs)))
     for c in range(cells):
-        for j in range(deviation.size):
-            if deviation[j] == 0.0:
-                continue
-            axis = centre.rotation[c, j + 1] @ tree.axis[j + 1]
-            for b in range(bodies):
-                f = outlines.frame[b]
-                if not tree.moves[f, j]:
-                    continue
-                if tree.prismatic[j + 1]:
-                    total[c, b] += deviation[j]
-                    continue
-                arm = centre.rotation[c, f] @ outlines.centre[b]
-                arm += centre.position[c, f] - centre.position[c, j + 1]
-                along = arm @ axis
-                lever = np.sqrt(max(arm @ arm - along * along, 0.0)) + outlines.reach[b]
-                total[c, b] += deviation[j] * lever
+        R, p = centre.rotation[c], centre.position[c]
+        for b in range(bodies):
+            _measure_levers(tree, outlines, b, R, p, deviation, levers[b])
+        for k in range(len(pairs)):
+            a, b = pairs[k, 0], pairs[k, 1]
+            total[c, k] = _nearer(tree, outlines, a, b, deviation, levers)
+            total[c, k] += _nearer(tree, outlines, b, a, deviation, levers)
+    return total
+
+
+@njit(cache=True, error_model="numpy")
+def _measure_levers(
+    tree: FrameTree,
+    outlines: Outlines,
+    b: int,
+    R: FloatArray,
+    p: FloatArray,
+    deviation: FloatArray,
+    levers: FloatArray,
+) -> None:
+    """Write (F,) m, how far a body gets from every axis that carries it; 1 for slides."""
+    own = outlines.frame[b]
+    f, behind = own, 0.0
+    while f > 0:
+        levers[f] = 1.0
+        if not tree.prismatic[f]:
+            # In the body's frame, where its box is kept.
+            axis = R[own].T @ (R[f] @ tree.axis[f])
+            origin = R[own].T @ (p[f] - p[own])
+            s, o = (axis[0], axis[1], axis[2]), (origin[0], origin[1], origin[2])
+            levers[f] = lever(outlines, b, s, o) + behind
+        behind += deviation[f - 1] * levers[f]
+        f = tree.parent[f]
+
+
+@njit(cache=True, error_model="numpy")
+def _nearer(
+    tree: FrameTree,
+    outlines: Outlines,
+    body: int,
+    other: int,
+    deviation: FloatArray,
+    levers: FloatArray,
+) -> float:
+    """m that a body moves at most, seen from the last joint that also carries the other."""
+    f, shared = outlines.frame[body], tree.moves[outlines.frame[other]]
+    total = 0.0
+    while f > 0 and not shared[f - 1]:
+        total += deviation[f - 1] * levers[body, f]
+        f = tree.parent[f]
     return total

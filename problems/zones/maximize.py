@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from ...core.cell.cell import Cell
 from ...core.collision.certificate import SceneOf, certify, scenes_of
-from ...core.collision.strays import smoothing_strays
 from ...core.collision.verdict import Certificate
 from ...core.errors import MotionError
 from ...core.motion.controller import Controller, Run
@@ -32,8 +31,9 @@ from .refusal import check_start
 from .repair import Repair
 from .rules import Rules, passable
 from .search import Asking, Found, Search, Sides
-from .settling import settle
+from .settling import settle, with_zones
 from .sizes import Growth
+from .straying import segment_strays
 from .table import ZoneChange, changes
 
 FloatArray = NDArray[np.float64]
@@ -41,9 +41,8 @@ ReadBack = Callable[[Program], Program]
 """Writes a program and reads what was written."""
 Tell = Callable[[str], None]
 
-_EXCESS = 1.5
-"""On how far smoothing and leads take the joints off the path before zones have grown: with larger
-ones the robot is faster. The certificate that ends every run takes what it is then."""
+_AIM = 1.1
+"""On strays that zones turn out to need, so that it takes few rounds until they have them."""
 _INTERRUPTED = Found(0.0, 0.0, MotionError("the search was interrupted"))
 
 
@@ -111,10 +110,8 @@ class _Maximization:
         before = self._controller.run(program, options.start)
         proof = self._certified(before)
         check_start(self._controller, before, self._scenes, proof, options.residual)
-        trials = Neighbourhoods(self._controller.robot, points.route, self._controller.model)
-        found = self._search(points, trials, before)
+        found, zones = self._grown(points, before)
         self._tell("certifying the new program")
-        zones = settle(points, program, trials, self._rules(points), found, options.rounding)
         repair = Repair(points, program, zones, options.rounding)
         after, certificate = self._proven(repair, (before, proof), read_back)
         return ZoneSolution(
@@ -158,10 +155,34 @@ class _Maximization:
             resolution=RESOLUTION,
         )
 
-    def _search(self, points: Points, trials: Neighbourhoods, run: Run) -> dict[int, Found]:
+    def _grown(self, points: Points, before: Run) -> tuple[dict[int, Found], dict[int, Zone]]:
+        """What was found at each corner, and the zones that come of it.
+
+        They leave room for how far smoothing in time, and leads of elastic joints, take the joints
+        off the path. Larger zones may make that more: then they grow anew, with that much room.
+        """
+        moves = points.route.moves
+        strays = segment_strays(self._controller, before, moves)
+        trials = Neighbourhoods(self._controller.robot, points.route, self._controller.model)
+        while True:
+            found = self._search(points, trials, strays)
+            rules, rounding = self._rules(points), self._options.rounding
+            zones = settle(points, self._program, trials, rules, found, rounding)
+            if _INTERRUPTED in found.values() or not strays.any():
+                return found, zones
+            program = with_zones(self._program, points, zones)
+            run = self._controller.run(program, self._options.start)
+            needed = segment_strays(self._controller, run, moves)
+            if (needed <= strays).all():
+                return found, zones
+            strays = np.where(needed > strays, _AIM * needed, strays)
+
+    def _search(
+        self, points: Points, trials: Neighbourhoods, strays: FloatArray
+    ) -> dict[int, Found]:
         """Every zone for itself."""
         rules = self._rules(points)
-        looks = self._looks(points, run)
+        looks = self._looks(points, strays)
         searches: dict[int, Asking] = {}
         zones: dict[int, ZoneOf] = {}
         for corner, largest in passable(trials, rules, points.growths).items():
@@ -184,18 +205,10 @@ class _Maximization:
             return choose(sides, allowed), by_size.__getitem__
         return Search(sides, largest, self._options.tolerance).run(), growth.zone
 
-    def _looks(self, points: Points, run: Run) -> dict[int, Clearing]:
-        """What the segments are looked at by, those of one scene by one and the same."""
-        deviation = self._deviation(run)
-        known: dict[int, Clearing] = {}
-        looks = {}
-        for segment, index in enumerate(points.route.moves):
-            scene = self._scenes(self._program.moves[index].tool)
-            if id(scene) not in known:
-                known[id(scene)] = Clearing(scene, self._wanted, deviation, self._options.residual)
-            looks[segment] = known[id(scene)]
-        return looks
-
-    def _deviation(self, run: Run) -> FloatArray:
-        """How far (N,) smoothing in time, and leads of elastic joints, take them off the path."""
-        return np.asarray(_EXCESS * smoothing_strays(self._controller, run))
+    def _looks(self, points: Points, strays: FloatArray) -> list[Clearing]:
+        """What each segment is looked at by."""
+        tools = (self._program.moves[index].tool for index in points.route.moves)
+        return [
+            Clearing(self._scenes(tool), self._wanted, stray, self._options.residual)
+            for tool, stray in zip(tools, strays, strict=True)
+        ]

@@ -10,8 +10,10 @@ from typer.testing import CliRunner, Result
 
 from flyby.cli.main import app
 
+from .box_program import CELL
+
 ROOT = Path(__file__).parents[2]
-ROBOT = "abb/irb6640-235-255"
+ROBOT = "abb/irb6640-180-255"
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 MODULE = """MODULE Small
   CONST jointtarget home := [[0,0,0,0,90,0],{unused}];
@@ -44,3 +46,11 @@ def small(tmp_path: Path) -> Callable[..., Path]:
         return path
 
     return write
+
+
+@pytest.fixture
+def cell(tmp_path: Path) -> Path:
+    """The file of the cell with the box."""
+    path = tmp_path / "cell.toml"
+    path.write_text(CELL, "utf-8")
+    return path

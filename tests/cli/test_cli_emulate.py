@@ -15,7 +15,7 @@ from flyby.core.motion.trajectory import Trajectory
 from flyby.core.registry import find_vendor
 
 ROOT = Path(__file__).parents[2]
-ROBOT = "abb/irb6640-235-255"
+ROBOT = "abb/irb6640-180-255"
 SQUARE = ROOT / "examples" / "square.mod"
 
 Flyby = Callable[..., Result]
@@ -36,7 +36,8 @@ def test_the_table_has_a_line_for_every_move(flyby: Flyby) -> None:
 def test_json_is_all_that_stdout_holds(flyby: Flyby) -> None:
     result = flyby("emulate", SQUARE, "--robot", ROBOT, "--json")
     report = json.loads(result.stdout)
-    spent = sum(move["duration_s"] + move["wait_s"] for move in report["moves"])
+    parts = ("duration_s", "wait_s", "settling_s")
+    spent = sum(move[part] for move in report["moves"] for part in parts)
     assert report["cycle_time_s"] == pytest.approx(spent, abs=1e-6)
     warning = report["warnings"][0]
     assert (warning["file"], warning["line"], warning["move"]) == (str(SQUARE), 7, 1)
@@ -161,7 +162,7 @@ def test_an_unreachable_target_names_line_and_move(flyby: Flyby, small: Small) -
         ((), "which robot?"),
         (("--robot", "abb/irb664"), "did you mean"),
         (("--robot", "kuka/kr3-r540"), "is a program for abb"),
-        (("--robot", ROBOT, "--start", "1,2"), "--start: abb/irb6640-235-255 has 6 axes"),
+        (("--robot", ROBOT, "--start", "1,2"), "--start: abb/irb6640-180-255 has 6 axes"),
         (("--robot", ROBOT, "--period", "0"), "--period must be at least 1e-05 s, not 0.0"),
         (("--robot", ROBOT, "--period", "nan"), "--period must be at least"),
         (("--robot", ROBOT, "--entry", "foo"), "foo"),

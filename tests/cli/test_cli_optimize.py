@@ -19,51 +19,16 @@ from flyby.core.motion.controller import Controller
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_robot, find_vendor
 
-CELL = """robot = "abb/irb6640-235-255"
-clearance_mm = 5
-[tool.rod]
-tcp = { xyz_mm = [0, 0, 300] }
-capsule_mm = [50, 300]
-pose = { xyz_mm = [0, 0, 150] }
-[[obstacle]]
-name = "box"
-box_mm = [150, 1200, 830]
-pose = { xyz_mm = [1575, 0, 415] }
-[allow]
-pairs = [["J2", "J4"]]
-"""
-REST = "[9E9,9E9,9E9,9E9,9E9,9E9]"
-POINTS = ((-4.19, 69.06), (-21.07, 62.34), (-4.74, 42.65), (22.3, 18.62), (38.27, 11.47))
-PROGRAM = "\r\n".join(
-    (
-        "MODULE m ! keep me",
-        "  PERS tooldata rod:=[TRUE,[[0,0,300],[1,0,0,0]],[1,[0,0,100],[1,0,0,0],0,0,0]];",
-        "  PERS zonedata zz:=[FALSE,30,45,45,4.5,45,4.5];",
-        *(
-            f"  CONST jointtarget p{k}:=[[0,{a},{b},0,0,0],{REST}];"
-            for k, (a, b) in enumerate(POINTS)
-        ),
-        "  PROC main()",
-        "    MoveAbsJ p0,v1000,fine,rod;",
-        "    MoveAbsJ p1,v1000,z10,rod;",
-        "    MoveAbsJ p2,v1000,zz,rod;",
-        "    MoveAbsJ p3,v500,zz,rod; ! keep this too",
-        "    MoveAbsJ p4,v1000,fine,rod;",
-        "  ENDPROC",
-        "ENDMODULE",
-        "",
-    )
+from .box_program import CELL, POINTS, module
+
+PROGRAM = module(
+    "MoveAbsJ p1,v1000,z10,rod;",
+    "MoveAbsJ p2,v1000,zz,rod;",
+    "MoveAbsJ p3,v500,zz,rod; ! keep this too",
 )
 QUICK = ("--starts", "1", "--generations", "0", "--axes", "2,3")
 
 Flyby = Callable[..., Result]
-
-
-@pytest.fixture
-def cell(tmp_path: Path) -> Path:
-    path = tmp_path / "cell.toml"
-    path.write_text(CELL, "utf-8")
-    return path
 
 
 @pytest.fixture
@@ -74,7 +39,7 @@ def program(tmp_path: Path) -> Path:
 
 
 def duration(path: Path) -> float:
-    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-235-255")
+    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-180-255")
     return Controller(vendor, robot).run(vendor.read_file(path, robot=robot)).duration
 
 
@@ -219,11 +184,57 @@ def test_a_limit_for_all_holds_every_point(
         "optimize", program, "--cell", cell, *QUICK, "--limit", "all=joints:2", "--out", out
     )
     assert result.exit_code == 0, result.output
-    new = Controller(find_vendor("abb"), find_robot("abb/irb6640-235-255"))
+    new = Controller(find_vendor("abb"), find_robot("abb/irb6640-180-255"))
     read = find_vendor("abb").read_file(out / "m.mod", robot=new.robot)
     for move, (a, b) in zip(read.moves, POINTS, strict=True):
         q = [value * 180 / 3.141592653589793 for value in move.target.joints]  # type: ignore[union-attr]
         assert abs(q[1] - a) <= 2.0001 and abs(q[2] - b) <= 2.0001
+
+
+def test_code_for_another_vendor_stands_beside(
+    flyby: Flyby, cell: Path, program: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    words = (*QUICK, "--zones-only", "--vendor", "kuka/kr30-3", "--out", out, "--json")
+    result = flyby("optimize", program, "--cell", cell, *words)
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    names = ["m.mod", "kuka/m.src", "kuka/m.dat"]
+    assert sorted(told["files"]) == sorted(str(out / name) for name in names)
+    said = [note["message"] for note in told["notes"]]
+    assert any("nothing is proven of the program for kuka/kr30-3" in text for text in said)
+    # The other robot stands where the first one does, and puts its tool to the same places.
+    abb, kuka = registry().find_vendor("abb"), registry().find_vendor("kuka")
+    arm = find_robot("kuka/kr30-3")
+    old = abb.read_file(out / "m.mod", robot=find_robot("abb/irb6640-180-255"))
+    new = kuka.read_file(out / "kuka" / "m.src", robot=arm)
+    paths = [
+        Controller(abb, find_robot("abb/irb6640-180-255")).plan(old),
+        Controller(kuka, arm).plan(new),
+    ]
+    places = [path.segments.ends.position[:, 1] for path in paths]
+    assert len(old.moves) == len(new.moves)
+    assert places[0] == pytest.approx(places[1], abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("options", "word"),
+    [
+        (("--vendor", "kuka/kr30-3"), "name a folder by --out"),
+        (("--vendor", "kuka", "--out", "o"), "--vendor kuka: which of its robots? kuka/iiwa"),
+        (("--vendor", "fanuc", "--out", "o"), "fanuc"),
+        (("--vendor", "kuka/iiwa7-r800", "--out", "o"), "no program can be written"),
+        (("--vendor", "kuka/kr3-r540", "--out", "o"), "kuka/kr3-r540 cannot reach"),
+    ],
+)
+def test_what_another_vendor_cannot_have_is_refused_before_work_begins(
+    flyby: Flyby, cell: Path, program: Path, tmp_path: Path, options: tuple[str, ...], word: str
+) -> None:
+    words = [tmp_path / "o" if word == "o" else word for word in options]
+    result = flyby("optimize", program, "--cell", cell, *words)
+    assert result.exit_code == 1
+    assert word in result.stderr.replace("\n", " ")
+    assert not (tmp_path / "o").exists()
 
 
 def test_other_moves_are_no_patch(flyby: Flyby, cell: Path, program: Path) -> None:
@@ -235,22 +246,23 @@ def test_other_moves_are_no_patch(flyby: Flyby, cell: Path, program: Path) -> No
 def test_other_via_points_are_written_beside(
     flyby: Flyby, cell: Path, program: Path, tmp_path: Path
 ) -> None:
-    """With nothing in the way, where the programmed speed of the TCP makes more of them pay."""
+    """With nothing in the way, a via point that may hardly move is better left out."""
     cell.write_text(CELL.split("[[obstacle]]")[0] + CELL[CELL.index("[allow]") :], "utf-8")
     lines = [line for line in PROGRAM.split("\r\n") if " p2," not in line and " p3," not in line]
     program.write_bytes("\r\n".join(lines).encode())
     out = tmp_path / "out"
-    result = flyby("optimize", program, "--cell", cell, *QUICK, "--vias", "change", "--out", out)
+    words = (*QUICK, "--vias", "change", "--limit", "2=joints:1", "--out", out)
+    result = flyby("optimize", program, "--cell", cell, *words)
     assert result.exit_code == 0, result.output
-    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-235-255")
+    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-180-255")
     (file,) = out.iterdir()
     old, new = (vendor.read_file(path, robot=robot) for path in (program, file))
-    assert len(new.moves) > len(old.moves)
+    assert len(new.moves) == len(old.moves) - 1
     assert duration(file) < duration(program)
 
 
 def test_other_moves_are_written_anew(program: Path) -> None:
-    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-235-255")
+    vendor, robot = find_vendor("abb"), find_robot("abb/irb6640-180-255")
     read = vendor.read_file(program, robot=robot)
     fewer = replace(read, statements=(*read.statements[:2], *read.statements[3:]))
     emission = Emission(vendor, robot, read, False)

@@ -64,11 +64,23 @@ def test_program_and_pictures(flyby: Flyby, panel: tuple[Path, Path], tmp_path: 
     assert again.exit_code == 1 and "--force replaces it" in again.output
 
 
+def test_a_language_without_named_tools(flyby: Flyby, panel: tuple[Path, Path], tmp_path: Path):
+    """What is read back has a tool of the language's own name; it is the gun all the same."""
+    out = tmp_path / "out"
+    robot = ("--robot", "ur/ur10e", "--place", "700,0,200,0,0,90", "--speed", "50,200")
+    result = flyby(*words(panel, *robot, "--points", "200", "--unproven", "--out", out, "--json"))
+    told = json.loads(result.stdout)
+    assert told["certificate"] is not None
+    assert told["stages"]["as emulated"]["within_10_percent"] > 0.99
+    assert (out / "paint.script").exists()
+
+
 def test_without_a_robot_there_is_no_program(
     flyby: Flyby, panel: tuple[Path, Path], tmp_path: Path
 ):
     out = tmp_path / "out"
-    result = flyby(*words(panel, "--points", "200", "--out", out))
+    more = ("--coats", "crossed", "--errors", "2,0", "--points", "100", "--sweep", "250")
+    result = flyby(*words(panel, *more, "--out", out))
     assert result.exit_code == 0, result.output
     assert "as emulated" not in result.stdout and "full" in result.stdout
     assert "transfer %" in result.stdout and "paint ml" in result.stdout
@@ -80,6 +92,27 @@ def test_millimetres_taken_for_metres(flyby: Flyby, panel: tuple[Path, Path]):
     result = flyby("paint", part, "--footprint", footprint, "--target", "50um")
     assert result.exit_code == 1
     assert "probably mm, and were taken for m" in result.output
+
+
+def test_a_part_without_triangles(flyby: Flyby, panel: tuple[Path, Path]):
+    part = panel[0].with_name("empty.stl")
+    part.write_text("solid x\nendsolid x\n")
+    result = flyby("paint", part, "--footprint", panel[1], "--target", "50um")
+    assert result.exit_code == 1
+    assert "empty.stl: there are no triangles in it" in result.output.replace("\n", "")
+
+
+def test_a_sheet_on_a_seam_is_told(flyby: Flyby, panel: tuple[Path, Path]):
+    part = panel[0].with_name("fin.ply")
+    mesh = trimesh.load(panel[0])
+    a, b = mesh.faces[7][:2]
+    top = mesh.vertices[[a, b]].mean(axis=0) + np.array((0.0, 0.0, 50.0))
+    vertices = np.concatenate([mesh.vertices, top[None]])
+    faces = np.concatenate([mesh.faces, [[a, b, len(mesh.vertices)]]])
+    trimesh.Trimesh(vertices, faces, process=False).export(part)
+    result = flyby(*words((part, panel[1]), "--points", "200"))
+    assert result.exit_code == 0, result.output
+    assert "fin.ply: the mesh is not manifold: 1 edges" in result.output.replace("\n", " ")
 
 
 def test_gaps_between_sweeps_are_predicted(flyby: Flyby, panel: tuple[Path, Path]):
@@ -121,6 +154,8 @@ def test_what_is_not_proven_is_not_written(flyby: Flyby, panel: tuple[Path, Path
         (("--points", "3"), "a number from 100 on"),
         (("--delay", "30"), "name its switch by --signal"),
         (("--robot", ROBOT), "where does the part stand?"),
+        (("--coats", "two"), "--coats two: one or crossed"),
+        (("--errors", "5"), "height in mm and radius in %"),
         (("--tool", "gun"), "name it by --robot or --cell"),
         (("--robot", "ur/ur10e", "--place", "500,0,100", "--signal", "1"), "no actions at a place"),
     ],

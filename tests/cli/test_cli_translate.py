@@ -12,7 +12,7 @@ from typer.testing import Result
 
 from flyby.core.registry import find_robot, find_vendor
 
-ROBOT = "abb/irb6640-235-255"
+ROBOT = "abb/irb6640-180-255"
 
 Flyby = Callable[..., Result]
 Small = Callable[..., Path]
@@ -48,7 +48,7 @@ def test_files_of_the_new_language_are_written_and_losses_listed(
 
 def test_one_loss_of_many_lines_is_one_row(flyby: Flyby, small: Small) -> None:
     path = small(
-        "AccSet 100,50", *(f"MoveL Offs(p1,{x},0,0), v500, fine, tool0" for x in (50, 100, 150))
+        "AccSet 100,50", *(f"MoveL Offs(p1,{x},0,0), v50, fine, tool0" for x in (50, 100, 150))
     )
     words = ("translate", path, "--robot", "kuka/kr30-3", "--from", ROBOT)
     result = flyby(*words)

@@ -11,62 +11,25 @@ import pytest
 import trimesh
 from typer.testing import Result
 
-from flyby.cli.patching import write_patched
+from flyby.cli.patching import Places
 from flyby.core.collision.verdict import Verdict
 from flyby.core.errors import InputError
 from flyby.core.motion.trajectory import write_whole
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.text import SourceFile
 
-ROBOT = "abb/irb6640-235-255"
-CELL = """robot = "abb/irb6640-235-255"
-clearance_mm = 5
-[tool.rod]
-tcp = { xyz_mm = [0, 0, 300] }
-capsule_mm = [50, 300]
-pose = { xyz_mm = [0, 0, 150] }
-[[obstacle]]
-name = "box"
-box_mm = [150, 1200, 830]
-pose = { xyz_mm = [1575, 0, 415] }
-[allow]
-pairs = [["J2", "J4"]]
-"""
-REST = "[9E9,9E9,9E9,9E9,9E9,9E9]"
-POINTS = ((-4.19, 69.06), (-21.07, 62.34), (-4.74, 42.65), (22.3, 18.62), (38.27, 11.47))
-HEAD = "\r\n".join(
-    (
-        "MODULE m ! keep me",
-        "  PERS tooldata rod:=[TRUE,[[0,0,300],[1,0,0,0]],[1,[0,0,100],[1,0,0,0],0,0,0]];",
-        "  PERS zonedata zz:=[FALSE,30,45,45,4.5,45,4.5];",
-        *(
-            f"  CONST jointtarget p{k}:=[[0,{a},{b},0,0,0],{REST}];"
-            for k, (a, b) in enumerate(POINTS)
-        ),
-        "  PROC main()",
-        "    MoveAbsJ p0,v1000,fine,rod;",
-        "    {moves}",
-        "    MoveAbsJ p4,v1000,fine,rod;",
-        "  ENDPROC",
-        "ENDMODULE",
-        "",
-    )
-)
+from .box_program import CELL, module
+
+ROBOT = "abb/irb6640-180-255"
 MOVES = "MoveAbsJ p1,v1000,z10,rod; MoveAbsJ p2,v1000,zz,rod; MoveAbsJ p3,v1000,zz,rod;"
+IN_PLACE = Places(None, True, [], False)
 
 Flyby = Callable[..., Result]
 
 
-@pytest.fixture
-def cell(tmp_path: Path) -> Path:
-    path = tmp_path / "cell.toml"
-    path.write_text(CELL, "utf-8")
-    return path
-
-
 def _program(folder: Path, moves: str = MOVES) -> Path:
     path = folder / "m.mod"
-    path.write_bytes(HEAD.replace("{moves}", moves).encode())
+    path.write_bytes(module(moves).encode())
     return path
 
 
@@ -218,10 +181,10 @@ def test_an_edit_saved_meanwhile_is_not_lost(tmp_path: Path) -> None:
     new = {str(path): SourceFile(str(path), "new")}
     path.write_bytes(b"edited")
     with pytest.raises(InputError, match="has changed since it was read"):
-        write_patched(new, read, None, True, [], False)
+        IN_PLACE.write(new, read)
     assert path.read_bytes() == b"edited"
     path.write_bytes(b"old")
-    assert write_patched(new, read, None, True, [], False) == [path]
+    assert IN_PLACE.write(new, read) == [path]
     assert path.read_bytes() == b"new"
 
 
@@ -232,7 +195,7 @@ def test_files_that_cannot_be_encoded_leave_the_others_alone(tmp_path: Path) -> 
         Path(name).write_bytes(b"old")
     new = {names[0]: SourceFile(names[0], "new"), names[1]: SourceFile(names[1], "ne中", "cp1252")}
     with pytest.raises(InputError, match="cannot be written"):
-        write_patched(new, read, None, True, [], False)
+        IN_PLACE.write(new, read)
     assert [Path(name).read_bytes() for name in names] == [b"old", b"old"]
 
 

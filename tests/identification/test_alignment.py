@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from flyby.core.errors import InputError
 from flyby.core.program.tool import FLANGE, Tool
 from flyby.core.spatial.pose import Pose
-from flyby.identification.alignment import align
+from flyby.identification.alignment import align, moving_time
 from flyby.identification.belonging import check_limits
 from flyby.identification.logs.cleaning import clean_samples
 from flyby.identification.matching import match
@@ -183,3 +183,15 @@ def test_an_axis_that_counts_otherwise_is_named(run, axis) -> None:
 def test_a_robot_that_stands(run) -> None:
     t = np.arange(0, 2, 0.008)
     assert "no motion" in refused(run, t, np.tile(joints(run, np.zeros(1)), (len(t), 1)))
+
+
+@settings(max_examples=20, deadline=None)
+@given(seed=st.integers(0, 1000))
+def test_noise_at_rest_is_no_motion(seed) -> None:
+    rng = np.random.default_rng(seed)
+    t = np.arange(0, 3, 0.008)
+    q = np.clip(t - 1, 0, 1)[:, None] * np.ones(6)
+    noisy = q + rng.uniform(-3e-5, 3e-5, q.shape)
+    assert moving_time(t, noisy) == pytest.approx(1.0, abs=0.02)
+    with pytest.raises(InputError, match="stays within"):
+        moving_time(t, noisy[:1] + rng.uniform(-3e-5, 3e-5, q.shape))

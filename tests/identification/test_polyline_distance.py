@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flyby.identification.comparison import distance_to_polyline
+from flyby.identification.tcp_path import distance_to_polyline
 
 
 def by_all_pieces(point: np.ndarray, line: np.ndarray) -> float:
@@ -37,3 +37,11 @@ def test_the_nearest_vertex_may_belong_to_another_part() -> None:
 def test_a_line_of_one_point() -> None:
     line = np.zeros((3, 3))
     np.testing.assert_allclose(distance_to_polyline(np.array([[3.0, 4.0, 0.0]]), line), 5.0)
+
+
+def test_standing_still_adds_nothing() -> None:
+    rng = np.random.default_rng(0)
+    line = np.cumsum(rng.normal(size=(10, 3)), axis=0)
+    points = rng.normal(size=(15, 3))
+    held = distance_to_polyline(points, np.repeat(line, 3, axis=0))
+    np.testing.assert_array_equal(held, distance_to_polyline(points, line))

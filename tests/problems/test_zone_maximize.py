@@ -34,6 +34,7 @@ from flyby.problems.zones.options import ZoneOptions
 from flyby.problems.zones.points import Points, find_points, passable_stops
 from flyby.problems.zones.repair import Repair
 from flyby.problems.zones.sizes import GRADED, size_of
+from flyby.problems.zones.straying import segment_strays
 
 SMALL = Radius(0.01, 0.015, 0.015)
 SCENE = two_joints()
@@ -391,6 +392,31 @@ def test_zones_that_the_controller_cuts_to_the_largest_stay_as_they_are():
     made = maximize_zones(CONTROLLER, mixed, _cell())
     assert made.program.moves[1:] == wide.moves[1:]
     assert _sizes(made)[0] == _sizes(_with_ball())[0]
+
+
+@pytest.mark.parametrize("settling", [None, 0.0])
+def test_zones_leave_room_for_what_their_own_smoothing_does(
+    settling: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What the new program's joints stray is no more than what its zones were grown with."""
+    model = replace(CONTROLLER.model, smoothing=(0.08, 0.05), settling=settling)
+    controller = Controller(find_vendor("abb"), SCENE.cell.robot, model)
+    grown: list[np.ndarray] = []
+
+    class Noting(maximize.Clearing):
+        def __init__(self, *given) -> None:
+            super().__init__(*given)
+            grown.append(given[2])
+
+    refused: list[Certificate] = []
+    monkeypatch.setattr(maximize, "Clearing", Noting)
+    monkeypatch.setattr(Repair, "refused", lambda *given: refused.append(given[2]))
+    slow = PROGRAM.with_moves(tuple(replace(move, speed=Speed(tcp=1.0)) for move in PROGRAM.moves))
+    made = maximize_zones(controller, slow, _cell())
+    assert made.proven and made.changed and not refused
+    run = controller.run(made.program)
+    needed = segment_strays(controller, run, run.path.route.moves)
+    assert (needed <= grown[-len(needed) :]).all() and needed.max() > 1e-4
 
 
 def test_without_a_clearance_zones_end_before_contact():

@@ -27,6 +27,7 @@ from flyby.core.spatial.pose import Pose
 from flyby.problems.scenes.solids import made
 from flyby.problems.scenes.two_joints import two_joints
 from flyby.problems.zones.clearing import SLACK, Clearing, Shortfall
+from flyby.problems.zones.displacement import placed, strayed
 from flyby.problems.zones.driving import drive
 from flyby.problems.zones.maximize import maximize_zones
 from flyby.problems.zones.neighbourhood import CornerPath, Neighbourhoods
@@ -262,6 +263,24 @@ def test_straying_joints_and_a_residual_count():
         assert _clearance(scene, _path(trials, 0, found.size)) >= WANTED + residual - SLACK
         sizes.append(found.size)
     assert sizes[0] > sizes[1] > 0 and sizes[0] > sizes[2] > 0
+
+
+@given(st.integers(0, 10**6))
+@settings(max_examples=25, deadline=None)
+def test_no_pair_comes_nearer_by_straying_joints_than_is_reckoned(seed: int) -> None:
+    scene, _ = _passable("joint moves", 0, 0.5)
+    made = np.random.default_rng(seed)
+    q, deviation = made.uniform(-1.0, 1.0, 6), made.uniform(0.0, 0.02, 6)
+    off = q + made.choice([-1.0, 1.0], (20, 6)) * deviation
+    here, there = scene.distances(q[None]).distance[0], scene.distances(off).distance.min(axis=0)
+    centre = placed(scene.frames, q[None])
+    most = strayed(scene.frames, scene.outlines, scene.pairs, centre, deviation)[0]
+    assert (there >= here - most - 1e-6)[here > 0.0].all()
+    # The first joint carries the whole arm, and changes nothing between two of its bodies.
+    alone = np.array([0.01, 0.0, 0.0, 0.0, 0.0, 0.0])
+    most = strayed(scene.frames, scene.outlines, scene.pairs, centre, alone)[0]
+    own = scene.frames.moves[scene.outlines.frame[scene.pairs], 0].all(axis=1)
+    assert own.any() and (most[own] == 0.0).all() and (most[~own] > 0.0).all()
 
 
 @given(st.floats(0.002, 0.2))

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from flyby.core.motion.blend import Blend
-from flyby.core.motion.model import OrientationZone, Overlap
+from flyby.core.motion.model import OrientationZone, Overlap, Pace, TurnLimit
 from flyby.core.registry import find_vendor
 
 ROOT = Path(__file__).parents[2]
@@ -55,6 +55,11 @@ def test_the_vendors_table_states_their_rules() -> None:
             (str(len(model.smoothing)), *(f"{1e3 * w:g}" for w in {*model.smoothing}))
         )
         assert averages.startswith(widths if model.smoothing else "none")
+        superposed = model.pace is Pace.SUPERPOSED
+        assert superposed == ("superposed (fitted)" in cells("legs in a zone")[k])
+        assert cells("limits of turning")[k].startswith(
+            "of swivel and rotation" if model.turn is TurnLimit.SPLIT else "of the whole turn"
+        )
         assert model.jerk is None
 
 

@@ -18,6 +18,9 @@ from .problem import QpSolution, QuadraticProgram
 _SWEEPS = 4
 _FAR_APART = 1e4
 """Ratio of rows' sizes up to which a subproblem stays as it is."""
+_ROUNDING = 1e-14
+"""Share of a column's largest entry below which a row's entry counts as none: what rounding leaves
+of a row that is zero would else be blown up, and its sides with it."""
 
 
 @dataclass(slots=True)
@@ -62,6 +65,9 @@ def units_of(qp: QuadraticProgram) -> Units | None:
     """Units that make rows alike; None where they are already."""
     P, A = np.abs(qp.P.data), np.abs(qp.A.data)
     d, e = np.ones(len(qp.q)), np.ones(len(qp.lower))
+    columns, _ = _largest(qp, P, A, d, e)
+    least = _ROUNDING * columns[qp.A.pattern.columns]
+    A = np.where(least < A, A, 0.0)
     for sweep in range(_SWEEPS):
         columns, rows = _largest(qp, P, A, d, e)
         if sweep == 0 and _alike(np.concatenate([columns, rows])):

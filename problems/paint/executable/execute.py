@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from ....core.collision.certificate import certify, scenes_of
 from ....core.collision.verdict import Certificate
 from ....core.errors import Note
@@ -13,10 +15,11 @@ from ....core.program.program import Program
 from ...solution import scene_notes
 from ..coat import Coat
 from ..deposition import Deposition
-from ..painting import Painting
+from ..painting import Painting, Stage
 from ..trajectory import PaintTrajectory
 from .emulated import Driven, drive
 from .feedback import Execution, Progress, drive_evenly, judged
+from .lag import lag_notes
 from .spin import Posture, choose_posture
 from .station import Station
 from .writing import DriveOptions, with_run_in
@@ -99,10 +102,12 @@ def execute(
     driven = drive(controller, program, made.planned, station)
     finely = Deposition(judge.part.samples, judge.footprint, subpoints=1)
     found = judged(finely, driven, judge.target, judge.visible(made.planned))
-    notes = _told(driven)
+    late = lag_notes(made.planned, np.diff(driven.passed), found, painting.coats[Stage.FULL])
+    notes = (*_told(driven), *late)
     certificate = None
     if prove:
-        cell = station.with_part(judge.part).cell
+        names = {move.tool.name for move in program.moves}
+        cell = station.with_part(judge.part, names).cell
         scenes = scenes_of(cell)
         certificate = certify(controller, driven.run, scenes, cell.clearance, budget=_BUDGET)
         notes = (*scene_notes(scenes, program), *notes)

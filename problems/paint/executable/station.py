@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -95,13 +96,18 @@ class Station:
             return Radius(radius).with_one_distance()
         return Radius(radius, _WIDER * radius, _WIDER * radius)
 
-    def with_part(self, part: Part) -> Station:
-        """The station whose cell knows the gun, and the part as an obstacle."""
+    def with_part(self, part: Part, names: Iterable[str]) -> Station:
+        """The station whose cell knows the gun, and the part as an obstacle.
+
+        Args:
+            part: what is painted.
+            names: of the gun in the program; languages without named tools have one of their own.
+        """
         shape = Mesh(Path(part.name), "m", Triangles(part.vertices, part.faces))
         obstacle = Obstacle(_PART.format(part.name), Geometry(shape, self.place))
         cell = replace(
             self.cell,
             obstacles=(*self.cell.obstacles, obstacle),
-            tools={self.gun.name: self.gun, **self.cell.tools},
+            tools={**self.cell.tools, **{name: replace(self.gun, name=name) for name in names}},
         )
         return replace(self, cell=cell)

@@ -1,9 +1,10 @@
-"""The first curve: sweeps to and fro over the part, turns between them, a second coat across."""
+"""The first curve: sweeps to and fro over the part, turns between, maybe a second coat across."""
 
 from __future__ import annotations
 
+import itertools
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +13,11 @@ from ....core.errors import InputError, Note
 from ..footprint import Footprint
 from ..part import Part
 from ..trajectory import PaintTrajectory
+from .fan import fan_across
 from .guide import Guide
-from .plan import Gun, Method, SweepPlan
+from .plan import Coats, Gun, Method, SweepPlan
 from .projection import Frames, Projector
-from .raster import raster, rectangle_round, view_of
+from .raster import Rectangle, raster, rectangle_round, view_of
 from .remarks import missed_notes, ripple_notes, spacing_notes
 from .sideways import sideways
 from .spacing import Ripple, predicted_ripple
@@ -55,100 +57,104 @@ def initial_curve(part: Part, plan: SweepPlan, footprint: Footprint | None = Non
     Args:
         part: the part.
         plan: the coat wanted.
-        footprint: of the gun, to predict how even the coat gets; None to leave that out.
+        footprint: of the gun, to predict how even the coat gets, and to hold the long axis of an
+            elliptic one across the sweeps; None to leave that out.
 
     Raises:
         InputError: the part cannot be seen as planned, or no sweep meets it.
     """
     guide = Guide(part, plan.holes, view_of(part, plan))
-    rectangle = rectangle_round(part, guide, plan)
-    projector = Projector(guide, plan, rectangle.spray)
-    lines = raster(rectangle, plan)
-    projected = [fit(projector, line, math.inf) for line in lines]
+    first = rectangle_round(part, guide, plan)
+    rectangles = (first,) if plan.coats is Coats.ONE else (first, first.crossed)
+    projector = Projector(guide, plan, first.spray)
+    coats = [_sweeps(part, projector, rectangle) for rectangle in rectangles]
+    driven = [_to_and_fro(coats[0])]
+    for coat in coats[1:]:
+        driven.append(_nearest_begin(coat, driven[-1][-1]))
+    frames, painting, number = _strung(plan, driven)
+    position = frames.point - plan.distance * frames.spray
+    length = np.linalg.norm(np.diff(position, axis=0), axis=1)
+    plain = footprint is None or footprint.aspect == 1.0
+    trajectory = PaintTrajectory(
+        position,
+        frames.spray,
+        np.maximum(length / plan.speed, SHORTEST),
+        painting.astype(float),
+        None if plain else fan_across(frames, number),
+    )
+    ripple = None
+    if footprint is not None and plain:
+        ripple = predicted_ripple(footprint, plan.distance, plan.sweep_width)
+    spacing = [note for coat in coats for note in spacing_notes(part, plan, coat, footprint)]
+    sweeps = [sweep for coat in driven for sweep in coat]
+    notes = (
+        *part.notes,
+        *spacing,
+        *ripple_notes(plan, footprint, ripple),
+        *missed_notes(part, plan, sweeps),
+    )
+    return InitialCurve(trajectory, frames.point, number, tuple(sweeps), ripple, notes)
+
+
+def _sweeps(part: Part, projector: Projector, rectangle: Rectangle) -> list[Sweep]:
+    """The sweeps of one coat, side by side, all in one direction.
+
+    Raises:
+        InputError: none meets the surface.
+    """
+    plan = projector.plan
+    projected = [fit(projector, line, math.inf) for line in raster(rectangle, plan)]
     sweeps = [sweep for sweep in projected if sweep is not None]
     if not sweeps:
         raise InputError(
             f"{part.name}: no sweep meets the surface; check the view, and that the sweep width of "
             f"{plan.sweep_width:g} m and the edge offset of {plan.offset:g} m suit its size"
         )
-    if plan.method is Method.SIDEWAYS:
-        sweeps = sideways(projector, sweeps)
-    driven = [sweep if k % 2 == 0 else sweep.reversed() for k, sweep in enumerate(sweeps)]
-    frames, painting, number = _strung(plan, driven)
-    position = frames.point - plan.distance * frames.spray
-    length = np.linalg.norm(np.diff(position, axis=0), axis=1)
-    trajectory = PaintTrajectory(
-        position,
-        frames.spray,
-        np.maximum(length / plan.speed, SHORTEST),
-        painting.astype(float),
-    )
-    ripple = None
-    if footprint is not None and footprint.aspect == 1.0:
-        ripple = predicted_ripple(footprint, plan.distance, plan.sweep_width)
-    notes = (
-        *part.notes,
-        *spacing_notes(part, plan, sweeps, footprint),
-        *ripple_notes(plan, footprint, ripple),
-        *missed_notes(part, plan, sweeps),
-    )
-    return InitialCurve(trajectory, frames.point, number, tuple(driven), ripple, notes)
+    return sideways(projector, sweeps) if plan.method is Method.SIDEWAYS else sweeps
 
 
-def cross_hatched(
-    part: Part, plan: SweepPlan, footprint: Footprint | None = None, speed: float | None = None
-) -> tuple[InitialCurve, InitialCurve, PaintTrajectory]:
-    """Two coats, the second across the first, and both in one motion with the gun off between.
-
-    Each coat is half as thick as one alone would be at the same speed and flow: plan for twice the
-    speed.
-
-    Args:
-        part, plan, footprint: as in `initial_curve`; the plan's heading is that of the first coat.
-        speed: m/s on the way from one coat to the other; None for the plan's.
-
-    Raises:
-        InputError: as `initial_curve`.
-    """
-    rectangle = rectangle_round(part, Guide(part, plan.holes, view_of(part, plan)), plan)
-    headings = (_as_direction(rectangle.along), _as_direction(rectangle.across))
-    one, two = (initial_curve(part, replace(plan, heading=h), footprint) for h in headings)
-    ends = (two.trajectory, two.trajectory.reversed())
-    here = one.trajectory.position[-1]
-    second = min(ends, key=lambda t: float(np.linalg.norm(t.position[0] - here)))
-    way = float(np.linalg.norm(second.position[0] - here))
-    duration = max(way / (speed or plan.speed), SHORTEST)
-    return one, two, one.trajectory.followed_by(second, duration)
+def _to_and_fro(sweeps: list[Sweep]) -> list[Sweep]:
+    """Every second sweep driven back."""
+    return [sweep if k % 2 == 0 else sweep.reversed() for k, sweep in enumerate(sweeps)]
 
 
-def _as_direction(vector: FloatArray) -> tuple[float, float, float]:
-    x, y, z = (float(v) for v in vector)
-    return x, y, z
+def _nearest_begin(sweeps: list[Sweep], last: Sweep) -> list[Sweep]:
+    """The sweeps to and fro, from that of their four corners that is nearest to a sweep's end."""
+    back = [sweep.reversed() for sweep in sweeps]
+    ways = [_to_and_fro(side[::order]) for side in (sweeps, back) for order in (1, -1)]
+    here = last.frames.point[-1]
+    return min(ways, key=lambda way: float(np.linalg.norm(way[0].frames.point[0] - here)))
 
 
-def _strung(plan: SweepPlan, sweeps: list[Sweep]) -> tuple[Frames, BoolArray, NDArray[np.int64]]:
+def _strung(
+    plan: SweepPlan, coats: list[list[Sweep]]
+) -> tuple[Frames, BoolArray, NDArray[np.int64]]:
     """Sweeps with turns between: waypoints, whether segments are painted, sweeps' numbers."""
-    pieces, flags, numbers = [], [], []
-    for k, sweep in enumerate(sweeps):
-        if k > 0:
-            turn = _turn(plan, sweeps[k - 1], sweep)
-            pieces.append(turn)
-            flags.append(np.full(len(turn.point) + 1, plan.turns is Gun.ON))
-            numbers.append(np.full(len(turn.point), -1))
-        pieces.append(sweep.frames)
-        over = sweep.feasible[1:] & sweep.feasible[:-1]
-        flags.append(over | (plan.gaps is Gun.ON))
-        numbers.append(np.full(len(sweep.feasible), k))
+    pieces: list[Frames] = []
+    flags: list[BoolArray] = []
+    numbers: list[NDArray[np.int64]] = []
+    number = itertools.count()
+    for coat in coats:
+        for k, sweep in enumerate(coat):
+            if pieces:
+                turn = _turn(plan, pieces[-1], sweep.frames)
+                flags.append(np.full(len(turn.point) + 1, plan.turns is Gun.ON and k > 0))
+                pieces.append(turn)
+                numbers.append(np.full(len(turn.point), -1))
+            pieces.append(sweep.frames)
+            over = sweep.feasible[1:] & sweep.feasible[:-1]
+            flags.append(over | (plan.gaps is Gun.ON))
+            numbers.append(np.full(len(sweep.feasible), next(number)))
     frames = Frames(*(np.concatenate(values) for values in zip(*pieces, strict=True)))
     return frames, np.concatenate(flags), np.concatenate(numbers)
 
 
-def _turn(plan: SweepPlan, one: Sweep, two: Sweep) -> Frames:
+def _turn(plan: SweepPlan, one: Frames, two: Frames) -> Frames:
     """Waypoints straight from the end of a sweep to the start of the next, without both.
 
     Neither the gun nor its place on the surface moves by more than a longest segment between them.
     """
-    start, end = one.frames.at([-1]), two.frames.at([0])
+    start, end = one.at([-1]), two.at([0])
     way = end.point - start.point
     gun = way - plan.distance * (end.spray - start.spray)
     gap = max(float(np.linalg.norm(way)), float(np.linalg.norm(gun)))

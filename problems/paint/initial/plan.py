@@ -31,9 +31,17 @@ class Gun(StrEnum):
     OFF = "off"
 
 
+class Coats(StrEnum):
+    """How many coats of sweeps."""
+
+    ONE = "one"
+    CROSSED = "crossed"
+    """Two, the second at right angles to the first, the gun off on the way between them."""
+
+
 @dataclass(frozen=True)
 class SweepPlan:
-    """A coat of sweeps.
+    """Sweeps over a part.
 
     Args:
         sweep_width: m between neighbouring sweeps, w_sweep of the paper.
@@ -52,7 +60,8 @@ class SweepPlan:
         view: direction in which the gun looks at the part, the normal of the paper's plane P; None
             for against the mean normal of what is painted.
         heading: direction of the sweeps, seen along the view; None for the longer side of the
-            smallest rectangle round the part.
+            smallest rectangle round the part. Crossed coats begin with it.
+        coats: one, or two at right angles; each of two lays half of the paint, at twice the speed.
         turns: whether the gun paints between sweeps.
         gaps: whether it paints where a sweep crosses what is no surface: wider than the overhang.
 
@@ -71,6 +80,7 @@ class SweepPlan:
     method: Method = Method.SIDEWAYS
     view: Direction | None = None
     heading: Direction | None = None
+    coats: Coats = Coats.ONE
     turns: Gun = Gun.ON
     gaps: Gun = Gun.ON
 

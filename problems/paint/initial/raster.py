@@ -40,6 +40,13 @@ class Rectangle(NamedTuple):
     length: float
     width: float
 
+    @property
+    def crossed(self) -> Rectangle:
+        """The same rectangle for sweeps at right angles."""
+        return self._replace(
+            along=self.across, across=-self.along, length=self.width, width=self.length
+        )
+
 
 def rectangle_round(part: Part, guide: Guide, plan: SweepPlan) -> Rectangle:
     """The rectangle that what is painted projects into.

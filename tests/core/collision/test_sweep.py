@@ -12,6 +12,7 @@ from flyby.core.cell.geometry import Geometry
 from flyby.core.collision.boxes import Boxes
 from flyby.core.collision.items import Items, Sweeps
 from flyby.core.collision.scene import CollisionScene
+from flyby.core.collision.strays import Strays, stretches
 from flyby.core.collision.sweep import sweep
 from flyby.core.program.tool import Tool
 from flyby.core.robot.shape import Box, Capsule, Sphere
@@ -68,8 +69,15 @@ def boxed(q: FloatArray, rate: FloatArray, bend: FloatArray) -> Boxes:
 def asked(
     scene: CollisionScene, boxes: Boxes, items: Items, astray: FloatArray, residual: float = 0.0
 ) -> Sweeps:
-    found = Sweeps(*(np.empty(len(items.pair)) for _ in range(3)))
-    sweep(scene.frames, scene.outlines, scene.pairs, boxes, astray, residual, items, found)
+    return asked_within(scene, boxes, items, Strays.within(astray), residual)
+
+
+def asked_within(
+    scene: CollisionScene, boxes: Boxes, items: Items, strays: Strays, residual: float = 0.0
+) -> Sweeps:
+    found = Sweeps(*(np.empty(len(items.pair)) for _ in Sweeps._fields))
+    here = stretches(strays, np.zeros(1), np.zeros(1))
+    sweep(scene.frames, scene.outlines, scene.pairs, boxes, strays, here, residual, items, found)
     return found
 
 
@@ -114,6 +122,35 @@ def test_strays_take_off_what_joints_off_the_path_can_do(data, name) -> None:
     found = asked(scene, boxed(q, rate, bend), items, astray)
     apart = least > 0.0
     assert (found.lower[apart] <= least[apart] + 1e-9).all()
+
+
+@settings(max_examples=60)
+@given(st.data(), st.sampled_from(sorted(SCENES)))
+def test_strays_along_ways_take_off_what_they_can_do(data, name) -> None:
+    """Each joint off the path along two ways, by shares of its own, and by what is left."""
+    scene = SCENES[name]
+    size = scene.robot.size
+    q, rate, bend = data.draw(motions(size))
+    rng = np.random.default_rng(data.draw(st.integers(0, 10**6)))
+    ways = data.draw(st.sampled_from([0.02, 0.002])) * rng.normal(size=(2, size))
+    share = np.stack([-rng.uniform(0, 1, 2), rng.uniform(0, 1, 2)], -1)
+    share[0, 0] *= rng.integers(0, 2)
+    rest = rng.uniform(0, 1e-3, size)
+    most = rest + np.abs(share).max(axis=1) @ np.abs(ways)
+    strays = Strays(np.array([-1.0, 1.0]), ways[None], share[None], rest[None], most[None])
+    factor = np.where(rng.integers(0, 2, (len(T), 2)), share[:, 0], share[:, 1])
+    off = factor @ ways + rng.choice([-1.0, 1.0], (len(T), size)) * rest
+    q_off = q + np.outer(T, rate) + 0.5 * np.outer(T**2, bend) + off
+    least = scene.distances(q_off).distance.min(axis=0)
+    at_middle = scene.distances(q[None])
+    pairs = np.arange(len(scene.pairs))
+    items = Items(np.zeros(len(pairs), np.int64), pairs, at_middle.normal[0], at_middle.distance[0])
+    found = asked_within(scene, boxed(q, rate, bend), items, strays)
+    apart = least > 0.0
+    assert (found.lower[apart] <= least[apart] + 1e-9).all()
+    boxes = asked(scene, boxed(q, rate, bend), items, most)
+    assert (found.lower >= boxes.lower - 1e-12).all()
+    assert (found.stray <= boxes.stray + 1e-12).all()
 
 
 def test_a_plane_is_second_order_near_a_grazing_contact() -> None:

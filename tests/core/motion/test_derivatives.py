@@ -15,7 +15,7 @@ from flyby.core.errors import InputError
 from flyby.core.motion.blend import Blend
 from flyby.core.motion.controller import Controller
 from flyby.core.motion.derivatives import Derivatives, ProgramGradient
-from flyby.core.motion.model import MotionModel
+from flyby.core.motion.model import MotionModel, Pace, TurnLimit
 from flyby.core.motion.torque import Borne, Torque
 from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
@@ -114,6 +114,21 @@ MODELS = {
         VENDOR.motion(), tcp=SMOOTHSTEP, joint=SMOOTHSTEP, orientation=SMOOTHSTEP
     ),
     "arc": replace(VENDOR.motion(), tcp=Blend(kind="arc")),
+    "superposed": replace(
+        VENDOR.motion(),
+        pace=Pace.SUPERPOSED,
+        turn=TurnLimit.SPLIT,
+        tcp_acceleration=2.0,
+        reorientation_acceleration=0.9,
+    ),
+    "superposed arcs": replace(
+        VENDOR.motion(),
+        tcp=Blend(kind="arc"),
+        pace=Pace.SUPERPOSED,
+        centripetal=1.2,
+        tcp_acceleration=2.0,
+        reorientation_acceleration=3.0,
+    ),
     "torque": replace(
         VENDOR.motion(),
         torque=Torque(

@@ -37,7 +37,17 @@ def ends(seed) -> Ends:
     position = rng.normal(size=(count, 2, 3))
     q, prescribed = rng.normal(size=(count, 2, 6)), rng.normal(size=(count, 2, 2))
     via_rotation = matrix_from_rotation_vector(rng.normal(size=(count, 3)))
-    return Ends(KIND, q, position, rotation, prescribed, via, via_rotation, FOLLOWS)
+    return Ends(
+        KIND,
+        q,
+        position,
+        rotation,
+        prescribed,
+        via,
+        via_rotation,
+        FOLLOWS,
+        *rng.uniform(0.1, 2.0, (2, count)),
+    )
 
 
 @settings(max_examples=40, deadline=None)
@@ -85,6 +95,7 @@ def test_a_tool_that_follows_the_arc_turns_at_a_constant_rate_relative_to_the_ta
         np.array([[np.sqrt(0.5), np.sqrt(0.5), 0.0]]),
         np.eye(3)[None],
         np.array([True]),
+        *np.ones((2, 1)),
     )
     s = make_segments(e)
     np.testing.assert_allclose(s.turn_a[0], [0, 0, np.pi / 2], atol=1e-12)
@@ -107,6 +118,7 @@ def test_the_auxiliary_point_tells_which_way_the_tool_turns_round_a_half_circle(
             np.array([[0.0, 1.0, 0.0]]),
             middle[None],
             np.array([True]),
+            *np.ones((2, 1)),
         )
         s = make_segments(e)
         turns.append(s.turn_a[0, 2] + s.turn_b[0, 2])

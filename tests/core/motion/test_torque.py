@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError, MotionError
-from flyby.core.motion.attainable import attainable_accelerations
+from flyby.core.motion.allowed import Allowed
 from flyby.core.motion.binding import interval_limits
 from flyby.core.motion.model import MotionModel, load_motion_model
 from flyby.core.motion.torque import Borne, Shares, Torque
@@ -124,28 +124,34 @@ def test_torques_that_joints_do_not_have_leave_the_others_their_accelerations(ab
     assert share[:3].max() > 1.1
 
 
+def most_allowed(timing) -> np.ndarray:
+    """(N,), what joints' accelerations do not exceed within a path's limits."""
+    allowed = Allowed.of(timing)
+    return allowed.greatest(allowed.accelerations, np.abs).max(axis=0)
+
+
 @settings(max_examples=6, deadline=None)
 @given(share=st.floats(0.1, 1.0))
-def test_no_acceleration_passes_what_is_attainable(abb, share) -> None:
+def test_no_acceleration_passes_what_is_allowed(abb, share) -> None:
     """Driven as stamped, or slower."""
     controller = abb.controller(MotionModel(torque=MOTORS))
     driven = program(abb)
     timing = controller.stamp(driven, controller.plan(driven))
-    most = attainable_accelerations(timing)
-    assert np.isfinite(most).all() and (most > 0).all()
+    most = most_allowed(timing)
     slower = program(abb, joint_fraction=share)
-    run = controller.run(slower, period=5e-4)
-    ddq = run.timing.states_at(run.trajectory.t)[2]
-    assert (np.abs(ddq).max(axis=0) <= 1.02 * most).all()
-    assert (np.abs(timing.states_at(np.linspace(0, 1, 500))[2]).max(axis=0) <= 1.02 * most).all()
+    for made in (timing, controller.run(slower).timing):
+        ddq = made.states_at(np.linspace(0.0, made.duration, 3000))[2]
+        assert (np.abs(ddq).max(axis=0) <= most * (1 + 1e-6) + 1e-9).all()
 
 
-def test_without_torque_the_limits_are_attainable(abb) -> None:
+def test_without_torque_no_more_is_allowed_than_the_limits(abb) -> None:
     controller = abb.controller(MotionModel())
     driven = program(abb)
     timing = controller.stamp(driven, controller.plan(driven))
-    most = attainable_accelerations(timing)
-    np.testing.assert_array_equal(most, timing.limits.acceleration[:, :6].max(axis=0))
+    # Between samples limits hold but for how q'' changes there.
+    most = timing.limits.acceleration[:, :6].max(axis=0)
+    assert (most_allowed(timing) <= 1.02 * most).all()
+    assert (most_allowed(timing) / most).max() >= 1.0
 
 
 def test_an_arm_too_weak_for_its_weight_is_refused(abb) -> None:

@@ -92,6 +92,28 @@ def test_a_diagonal_over_eight_decades_is_solved_exactly() -> None:
         np.testing.assert_allclose(found.d, -98.0 / P.data, rtol=1e-9)
 
 
+@pytest.mark.parametrize("noise", [0.0, 1e-31, 1e-16])
+def test_what_rounding_leaves_of_a_row_is_not_blown_up(noise: float) -> None:
+    """A circle's row at its centre; blown up, its side would lie at 1e16 and farther."""
+    root = np.random.default_rng(1).normal(size=(130, 110))
+    rows = np.zeros((2, 110))
+    rows[0], rows[1, :2] = 1.0, noise
+    n = np.ones(110)
+    qp = QuadraticProgram(
+        from_scipy(sparse.csc_array(root.T @ root)),
+        root.sum(axis=0),
+        from_scipy(sparse.csc_array(rows)),
+        np.array([-1.0, -np.inf]),
+        np.array([1e-5, 1.0]),
+        -n,
+        n,
+    )
+    units = units_of(qp)
+    assert units is None or units.rows[1] == 1.0
+    for kind in ("dense_interior_point", "clarabel"):
+        assert Subproblems(make_backends(kind, False)).solve(qp).status is QpStatus.SOLVED
+
+
 class _Claims:
     """A back end that claims a status, whatever it is asked."""
 

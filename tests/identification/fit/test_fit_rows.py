@@ -10,14 +10,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.motion.controller import Controller, stamped_motion
+from flyby.core.motion.controller import Controller
+from flyby.core.motion.ramped import stamped_motion
 from flyby.identification.fit.crew import Crew
 from flyby.identification.fit.emulation import Nuisance, RunEmulator, commanded
 from flyby.identification.fit.loss import curvature, influence, loss, square_root
 from flyby.identification.fit.parameters import ParameterSet
-from flyby.identification.fit.problem import Problem, Variables
+from flyby.identification.fit.problem import Problem, Variables, first_nuisances
 from flyby.identification.fit.runs import prepare
-from flyby.identification.fit.selection import candidates, compare_models, folds, grouped
+from flyby.identification.fit.selection import candidates, compare_models, grouped
 from flyby.identification.fit.zone_sizes import alike, guess, resized
 from flyby.identification.logs import clean
 from flyby.identification.logs.synthetic import SOUND, Faults
@@ -147,7 +148,6 @@ def test_runs_are_grouped_by_what_they_share() -> None:
     assert grouped(runs, "zone") == [(0, 2), (1,)]
     assert grouped(runs, "speed") == [(0, 1), (2,)]
     assert grouped(runs, "run") == [(0,), (1,), (2,)]
-    assert folds(runs, 2) == [(0, 2), (1,)]
     with pytest.raises(InputError, match="same moves"):
         grouped(runs, "moves")
     with pytest.raises(InputError, match="not by 'colour'"):
@@ -160,7 +160,9 @@ def test_a_figure_that_explains_the_logs_earns_its_place() -> None:
     ]
     base = replace(TRUTH, tcp=START.tcp)
     named = ParameterSet.named(base, ["blend.tcp.beta[0] = -0.4", "elasticity.own_s2[0]"])
-    both, without_beta, without_own = compare_models(runs, candidates(named), grouped(runs, "zone"))
+    both, without_beta, without_own = compare_models(
+        runs, first_nuisances(runs), candidates(named), grouped(runs, "zone")
+    )
     assert both.count == 2 and without_beta.count == without_own.count == 1
     # Corners that bulge are seen by runs of other zones; the lead was right before.
     assert without_beta.mean > 5 * both.mean and without_beta.gain < -2 * without_beta.error

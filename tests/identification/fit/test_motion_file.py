@@ -37,7 +37,8 @@ def test_the_file_holds_the_model(fitted: Fit, tmp_path: Path) -> None:
     assert made.settling == START.settling
     for figure in ("blend.tcp.beta", "time.smoothing_s", "elasticity.carried"):
         origin = made.provenance[figure]
-        assert origin.status == "fitted" and origin.source == 'flyby identify "x"\n'
+        assert origin.status == "fitted" and origin.source == "1 logged run"
+        assert origin.details["command"] == 'flyby identify "x"\n'
         assert origin.details["runs"] == 1
         assert len(origin.details["interval"]) == len(origin.details["fitted"])
     assert "time.settling_s" not in made.provenance

@@ -22,6 +22,7 @@ from flyby.problems.optimal_control import (
     Effort,
     Objective,
     SchemeKind,
+    SquaredTorque,
     Step,
     Surroundings,
     Task,
@@ -33,6 +34,8 @@ from flyby.problems.scenes.two_joints import two_joints
 
 from .control_tasks import ARM, END, START, TORQUE, arm_task, cart, pendulum
 
+WEAK = (1e4, 5500.0, 2600.0, 1e3, 1e3, 1e3)
+"""N m, some more than what holds the arm."""
 WALL = 0.02
 """m, thinner than the way between two nodes."""
 
@@ -105,6 +108,20 @@ def test_two_joints_round_a_box() -> None:
     assert tip[:, 2].max() > 0.75 and np.abs(tip[:, 1]).max() < 1e-9
 
 
+def test_two_joints_round_a_box_with_weak_drives() -> None:
+    scene = two_joints()
+    program = scene.programs[0]
+    targets = [program.start, *(move.target for move in program.moves)]
+    q = [np.array(target.joints) for target in targets]  # type: ignore[union-attr]
+    around = Surroundings(CollisionScene(scene.cell, scene.tool), scene.cell.clearance)
+    limits = ControlLimits(torque=WEAK)
+    task = Task(scene.cell.robot, q[0], q[-1], joints=scene.free, tcp=scene.tool.tcp, limits=limits)
+    found = optimize(task, around, Effort(intervals=20, trials=0), vias=[np.array(q[1:-1])])
+    assert found.converged and found.proven and 1.14 < found.time < 0.5 * found.first.duration
+    used = np.abs(found.torque(np.linspace(0.0, found.time, 4001))) / found.limits.torque
+    assert 0.999 < used.max() <= 1.001
+
+
 def test_refused_stations() -> None:
     around = gantry()
     with pytest.raises(MotionError, match=r"the start collides: .*wall"):
@@ -114,7 +131,32 @@ def test_refused_stations() -> None:
     with pytest.raises(InputError, match=r"the end cannot be reached: joint Y at 3500 mm"):
         optimize(replace(across(around), end=[1.0, 3.5]), around)
     with pytest.raises(MotionError, match="path to begin with"):
-        optimize(across(around), around)
+        optimize(across(around), around, vias=[[]])
+
+
+def test_a_path_is_planned_where_none_is_given() -> None:
+    pytest.importorskip("ompl")
+    around = gantry()
+    found = optimize(across(around), around, Effort(intervals=12, trials=0))
+    assert found.proven and found.motion.at(found.motion.knots)[:, 1].max() > 0.5
+    beside = replace(across(around), end=[-0.5, 0.3])
+    assert optimize(beside, around, Effort(intervals=12)).first.leg.max() == 0
+    with pytest.raises(MotionError, match="joint Y is to stand still: give corners"):
+        optimize(replace(across(around), joints=(0,)), around)
+
+
+@pytest.mark.parametrize(
+    ("vias", "message"),
+    [
+        ([], "corners of 0 legs were given; there are 1"),
+        ([[[0.0, 1.0, 2.0]]], r"corners of leg 1 have shape \(1, 3\); a row has the 2 axes"),
+        ([[[0.0, np.nan]]], "corners of leg 1 are not finite"),
+    ],
+)
+def test_bad_corners(vias: list[list[list[float]]], message: str) -> None:
+    around = gantry()
+    with pytest.raises(InputError, match=message):
+        optimize(across(around), around, vias=vias)
 
 
 def test_torque_limits_that_cannot_hold_the_arm() -> None:
@@ -145,12 +187,32 @@ def test_missing_inertias() -> None:
         ({"limits": ControlLimits(acceleration=[np.inf])}, "joint X has neither"),
         ({"limits": ControlLimits(velocity=[-1.0])}, "joint X: the velocity limit must be"),
         ({"waypoints": (Waypoint([99.0]),)}, "waypoint 1 cannot be reached: joint X"),
+        ({"objective": Objective(0.5, SquaredTorque((1.0, 2.0)))}, "figures of 2 joints; 1 joints"),
+        ({"limits": ControlLimits(torque=[np.nan])}, "joint X: the torque limit must be"),
+        ({"limits": ControlLimits(tcp_speed=np.nan)}, "TCP's speed limit must be positive"),
     ],
 )
 def test_bad_tasks(change: dict[str, object], message: str) -> None:
     given: dict[str, object] = {"robot": cart(), "start": [0.0], "end": [3.0], **change}
     with pytest.raises(InputError, match=message):
         optimize(Task(**given))  # type: ignore[arg-type]
+
+
+def test_a_time_that_is_too_short_is_refused() -> None:
+    """At full acceleration it takes 2 √3 s."""
+    task = Task(cart(), [0.0], [3.0], objective=Objective(longest=3.4))
+    with pytest.raises(MotionError, match=r"takes 3.4 s at most was found"):
+        optimize(task, effort=Effort(intervals=12))
+
+
+def test_bad_settings() -> None:
+    for wrong in (np.nan, -0.001):
+        with pytest.raises(InputError, match="clearance is zero or more metres"):
+            Surroundings(gantry().scene, wrong)
+    with pytest.raises(InputError, match=r"intervals is a whole number, one or more, not 2.5"):
+        Effort(intervals=2.5)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r"trials is from 0 to 16, not 17"):
+        Effort(trials=17)
 
 
 def test_a_joint_that_may_not_move_cannot_be_asked_to() -> None:

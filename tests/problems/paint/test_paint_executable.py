@@ -17,10 +17,11 @@ from flyby.core.program.move import MoveJ
 from flyby.core.program.tool import WORLD, Tool, WorkObject
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
-from flyby.problems.paint.coat import coat
+from flyby.problems.paint.coat import Coat, coat
 from flyby.problems.paint.executable.emulated import Driven, drive
 from flyby.problems.paint.executable.feedback import drive_evenly
 from flyby.problems.paint.executable.frames import gun_frames, turned
+from flyby.problems.paint.executable.lag import lag_notes
 from flyby.problems.paint.executable.spin import Posture, choose_posture
 from flyby.problems.paint.executable.station import Station
 from flyby.problems.paint.executable.writing import DriveOptions, paint_program, with_run_in
@@ -158,7 +159,9 @@ def test_other_vendors_programs_drive_alike(vendor: str, robot: str):
 
 def assert_near(driven: Driven, planned: PaintTrajectory, zone: float) -> None:
     """The driven TCP stays within a zone's size of the planned path."""
-    path = planned.subdivided(1e-3).position
+    along = np.concatenate(([0.0], np.cumsum(planned.lengths)))
+    places = np.arange(0.0, along[-1], 1e-3)
+    path = np.stack([np.interp(places, along, axis) for axis in planned.position.T], axis=1)
     gaps = np.linalg.norm(driven.trajectory.position[:, None] - path[None], axis=2).min(axis=1)
     assert gaps.max() < zone
 
@@ -231,3 +234,19 @@ def test_zones_are_the_vendors_own_where_there_are_any():
     assert station().zone(0.023).name is None
     assert station().zone(0.023).reorientation == pytest.approx(0.0345)
     assert math.isclose(station(vendor="ur", robot="ur/ur10e").zone(0.02).reorientation, 0.02)
+
+
+def test_a_robot_that_does_not_keep_up_is_told_with_the_stretch() -> None:
+    position = np.stack([0.1 * np.arange(6), np.zeros(6), np.full(6, 0.25)], axis=1)
+    planned = PaintTrajectory.at_speed(position, np.tile((0.0, 0.0, -1.0), (6, 1)), 0.5)
+    took = planned.duration * (1.0, 1.02, 2.0, 1.5, 1.0)
+    even, uneven = (
+        Coat(np.array((50e-6 - off, 50e-6 + off)), np.ones(2), 50e-6, 1e-4, 1.0)
+        for off in (1e-7, 2e-6)
+    )
+    assert lag_notes(planned, took, even, even) == ()
+    (note,) = lag_notes(planned, took, uneven, even)
+    assert "2.00 µm against 0.10 µm" in note.message
+    assert "1.8 times as long as programmed on the stretch from waypoint 3 to 5" in note.message
+    (note,) = lag_notes(planned, planned.duration, uneven, even)
+    assert "smaller zones" in note.message

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,8 +17,8 @@ from flyby.core.spatial.rotation import matrix_from_rotation_vector
 from flyby.problems.paint.deposition import Deposition
 from flyby.problems.paint.fender import ARCH_RADIUS, fender
 from flyby.problems.paint.footprint import ring
-from flyby.problems.paint.initial.curve import InitialCurve, cross_hatched, initial_curve
-from flyby.problems.paint.initial.plan import Gun, Method, SweepPlan
+from flyby.problems.paint.initial.curve import InitialCurve, initial_curve
+from flyby.problems.paint.initial.plan import Coats, Gun, Method, SweepPlan
 from flyby.problems.paint.initial.spacing import predicted_ripple, spacings
 from flyby.problems.paint.part import Part
 from flyby.problems.paint.surfaces import grid_faces, plate, saddle, sloped, wavy
@@ -185,13 +186,36 @@ def test_the_gun_is_off_in_turns_and_over_gaps_on_request() -> None:
     assert crossing.trajectory.painting[np.abs(middle) > 0.25].all()
 
 
-def test_cross_hatching_is_two_coats_at_right_angles() -> None:
+def test_crossed_coats_are_two_at_right_angles() -> None:
+    """And the gun is off on the way from one to the other, which is short."""
+    plan = SweepPlan(0.2, heading=X, coats=Coats.CROSSED)
+    one = initial_curve(plate(11), replace(plan, coats=Coats.ONE))
+    both = initial_curve(plate(11), plan)
+    keeps_its_promises(both, plan)
+    assert len(both.sweeps) == 2 * len(one.sweeps) == both.sweep.max() + 1
+    ways = [
+        np.diff(both.base[both.sweep == k], axis=0).sum(axis=0) for k in range(both.sweep.max() + 1)
+    ]
+    first, second = ways[: len(one.sweeps)], ways[len(one.sweeps) :]
+    assert np.abs(np.array(first) @ np.transpose(second)).max() < 1e-6
+    way = ~both.trajectory.painting
+    assert way.any() and (np.diff(np.flatnonzero(way)) == 1).all()
+    assert both.trajectory.lengths[way].sum() < 0.3
+    assert len(way) == 2 * one.trajectory.segments + way.sum()
+
+
+def test_a_fan_is_held_across_the_sweeps() -> None:
+    """On every sweep to the same side: the gun is not turned round."""
+    footprint = replace(ring(0.25), aspect=2.0)
     plan = SweepPlan(0.2, heading=X)
-    one, two, both = cross_hatched(plate(11), plan)
-    ways = [np.diff(coat.base[coat.sweep == 0], axis=0).sum(axis=0) for coat in (one, two)]
-    assert abs(ways[0] @ ways[1]) < 1e-6
-    assert both.segments == one.trajectory.segments + two.trajectory.segments + 1
-    assert (~both.painting).sum() == 1
+    assert initial_curve(plate(11), plan, ring(0.25)).trajectory.fan is None
+    for part in (plate(11), saddle(1.0, 11)):
+        curve = initial_curve(part, plan, footprint)
+        fan = curve.trajectory.fan
+        assert fan is not None
+        assert np.abs(np.einsum("ij,ij->i", fan, curve.trajectory.nozzle)).max() < 1e-9
+        assert (np.einsum("ij,ij->i", fan[1:], fan[:-1]) > 0.9).all()
+        assert np.abs(fan[:, 1]).min() > 0.8
 
 
 def test_wide_sweeps_are_warned_of_with_their_ripple() -> None:

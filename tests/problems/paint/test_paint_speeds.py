@@ -95,7 +95,7 @@ def test_targets_out_of_reach_are_named():
     (thin,) = best_speeds(deposition, trajectory, 2 * TARGET, *limits).notes
     assert "at the least speed of 0.2 m/s the coat is 62.5 µm on average" in str(thin)
     (thick,) = best_speeds(deposition, trajectory, 0.5 * TARGET, *limits).notes
-    assert "at the largest speed of 0.3 m/s the coat is 41.7 µm on average" in str(thick)
+    assert "at the largest speed of 0.3 m/s the coat is 41.67 µm on average" in str(thick)
 
 
 def test_refusals():

@@ -16,15 +16,6 @@ from .paint_cases import wandering
 SEEDS = st.integers(0, 10_000)
 
 
-@given(SEEDS, st.booleans())
-def test_reversing_twice_changes_nothing(seed, fan):
-    trajectory = wandering(6, seed, fan)
-    again = trajectory.reversed().reversed()
-    for name in ("position", "nozzle", "duration", "flow"):
-        assert np.array_equal(getattr(again, name), getattr(trajectory, name))
-    assert (again.fan is None) is not fan
-
-
 @given(SEEDS)
 def test_moving_keeps_lengths_and_angles(seed):
     trajectory = wandering(6, seed)
@@ -36,21 +27,6 @@ def test_moving_keeps_lengths_and_angles(seed):
     assert np.allclose(moved.nozzle @ moved.nozzle.T, trajectory.nozzle @ trajectory.nozzle.T)
 
 
-@given(SEEDS, st.floats(0.02, 0.5))
-def test_subdividing_keeps_the_motion(seed, longest):
-    trajectory = wandering(6, seed, True)
-    parts = trajectory.subdivided(longest)
-    assert parts.lengths.max() <= longest * (1 + 1e-9)
-    assert parts.total_duration == pytest.approx(trajectory.total_duration)
-    assert parts.total_length == pytest.approx(trajectory.total_length)
-    for axis in range(3):
-        there = np.interp(trajectory.times, parts.times, parts.position[:, axis])
-        assert np.allclose(there, trajectory.position[:, axis])
-    assert float(parts.duration @ parts.flow) == pytest.approx(
-        float(trajectory.duration @ trajectory.flow)
-    )
-
-
 def test_speed_gives_durations():
     trajectory = PaintTrajectory.at_speed(
         [[0, 0, 0], [1, 0, 0], [1, 2, 0]], [[0, 0, -1.0]] * 3, 0.5
@@ -58,14 +34,6 @@ def test_speed_gives_durations():
     assert np.allclose(trajectory.duration, (2.0, 4.0))
     assert np.allclose(trajectory.speeds, 0.5)
     assert trajectory.times[-1] == trajectory.total_duration == 6.0
-
-
-def test_coats_follow_each_other_with_the_gun_off():
-    first, second = wandering(4, 1), wandering(5, 2)
-    both = first.followed_by(second, 1.5)
-    assert both.segments == first.segments + second.segments + 1
-    assert not both.painting[first.segments]
-    assert both.total_duration == pytest.approx(first.total_duration + second.total_duration + 1.5)
 
 
 def test_values_cannot_be_changed():
@@ -103,8 +71,3 @@ def test_speed_needs_lengths():
         PaintTrajectory.at_speed([[0, 0, 0], [0, 0, 0]], UP, 1.0)
     with pytest.raises(InputError, match="above zero"):
         PaintTrajectory.at_speed(ENDS, UP, 0.0)
-
-
-def test_coats_with_and_without_fan_do_not_mix():
-    with pytest.raises(InputError, match="fan"):
-        wandering(4, 1).followed_by(wandering(4, 1, True), 1.0)

@@ -1,0 +1,200 @@
+"""How far averages over time take a motion off its path, whatever its speed.
+
+A motion passes the place ℓ_c at the middle of the average's kernel k, and gets within τ seconds no
+further than τ along Θ (`course`). Let Λ be its place as k weighs it, and λ = E Λ. Then (Peano)
+
+    E q(Λ) − q(λ) = ∫ G(ν) dq'(ν),    0 ≤ G(ν) ≤ min(E(Λ − ν)⁺, E(ν − Λ)⁺):
+
+a straight path is not left, and from others all that counts is how they turn where Λ may be, stops
+included. Ahead of ℓ_c, with S(c) = P(τ > c) and v the greatest ℓ̇,
+
+    E(Λ − ν)⁺ ≤ ∫ v S(Θ − Θ_c) dΘ    from ν on,    ∫ S = κ(c) = E(τ − c)⁺,
+
+and likewise behind. **A ramp** is an average of the way λ(ℓ) over T: by Jensen's inequality its
+place is no further ahead on average than k ∗ box(T) has it, but for the change of dλ/dℓ.
+
+The averaged motion's **velocity and acceleration** are means of what the path's intervals allow
+where it may be. A ramp changes them by −∫ k' D and ∫ k'' D, D = ∫ G dp being how far a mean of
+joints over T is from the joints of the mean place, p = dq/dλ. For the longest averages k' w₁ is
+±1 times what the others make of two instants, and k'' w₁ w₂ of four, half of them with plus: as
+G ≥ 0, D counts no more than once by w₁, and twice by w₁ w₂.
+
+At a rest in which joints turn, the first half of it counts as what was before, the other as what
+comes. How far E Λ may be beyond the place of the rest then is added to how far joints are off.
+
+κ of a cascade of moving averages w is a sum of powers (−c ± w₁/2 ± w₂/2 …)₊ⁿ⁺¹.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .allowed import Allowed
+from .averaging_kernels import (
+    Cells,
+    Offsets,
+    bound_accelerations,
+    bound_means,
+    bound_offsets,
+    bound_ramp,
+    bound_veer,
+    greatest_between,
+)
+from .course import Course
+from .smoothing import Smoothing
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+class Rates(NamedTuple):
+    """How averages move the joints, at each of C cells of a course.
+
+    Args:
+        speed, push: (C,), greatest mean of |ℓ̇| and |ℓ̈|.
+        veer: (C, N), bounds of the velocity but for that along the path.
+        ramped: (C, N), bounds of what a ramp does to the acceleration.
+    """
+
+    speed: FloatArray
+    push: FloatArray
+    veer: FloatArray
+    ramped: FloatArray
+
+
+class Averages:
+    """Bounds of what averages make of motions on a path.
+
+    Args:
+        course: of the path.
+        smoothing: what is done to the joints in time.
+        ramp: s, what the place is averaged over before.
+    """
+
+    def __init__(self, course: Course, smoothing: Smoothing, ramp: float) -> None:
+        self._course, self._ramp = course, ramp
+        self._widths = sorted(smoothing.widths)
+        self._all = np.array([*self._widths, ramp] if ramp > 0.0 else self._widths)
+        self._half = 0.5 * float(self._all.sum())
+        self._fast = course.speed * course.way[:, 1]
+        self._cells = Cells(
+            course.theta,
+            course.place,
+            self._fast,
+            course.way[:, 0],
+            course.tangent,
+            course.turn,
+            course.uneven,
+            course.moves,
+            course.parts,
+        )
+        count = len(course.moves)
+        self._first, self._last = np.full(count, count), np.full(count, -1)
+
+    def offsets(self) -> Offsets:
+        """How far they take joints off the path."""
+        count, size = self._course.turn.shape
+        made = Offsets(np.zeros((count, size)), np.zeros((count, 2)), np.zeros((count, size)))
+        bound_offsets(self._cells, self._all, self._half, made, self._first, self._last)
+        return made
+
+    def rates(self, start: float, more: float) -> Rates:
+        """How they move the joints; `offsets` come before.
+
+        Args:
+            start: s, over which time comes up to speed.
+            more: by which accelerations may be greater then.
+        """
+        course, least = self._course, self._course.way[:, 0]
+        p = (np.abs(course.turn) + course.uneven) / least[:, None]
+        p += np.abs(course.tangent) * (course.bent * np.diff(course.place) / least**2)[:, None]
+        off = self._of_ramp(p)
+        speed = self.mean(course.speed[:, None], 0.0)[:, 0]
+        push = more * self.mean(course.push[:, None], start)[:, 0]
+        veer = np.zeros_like(course.turn)
+        bound_veer(
+            self._cells,
+            course.speed,
+            self._all,
+            self._half,
+            self._first,
+            self._last,
+            veer,
+        )
+        if not off.any():
+            return Rates(speed, push, veer, off)
+        # Four instants that count as much, and two.
+        *_, second, first = (0.0, 0.0, *self._widths)
+        ramped = 2.0 * off / (first * second) if second > 0.0 else np.full_like(off, np.inf)
+        veer += off / first if first > 0.0 else np.inf
+        return Rates(speed, push, veer, ramped)
+
+    def accelerations(
+        self, allowed: Allowed, matrix: FloatArray, about: FloatArray, start: float, more: float
+    ) -> FloatArray:
+        """(C, N), bounds of |A (q̈ − d ℓ̈)|, ramps left out.
+
+        Args:
+            allowed: what the path's limits allow.
+            matrix: (C, N, N), A.
+            about: (C, N), d.
+            start, more: as in `rates`.
+        """
+        out = np.zeros_like(about)
+        ddq = allowed.accelerations
+        bound_accelerations(
+            self._cells,
+            self._course.interval,
+            self._all,
+            self._half,
+            start,
+            self._first,
+            self._last,
+            ddq.push,
+            ddq.left,
+            ddq.right,
+            allowed.corners,
+            allowed.count,
+            matrix,
+            about,
+            out,
+        )
+        return more * out
+
+    def mean(self, values: FloatArray, start: float) -> FloatArray:
+        """(C, D), the greatest means of values (C, D) ≥ 0 that the averages can make of them."""
+        out = np.zeros_like(values)
+        bound_means(
+            self._cells.theta,
+            self._all,
+            self._half,
+            start,
+            self._first,
+            self._last,
+            values,
+            out,
+        )
+        return out
+
+    def _of_ramp(self, turned: FloatArray) -> FloatArray:
+        """(C, N), how far means of joints over a ramp are from those of the mean place."""
+        off = np.zeros_like(turned)
+        if self._ramp > 0.0:
+            bound_ramp(self._cells, np.array([self._ramp]), 0.5 * self._ramp, turned, off)
+        reach = self._half + 0.5 * self._ramp
+        return np.asarray(np.stack([near(self._course, values, reach) for values in off.T], -1))
+
+
+def near(course: Course, values: FloatArray, away: float) -> FloatArray:
+    """(C,), the greatest of values (C,) on cells that are within ``away`` s by Θ."""
+    return np.asarray(greatest_between(values, *_within(course, away)))
+
+
+def _within(course: Course, away: float) -> tuple[IntArray, IntArray]:
+    """(C,) each, the first cell within ``away`` s, and the one behind the last."""
+    theta = course.theta
+    first = np.searchsorted(theta[1:], theta[:-1] - away)
+    return first, np.searchsorted(theta[:-1], theta[1:] + away, "right")

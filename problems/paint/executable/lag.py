@@ -1,0 +1,53 @@
+"""Where a robot does not keep up with the speeds that a coat needs."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....core.errors import Note
+from ..coat import Coat
+from ..trajectory import PaintTrajectory
+from .stretch import Stretch, describe
+
+FloatArray = NDArray[np.float64]
+
+LESS_EVEN = 0.01
+"""Standard deviation, as a share of the target, by which a coat may be worse without a word."""
+LATE = 1.1
+"""Ratio of driven and programmed time from which on a segment counts as late."""
+
+
+def lag_notes(
+    planned: PaintTrajectory, took: FloatArray, coat: Coat, wanted: Coat
+) -> tuple[Note, ...]:
+    """Why a coat is less even as emulated than as planned.
+
+    Args:
+        planned: as programmed.
+        took: (S,) s that its segments take as emulated.
+        coat: as emulated.
+        wanted: as planned.
+    """
+    worse = coat.by_area.std - wanted.by_area.std
+    if worse <= LESS_EVEN * coat.target:
+        return ()
+    head = (
+        f"as emulated the coat is less even than planned: standard deviation "
+        f"{1e6 * coat.by_area.std:.2f} µm against {1e6 * wanted.by_area.std:.2f} µm"
+    )
+    late = np.flatnonzero(took > LATE * planned.duration)
+    if len(late) == 0:
+        return (Note(f"{head}; smaller zones follow the curve more closely"),)
+    ends = np.flatnonzero(np.diff(late) > 1)
+    runs = np.split(late, ends + 1)
+    worst = max(runs, key=lambda run: float((took - planned.duration)[run].sum()))
+    ratio = float(took[worst].sum() / planned.duration[worst].sum())
+    stretch = Stretch(int(worst[0]), int(worst[-1]) + 1)
+    return (
+        Note(
+            f"{head}; the robot takes {ratio:.2g} times as long as programmed on "
+            f"{describe(planned, stretch)}: a lower largest speed, larger zones or another place "
+            "of the part let it keep up"
+        ),
+    )

@@ -1,0 +1,123 @@
+"""Bounds of how far commanded joints are off a path, against motions driven at many speeds."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import Phase, assume, given, settings
+from hypothesis import strategies as st
+
+from flyby.core.collision.strays import Strays, strays_of, stretches
+from flyby.core.errors import MotionError
+from flyby.core.motion.controller import Controller, Run
+from flyby.core.motion.elasticity import Carried, Elasticity
+from flyby.core.motion.model import MotionModel
+from flyby.core.motion.torque import Borne, Torque
+from flyby.core.program.move import MoveJ, MoveL
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.target import JointTarget, PoseTarget
+from flyby.core.program.zone import FINE, Radius
+from flyby.core.registry import find_robot, find_vendor
+from flyby.core.spatial.pose import Pose
+
+ROBOT = find_robot("abb/irb6640-180-255")
+ABB = find_vendor("abb")
+HOME = np.array([0.1, 0.2, 0.3, 0.2, 0.9, 0.1])
+GEARS = Elasticity(
+    (0.0, 1e-4, 5e-5),
+    (Carried(3, (3e-5, 7e-5)), Carried(5, (1e-4, 5e-5, -2e-5))),
+    slack=(9e-5, 1e-5),
+)
+WEAK = Torque((0.03, 0.05, 0.09), (Borne(5, (0.03, 0.03)),), fade=(0.2, 0.1))
+SPEED = Speed(tcp=2.0, reorientation=6.0)
+DIRECTIONS = np.concatenate([np.eye(6), np.random.default_rng(3).normal(size=(20, 6))])
+DIRECTIONS = np.concatenate([DIRECTIONS, -DIRECTIONS])
+PLACES = 3_000
+
+MODELS = {
+    "one average": MotionModel(smoothing=(0.06,)),
+    "cascade": MotionModel(smoothing=(0.04, 0.04, 0.03)),
+    "short settling": MotionModel(smoothing=(0.05, 0.05), settling=0.02),
+    "ramp": MotionModel(smoothing=(0.04, 0.04), ramp=0.04),
+    "ramp, short settling": MotionModel(smoothing=(0.05, 0.04), ramp=0.05, settling=0.03),
+    "elastic": MotionModel(smoothing=(0.04, 0.03), elasticity=GEARS),
+    "elastic, unsmoothed": MotionModel(elasticity=GEARS),
+    "elastic, weak": MotionModel(smoothing=(0.03, 0.03), elasticity=GEARS, torque=WEAK),
+    "elastic, ramp": MotionModel(smoothing=(0.04, 0.04), ramp=0.03, elasticity=GEARS),
+    "elastic, slow start": MotionModel(smoothing=(0.04,), elasticity=GEARS, start_ramp=0.1),
+    "lag": MotionModel(smoothing=(0.03,), elasticity=Elasticity(lag=(1e-3, 0.0, -2e-3))),
+    "fitted": ABB.motion_of(ROBOT),
+}
+
+
+@st.composite
+def programs(draw) -> Program:
+    """Joint moves and lines round small and wide corners, with and without stops."""
+    tcp = ROBOT.flange_pose(HOME)
+    changes, zones = st.floats(-0.35, 0.35), st.sampled_from([FINE, Radius(0.01), Radius(0.08)])
+    moves: list[MoveJ | MoveL] = []
+    for _ in range(draw(st.integers(2, 3))):
+        if draw(st.booleans()):
+            q = HOME + [draw(changes) for _ in range(6)]
+            moves.append(MoveJ(JointTarget(tuple(map(float, q))), SPEED, zone=draw(zones)))
+        else:
+            place = np.array(tcp.position) + [draw(changes) for _ in range(3)]
+            target = PoseTarget(Pose(tuple(map(float, place)), tcp.quaternion))
+            moves.append(MoveL(target, SPEED, zone=draw(zones)))
+    moves[-1] = replace(moves[-1], zone=FINE)
+    return Program(tuple(moves), start=JointTarget(tuple(map(float, HOME))))
+
+
+def at_speed(program: Program, share: float) -> Program:
+    speed = Speed(tcp=2.0 * share, reorientation=6.0 * share, joint_fraction=share)
+    return program.with_moves(tuple(replace(move, speed=speed) for move in program.moves))
+
+
+def places(run: Run) -> tuple[np.ndarray, np.ndarray]:
+    """Configurations and σ all along a path; stops count once."""
+    t = np.linspace(0.0, run.timing.end[-1], PLACES)
+    q, _, _, sigma = run.timing.states_at(t)
+    moving = np.concatenate([[True], np.diff(sigma) > 0.0])
+    return q[moving], sigma[moving]
+
+
+def excess(strays: Strays, path_q: np.ndarray, sigma: np.ndarray, run: Run) -> float:
+    """By how much (rad) commanded joints are beyond the bounds at the best place on the path.
+
+    In every direction n, n · (commanded − path) is at most what the ways and the rest allow.
+    """
+    step = np.abs(np.diff(path_q, axis=0, append=path_q[-1:]) @ DIRECTIONS.T)
+    row = stretches(strays, sigma, sigma).own
+    along = np.einsum("cwn,dn->cdw", strays.ways[row], DIRECTIONS)
+    bound = np.maximum(along * strays.share[row][:, None, :, 1], 0.0)
+    bound = np.maximum(bound, along * strays.share[row][:, None, :, 0]).sum(axis=2)
+    bound += strays.rest[row] @ np.abs(DIRECTIONS).T + step
+    made = run.trajectory
+    worst = -np.inf
+    for q, middle in zip(made.q, made.sigma, strict=True):
+        near = slice(*np.searchsorted(sigma, [middle - 0.15, middle + 0.15]))
+        signed = (q - path_q[near]) @ DIRECTIONS.T - bound[near]
+        assert signed.size
+        worst = max(worst, float(signed.max(axis=1).min()))
+    return worst
+
+
+@pytest.mark.parametrize("name", sorted(MODELS))
+@settings(max_examples=1, deadline=None, phases=[Phase.reuse, Phase.generate])
+@given(data=st.data())
+def test_no_motion_at_any_speed_strays_further_than_is_reckoned(name, data) -> None:
+    program = data.draw(programs())
+    controller = Controller(ABB, ROBOT, MODELS[name])
+    share = data.draw(st.floats(0.1, 0.9))
+    try:
+        run = controller.run(at_speed(program, 1.0), period=0.03)
+        slower = controller.run(at_speed(program, share), period=0.03)
+    except MotionError:
+        assume(False)
+    strays = strays_of(controller, run)
+    path_q, sigma = places(run)
+    for driven in (run, slower):
+        assert excess(strays, path_q, sigma, driven) < 2e-6
