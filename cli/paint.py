@@ -13,11 +13,13 @@ from .console import print_json, progress, warn
 from .options import AsJson, Force, MotionFile, RobotName
 from .outputs import check_folder, check_outputs, writing
 from .paint_options import (
+    check_signals,
     direction_of,
     drive_of,
     errors_of,
     limits_of,
     plan_of,
+    region_of,
     station_of,
     target_of,
 )
@@ -51,6 +53,16 @@ def paint(
     view: Annotated[
         str | None,
         typer.Option(help="Direction in which the gun looks at the part, such as 0,0,-1."),
+    ] = None,
+    facing: Annotated[
+        float | None,
+        typer.Option(help="Paint only what faces the gun to within so many degrees."),
+    ] = None,
+    inside: Annotated[
+        str | None, typer.Option(help="Paint only what lies in a box: x,y,z,x,y,z in mm.")
+    ] = None,
+    covered: Annotated[
+        str | None, typer.Option(help="Leave out what lies in a box: x,y,z,x,y,z in mm.")
     ] = None,
     sweep: Annotated[float | None, typer.Option(help="Sweep width, mm.")] = None,
     distance: Annotated[
@@ -114,6 +126,8 @@ def paint(
     wanted = target_of(target)
     drive = drive_of(zone, run, signal, flow, delay)
     station = station_of(robot, cell, motion, tool, frame, place)
+    if station is not None:
+        check_signals(drive, station)
     with progress("reading the part") as say:
         from ..problems.paint.footprint_file import load_footprint
         from ..problems.paint.loading import load_part
@@ -138,6 +152,7 @@ def paint(
         if points < 100:
             raise InputError(f"--points {points}: a number from 100 on")
         shape = _sized(load_part, part, units, direction_of(view, "--view"), FINEST * gun.radius)
+        shape = region_of(shape, plan, facing=facing, inside=inside, covered=covered)
         wishes = Wishes(wanted, plan, limits, errors=errors_of(errors), points=points, seed=seed)
         painting = find(shape, gun, wishes, say, _teller(say))
         made = None

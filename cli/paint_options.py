@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from ..problems.paint.footprint import Footprint
     from ..problems.paint.initial.plan import SweepPlan
     from ..problems.paint.optimize_options import PaintLimits
+    from ..problems.paint.part import Part
     from ..problems.paint.robust import PaintErrors
 
 Choice = TypeVar("Choice", bound=StrEnum)
@@ -137,6 +138,60 @@ def limits_of(distance: float, speed: str, tilt: float, deviation: float) -> Pai
     )
 
 
+def region_of(
+    part: Part,
+    plan: SweepPlan,
+    *,
+    facing: float | None,
+    inside: str | None,
+    covered: str | None,
+) -> Part:
+    """The part with what is to be painted narrowed down.
+
+    Args:
+        part: whose painted triangles are chosen from.
+        plan: for the direction in which the gun looks.
+        facing: degrees by which normals may be off the direction to the gun; None for all.
+        inside, covered: two opposite corners of a box, ``x,y,z,x,y,z`` in mm: what is painted lies
+            in the first and not in the second; None for no box.
+
+    Raises:
+        InputError: naming the option.
+    """
+    from ..problems.paint.initial.raster import view_of
+    from ..problems.paint.region import facing as facing_triangles
+    from ..problems.paint.region import within_box
+
+    triangles = part.vertices, part.faces
+    chosen = part.painted_faces
+    if facing is not None:
+        if not 0.0 < facing <= 180.0:
+            raise InputError(f"--facing {facing:g}: degrees from 0 to 180")
+        to_gun = -view_of(part, plan)
+        chosen &= facing_triangles(*triangles, to_gun, math.radians(facing))
+    if inside is not None:
+        chosen &= within_box(*triangles, *_corners(inside, "--inside"))
+    if covered is not None:
+        chosen &= ~within_box(*triangles, *_corners(covered, "--covered"))
+    if (chosen == part.painted_faces).all():
+        return part
+    if not chosen.any():
+        raise InputError(
+            f"{part.name}: --facing, --inside and --covered leave nothing of it to paint"
+        )
+    return part.with_painted(chosen)
+
+
+def _corners(text: str, option: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Least and largest coordinates of a box, m."""
+    found = values.numbers(text, option)
+    if len(found) != 6:
+        raise InputError(f"{option} {text}: two corners of a box in mm, x,y,z,x,y,z")
+    sides = [sorted((1e-3 * a, 1e-3 * b)) for a, b in zip(found[:3], found[3:], strict=True)]
+    low, high = zip(*sides, strict=True)
+    return low, high
+
+
 def errors_of(text: str | None) -> PaintErrors:
     """``--errors height,radius`` in mm and per cent; none if it was not given.
 
@@ -233,3 +288,15 @@ def drive_of(
         raise InputError("--flow and --delay are of the gun's signals: name its switch by --signal")
     signals = None if signal is None else GunSignals(signal, flow, delay=1e-3 * delay)
     return DriveOptions(1e-3 * zone, 1e-3 * run_in, signals)
+
+
+def check_signals(drive: DriveOptions, station: Station) -> None:
+    """Refuse signals that the robot's language cannot send, before anything is worked out.
+
+    Raises:
+        InputError: as `gun.output_words`.
+    """
+    from ..problems.paint.gun import output_words
+
+    if drive.signals is not None:
+        output_words(drive.signals, station.vendor)

@@ -181,12 +181,10 @@ def _spans(run: Run) -> _Spans:
     segments = np.arange(len(run.path.route.moves))
     first = np.searchsorted(timing.interval_segments, segments)
     last = np.searchsorted(timing.interval_segments, segments, side="right") - 1
-    entered = timing.start.driven(timing.begin[first])
-    duration = timing.start.driven(timing.end[last]) - entered
-    begin = np.concatenate([entered[:1], entered[1:] + timing.lag])
-    left = np.concatenate([begin[1:], [run.duration]])
-    settling = left - begin - duration - run.path.route.dwell[1:]
-    return _Spans(begin, duration, np.round(settling, _PICOSECONDS) + 0.0)
+    entered, left = (timing.start.driven(t) for t in (timing.begin[first], timing.end[last]))
+    duration = left - entered
+    settling = timing.settled_durations() - duration
+    return _Spans(timing.begins(), duration, np.round(settling, _PICOSECONDS) + 0.0)
 
 
 def _zone(move: Move, reach: tuple[float, float]) -> ZoneReport:

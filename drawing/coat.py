@@ -97,7 +97,7 @@ def draw_curve(surface: Painted, curve: Curve, title: str, kind: str) -> bytes:
         _grey_surface(axes, surface)
         ways = np.stack([curve.position[:-1], curve.position[1:]], axis=1)
         lines = Line3DCollection(ways[curve.painting], cmap="viridis", linewidths=2.0, zorder=5)
-        lines.set_array(1e3 * curve.speed[curve.painting])
+        lines.set_array(np.round(1e3 * curve.speed[curve.painting], 2))
         axes.add_collection3d(lines)
         if not curve.painting.all():
             off = Line3DCollection(ways[~curve.painting], colors=NOMINAL, linewidths=1.0, zorder=5)

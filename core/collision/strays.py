@@ -1,7 +1,7 @@
 """How far smoothing in time and elastic joints take a motion off its path, place by place.
 
 See `motion.averaging` for the first and `motion.lead_bound` for the second. The bounds hold for all
-motions within the path's limits, so at every override.
+motions within the path's limits, so at every override that stays as it is.
 """
 
 from __future__ import annotations
@@ -26,6 +26,8 @@ _CELLS = 40
 """Cells within what averages reach."""
 _STEP = 2e-3
 """s of a cell where there are no averages."""
+_FEWEST = 2
+"""Averages after a ramp that bound the joints' accelerations."""
 
 
 class Strays(NamedTuple):
@@ -91,7 +93,7 @@ def _greatest(most: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
 
 
 def strays_of(controller: Controller, run: Run) -> Strays:
-    """How far the commanded joints of a run may be from its path, at every override."""
+    """How far the commanded joints of a run may be from its path, at every steady override."""
     smoothing = controller.smoothing(run.program, run.path)
     elasticity, timing = controller.model.elasticity, run.timing
     if not smoothing.widths and elasticity == RIGID:
@@ -100,6 +102,10 @@ def strays_of(controller: Controller, run: Run) -> Strays:
     step = reach / _CELLS if reach > 0.0 else _STEP
     allowed = Allowed.of(timing)
     course = Course.of(timing, allowed, step, max(reach, step))
+    few = elasticity != RIGID and len(smoothing.widths) < _FEWEST
+    if timing.ramp > 0.0 and (few or (course.way[:, 0] <= 0.0).any()):
+        # No bound is known: where what a ramp averages may stand still, it tells no place.
+        return Strays.within(np.full(run.path.q.shape[1], np.inf))
     averages = Averages(course, smoothing, timing.ramp)
     offsets = averages.offsets()
     ways, share, rest = offsets.axis[:, None], offsets.along[:, None], offsets.aside

@@ -154,7 +154,8 @@ class _Search:
         unknown, known = items.chosen(~verified), items.chosen(verified)
         found = self._swept(intervals, known)
         left = self._left(found)
-        wide = found.motion > _WIDE
+        # Where it is not known how far joints stray, halving tells no more.
+        wide = (found.motion > _WIDE) & np.isfinite(found.stray)
         near = left & ~wide
         asked = self._measured(intervals, known.chosen(near), Sweeps(*(a[near] for a in found)))
         again = self._swept(intervals, asked)
@@ -170,7 +171,8 @@ class _Search:
 
     def _left(self, found: Sweeps) -> NDArray[np.bool_]:
         """Which items are still open; the others count as proven."""
-        left = found.lower < self._goal
+        # What is not a number is not proven.
+        left = ~(found.lower >= self._goal)
         least = float(found.lower[~left].min(initial=math.inf))
         self._prover.proven = min(self._prover.proven, least)
         return np.asarray(left)
@@ -182,7 +184,8 @@ class _Search:
         prover = self._prover
         which, rows = np.unique(items.interval, return_inverse=True)
         q = intervals.boxes.q[which]
-        within = np.maximum(self._goal + found.motion, 0.0) + 2 * ROUNDING
+        motion = np.nan_to_num(found.motion, nan=math.inf, posinf=math.inf)
+        within = np.maximum(self._goal + motion, 0.0) + 2 * ROUNDING
         distance, normal = prover.scene.chosen_distances(q, (rows, items.pair), within)
         prover.budget.take(len(items.pair))
         met = np.flatnonzero(distance < within)
@@ -215,8 +218,8 @@ class _Search:
         distance = items.distance + ROUNDING
         too_near = near & (distance < self._wanted)
         # On a wide interval the levers of the strays are not known well.
-        located = travel < _LOCATED
-        strayed = near & located & (distance - found.stray < self._wanted)
+        located = (travel < _LOCATED) | ~np.isfinite(found.stray)
+        strayed = near & located & ~(distance - found.stray >= self._wanted)
         self._note(intervals, items, too_near, Cause.NEAR)
         self._note(intervals, items, strayed & ~too_near, Cause.STRAY)
         self._note(intervals, items, stalled & ~strayed, Cause.STALLED)

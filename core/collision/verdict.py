@@ -19,6 +19,8 @@ from .subdivision import Prover
 CONTACT = 2e-6
 """m that bodies keep at least, even where no clearance is asked for: measured distances may be
 off by half of it, and a mesh that got inside another would read as free."""
+_TINY = 1e-5
+"""m; of a clearance below it is said what it means."""
 MM = 1e3
 
 
@@ -112,7 +114,7 @@ class Reader:
         if clearance == math.inf:
             message = "nothing is near that it could touch"
             return Certificate(Verdict.PROVEN, clearance, message, measured=measured)
-        message = f"a clearance of {_shown(clearance)} is proven"
+        message = in_words(clearance)
         nearest = nearest_of(provers)
         if nearest is None or nearest[1].kept > clearance + resolution:
             # Nothing was measured where it matters: what was met is not what is nearest.
@@ -191,6 +193,13 @@ class Reader:
 def _shown(distance: float) -> str:
     """A distance in mm, rounded down: what is proven is not rounded up."""
     return f"{math.floor(distance * MM * 1e3) / 1e3:.3f} mm"
+
+
+def in_words(clearance: float) -> str:
+    """What it means that a clearance is proven."""
+    if clearance < _TINY:
+        return f"it is proven that nothing touches: at least {_shown(clearance)} are left"
+    return f"a clearance of at least {_shown(clearance)} is proven"
 
 
 def nearest_of(provers: Sequence[Prover]) -> tuple[Prover, Nearest] | None:

@@ -16,8 +16,9 @@ place is no further ahead on average than k ∗ box(T) has it, but for the chang
 The averaged motion's **velocity and acceleration** are means of what the path's intervals allow
 where it may be. A ramp changes them by −∫ k' D and ∫ k'' D, D = ∫ G dp being how far a mean of
 joints over T is from the joints of the mean place, p = dq/dλ. For the longest averages k' w₁ is
-±1 times what the others make of two instants, and k'' w₁ w₂ of four, half of them with plus: as
-G ≥ 0, D counts no more than once by w₁, and twice by w₁ w₂.
+±1 times what the others make of two instants, k'' w₁ w₂ of four, and k''' w₁ w₂ w₃ of eight, half
+of them with plus. As G ≥ 0, D is within −∫ G dp⁻ and ∫ G dp⁺: with R the greatest of the one and of
+the other nearby, added, it makes R by w₁, 2 R by w₁ w₂, and 4 R by w₁ w₂ w₃.
 
 At a rest in which joints turn, the first half of it counts as what was before, the other as what
 comes. How far E Λ may be beyond the place of the rest then is added to how far joints are off.
@@ -56,13 +57,14 @@ class Rates(NamedTuple):
     Args:
         speed, push: (C,), greatest mean of |ℓ̇| and |ℓ̈|.
         veer: (C, N), bounds of the velocity but for that along the path.
-        ramped: (C, N), bounds of what a ramp does to the acceleration.
+        ramped, jolted: (C, N), bounds of what a ramp does to the acceleration and to the jerk.
     """
 
     speed: FloatArray
     push: FloatArray
     veer: FloatArray
     ramped: FloatArray
+    jolted: FloatArray
 
 
 class Averages:
@@ -94,6 +96,11 @@ class Averages:
         count = len(course.moves)
         self._first, self._last = np.full(count, count), np.full(count, -1)
 
+    @property
+    def reach(self) -> float:
+        """s by Θ that two places are apart at most which both count at one time."""
+        return 2.0 * self._half
+
     def offsets(self) -> Offsets:
         """How far they take joints off the path."""
         count, size = self._course.turn.shape
@@ -108,10 +115,7 @@ class Averages:
             start: s, over which time comes up to speed.
             more: by which accelerations may be greater then.
         """
-        course, least = self._course, self._course.way[:, 0]
-        p = (np.abs(course.turn) + course.uneven) / least[:, None]
-        p += np.abs(course.tangent) * (course.bent * np.diff(course.place) / least**2)[:, None]
-        off = self._of_ramp(p)
+        course, off = self._course, self._of_ramp()
         speed = self.mean(course.speed[:, None], 0.0)[:, 0]
         push = more * self.mean(course.push[:, None], start)[:, 0]
         veer = np.zeros_like(course.turn)
@@ -124,13 +128,17 @@ class Averages:
             self._last,
             veer,
         )
-        if not off.any():
-            return Rates(speed, push, veer, off)
-        # Four instants that count as much, and two.
-        *_, second, first = (0.0, 0.0, *self._widths)
-        ramped = 2.0 * off / (first * second) if second > 0.0 else np.full_like(off, np.inf)
-        veer += off / first if first > 0.0 else np.inf
-        return Rates(speed, push, veer, ramped)
+        if off.any():
+            third, second, first = (0.0, 0.0, 0.0, *self._widths)[-3:]
+            veer += divided(off, first)
+            return Rates(
+                speed,
+                push,
+                veer,
+                divided(2.0 * off, first * second),
+                divided(4.0 * off, first * second * third),
+            )
+        return Rates(speed, push, veer, off, off)
 
     def accelerations(
         self, allowed: Allowed, matrix: FloatArray, about: FloatArray, start: float, more: float
@@ -179,13 +187,42 @@ class Averages:
         )
         return out
 
-    def _of_ramp(self, turned: FloatArray) -> FloatArray:
-        """(C, N), how far means of joints over a ramp are from those of the mean place."""
-        off = np.zeros_like(turned)
-        if self._ramp > 0.0:
-            bound_ramp(self._cells, np.array([self._ramp]), 0.5 * self._ramp, turned, off)
-        reach = self._half + 0.5 * self._ramp
-        return np.asarray(np.stack([near(self._course, values, reach) for values in off.T], -1))
+    def _of_ramp(self) -> FloatArray:
+        """(C, N), R: the range of how far means of joints over a ramp are from the mean place's."""
+        course, least = self._course, self._course.way[:, :1]
+        found = np.zeros_like(course.turn)
+        if self._ramp == 0.0:
+            return found
+        # dp = dq'/λ' − q' dλ'/λ'², the second to either side.
+        change = course.bent * np.diff(course.place) + np.where(
+            course.moves, 0.0, np.ptp(course.way, axis=1)
+        )
+        aside = self._steepest() * (change[:, None] / least**2)
+        for side in (-1.0, 1.0):
+            turned = np.maximum(side * course.turn, 0.0) + 0.5 * course.uneven
+            off = np.zeros_like(found)
+            widths = np.array([self._ramp])
+            bound_ramp(self._cells, widths, 0.5 * self._ramp, turned / least + aside, off)
+            # Of all instants that count the middles are within the averages' half of one.
+            reach = self.reach - 0.5 * self._ramp
+            found += np.stack([near(course, values, reach) for values in off.T], -1)
+        return found
+
+    def _steepest(self) -> FloatArray:
+        """(C, N), bounds of |dq/dℓ|; at rests in which joints turn, of the cells beside."""
+        course = self._course
+        steepest = np.abs(course.tangent) + np.abs(course.turn) + course.uneven
+        moving = np.flatnonzero(course.moves)
+        turns = np.flatnonzero(~course.moves & course.turn.any(axis=1))
+        after = np.searchsorted(moving, turns)
+        beside = steepest[moving[after - 1]], steepest[moving[after]]
+        steepest[turns] = np.maximum(*beside)
+        return steepest
+
+
+def divided(values: FloatArray, widths: float) -> FloatArray:
+    """Values by a product of widths; inf where that is zero, as there are too few of them."""
+    return values / widths if widths > 0.0 else np.full_like(values, np.inf)
 
 
 def near(course: Course, values: FloatArray, away: float) -> FloatArray:

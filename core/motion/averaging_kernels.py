@@ -220,14 +220,21 @@ def bound_offsets(
 @njit(cache=True, error_model="numpy")
 def _add_beyond(cells: Cells, low: int, high: int, G: FloatArray, aside: FloatArray) -> None:
     """Add how far E Λ may be beyond the rests at which the cells from low to high end."""
+    steepest = np.empty(aside.size)
     for rest, side in ((low, -1), (high, 1)):
         if cells.parts[rest]:
-            beyond = rest
-            while not cells.moves[beyond]:
-                beyond += side
+            steepest[:] = 0.0
+            c, away = rest, 0.0
+            while 0 <= c < cells.moves.size and away <= G[rest]:
+                if cells.moves[c]:
+                    for j in range(aside.size):
+                        slope = abs(cells.tangent[c, j]) + abs(cells.turn[c, j])
+                        steepest[j] = max(steepest[j], slope + cells.uneven[c, j])
+                c += side
+                near = cells.place[c] if side > 0 else cells.place[min(c + 1, cells.moves.size)]
+                away = abs(near - cells.place[rest])
             for j in range(aside.size):
-                steepest = abs(cells.tangent[beyond, j]) + abs(cells.turn[beyond, j])
-                aside[j] += G[rest] * (steepest + cells.uneven[beyond, j])
+                aside[j] += G[rest] * steepest[j]
 
 
 @njit(cache=True, error_model="numpy")

@@ -22,7 +22,8 @@ from .consumption import SQUARED_TORQUE, Consumption
 from .controller import Controller
 from .energy import pull_energy
 from .limits import SpeedGradient, interval_samples, pull_path_limits, pull_turning
-from .path import Path, RouteGradient, pull_path
+from .path import Path
+from .path_gradient import RouteGradient, pull_path
 from .stamping_adjoint import stamp_adjoint
 from .tcp_samples import States
 from .timing import Timing

@@ -11,7 +11,10 @@ each b a point mass on the axis of one of the arm's joints, at p_b with Jacobian
 the centrifugal and Coriolis terms. Gravity is left out: logs meet their targets at rest.
 
 Gears are softer where little torque passes them (lost motion, as in gear makers' hysteresis
-curves). A joint with slack s leads by l + s tanh(l / s), l being what its stiffness alone gives.
+curves). A joint with slack s leads by l + s tanh(l / s), l being what its stiffness alone gives. A
+gear that holds a weight, or part of it where a spring balances the arm, has used up some of its
+slack at rest, at h: it leads by l + s (tanh((l + h) / s) − tanh(h / s)), as what it gives way by at
+rest is in the joints that a log starts from.
 
 Logs of measured joints show the arm's servos following, each by its own lag. What all have in
 common is an offset in time; the differences bend the path, and so are leads as well: lag q̇.
@@ -62,6 +65,10 @@ class Elasticity:
         carried: masses on the arm.
         slack: rad, how much farther a joint gives way at most before its gear is stiff; joints
             beyond the last have none.
+        weight: how many times the masses' weight the gear of a joint holds, which uses up slack;
+            joints beyond the last hold none.
+        spring: rad of lead; a spring that balances the arm adds it to what the gear holds, times
+            the sine of the joint. Joints beyond the last have none.
         lag: s that a joint is ahead of the others where it moves (below zero: behind), as the
             servos of a measured arm follow at different distances; joints beyond the last have
             none.
@@ -71,11 +78,15 @@ class Elasticity:
     carried: tuple[Carried, ...] = ()
     slack: tuple[float, ...] = ()
     lag: tuple[float, ...] = ()
+    weight: tuple[float, ...] = ()
+    spring: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         for key, values in (
             ("own_s2", self.own),
             ("lag_s", self.lag),
+            ("weight", self.weight),
+            ("spring_rad", self.spring),
             *(("carried.lead_s2_per_m2", mass.lead) for mass in self.carried),
         ):
             for value in values:
@@ -102,6 +113,8 @@ class Elasticity:
             ("carried", self.carried),
             ("slack_rad", self.slack),
             ("lag_s", self.lag),
+            ("weight", self.weight),
+            ("spring_rad", self.spring),
         )
         return tuple(f"elasticity.{name}" for name, value in stated if value)
 
@@ -114,10 +127,20 @@ class Elasticity:
             J = jacobians(chain, q)[:, :3]
             pull = motions(chain, q, dq, ddq)[1][:, :3]
             out += filled(mass.lead, q.shape[1]) * np.einsum("tij,ti->tj", J, pull)
-        for joint, slack in enumerate(self.slack[: q.shape[1]]):
-            if slack > 0.0:
-                out[:, joint] += slack * np.tanh(out[:, joint] / slack)
+        slack = filled(self.slack, q.shape[1])
+        if slack.any():
+            held, span = self.held(robot, q), np.where(slack > 0.0, slack, 1.0)
+            out += slack * (np.tanh((out + held) / span) - np.tanh(held / span))
         return np.asarray(out + filled(self.lag, q.shape[1]) * dq)
+
+    def held(self, robot: Robot, q: FloatArray) -> FloatArray:
+        """What gears hold at rest (T, N), in rad (m) of lead, at configurations (T, N)."""
+        out = filled(self.spring, q.shape[1]) * np.sin(q)
+        weight, gravity = filled(self.weight, q.shape[1]), np.array(robot.gravity)
+        for mass in self.carried if weight.any() else ():
+            J = jacobians(chain_to_axis(robot, mass.joint, "elasticity.carried"), q)[:, :3]
+            out -= weight * filled(mass.lead, q.shape[1]) * np.einsum("tij,i->tj", J, gravity)
+        return np.asarray(out)
 
 
 RIGID = Elasticity()
@@ -129,12 +152,18 @@ def elasticity(table: dict[str, Any], base: Elasticity = RIGID) -> Elasticity:
     Raises:
         InputError: a key is unknown or a value has the wrong type or range.
     """
-    rows = {"own_s2": "own", "slack_rad": "slack", "lag_s": "lag"}
+    rows = {
+        "own_s2": "own",
+        "slack_rad": "slack",
+        "weight": "weight",
+        "spring_rad": "spring",
+        "lag_s": "lag",
+    }
     unknown = set(table) - {*rows, "carried"}
     if unknown:
         raise InputError(
-            f"elasticity.{min(unknown)}: no such key; there are own_s2, carried, slack_rad and "
-            "lag_s"
+            f"elasticity.{min(unknown)}: no such key; there are own_s2, carried, slack_rad, "
+            "weight, spring_rad and lag_s"
         )
     values: dict[str, Any] = {
         name: row_of(f"elasticity.{key}", table[key]) for key, name in rows.items() if key in table

@@ -8,13 +8,18 @@ lead is A q̈_s + v² c(d), but for
   mass's place in general, are at most as long as its longest column λ,
   |∂J_j/∂q_i| = |a_min(i,j) × J_max(i,j)| ≤ λ, and so λ grows by at most exp δ;
 - y in the centrifugal terms, at most λ (2 v ‖d‖₁ + ‖y‖₁) ‖y‖₁;
-- slack, which adds as much as there is of it at most, and lag, |lag| |q̇_s|.
+- slack, which adds s (tanh((l + h) / s) − tanh(h / s)) to a lead l, h being what the gear holds at
+  rest (`elasticity`): for |l| ≤ L it is greatest where h is against l, and of all |h| from a to b
+  with c, the one nearest to L / 2, s (tanh((L − c) / s) + tanh(c / s)), which is below L and 2 s.
+  From the cell's middle h changes by no more than |spring| δ_j and weight |g| λ exp(δ) δ;
+- lag, |lag| |q̇_s|.
 
 Where the path is straight within reach, A q̈_s is A d times an acceleration, and that one way is
 told from what is left; elsewhere joints are bounded one by one.
 
 **Leads are worked out every** `LEAD_STEP`; a cubic spline through values within ±F stays within
-1.549 F (its Lebesgue constant is (1 + 3 √3)/4); with slopes M it is within 0.275 M `LEAD_STEP`.
+1.549 F (its Lebesgue constant is (1 + 3 √3)/4); with slopes up to M it is off by 0.775 M
+`LEAD_STEP` at most (the integral of its Peano kernel, greatest half way between two values).
 Values n steps away count (2 − √3)ⁿ, so that those of `_SPLINE` around are all that matters.
 """
 
@@ -28,7 +33,7 @@ from numpy.typing import NDArray
 from ..robot.chain_kernels import jacobians, motions
 from ..robot.model import Robot
 from .allowed import Allowed
-from .averaging import Averages, Rates, near
+from .averaging import Averages, Rates, divided, near
 from .averaging_kernels import Offsets
 from .course import Course
 from .elasticity import LEAD_STEP, Carried, Elasticity
@@ -38,7 +43,7 @@ from .start_ramp import StartRamp
 
 FloatArray = NDArray[np.float64]
 
-_SPLINE_MOST, _SPLINE_BY_SLOPE = 1.55, 0.275
+_SPLINE_MOST, SPLINE_BY_SLOPE = 1.55, 0.775
 _SPLINE = 24 * LEAD_STEP
 """s: (2 − √3)²⁴ is 2e-14."""
 
@@ -172,9 +177,11 @@ def most_leads(
         rest = rest + _change(mass, bounds)
     leads = Leads(np.stack([along, turned], axis=1), share, rest)
     slope = np.full_like(none, np.inf)
-    if smoothing.widths:
+    if np.isfinite(bounds.jerk).all():
         slope = np.abs(own) * bounds.jerk + sum(_slope(mass, bounds) for mass in masses)
-    more = _beside(elasticity, course, bounds, leads.most, slope)
+    away = averages.reach + _SPLINE
+    held = Held.of(elasticity, robot, course, masses, bounds)
+    more = _beside(elasticity, course, bounds, held, leads.most, slope, away)
     return Leads(leads.ways, share, rest + more)
 
 
@@ -190,14 +197,14 @@ def _bounds(
     tangent, (start, more) = np.abs(course.tangent), late
     most = allowed.greatest(allowed.accelerations, np.abs)[course.interval]
     most[~course.moves] = 0.0
-    acceleration = more * averages.mean(most, start) + rates.ramped
+    mean = more * averages.mean(most, start)
     off = course.half + offsets.aside
     off += np.abs(offsets.axis) * np.abs(offsets.along).max(axis=1, keepdims=True)
     # Differences over the longest average; less averaged there, but within reach.
-    nearby = np.stack([near(course, a, smoothing.window) for a in acceleration.T], -1)
-    jerk = 2.0 * nearby / max(smoothing.widths, default=1.0)
+    nearby = np.stack([near(course, a, averages.reach + start) for a in mean.T], -1)
+    jerk = divided(2.0 * nearby, max(smoothing.widths, default=0.0)) + rates.jolted
     velocity = tangent * rates.speed[:, None] + rates.veer
-    return _Bounds(off, tangent, velocity, rates.veer, acceleration, jerk, rates.speed)
+    return _Bounds(off, tangent, velocity, rates.veer, mean + rates.ramped, jerk, rates.speed)
 
 
 def _change(mass: _Mass, bounds: _Bounds) -> FloatArray:
@@ -222,20 +229,67 @@ def _slope(mass: _Mass, bounds: _Bounds) -> FloatArray:
     return np.asarray(np.abs(mass.given) * change[:, None] * mass.moving)
 
 
+@dataclass(frozen=True)
+class Held:
+    """What gears hold at rest, in rad of lead, (C, N) each.
+
+    Args:
+        least, most: bounds of its size at each cell.
+        slope: what it changes by in a second.
+    """
+
+    least: FloatArray
+    most: FloatArray
+    slope: FloatArray
+
+    @classmethod
+    def of(
+        cls,
+        elasticity: Elasticity,
+        robot: Robot,
+        course: Course,
+        masses: list[_Mass],
+        bounds: _Bounds,
+    ) -> Held:
+        size = course.middle.shape[1]
+        spring = np.abs(filled(elasticity.spring, size))
+        weight = np.linalg.norm(robot.gravity) * np.abs(filled(elasticity.weight, size))
+        change, slope = spring * bounds.off, spring * bounds.velocity
+        for mass in masses:
+            off = mass.total(bounds.off)
+            longest = np.linalg.norm(mass.J, axis=1).max(axis=1) * np.exp(off)
+            turned = longest[:, None] * np.abs(mass.given) * weight * mass.moving
+            change = change + turned * off[:, None]
+            slope = slope + turned * mass.total(bounds.velocity)[:, None]
+        # No bound times nothing is none.
+        slope = np.where(np.isnan(slope), np.inf, slope)
+        middle = np.abs(elasticity.held(robot, course.middle))
+        return cls(np.maximum(middle - change, 0.0), middle + change, slope)
+
+    def taken(self, slack: FloatArray, lead: FloatArray) -> FloatArray:
+        """(C, N), what slack (N,) adds to leads within ``lead`` (C, N) at most."""
+        span = np.where(slack > 0.0, slack, 1.0)
+        against = np.clip(0.5 * lead, self.least, self.most)
+        return np.asarray(slack * (np.tanh((lead - against) / span) + np.tanh(against / span)))
+
+
 def _beside(
     elasticity: Elasticity,
     course: Course,
     bounds: _Bounds,
+    held: Held,
     most: FloatArray,
     slope: FloatArray,
+    away: float,
 ) -> FloatArray:
     """(C, N), what slack, lag and interpolation add to leads within ``most``.
 
-    ``slope`` (C, N) bounds what these change by in a second.
+    ``slope`` (C, N) bounds what these change by in a second; those within ``away`` s matter.
     """
     size = most.shape[1]
     slack, lag = filled(elasticity.slack, size), np.abs(filled(elasticity.lag, size))
-    more = np.minimum(slack, most) + lag * bounds.velocity
-    slope = np.where(slack > 0.0, 2.0, 1.0) * slope + lag * bounds.acceleration
-    over = np.minimum(_SPLINE_MOST * (most + more), _SPLINE_BY_SLOPE * LEAD_STEP * slope)
-    return more + np.stack([near(course, values, _SPLINE) for values in over.T], -1)
+    more = held.taken(slack, most) + lag * bounds.velocity
+    # By l it has a slope from 0 to 1, by h from −1 to 1, as squares of 1 / cosh have.
+    slope = np.where(slack > 0.0, 2.0 * slope + held.slope, slope) + lag * bounds.acceleration
+    over = np.minimum(_SPLINE_MOST * (most + more), SPLINE_BY_SLOPE * LEAD_STEP * slope)
+    return more + np.stack([near(course, values, away) for values in over.T], -1)

@@ -1,13 +1,13 @@
-"""The geometry of a driven program: q(σ) with zones, sampled, with its reverse.
+"""The geometry of a driven program: q(σ) with zones, sampled.
 
 A path is built in one direction (ends → segments → corners → layout → curves → samples) and
-pulled back in the other.
+pulled back in the other by `path_gradient`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,35 +16,15 @@ from ..errors import MotionError, Note
 from ..program.zone import Zone
 from ..robot.chain import Chain
 from .curves import Curves
-from .joint_curves import (
-    Edges,
-    make_joint_curves,
-    pull_joint_curves,
-    pull_joint_legs,
-)
-from .joint_samples import pull_joint, sample_joint
-from .layout import Layout, LayoutGradient, flat_corners, pull_layout
+from .joint_curves import Edges, make_joint_curves
+from .joint_samples import sample_joint
+from .layout import Layout, flat_corners
 from .model import MotionModel
 from .pieces import Pieces, Sampling, cut
-from .segments import (
-    JOINT_SEGMENT,
-    Ends,
-    EndsGradient,
-    Segments,
-    SegmentsGradient,
-    make_segments,
-    pull_segments,
-)
-from .tcp_curves import BlendGradient, TcpGeometry, make_tcp_curves, pull_tcp_curves
-from .tcp_samples import SINGULAR, Samples, States, TcpCurves, pull_tcp, sample_tcp
-from .zones import (
-    JOINT_CORNER,
-    POSITION,
-    Corners,
-    ZoneGradient,
-    ZonePlanner,
-    pull_corners,
-)
+from .segments import JOINT_SEGMENT, Ends, Segments, make_segments
+from .tcp_curves import TcpGeometry, make_tcp_curves
+from .tcp_samples import SINGULAR, Samples, States, TcpCurves, sample_tcp
+from .zones import JOINT_CORNER, POSITION, Corners, ZonePlanner
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -163,7 +143,7 @@ def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
     layout = Layout.of(segments, corners)
     tcp = make_tcp_curves(layout, model)
     edges = Edges.of_joint_legs(layout)
-    for run in _edge_runs(route, layout):
+    for run in edge_runs(route, layout):
         states, _ = _follow(route, tcp.curves, run)
         for array, part in ((edges.q, states.q), (edges.dq, states.dq), (edges.ddq, states.ddq)):
             array[run.corner, run.side] = part[-1]
@@ -173,7 +153,7 @@ def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
     sigma = pieces.sigma()
     states = States.zeros(len(sigma), route.ends.q.shape[2])
     conditioning = np.ones(len(sigma))
-    for stretch in _stretches(route, layout, pieces):
+    for stretch in stretches(route, layout, pieces):
         view = states.rows(stretch.start, stretch.stop)
         piece = pieces.sample_pieces[stretch.start : stretch.stop]
         at = sigma[stretch.start : stretch.stop]
@@ -191,7 +171,7 @@ def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
 
 
 @dataclass(frozen=True)
-class _Run:
+class TcpRun:
     """Samples for inverse kinematics to follow, from a configuration near the first one."""
 
     chain: Chain
@@ -202,12 +182,12 @@ class _Run:
     side: int = 0
 
 
-def _nominal(chain: Chain, sigma: FloatArray, segment: int, seed: FloatArray) -> _Run:
+def _nominal(chain: Chain, sigma: FloatArray, segment: int, seed: FloatArray) -> TcpRun:
     index = np.full(len(sigma), segment, dtype=np.int64)
-    return _Run(chain, Samples(sigma, index, index, index), seed, index)
+    return TcpRun(chain, Samples(sigma, index, index, index), seed, index)
 
 
-def _edge_runs(route: Route, layout: Layout) -> Iterator[_Run]:
+def edge_runs(route: Route, layout: Layout) -> Iterator[TcpRun]:
     """From the waypoint to the edge of its zone, wherever a TCP leg is blended in joint space."""
     for i in np.flatnonzero(layout.corners.kind == JOINT_CORNER):
         for side, near, sign in ((0, 1, -1.0), (1, 0, 1.0)):
@@ -222,11 +202,11 @@ def _edge_runs(route: Route, layout: Layout) -> Iterator[_Run]:
                 segment,
                 route.ends.q[segment, near],
             )
-            yield _Run(run.chain, run.samples, run.seed, run.segment, int(i), side)
+            yield TcpRun(run.chain, run.samples, run.seed, run.segment, int(i), side)
 
 
 @dataclass(frozen=True)
-class _Stretch:
+class Stretch:
     """Consecutive samples of one space and one chain."""
 
     chain: Chain
@@ -236,7 +216,8 @@ class _Stretch:
     stop: int
 
 
-def _stretches(route: Route, layout: Layout, pieces: Pieces) -> Iterator[_Stretch]:
+def stretches(route: Route, layout: Layout, pieces: Pieces) -> Iterator[Stretch]:
+    """The stretches of a path, in its order."""
     first = pieces.first_sample
     begin = 0
     count = len(pieces.segment)
@@ -247,7 +228,7 @@ def _stretches(route: Route, layout: Layout, pieces: Pieces) -> Iterator[_Stretc
             if same_space and route.chains[pieces.segment[p]] is chain:
                 continue
         space = bool(pieces.joint_space[begin])
-        yield _Stretch(chain, space, begin, int(first[begin]), int(first[p]))
+        yield Stretch(chain, space, begin, int(first[begin]), int(first[p]))
         begin = p
 
 
@@ -256,10 +237,10 @@ def _tcp_run(
     layout: Layout,
     edges: Edges,
     pieces: Pieces,
-    stretch: _Stretch,
+    stretch: Stretch,
     piece: IntArray,
     sigma: FloatArray,
-) -> _Run:
+) -> TcpRun:
     """A stretch with what leads to its first sample."""
     segment = int(pieces.segment[stretch.first_piece])
     curve = pieces.curve[piece]
@@ -279,10 +260,10 @@ def _tcp_run(
             ]
     arrays = [np.ascontiguousarray(array) for array in samples]
     owners = np.concatenate([np.full(len(arrays[0]) - len(sigma), segment), pieces.segment[piece]])
-    return _Run(stretch.chain, Samples(*arrays), seed, owners)
+    return TcpRun(stretch.chain, Samples(*arrays), seed, owners)
 
 
-def _follow(route: Route, curves: TcpCurves, run: _Run) -> tuple[States, FloatArray]:
+def _follow(route: Route, curves: TcpCurves, run: TcpRun) -> tuple[States, FloatArray]:
     """Inverse kinematics along a run: states and conditioning."""
     count = len(run.samples.sigma)
     states = States.zeros(count, len(run.seed))
@@ -308,7 +289,7 @@ def _follow(route: Route, curves: TcpCurves, run: _Run) -> tuple[States, FloatAr
     return states, pivots
 
 
-def _refuse(route: Route, run: _Run, failed: int, error: float, pivots: float) -> None:
+def _refuse(route: Route, run: TcpRun, failed: int, error: float, pivots: float) -> None:
     move = route.moves[int(run.segment[failed])]
     if pivots < SINGULAR:
         raise MotionError(
@@ -336,137 +317,3 @@ def _singular_notes(route: Route, pieces: Pieces, conditioning: FloatArray) -> l
             )
         )
     return notes
-
-
-@dataclass
-class RouteGradient:
-    """Gradient with respect to a route and to the blend laws."""
-
-    ends: EndsGradient
-    zones: ZoneGradient
-    tcp: BlendGradient
-    joint: BlendGradient
-    orientation: BlendGradient = field(repr=False)
-
-
-def pull_path(
-    path: Path, states_bar: States, sigma_bar: FloatArray, turn_bar: FloatArray
-) -> RouteGradient:
-    """Carry a gradient with respect to the samples back to the route.
-
-    Args:
-        path: the path.
-        states_bar: gradient with respect to ``path.states``; used up.
-        sigma_bar: (S,), gradient with respect to σ of the samples where it enters directly (the
-            spacing of intervals); added to.
-        turn_bar: (M, 3), gradient with respect to the turns of segments where they enter directly
-            (limits of their parts).
-    """
-    route, layout, pieces = path.route, path.layout, path.pieces
-    model = path.model
-    layout_bar = LayoutGradient.zeros(layout)
-    segments_bar = SegmentsGradient.zeros(layout.segments)
-    segments_bar.turn_b += turn_bar
-    reach_bar = np.zeros_like(layout.corners.reach)
-    gradient = RouteGradient(
-        EndsGradient.zeros(route.ends),
-        ZoneGradient.zeros(len(route.zones)),
-        BlendGradient.zeros(model.tcp),
-        BlendGradient.zeros(model.joint),
-        BlendGradient.zeros(model.orientation),
-    )
-    joint_bar = path.joint.zeros_like()
-    curves = path.tcp.curves
-    tcp_bar = TcpCurves(
-        curves.position.zeros_like(),
-        curves.turning.zeros_like(),
-        np.zeros_like(curves.reference),
-        curves.prescribed.zeros_like(),
-    )
-    sample_piece = pieces.sample_pieces
-    for stretch in _stretches(route, layout, pieces):
-        rows = slice(stretch.start, stretch.stop)
-        view, view_bar = (s.rows(rows.start, rows.stop) for s in (path.states, states_bar))
-        curve = pieces.curve[sample_piece[rows]]
-        if stretch.joint_space:
-            index = np.ascontiguousarray(curve[:, POSITION])
-            pull_joint(
-                stretch.chain,
-                path.joint,
-                index,
-                path.sigma[rows],
-                view,
-                view_bar,
-                joint_bar,
-                sigma_bar[rows],
-            )
-            continue
-        position, turning, prescribed = (np.ascontiguousarray(c) for c in curve.T)
-        samples = Samples(path.sigma[rows], position, turning, prescribed)
-        pull_tcp(
-            stretch.chain,
-            route.solved,
-            route.prescribed,
-            curves,
-            samples,
-            view,
-            view_bar,
-            tcp_bar,
-            sigma_bar[rows],
-        )
-    pieces.pull_sigma(sigma_bar, layout_bar)
-    edges_bar = pull_joint_curves(
-        layout,
-        model,
-        path.edges,
-        joint_bar,
-        layout_bar,
-        segments_bar,
-        gradient.ends,
-        gradient.joint,
-    )
-    pull_joint_legs(layout, edges_bar, reach_bar, segments_bar, gradient.ends)
-    _pull_edges(path, edges_bar, tcp_bar, layout_bar)
-    pull_tcp_curves(
-        path.tcp,
-        tcp_bar,
-        layout_bar,
-        reach_bar,
-        segments_bar,
-        gradient.ends,
-        gradient.tcp,
-        gradient.orientation,
-    )
-    reach_bar += pull_layout(layout, layout_bar, segments_bar)
-    pull_corners(layout.corners, reach_bar, segments_bar, gradient.ends, gradient.zones)
-    pull_segments(layout.segments, segments_bar, gradient.ends)
-    return gradient
-
-
-def _pull_edges(path: Path, bar: Edges, tcp_bar: TcpCurves, layout_bar: LayoutGradient) -> None:
-    """Reverse of the edges that inverse kinematics found on TCP legs."""
-    route, layout = path.route, path.layout
-    for run in _edge_runs(route, layout):
-        last = run.samples.last()
-        at = run.corner, run.side
-        size = len(run.seed)
-        states = States.zeros(1, size)
-        states.q[0], states.dq[0] = path.edges.q[at], path.edges.dq[at]
-        states.ddq[0] = path.edges.ddq[at]
-        states_bar = States.zeros(1, size)
-        states_bar.q[0], states_bar.dq[0], states_bar.ddq[0] = bar.q[at], bar.dq[at], bar.ddq[at]
-        sigma_bar = np.zeros(1)
-        pull_tcp(
-            run.chain,
-            route.solved,
-            route.prescribed,
-            path.tcp.curves,
-            last,
-            states,
-            states_bar,
-            tcp_bar,
-            sigma_bar,
-        )
-        layout_bar.waypoint[run.corner + 1] += sigma_bar[0]
-        sign = -1.0 if run.side == 0 else 1.0
-        layout_bar.extent[run.corner, POSITION, run.side] += sign * sigma_bar[0]

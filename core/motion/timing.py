@@ -123,6 +123,17 @@ class Timing:
         np.add.at(spent, self.interval_segments, self.end - self.begin)
         return spent
 
+    def begins(self) -> FloatArray:
+        """(M,) s, when the commanded joints enter each segment."""
+        first = np.searchsorted(self.interval_segments, np.arange(len(self.path.route.moves)))
+        entered = self.start.driven(self.begin[first])
+        return np.concatenate([entered[:1], entered[1:] + self.lag])
+
+    def settled_durations(self) -> FloatArray:
+        """(M,) s, what each segment takes of the cycle time: settling included, not waits."""
+        left = np.append(self.begins(), self.duration)
+        return np.diff(left) - self.path.route.dwell[1:]
+
     def states_at(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Configuration, velocity and acceleration (T, N) and σ (T,) at times t (T,) in s.
 

@@ -115,23 +115,10 @@ def _least(path: Path, i: int, distance: FloatArray) -> float:
     return float(np.sqrt(max(square[1] - 0.25 * slope**2 / bend, 0.0)))
 
 
-@dataclass(frozen=True)
-class Fitted:
-    """Zones for the corners of a route, and what they do.
-
-    Args:
-        zones: one for each corner.
-        corners: what the target's controller makes of them.
-    """
-
-    zones: tuple[Zone, ...]
-    corners: list[Corner]
-
-
 def fit_zones(
     party: Party, dialect: Dialect | None, program: Program, route: Route, wanted: Sequence[Corner]
-) -> Fitted:
-    """The zones with which a controller cuts the corners of a route as far as wanted.
+) -> Path:
+    """The path through zones with which a controller cuts corners as far as wanted.
 
     Each zone's size is scaled by the ratio of the cuts until they agree: cuts are nearly
     proportional to sizes. Zones that reach as far as the controller lets them stay there.
@@ -260,18 +247,17 @@ def _rounded(zone: Zone) -> Zone:
     return replace(zone, tcp=parts[0], reorientation=parts[1], external=parts[2])
 
 
-def _apart(party: Party, program: Program, route: Route, zones: list[Zone]) -> Fitted:
-    """Zones made smaller where the controller would leave a waypoint out for them."""
+def _apart(party: Party, program: Program, route: Route, zones: list[Zone]) -> Path:
+    """Through zones made smaller where the controller would leave a waypoint out for them."""
     touching: tuple[int, ...] = ()
     for _ in range(_TRIES):
         path = party.path(_with_zones(route, zones), program)
         touching = path.corners.overlapping
         if not touching:
-            return Fitted(tuple(zones), corners_of(path))
+            return path
         for i in touching:
             for k in range(max(0, i - 1), min(len(zones), i + 2)):
                 zones[k] = _resized(zones[k], _size(zones[k]) * _SMALLER)
     for i in touching:
         zones[i] = FINE
-    path = party.path(_with_zones(route, zones), program)
-    return Fitted(tuple(zones), corners_of(path))
+    return party.path(_with_zones(route, zones), program)

@@ -111,7 +111,7 @@ class Peaks:
     """What each of M segments takes and reaches.
 
     Args:
-        duration: (M,) s of motion; zones are divided at the waypoint's middle.
+        duration: (M,) s of motion and settling; zones are divided at the waypoint's middle.
         joint: (M, N) rad/s or m/s, greatest joint speeds.
         tcp, turn: (M,) m/s and rad/s, greatest speed of the TCP and rate of turn.
         tcp_acceleration: (M,) m/s², greatest change of the TCP's speed along the path.
@@ -142,4 +142,4 @@ class Peaks:
             size = np.linalg.norm(v, axis=1)
             bend = np.sum(v * a, axis=1) / np.where(size > 0, size, 1.0)
             np.maximum.at(peaks[2], segment, np.abs(size * change + bend * square))
-        return cls(timing.segment_durations(), joint, *peaks)
+        return cls(timing.settled_durations(), joint, *peaks)

@@ -279,7 +279,7 @@ class Pacer:
         before: tuple[FloatArray, FloatArray] | None = None
         for _ in range(_ROUNDS):
             program = self._at(program, sought, 1.0 / slow)
-            spent = self._target.timing(program, path).segment_durations()[rows]
+            spent = self._target.timing(program, path).settled_durations()[rows]
             error = wanted - spent
             if (np.abs(error) < _MET * wanted).all():
                 break
@@ -342,7 +342,7 @@ class Pacer:
 
     def _tell_slower(self, program: Program, path: Path) -> None:
         """Losses of moves that the new robot cannot drive as fast."""
-        spent = self._target.timing(program, path).segment_durations()
+        spent = self._target.timing(program, path).settled_durations()
         for k, i in enumerate(path.route.moves):
             if i not in self._old.segment:
                 continue

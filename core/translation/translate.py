@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -122,12 +123,15 @@ class _Translator:
         said = self._with_said_arcs(placed.program, new_route, losses)
         if said is not placed.program:
             new_route = self.target.route(said, placed.start)
-        zoned, new_path = self._zoned(said, new_route, path, losses)
-        paced = zoned
+        wanted = self._wanted(new_route, path)
+        made, new_path = self._zoned(said, new_route, wanted)
         if self.dialect is not None:
-            paced = Pacer(driven, self.target, self.dialect, losses).pace(zoned, new_path)
+            made = Pacer(driven, self.target, self.dialect, losses).pace(made, new_path)
+            if self.target.model.centripetal is not None:  # how corners are cut depends on speeds
+                made, new_path = self._zoned(made, self.target.route(made, placed.start), wanted)
+        self._tell_zones(new_path, wanted, losses)
         return Translation(
-            replace(paced, statements=tuple(self._worded(paced))),
+            replace(made, statements=tuple(self._worded(made))),
             self.losses.sorted(),
             placed.start,
         )
@@ -206,19 +210,15 @@ class _Translator:
     # --------------------------------------------------------------------------- zones
 
     def _zoned(
-        self, program: Program, route: Route, old: Path, losses: LossesOfPart
+        self, program: Program, route: Route, wanted: Sequence[Corner]
     ) -> tuple[Program, Path]:
-        """The program with zones that cut its corners like the old ones, and its path."""
-        wanted = self._wanted(route, old)
-        fitted = fit_zones(self.target, self.dialect, program, route, wanted)
+        """The program with zones that cut its corners as wanted, and its path."""
+        path = fit_zones(self.target, self.dialect, program, route, wanted)
         zones: list[Zone] = [FINE] * len(program.moves)
-        for i, zone in enumerate(fitted.zones):
+        for i, zone in enumerate(path.route.zones):
             for move in range(route.moves[i], route.moves[i + 1]):
                 zones[move] = zone
         moves = [replace(move, zone=zones[i]) for i, move in enumerate(program.moves)]
-        for i, (one, other) in enumerate(zip(wanted, fitted.corners, strict=True)):
-            self._tell_zone(route.zone_moves[i], one, other, losses)
-        path = self.target.path(replace(route, zones=fitted.zones), program)
         return program.with_moves(tuple(moves)), path
 
     def _wanted(self, route: Route, old: Path) -> list[Corner]:
@@ -230,6 +230,10 @@ class _Translator:
                 known[move] = corner
         stop = Corner(False, 0.0, 0.0, 0.0, FINE)
         return [known.get(move, stop) for move in route.moves[:-1]]
+
+    def _tell_zones(self, path: Path, wanted: Sequence[Corner], losses: LossesOfPart) -> None:
+        for move, one, other in zip(path.route.zone_moves, wanted, corners_of(path), strict=True):
+            self._tell_zone(move, one, other, losses)
 
     def _tell_zone(self, move: int, wanted: Corner, found: Corner, losses: LossesOfPart) -> None:
         """What the corner at the end of a move loses."""

@@ -71,6 +71,7 @@ _KNOWN = tuple(
         (r"time\.settling_s", 0.0, 1.0, 0.1),
         (r"time\.ramp_s", 0.0, 0.5, 0.02),
         (r"limit\..*_scale", 0.1, 10.0, 0.5),
+        (r"elasticity\.weight", -10.0, 10.0, 0.5),
         (r"elasticity\.", -5e-3, 5e-3, 1e-4),
         (r"torque\.own_s2", 1e-6, 10.0, 0.05),
         (r"torque\.carried", 0.0, 10.0, 0.05),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -32,15 +33,17 @@ def load_motors(file: Path) -> Motors:
         raise InputError(f"{file}: copper_w_per_nm2 is missing: one number a joint")
     copper = table["copper_w_per_nm2"]
     if not isinstance(copper, list) or not all(map(_number, copper)):
-        raise InputError(f"{file}: copper_w_per_nm2 is a list of numbers, not {copper!r}")
+        raise InputError(
+            f"{file}: copper_w_per_nm2 is a list of finite numbers, zero or more, not {copper!r}"
+        )
     recuperation = table.get("recuperation", 0.0)
-    if not _number(recuperation):
-        raise InputError(f"{file}: recuperation is a number, not {recuperation!r}")
-    try:
-        return Motors(tuple(map(float, copper)), float(recuperation))
-    except InputError as error:
-        raise InputError(f"{file}: {error}") from error
+    if not _number(recuperation) or recuperation > 1.0:
+        raise InputError(f"{file}: recuperation is a number from 0 to 1, not {recuperation!r}")
+    return Motors(tuple(map(float, copper)), float(recuperation))
 
 
 def _number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    """Whether a value is a finite number, zero or more."""
+    return (
+        isinstance(value, int | float) and not isinstance(value, bool) and 0.0 <= value < math.inf
+    )

@@ -61,9 +61,12 @@ class Limits:
                     f"joint {task.robot.axis_names[moving[j]]} has neither an acceleration nor a "
                     "torque limit: nothing would bound its motion"
                 )
-        speed = np.inf if given.tcp_speed is None else given.tcp_speed
+        try:
+            speed = np.inf if given.tcp_speed is None else float(given.tcp_speed)
+        except (TypeError, ValueError):
+            speed = np.nan
         if not speed > 0.0:
-            raise InputError(f"the TCP's speed limit must be positive, not {speed}")
+            raise InputError(f"the TCP's speed limit must be positive, not {given.tcp_speed!r}")
         names = [task.robot.axis_names[j] for j in moving]
         for line in given.curves:
             if line.axis not in names:
@@ -81,13 +84,18 @@ class Limits:
             np.array([names.index(line.axis) for line in given.curves], dtype=np.int64),
             np.array([line.most for line in given.curves]),
             np.array([line.slope for line in given.curves]),
-            float(speed),
+            speed,
         )
 
 
 def _chosen(task: Task, name: str, given: ArrayLike | None, own: FloatArray) -> FloatArray:
     robot = task.robot
-    values = own if given is None else np.asarray(given, dtype=float)
+    try:
+        values = own if given is None else np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"the {name} limits must be {robot.size} numbers, one an axis, not {given!r}"
+        ) from None
     if values.shape != (robot.size,):
         raise InputError(
             f"the {name} limits have shape {values.shape}; robot {robot.name} has {robot.size} axes"

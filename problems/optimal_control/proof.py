@@ -18,7 +18,7 @@ from ...core.collision.findings import Budget, Cause, Finding
 from ...core.collision.scene import CollisionScene
 from ...core.collision.strays import Strays
 from ...core.collision.subdivision import Prover
-from ...core.collision.verdict import CONTACT, MM, Certificate, Verdict
+from ...core.collision.verdict import CONTACT, MM, Certificate, Verdict, in_words
 from ...core.motion.blend import BASIS
 from ...core.motion.curves import POLYNOMIAL, Curves
 from .motion import Motion
@@ -72,7 +72,7 @@ def prove(
     proven = prover.proven
     message = "nothing is near that it could touch"
     if proven < math.inf:
-        message = f"a clearance of {math.floor(proven * MM * 1e3) / 1e3:.3f} mm is proven"
+        message = in_words(proven)
     return Proof(Certificate(Verdict.PROVEN, proven, message, measured=left.used))
 
 

@@ -60,8 +60,8 @@ class Optimum:
     Args:
         task: what was asked.
         motion: the answer.
-        first: the motion that the search began with; its limits hold and, where there are
-            surroundings, it is proven free.
+        first: the motion that the search began with; where there are surroundings, it is proven
+            free. Torque limits that cannot hold the arm on the way may not hold in it.
         audit: shares of the limits that it uses, between nodes too.
         certificate: that it keeps the clearance; None where there is nothing to keep clear of.
         steps: of the search.

@@ -144,6 +144,8 @@ class Task:
                 value = np.zeros(size)
             object.__setattr__(self, name, _vector(self.robot, name, value))
         for k, waypoint in enumerate(self.waypoints):
+            if not isinstance(waypoint, Waypoint):
+                raise InputError(f"waypoint {k + 1} is a Waypoint, not {waypoint!r}")
             _vector(self.robot, f"waypoint {k + 1}", waypoint.q)
         joints = tuple(range(size) if self.joints is None else self.joints)
         if not joints or len(set(joints)) != len(joints) or not set(joints) <= set(range(size)):
@@ -197,7 +199,12 @@ class Task:
 
 
 def _vector(robot: Robot, name: str, value: ArrayLike) -> FloatArray:
-    array = np.array(value, dtype=float)
+    try:
+        array = np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"{name} must be {robot.size} numbers, one an axis, not {value!r}"
+        ) from None
     if array.shape != (robot.size,):
         raise InputError(
             f"{name} has shape {array.shape}; robot {robot.name} has {robot.size} axes "

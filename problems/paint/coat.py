@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -80,6 +81,11 @@ class Coat:
         """∫ (thickness − target)² over the surface, m⁴."""
         return float(self.areas @ (self.thickness - self.target) ** 2)
 
+    @property
+    def rms_error(self) -> float:
+        """Root of the mean squared error over the surface, m; counts the mean's too."""
+        return math.sqrt(self.squared_error / float(self.areas.sum()))
+
 
 def coat(deposition: Deposition, trajectory: PaintTrajectory, target: float) -> Coat:
     """The coat that a trajectory leaves.
@@ -112,6 +118,6 @@ def _spread(thickness: FloatArray, weights: FloatArray, target: float) -> Spread
         float(np.sqrt(weights @ (thickness - mean) ** 2)),
         float(thickness.min()),
         float(thickness.max()),
-        1.0 - float(weights[off > 0.10 * target + slack].sum()),
-        1.0 - float(weights[off > 0.05 * target + slack].sum()),
+        max(0.0, 1.0 - float(weights[off > 0.10 * target + slack].sum())),
+        max(0.0, 1.0 - float(weights[off > 0.05 * target + slack].sum())),
     )

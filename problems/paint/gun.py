@@ -66,12 +66,7 @@ def gun_events(
         InputError: the language has no actions on the way, the delay is longer than it takes, or
             the flow changes and there is no output for it.
     """
-    words = _words(vendor)
-    if signals.delay > words.longest_lead:
-        raise InputError(
-            f"{vendor.name} sets outputs up to {words.longest_lead:g} s ahead, the gun's delay is "
-            f"{signals.delay:g} s: let the gun's own controller take the rest"
-        )
+    words = output_words(signals, vendor)
     flow = np.concatenate(([0.0], trajectory.flow, [0.0]))
     return tuple(
         tuple(Event(text, time=signals.delay) for text in _actions(before, after, signals, words))
@@ -96,12 +91,22 @@ def _actions(before: float, after: float, signals: GunSignals, words: OutputWord
     return texts
 
 
-def _words(vendor: Vendor) -> OutputWords:
+def output_words(signals: GunSignals, vendor: Vendor) -> OutputWords:
+    """How a vendor's language sets the gun's outputs on the way.
+
+    Raises:
+        InputError: it has no actions on the way, or the delay is longer than it takes.
+    """
     words = None if vendor.speaks is None else vendor.speaks.outputs
     if words is None:
         raise InputError(
             f"the language of {vendor.name} has no actions at a place of the path, so the gun "
             "cannot be switched where it should: leave its signals out and have the gun switched "
             "by other means, or take a robot of another vendor"
+        )
+    if signals.delay > words.longest_lead:
+        raise InputError(
+            f"{vendor.name} sets outputs up to {words.longest_lead:g} s ahead, the gun's delay is "
+            f"{signals.delay:g} s: let the gun's own controller take the rest"
         )
     return words

@@ -87,7 +87,7 @@ def make_part(
     if view is not None and _is_closed(mended.faces):
         painted = skin(vertices, faces, make_rays(vertices, faces, RayEngine.TREE), view)
         share = 100.0 * _area(vertices, faces[painted]) / _area(vertices, faces)
-        notes = (*notes, Note(f"{name}: a closed solid; {share:.0f} % of its surface is painted"))
+        notes = (*notes, Note(f"{name}: a closed solid; the gun sees {share:.0f} % of its surface"))
     return Part.of_triangles(vertices, faces, painted, name, notes)
 
 

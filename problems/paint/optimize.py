@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ...core.errors import Note
 from ...core.sqp import BackendKind, Result, Status
 from .coat import Coat, coat
 from .deposition import BoolArray, Deposition
@@ -19,7 +18,6 @@ from .optimize_objective import PaintObjective
 from .optimize_options import OuterLoop, PaintLimits, PaintWeights
 from .optimize_round import TOLERANCE, Candidate, Progress, Round
 from .optimize_variables import Variables
-from .reach import reach_notes
 from .reference import Reference
 from .robust import NO_ERRORS, PaintErrors, scenarios
 from .trajectory import PaintTrajectory
@@ -40,7 +38,6 @@ class PaintSolution:
         iterations: of the SQP solver, all together.
         status: of its last run.
         interrupted: whether the user ended it.
-        notes: what else a user should know.
     """
 
     trajectory: PaintTrajectory
@@ -51,7 +48,6 @@ class PaintSolution:
     iterations: int
     status: Status
     interrupted: bool
-    notes: tuple[Note, ...] = ()
 
 
 def optimize(
@@ -127,7 +123,6 @@ def optimize(
         iterations,
         result.status,
         result.status is Status.INTERRUPTED,
-        reach_notes(deposition, trajectory, target, limits.speed),
     )
 
 

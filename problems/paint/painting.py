@@ -19,6 +19,7 @@ from .optimize import optimize
 from .optimize_options import OuterLoop, PaintLimits, PaintWeights
 from .optimize_round import Progress
 from .part import Part
+from .reach import check_reach
 from .reference import Reference
 from .resolution import coarsened
 from .robust import NO_ERRORS, PaintErrors
@@ -142,7 +143,7 @@ def paint(
         progress: see `optimize`.
 
     Raises:
-        InputError: the part cannot be painted as planned.
+        InputError: the part cannot be painted as planned, or no speed comes near to the target.
     """
     say("first curve")
     curve = initial_curve(part, wishes.plan, footprint)
@@ -151,8 +152,9 @@ def paint(
     visible = coarse.visible(curve.trajectory)
     seen = coarse.deposition.with_visible(visible)
     start = at_mean(seen, curve.trajectory, wishes)
-    say("best speeds")
     low, high = wishes.limits.speed
+    check_reach(seen, start, wishes.target, (low, high))
+    say("best speeds")
     speeds = best_speeds(seen, start, wishes.target, low, high)
     found = optimize(
         coarse.deposition,
@@ -173,7 +175,7 @@ def paint(
         Stage.FULL: found.trajectory,
     }
     coats = {stage: judge.coat(trajectory) for stage, trajectory in trajectories.items()}
-    notes = tuple(dict.fromkeys((*curve.notes, *speeds.notes, *found.notes)))
+    notes = tuple(dict.fromkeys((*curve.notes, *speeds.notes)))
     return Painting(judge, coarse, curve, trajectories, coats, speeds, found.interrupted, notes)
 
 

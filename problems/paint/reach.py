@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from ...core.errors import Note
+from ...core.errors import InputError, Note
 from .deposition import Deposition
 from .trajectory import PaintTrajectory
 
-_NEARLY = 0.98
+NEARLY = 0.98
+"""Ratio of mean and target down to which nothing is said."""
+HOPELESS = 0.9
+"""Ratio of mean and target below which no optimisation shall try: it would win what is missing by
+driving to and fro."""
 
 
 def reach_notes(
@@ -21,6 +25,37 @@ def reach_notes(
         target: wanted thickness, m.
         speed: least and largest speed of the TCP, m/s.
     """
+    missed = _missed(deposition, trajectory, target, speed, NEARLY)
+    return () if missed is None else (Note(missed),)
+
+
+def check_reach(
+    deposition: Deposition,
+    trajectory: PaintTrajectory,
+    target: float,
+    speed: tuple[float, float],
+) -> None:
+    """Refuse a target that no speed along the path comes near to.
+
+    Args:
+        target, speed: as in `reach_notes`.
+
+    Raises:
+        InputError: the mean is off by more than `HOPELESS` says, whatever the speed.
+    """
+    missed = _missed(deposition, trajectory, target, speed, HOPELESS)
+    if missed is not None:
+        raise InputError(missed)
+
+
+def _missed(
+    deposition: Deposition,
+    trajectory: PaintTrajectory,
+    target: float,
+    speed: tuple[float, float],
+    share: float,
+) -> str | None:
+    """How the target is missed at either limit by more than a share of it; None where it is not."""
     samples = deposition.samples
     thickest, thinnest = (
         float(
@@ -30,20 +65,16 @@ def reach_notes(
         / samples.area
         for limit in speed
     )
-    if thickest < _NEARLY * target:
+    if thickest < share * target:
         return (
-            Note(
-                f"at the least speed of {speed[0]:g} m/s the coat is {thickest * 1e6:.4g} µm on "
-                f"average, less than the target of {target * 1e6:.4g} µm: more flow, a second "
-                "coat, closer sweeps or a lower speed would reach it"
-            ),
+            f"at the least speed of {1e3 * speed[0]:g} mm/s along the first curve the coat is "
+            f"{thickest * 1e6:.4g} µm on average, less than the target of {target * 1e6:.4g} µm: "
+            "more flow, closer sweeps, crossed coats or a lower speed would reach it"
         )
-    if thinnest * _NEARLY > target:
+    if thinnest * share > target:
         return (
-            Note(
-                f"at the largest speed of {speed[1]:g} m/s the coat is {thinnest * 1e6:.4g} µm on "
-                f"average, more than the target of {target * 1e6:.4g} µm: less flow, wider sweeps "
-                "or a higher speed would reach it"
-            ),
+            f"at the largest speed of {1e3 * speed[1]:g} mm/s along the first curve the coat is "
+            f"{thinnest * 1e6:.4g} µm on average, more than the target of {target * 1e6:.4g} µm: "
+            "less flow, wider sweeps or a higher speed would reach it"
         )
-    return ()
+    return None

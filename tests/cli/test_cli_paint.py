@@ -87,6 +87,20 @@ def test_without_a_robot_there_is_no_program(
     assert {path.name for path in out.iterdir()} == {"thickness.png", "curve.png", "histogram.png"}
 
 
+def test_what_is_painted_is_narrowed_down(flyby: Flyby, panel: tuple[Path, Path]):
+    """The top of a block (0.15 m²) without its sides: the half of it that is not covered."""
+    block = panel[0].with_name("block.stl")
+    trimesh.creation.box((500, 300, 60)).export(block)
+    ask = words(
+        (block, panel[1]), "--points", "200", "--view", "0,0,-1", "--facing", "30", "--json"
+    )
+    half = flyby(*ask, "--covered", "0,-200,-90,300,200,90")
+    assert half.exit_code == 0, half.output
+    assert json.loads(half.stdout)["area_m2"] == pytest.approx(0.075, rel=0.05)
+    none = flyby(*ask, "--inside", "0,0,200,9,9,300")
+    assert none.exit_code == 1 and "leave nothing of it to paint" in none.output.replace("\n", " ")
+
+
 def test_millimetres_taken_for_metres(flyby: Flyby, panel: tuple[Path, Path]):
     part, footprint = panel
     result = flyby("paint", part, "--footprint", footprint, "--target", "50um")
@@ -155,9 +169,17 @@ def test_what_is_not_proven_is_not_written(flyby: Flyby, panel: tuple[Path, Path
         (("--delay", "30"), "name its switch by --signal"),
         (("--robot", ROBOT), "where does the part stand?"),
         (("--coats", "two"), "--coats two: one or crossed"),
+        (("--inside", "1,2,3"), "two corners of a box in mm"),
+        (("--facing", "0"), "degrees from 0 to 180"),
+        (("--target", "5mm"), "at the least speed of 50 mm/s along the first curve"),
+        (("--step", "0.5"), "1500 segments are the most"),
         (("--errors", "5"), "height in mm and radius in %"),
         (("--tool", "gun"), "name it by --robot or --cell"),
         (("--robot", "ur/ur10e", "--place", "500,0,100", "--signal", "1"), "no actions at a place"),
+        (
+            ("--robot", ROBOT, "--place", "0,0,0", "--signal", "doGun", "--delay", "600"),
+            "up to 0.5 s ahead",
+        ),
     ],
 )
 def test_what_is_refused(

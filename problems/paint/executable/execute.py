@@ -6,9 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ....core.collision.certificate import certify, scenes_of
-from ....core.collision.verdict import Certificate
+from ....core.collision.scene import CollisionScene
+from ....core.collision.verdict import CONTACT, Certificate
 from ....core.errors import Note
 from ....core.motion.controller import Controller
 from ....core.program.program import Program
@@ -16,13 +18,16 @@ from ...solution import scene_notes
 from ..coat import Coat
 from ..deposition import Deposition
 from ..painting import Painting, Stage
+from ..part import Part
 from ..trajectory import PaintTrajectory
 from .emulated import Driven, drive
 from .feedback import Execution, Progress, drive_evenly, judged
 from .lag import lag_notes
-from .spin import Posture, choose_posture
+from .spin import Clear, Posture, choose_posture
 from .station import Station
 from .writing import DriveOptions, with_run_in
+
+FloatArray = NDArray[np.float64]
 
 _BUDGET = 400_000
 """Distances measured for the proof: a minute's worth. Usually some thousand are enough."""
@@ -84,8 +89,9 @@ def execute(
     """
     controller = Controller(station.vendor, station.cell.robot)
     planned = with_run_in(painting.best, options.run_in)
-    posture = choose_posture(planned, station)
     coarse, judge = painting.coarse, painting.judge
+    clear = _clear_of(judge.part, station) if prove else _anything
+    posture = choose_posture(planned, station, clear)
     made: Execution = drive_evenly(
         controller,
         planned,
@@ -121,6 +127,18 @@ def execute(
         certificate,
         notes,
     )
+
+
+def _clear_of(part: Part, station: Station) -> Clear:
+    """Whether robot and gun keep the cell's clearance, from the part too."""
+    cell = station.with_part(part, (station.gun.name,)).cell
+    scene = CollisionScene(cell, station.gun)
+    wanted = max(cell.clearance, CONTACT)
+    return lambda joints: bool((scene.clearance(joints, within=wanted) >= wanted).all())
+
+
+def _anything(joints: FloatArray) -> bool:
+    return True
 
 
 def _told(driven: Driven) -> tuple[Note, ...]:

@@ -12,8 +12,8 @@ from .stretch import Stretch, describe
 
 FloatArray = NDArray[np.float64]
 
-LESS_EVEN = 0.01
-"""Standard deviation, as a share of the target, by which a coat may be worse without a word."""
+WORSE = 0.01
+"""Root-mean-square error, as a share of the target, by which a coat may be worse without a word."""
 LATE = 1.1
 """Ratio of driven and programmed time from which on a segment counts as late."""
 
@@ -21,7 +21,7 @@ LATE = 1.1
 def lag_notes(
     planned: PaintTrajectory, took: FloatArray, coat: Coat, wanted: Coat
 ) -> tuple[Note, ...]:
-    """Why a coat is less even as emulated than as planned.
+    """Why a coat is farther from its target as emulated than as planned, in its mean or evenness.
 
     Args:
         planned: as programmed.
@@ -29,12 +29,12 @@ def lag_notes(
         coat: as emulated.
         wanted: as planned.
     """
-    worse = coat.by_area.std - wanted.by_area.std
-    if worse <= LESS_EVEN * coat.target:
+    off, planned_off = coat.rms_error, wanted.rms_error
+    if off - planned_off <= WORSE * coat.target:
         return ()
     head = (
-        f"as emulated the coat is less even than planned: standard deviation "
-        f"{1e6 * coat.by_area.std:.2f} µm against {1e6 * wanted.by_area.std:.2f} µm"
+        f"as emulated the coat is worse than planned: {1e6 * off:.2f} µm off the target (root mean "
+        f"square) against {1e6 * planned_off:.2f} µm"
     )
     late = np.flatnonzero(took > LATE * planned.duration)
     if len(late) == 0:

@@ -2,12 +2,14 @@
 
 Over a grid of turns the cheapest series is found by dynamic programming, for each branch of inverse
 kinematics by itself, then refined. What costs is the square of each joint's speed by its limit,
-and nearness to singularities.
+and nearness to singularities. The cheapest branch in which nothing collides at the waypoints is
+taken.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,6 +39,12 @@ STIFF = 0.1
 """Least singular value of the Jacobian (lengths in m) from which on nearness to a singularity
 counts little."""
 _FULL = 2.0 * math.pi
+_QUARTER = 0.5 * math.pi
+"""rad that the gun may be turned about its nozzle within a segment; half a turn of a fan would lay
+paint across, and which way round it goes would be left to rounding."""
+
+Clear = Callable[[FloatArray], bool]
+"""Whether nothing collides with the joints (W, N) at the waypoints."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,12 +73,18 @@ class _Candidates:
     joints: FloatArray
 
 
-def choose_posture(trajectory: PaintTrajectory, station: Station) -> Posture:
+def choose_posture(
+    trajectory: PaintTrajectory, station: Station, clear: Clear = lambda joints: True
+) -> Posture:
     """The turns about the nozzle, and the joints, with which the whole trajectory is driven best.
+
+    Of the postures that collide with nothing it is the cheapest; where all collide, the cheapest of
+    them, so that a proof can say what is in the way.
 
     Args:
         trajectory: in the part's frame.
         station: robot, gun and place.
+        clear: see `Clear`.
 
     Raises:
         MotionError: there is no branch of inverse kinematics that reaches all of it; the message
@@ -84,23 +98,32 @@ def choose_posture(trajectory: PaintTrajectory, station: Station) -> Posture:
     world = trajectory.moved(station.place)
     frames = gun_frames(world)
     grids = _coarse(world, frames, station)
-    found = []
-    for candidates in grids:
-        whole = np.isfinite(candidates.joints[..., 0]).any(axis=1).all()
-        if whole:
-            found.append((_cheapest(candidates, world, robot), candidates))
-    found.sort(key=lambda one: one[0][1])
-    for (picked, _), candidates in found:
-        turns, joints = _picked(candidates, picked)
-        unwound = _unwound(joints, robot)
+    whole = [grid for grid in grids if np.isfinite(grid.joints[..., 0]).any(axis=1).all()]
+    first: Posture | None = None
+    for posture in _postures(whole, world, frames, station):
+        if clear(posture.joints):
+            return posture
+        first = posture if first is None else first
+    if first is not None:
+        return first
+    raise unreachable(world, trajectory, None if whole else _stretch(grids), robot, frames, station)
+
+
+def _postures(
+    grids: list[_Candidates], world: PaintTrajectory, frames: FloatArray, station: Station
+) -> Iterator[Posture]:
+    """The best posture of each branch that is driven without winding a joint up, cheapest first."""
+    robot = station.cell.robot
+    ways = [(*_cheapest(grid, world, robot), grid) for grid in grids]
+    ways.sort(key=lambda way: way[1])
+    for picked, cost, grid in ways:
+        turns, joints = _picked(grid, picked)
+        unwound = _unwound(joints, robot) if math.isfinite(cost) else None
         if unwound is None:
             continue
         if world.fan is None:
             turns, unwound = _refined(turns, unwound, world, frames, station)
-        return Posture(turned(frames, turns), unwound)
-    raise unreachable(
-        world, trajectory, _stretch(grids) if not found else None, robot, frames, station
-    )
+        yield Posture(turned(frames, turns), unwound)
 
 
 def _coarse(world: PaintTrajectory, frames: FloatArray, station: Station) -> list[_Candidates]:
@@ -140,7 +163,7 @@ def _cheapest(
         twist -= _FULL * np.round(twist / _FULL)
         seconds = world.duration[w - 1]
         move = ((change / limits) ** 2).sum(axis=2) / seconds**2 * seconds
-        move += (twist / math.pi) ** 2
+        move += np.where(np.abs(twist) <= _QUARTER + 1e-9, (twist / math.pi) ** 2, np.inf)
         ways = np.where(np.isfinite(move), move, np.inf) + total[None]
         back[w] = np.argmin(ways, axis=1)
         total = np.take_along_axis(ways, back[w][:, None], 1)[:, 0] + stand[w] * seconds

@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from ....core.cell.cell import Cell, Obstacle
 from ....core.cell.geometry import Geometry, Mesh, Triangles
 from ....core.errors import InputError
@@ -103,7 +105,9 @@ class Station:
             part: what is painted.
             names: of the gun in the program; languages without named tools have one of their own.
         """
-        shape = Mesh(Path(part.name), "m", Triangles(part.vertices, part.faces))
+        # The part has copies of vertices along sharp edges, where a closed solid would seem open.
+        vertices, which = np.unique(part.vertices, axis=0, return_inverse=True)
+        shape = Mesh(Path(part.name), "m", Triangles(vertices, which.reshape(-1)[part.faces]))
         obstacle = Obstacle(_PART.format(part.name), Geometry(shape, self.place))
         cell = replace(
             self.cell,

@@ -39,7 +39,7 @@ class InitialCurve:
         base: (W, 3) m, the waypoints' places on the surface or its extension.
         sweep: (W,) index of the sweep that each waypoint belongs to; -1 in turns.
         sweeps: in the order in which they are driven.
-        ripple: predicted for a plane; None without a symmetric footprint.
+        ripple: predicted for a plane; None without a footprint.
         notes: what a user should know.
     """
 
@@ -83,7 +83,7 @@ def initial_curve(part: Part, plan: SweepPlan, footprint: Footprint | None = Non
         None if plain else fan_across(frames, number),
     )
     ripple = None
-    if footprint is not None and plain:
+    if footprint is not None:
         ripple = predicted_ripple(footprint, plan.distance, plan.sweep_width)
     spacing = [note for coat in coats for note in spacing_notes(part, plan, coat, footprint)]
     sweeps = [sweep for coat in driven for sweep in coat]

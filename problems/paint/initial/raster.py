@@ -17,8 +17,8 @@ from .projection import Frames
 
 FloatArray = NDArray[np.float64]
 
-MOST_SWEEPS = 500
-"""A raster has no more, or the sweep width is a mistake."""
+MOST_SEGMENTS = 1500
+"""A raster has no more: six variables for each make full matrices of 0.65 GB."""
 FLAT = 1e-9
 """Least extent of what is painted, seen along the view."""
 
@@ -84,16 +84,17 @@ def raster(rectangle: Rectangle, plan: SweepPlan) -> list[Frames]:
     goes beyond the rectangle by the overhang.
 
     Raises:
-        InputError: there would be more than `MOST_SWEEPS`, or as many waypoints in one.
+        InputError: there would be more than `MOST_SEGMENTS`.
     """
     count = sweep_count(rectangle.width, plan.sweep_width)
     length = rectangle.length + 2.0 * plan.overhang
     segments = math.ceil(length / plan.longest_segment * (1.0 - 1e-6))
-    if count > MOST_SWEEPS or segments > 20 * MOST_SWEEPS:
+    if count * segments > MOST_SEGMENTS:
         raise InputError(
             f"{count} sweeps of {segments} segments would be needed for a surface of "
-            f"{rectangle.length:.4g} by {rectangle.width:.4g} m: check the part's units, the sweep "
-            "width and the longest segment"
+            f"{rectangle.length:.4g} by {rectangle.width:.4g} m, and {MOST_SEGMENTS} segments are "
+            "the most: check the part's units, the sweep width and the longest segment, or paint "
+            "it in pieces"
         )
     along = np.linspace(-0.5 * length, 0.5 * length, segments + 1)
     across = plan.sweep_width * (np.arange(count) - 0.5 * (count - 1))
@@ -126,8 +127,8 @@ def view_of(part: Part, plan: SweepPlan) -> FloatArray:
     mean = part.facing
     if np.linalg.norm(mean) < 0.1:
         raise InputError(
-            f"{part.name}: what is painted faces all ways; say from where the gun looks at it "
-            "(SweepPlan.view), and paint it in several coats if one view does not see all"
+            f"{part.name}: what is painted faces all ways; say by a view from where the gun looks "
+            "at it, and paint it in several coats if one view does not see all"
         )
     return np.asarray(-mean / np.linalg.norm(mean))
 

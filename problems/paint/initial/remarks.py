@@ -38,7 +38,7 @@ def spacing_notes(
         else "it is curved in both directions: use another heading, or more than one coat"
     )
     uneven = ""
-    if footprint is not None and footprint.aspect == 1.0:
+    if footprint is not None:
         ripple = predicted_ripple(footprint, plan.distance, float(apart.max()))
         uneven = f", which gives ±{100.0 * ripple.half_range:.0f} % there"
     return [Note(f"{wide}, where {wanted}{uneven}; {advice}")]
@@ -91,6 +91,7 @@ def missed_notes(part: Part, plan: SweepPlan, sweeps: list[Sweep]) -> list[Note]
         Note(
             f"{part.name}: {100.0 * missed / part.painted_area:.0f} % of what is to be painted "
             f"({missed:.3g} m²) lies round a corner or farther than a sweep width from all sweeps: "
-            "paint it in a coat of its own from another view, or take it from what is painted"
+            "paint it in a coat of its own from another view, or take it from what is painted "
+            "(--facing, --inside, --covered)"
         )
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -38,16 +39,16 @@ class Ripple(NamedTuple):
 def predicted_ripple(footprint: Footprint, distance: float, sweep_width: float) -> Ripple:
     """What parallel strokes a sweep width apart give on a plane at constant speed.
 
-    T(y) = Σ g(y - k w) over all k, g the section of a stroke.
+    T(y) = Σ g(y - k w) over all k, g the section of a stroke. Elliptic footprints have their long
+    axis across the strokes, so that their section is that of the symmetric one by the aspect a:
+    ∫ f(√(y² + a² x²)) dx = ∫ f(√(y² + u²)) du / a.
 
     Args:
         footprint: of the gun.
         distance: of the TCP from the plane, m.
         sweep_width: w, m.
-
-    Raises:
-        InputError: an elliptic footprint, whose strokes depend on how it is turned.
     """
+    footprint = replace(footprint, aspect=1.0)
     radius = stroke_radius(footprint, distance)
     y = sweep_width * (np.arange(PLACES) + 0.5) / PLACES
     reach = int(np.ceil(radius / sweep_width)) + 1

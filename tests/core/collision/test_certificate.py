@@ -15,6 +15,7 @@ from flyby.core.collision.certificate import TOLERANCE, certify, certify_stretch
 from flyby.core.collision.verdict import Certificate, Verdict
 from flyby.core.errors import InputError, MotionError
 from flyby.core.motion.controller import Controller, Run
+from flyby.core.motion.elasticity import Elasticity
 from flyby.core.motion.model import MotionModel
 from flyby.core.motion.pieces import Sampling
 from flyby.core.program.move import MoveC, MoveJ, MoveL
@@ -453,6 +454,28 @@ def test_smoothing_that_takes_the_clearance_leaves_it_unproven() -> None:
     found = certify(controller, controller.run(program), scenes_of(cell), kept)
     assert found.verdict is Verdict.UNPROVEN
     assert "smoothing in time" in found.message and set(found.pair) == {"rod", "ball"}
+
+
+@pytest.mark.parametrize("resolution", [None, 1e-4])
+def test_strays_that_no_bound_is_known_of_are_not_taken_for_none(resolution) -> None:
+    """A ramp before elastic joints, averaged only once; said at once, not halved for ever."""
+    cell = cell_with(ball((3.0, 0.0, 0.0)))
+    corner, end = turned(1, 0.4) - HOME, turned(1, 0.4) + turned(2, 0.4) - 2 * HOME
+    program = swing(corner, end, zone=Radius(0.05))
+    model = MotionModel(smoothing=(0.04,), ramp=0.04, elasticity=Elasticity((1e-5,)))
+    controller = controller_of(cell, model)
+    run = controller.run(program)
+    found = certify(controller, run, scenes_of(cell), 0.0, resolution=resolution)
+    assert found.verdict is Verdict.UNPROVEN and found.measured < 1000
+
+
+@pytest.mark.parametrize(("clearance", "words"), [(0.0, "nothing touches"), (0.0048, "at least")])
+def test_a_proof_says_what_it_is_worth(clearance, words) -> None:
+    cell, program = trap()
+    _, found = check(cell, program, clearance)
+    assert found.proven
+    if clearance or found.clearance < 1e-5:
+        assert words in found.message
 
 
 def test_nothing_near_is_proven_without_a_figure() -> None:

@@ -31,6 +31,7 @@ GEARS = Elasticity(
     (Carried(3, (3e-5, 7e-5)), Carried(5, (1e-4, 5e-5, -2e-5))),
     slack=(9e-5, 1e-5),
 )
+LOADED = replace(GEARS, slack=(1.5e-4, 2e-4, 1e-4), weight=(0.0, 2.0, 1.0), spring=(0.0, 3e-3))
 WEAK = Torque((0.03, 0.05, 0.09), (Borne(5, (0.03, 0.03)),), fade=(0.2, 0.1))
 SPEED = Speed(tcp=2.0, reorientation=6.0)
 DIRECTIONS = np.concatenate([np.eye(6), np.random.default_rng(3).normal(size=(20, 6))])
@@ -44,6 +45,7 @@ MODELS = {
     "ramp": MotionModel(smoothing=(0.04, 0.04), ramp=0.04),
     "ramp, short settling": MotionModel(smoothing=(0.05, 0.04), ramp=0.05, settling=0.03),
     "elastic": MotionModel(smoothing=(0.04, 0.03), elasticity=GEARS),
+    "elastic, loaded": MotionModel(smoothing=(0.04, 0.03), elasticity=LOADED),
     "elastic, unsmoothed": MotionModel(elasticity=GEARS),
     "elastic, weak": MotionModel(smoothing=(0.03, 0.03), elasticity=GEARS, torque=WEAK),
     "elastic, ramp": MotionModel(smoothing=(0.04, 0.04), ramp=0.03, elasticity=GEARS),

@@ -133,6 +133,48 @@ def test_slack_doubles_small_leads_and_adds_itself_to_large_ones(slack, seed) ->
     np.testing.assert_allclose(more[:, 2], slack * np.sign(ddq[:, 2]), rtol=1e-3)
 
 
+@settings(max_examples=20, deadline=None)
+@given(slack=st.floats(1e-5, 1e-3), seed=st.integers(0, 1000))
+def test_a_gear_that_holds_a_weight_has_less_slack_left(slack, seed) -> None:
+    arm = find_robot("abb/irb6640-180-255")
+    q, dq, ddq = states(arm.size, seed)
+    stiff = Elasticity((1e-4, 1e-4, 1e-4), (Carried(5, (1e-5, 1e-5, 1e-5)),))
+    free = replace(stiff, slack=(slack,) * 3)
+    loaded = replace(free, weight=(1.0,) * 3)
+    lead, more = stiff.leads(arm, q, dq, ddq)[:, :3], loaded.leads(arm, q, dq, ddq)[:, :3]
+    held = loaded.held(arm, q)[:, :3]
+    again = slack * (np.tanh((lead + held) / slack) - np.tanh(held / slack))
+    np.testing.assert_allclose(more - lead, again, rtol=0, atol=1e-15)
+    # A vertical axis holds no weight, and stays as soft as without.
+    np.testing.assert_allclose(more[:, 0], free.leads(arm, q, dq, ddq)[:, 0], rtol=0, atol=1e-15)
+    # At rest nothing leads, whatever is held; a stretched spring leaves no slack.
+    assert not loaded.leads(arm, q, 0 * dq, 0 * ddq).any()
+    sprung = replace(stiff, slack=(slack,), spring=(1e3,))
+    np.testing.assert_allclose(
+        sprung.leads(arm, q, dq, ddq), stiff.leads(arm, q, dq, ddq), rtol=0, atol=1e-15
+    )
+
+
+@settings(max_examples=20, deadline=None)
+@given(seed=st.integers(0, 1000))
+def test_what_gears_hold_is_the_change_of_the_masses_height(seed) -> None:
+    """Of a mass on the wrist, by difference quotients; and a spring's sine."""
+    arm = find_robot("abb/irb6640-180-255")
+    q, _, _ = states(arm.size, seed)
+    share, weight, spring = (1e-5, 3e-5, 2e-5), (0.5, 2.0, 1.0), (0.0, 3e-3)
+    gears = Elasticity((), (Carried(5, share),), weight=weight, spring=spring)
+    h, back = 1e-5, np.array([0.0, 0.0, -0.2])
+
+    def height(q):
+        rotation, position = arm.forward(q)
+        return (position + rotation @ back)[:, 2]
+
+    rise = np.stack([(height(q + h * e) - height(q - h * e)) / (2 * h) for e in np.eye(6)[:3]], -1)
+    expected = np.linalg.norm(arm.gravity) * np.array(share) * weight * rise
+    expected[:, 1] += spring[1] * np.sin(q[:, 1])
+    np.testing.assert_allclose(gears.held(arm, q)[:, :3], expected, rtol=1e-3, atol=1e-9)
+
+
 @settings(max_examples=10, deadline=None)
 @given(lag=st.lists(st.floats(-3e-3, 3e-3), min_size=6, max_size=6), seed=st.integers(0, 1000))
 def test_a_lag_leads_by_its_time(lag, seed) -> None:
@@ -141,6 +183,17 @@ def test_a_lag_leads_by_its_time(lag, seed) -> None:
     made = replace(GEARS, lag=tuple(lag))
     more = made.leads(arm, q, dq, ddq) - GEARS.leads(arm, q, dq, ddq)
     np.testing.assert_allclose(more, np.array(lag) * dq, atol=1e-12)
+
+
+def test_what_gears_hold_is_read_with_its_keys(tmp_path) -> None:
+    file = tmp_path / "motion.toml"
+    file.write_text("[elasticity]\nweight = [0.0, 2.0]\nspring_rad = [0.0, 3e-3]\n")
+    model = load_motion_model(file)
+    assert model.elasticity == Elasticity(weight=(0.0, 2.0), spring=(0.0, 3e-3))
+    assert {"elasticity.weight", "elasticity.spring_rad"} <= set(model.figures)
+    file.write_text("[elasticity]\nweight = [inf]\n")
+    with pytest.raises(InputError, match=r"elasticity\.weight"):
+        load_motion_model(file)
 
 
 def test_a_lag_is_read_with_its_key(tmp_path) -> None:

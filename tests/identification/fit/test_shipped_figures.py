@@ -29,9 +29,9 @@ HOME = np.array([0.3, 0.3, 0.4, 0.6, -0.5, -0.5])
 LOGS = os.environ.get("FLYBY_LOGS")
 RUNS = {
     # mm of the path, greatest; degrees of joints at their time, 99 %.
-    "movel_30_car__v50_z10": (0.35, 0.02),
-    "movel_30_car__v500_z50": (0.35, 0.1),
-    "movel_30_car__v1000_z50": (0.5, 0.15),
+    "movel_30_car__v50_z10": (0.05, 0.02),
+    "movel_30_car__v500_z50": (0.3, 0.1),
+    "movel_30_car__v1000_z50": (0.2, 0.15),
 }
 
 

@@ -189,6 +189,10 @@ def test_missing_inertias() -> None:
         ({"waypoints": (Waypoint([99.0]),)}, "waypoint 1 cannot be reached: joint X"),
         ({"objective": Objective(0.5, SquaredTorque((1.0, 2.0)))}, "figures of 2 joints; 1 joints"),
         ({"limits": ControlLimits(torque=[np.nan])}, "joint X: the torque limit must be"),
+        ({"limits": ControlLimits(torque="abc")}, "torque limits must be 1 numbers, one an axis"),
+        ({"limits": ControlLimits(tcp_speed="fast")}, "speed limit must be positive, not 'fast'"),  # type: ignore[arg-type]
+        ({"waypoints": ([1.0],)}, r"waypoint 1 is a Waypoint, not \[1.0\]"),
+        ({"start": ["here"]}, "start must be 1 numbers, one an axis, not"),
         ({"limits": ControlLimits(tcp_speed=np.nan)}, "TCP's speed limit must be positive"),
     ],
 )

@@ -7,10 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from flyby.core.cell.cell import Cell
+from flyby.core.collision.scene import CollisionScene
 from flyby.core.errors import InputError, MotionError
 from flyby.core.motion.controller import Controller
 from flyby.core.program.move import MoveJ
@@ -23,12 +26,15 @@ from flyby.problems.paint.executable.feedback import drive_evenly
 from flyby.problems.paint.executable.frames import gun_frames, turned
 from flyby.problems.paint.executable.lag import lag_notes
 from flyby.problems.paint.executable.spin import Posture, choose_posture
-from flyby.problems.paint.executable.station import Station
+from flyby.problems.paint.executable.station import PLAIN_GUN, Station
 from flyby.problems.paint.executable.writing import DriveOptions, paint_program, with_run_in
 from flyby.problems.paint.gun import GunSignals
+from flyby.problems.paint.part import Part
 from flyby.problems.paint.trajectory import PaintTrajectory
 
 from .paint_cases import TARGET, plate_case, wandering
+
+FloatArray = NDArray[np.float64]
 
 ABB, ROBOT = find_vendor("abb"), find_robot("abb/irb6640-180-255")
 SPEED = (0.05, 0.8)
@@ -64,6 +70,45 @@ def test_joints_keep_to_their_speeds(held: tuple[PaintTrajectory, Posture]):
     planned, posture = held
     rate = np.abs(np.diff(posture.joints, axis=0)) / planned.duration[:, None]
     assert (rate < 0.5 * ROBOT.limits.velocity).all()
+
+
+def test_where_a_posture_collides_another_branch_is_taken(held: tuple[PaintTrajectory, Posture]):
+    planned, cheapest = held
+    tried: list[Posture] = []
+
+    def clear(joints: FloatArray) -> bool:
+        tried.append(Posture(cheapest.rotation, joints))
+        return len(tried) == 2
+
+    other = choose_posture(planned, station(), clear)
+    assert np.array_equal(tried[0].joints, cheapest.joints)
+    assert other.joints is tried[1].joints
+    assert np.abs(other.joints - cheapest.joints).max() > 0.5
+    R, p = ROBOT.forward(other.joints)
+    here = station()
+    assert np.allclose(p + R @ here.gun.tcp.matrix()[:3, 3], planned.moved(here.place).position)
+    # Where all collide, a proof shall say with what.
+    none = choose_posture(planned, station(), lambda joints: False)
+    assert np.array_equal(none.joints, cheapest.joints)
+
+
+def test_a_fan_is_held_the_same_way_round_all_along():
+    plain = plate_case(0.25, 5)[1]
+    fan = np.tile((0.0, 1.0, 0.0), (len(plain.position), 1))
+    planned = replace(plain, fan=fan)
+    here = station()
+    side = choose_posture(planned, here).rotation[:, :, 0] @ fan[0]
+    assert np.allclose(side, side[0]) and abs(side[0]) == pytest.approx(1.0)
+
+
+def test_a_closed_part_is_closed_for_the_proof_too():
+    """Its painted skin has copies of vertices along sharp edges."""
+    box = trimesh.creation.box((0.2, 0.2, 0.1))
+    up = box.face_normals[:, 2] > 0.9
+    part = Part.of_triangles(np.array(box.vertices), np.array(box.faces), up)
+    assert len(part.vertices) > 8
+    cell = station().with_part(part, ("gun",)).cell
+    assert not any("watertight" in str(note) for note in CollisionScene(cell, PLAIN_GUN).notes)
 
 
 def test_a_stretch_out_of_reach_is_named(held: tuple[PaintTrajectory, Posture]):
@@ -246,7 +291,10 @@ def test_a_robot_that_does_not_keep_up_is_told_with_the_stretch() -> None:
     )
     assert lag_notes(planned, took, even, even) == ()
     (note,) = lag_notes(planned, took, uneven, even)
-    assert "2.00 µm against 0.10 µm" in note.message
+    assert "2.00 µm off the target (root mean square) against 0.10 µm" in note.message
     assert "1.8 times as long as programmed on the stretch from waypoint 3 to 5" in note.message
     (note,) = lag_notes(planned, planned.duration, uneven, even)
     assert "smaller zones" in note.message
+    thick = Coat(np.full(2, 53e-6), np.ones(2), 50e-6, 1e-4, 1.0)
+    (note,) = lag_notes(planned, took, thick, even)
+    assert "3.00 µm off the target (root mean square) against 0.10 µm" in note.message

@@ -22,6 +22,7 @@ from flyby.problems.paint.initial.plan import Coats, Gun, Method, SweepPlan
 from flyby.problems.paint.initial.spacing import predicted_ripple, spacings
 from flyby.problems.paint.part import Part
 from flyby.problems.paint.surfaces import grid_faces, plate, saddle, sloped, wavy
+from flyby.problems.paint.trajectory import PaintTrajectory
 
 FloatArray = NDArray[np.float64]
 X = (1.0, 0.0, 0.0)
@@ -229,24 +230,27 @@ def test_wide_sweeps_are_warned_of_with_their_ripple() -> None:
     assert any("between 61 and 141 %" in note.message for note in wide.notes)
     bare = initial_curve(plate(11), SweepPlan(0.55), footprint)
     assert any("bare strips" in note.message for note in bare.notes)
+    fan = initial_curve(plate(11), SweepPlan(0.25), replace(footprint, aspect=2.0))
+    assert fan.ripple == wide.ripple
 
 
-@given(width=st.floats(0.1, 0.3), distance=st.floats(0.2, 0.3))
+@given(st.floats(0.1, 0.3), st.floats(0.2, 0.3), st.sampled_from((1.0, 2.0)))
 @settings(max_examples=6)
-def test_the_predicted_ripple_is_that_of_long_strokes(width: float, distance: float) -> None:
+def test_the_predicted_ripple_is_that_of_long_strokes(
+    width: float, distance: float, aspect: float
+) -> None:
     """Against the deposition of nine strokes far beyond a small patch in the middle."""
-    footprint = ring(0.2)
+    footprint = replace(ring(0.2), aspect=aspect)
     lines = []
     for k in range(-4, 5):
         x = np.linspace(-0.6, 0.6, 61)[:: 1 if k % 2 else -1]
         lines.append(np.stack([x, np.full(61, k * width), np.full(61, distance)], axis=1))
     position = np.concatenate(lines)
-    from flyby.problems.paint.trajectory import PaintTrajectory
-
     nozzle = np.tile(DOWN, (len(position), 1))
     flow = np.ones(len(position) - 1)
     flow[60::61] = 0.0
     trajectory = PaintTrajectory.at_speed(position, nozzle, 0.25, flow)
+    trajectory = replace(trajectory, fan=np.tile((0.0, 1.0, 0.0), (len(position), 1)))
     patch = plate(31, width)
     coat = Deposition(patch.samples, footprint).thickness(trajectory)
     mean = patch.samples.areas @ coat / patch.samples.area

@@ -93,9 +93,11 @@ def test_targets_out_of_reach_are_named():
     limits = (0.2, 0.3)
     assert not best_speeds(deposition, trajectory, TARGET, *limits).notes
     (thin,) = best_speeds(deposition, trajectory, 2 * TARGET, *limits).notes
-    assert "at the least speed of 0.2 m/s the coat is 62.5 µm on average" in str(thin)
+    assert "at the least speed of 200 mm/s along the first curve the coat is 62.5 µm" in str(thin)
     (thick,) = best_speeds(deposition, trajectory, 0.5 * TARGET, *limits).notes
-    assert "at the largest speed of 0.3 m/s the coat is 41.67 µm on average" in str(thick)
+    assert "at the largest speed of 300 mm/s along the first curve the coat is 41.67 µm" in str(
+        thick
+    )
 
 
 def test_refusals():
