@@ -40,9 +40,15 @@ def unit(vectors: FloatArray) -> FloatArray:
 
 
 def crossings(
-    vertices: FloatArray, faces: NDArray[np.int64], origins: FloatArray, ways: FloatArray
+    vertices: FloatArray,
+    faces: NDArray[np.int64],
+    origins: FloatArray,
+    ways: FloatArray,
+    beyond: float = 0.0,
 ) -> FloatArray:
     """(N, F) lengths at which rays cross the planes of triangles inside them; inf elsewhere.
+
+    Triangles reach ``beyond`` their sides, as a share of their size.
 
     By Cramer's rule, and so by other arithmetic than the engines'.
     """
@@ -55,7 +61,18 @@ def crossings(
     u = np.einsum("nfi,nfi->nf", s, p) / below
     v = np.einsum("ni,nfi->nf", ways, q) / below
     t = np.einsum("fi,nfi->nf", f, q) / below
-    return np.where((u >= 0) & (v >= 0) & (u + v <= 1) & (t >= 0), t, np.inf)
+    inside = (u >= -beyond) & (v >= -beyond) & (u + v <= 1 + beyond)
+    return np.where(inside & (t >= 0), t, np.inf)
+
+
+def off_sides(
+    vertices: FloatArray, faces: NDArray[np.int64], origins: FloatArray, ways: FloatArray
+) -> NDArray[np.bool_]:
+    """(N,), rays that graze no side so nearly that single precision, as embree's, may miss it."""
+    more, less = (
+        np.isfinite(crossings(vertices, faces, origins, ways, beyond)) for beyond in (1e-4, -1e-4)
+    )
+    return np.asarray((more == less).all(axis=1))
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -65,6 +82,8 @@ def test_first_hits_are_those_of_brute_force(engine: RayEngine, seed: int, count
     vertices, faces = soup(seed, count)
     rng = np.random.default_rng(seed + 1)
     origins, ways = 2.0 * rng.normal(size=(60, 3)), unit(rng.normal(size=(60, 3)))
+    clear = off_sides(vertices, faces, origins, ways)
+    origins, ways = origins[clear], ways[clear]
     hits = make_rays(vertices, faces, engine).first(origins, ways)
     true = crossings(vertices, faces, origins, ways)
     distance = true.min(axis=1)
@@ -83,6 +102,8 @@ def test_lines_take_the_nearer_of_both_ways(engine: RayEngine, seed: int, count:
     vertices, faces = soup(seed, count)
     rng = np.random.default_rng(seed + 1)
     origins, ways = rng.normal(size=(50, 3)), unit(rng.normal(size=(50, 3)))
+    clear = off_sides(vertices, faces, origins, ways) & off_sides(vertices, faces, origins, -ways)
+    origins, ways = origins[clear], ways[clear]
     hits = make_rays(vertices, faces, engine).along_line(origins, ways)
     ahead = crossings(vertices, faces, origins, ways).min(axis=1)
     behind = crossings(vertices, faces, origins, -ways).min(axis=1)
