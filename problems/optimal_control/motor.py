@@ -87,7 +87,8 @@ class Motors:
 
     With a winding's resistance R, a torque constant k and a gear ratio i, c = R / (k i)². P⁺ and P⁻
     are the positive and negative part of P: braking gives η of its power back. In the optimisation
-    |P| is √(P² + δ²), which is too large by δ at most.
+    |P| is √(P² + δ²), which is too large by δ at most. Joint by joint: no joint uses what another
+    gives back, as the one DC link of `core.motion.consumption` lets it, so this is never less.
 
     Args:
         copper: c in W / (N m)² of each joint that moves.
