@@ -31,12 +31,12 @@ from numpy.typing import NDArray
 from report import Figure, main
 
 from flyby.core.collision.certificate import scenes_of
+from flyby.core.motion.consumption import SQUARED_TORQUE
 from flyby.core.program.target import JointTarget
 from flyby.core.registry import find_robot
 from flyby.core.robot.inertia import carried_inertia
 from flyby.core.sqp import solve
 from flyby.problems.optimal_control import (
-    SQUARED_TORQUE,
     ControlLimits,
     Effort,
     Objective,
@@ -125,8 +125,8 @@ def _scene_figures(case: str, asked: list[Question], effort: Effort) -> Iterator
 
 
 def _energy_ratio(found: list[Optimum]) -> float:
-    before = sum(energy_of(o.task, o.first, SQUARED_TORQUE).sum() for o in found)
-    return float(sum(o.energy().sum() for o in found) / before)
+    before = sum(energy_of(o.task, o.first) for o in found)
+    return sum(o.energy() for o in found) / before
 
 
 def _beside_ipopt(case: str, weight: float) -> Iterator[Figure]:
@@ -143,7 +143,8 @@ def _beside_ipopt(case: str, weight: float) -> Iterator[Figure]:
     unit = None
     if weight < 1.0:
         field = TorqueField(plant, guess.scale)
-        unit = EnergyTerm(guess.layout, field, SQUARED_TORQUE, guess.scale).value(guess.x)
+        term = EnergyTerm(guess.layout, field, SQUARED_TORQUE, guess.scale, 0.0)
+        unit = term.size(guess.x)
     points = guess.layout.points
     bounds = Bounds(np.tile(limits.lower, (points, 1)), np.tile(limits.upper, (points, 1)))
     nlp = Transcription(task, limits, guess.layout, guess.scale, unit, plant).nlp(bounds)

@@ -54,9 +54,9 @@ from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_vendor
 from flyby.problems.energy import Front, Goal, Point, Scope, Task, optimize_energy, pareto
-from flyby.problems.optimal_control import SQUARED_TORQUE, Optimum, energy_of, optimize
 from flyby.problems.optimal_control import Effort as FreeEffort
 from flyby.problems.optimal_control import Objective as FreeObjective
+from flyby.problems.optimal_control import Optimum, energy_of, optimize
 from flyby.problems.optimal_control import Task as FreeTask
 from flyby.problems.scenes.scene import SECOND_ORDER_BLENDS, UNHURRIED, Scene, with_zone
 from flyby.problems.scenes.stud_welding import stud_welding
@@ -187,7 +187,7 @@ def free_motions(case: str, base: Baseline) -> Iterator[Figure]:
         assert all(optimum.proven for optimum in found)
         by_joint = np.zeros(len(base.by_joint))
         for optimum in found:
-            by_joint[optimum.task.moving] += optimum.energy()
+            by_joint += optimum.energy_by_joint()
         ratio = float(by_joint.sum() / base.energy)
         yield Figure(case, f"free_time_s@{weight:g}", sum(o.time for o in found), "s")
         yield Figure(case, f"free_energy_ratio@{weight:g}", ratio, "")
@@ -199,7 +199,7 @@ def _weighed(base: Baseline, known: Optimum, weight: float) -> FreeTask:
 
     Optimal control measures both by its first guess.
     """
-    energy = float(energy_of(known.task, known.first, SQUARED_TORQUE).sum())
+    energy = energy_of(known.task, known.first)
     by_time = weight * known.first.duration / base.time
     by_energy = (1.0 - weight) * energy / base.energy
     return replace(known.task, objective=FreeObjective(by_time / (by_time + by_energy)))

@@ -17,6 +17,9 @@ panel as an obstacle. Times of a scene with several programs are sums.
 - ``energy_change_percent_joint1`` … ``6``: change of ∫ τ² dt from the given to the optimised
   program; joints that need no torque are left out.
 
+``2dof-vias``, ``stud-vias``: the number of via points may change too. ``optimized_time_s``,
+``clearance_mm``, ``cpu_s`` (one process), and ``via_points``, beside ``via_points_given``.
+
 ``2dof-transcription`` holds the search through the emulator, from one start and in one process,
 against IPOPT on the papers' transcription of the same problem (`flyby.problems.transcription`).
 
@@ -63,7 +66,7 @@ from flyby.problems.scenes.two_joints import two_joints
 from flyby.problems.solution import Solution, measure
 from flyby.problems.transcription import Grid, Optimum, optimize
 from flyby.problems.transcription import Task as TranscriptionTask
-from flyby.problems.waypoints import Effort, Task, optimize_waypoints, optimize_zones
+from flyby.problems.waypoints import Effort, Task, ViaCount, optimize_waypoints, optimize_zones
 from flyby.problems.zones.maximize import maximize_zones
 from flyby.problems.zones.options import ZoneOptions
 from flyby.problems.zones.points import passable_stops
@@ -77,6 +80,7 @@ SCENES: dict[str, tuple[Callable[[], Scene], MotionModel]] = {
     "stud-with-panel": (stud_welding_with_panel, SECOND_ORDER_BLENDS),
     "clutter": (clutter, SECOND_ORDER_BLENDS),
 }
+VIAS = {"2dof-vias": "2dof", "stud-vias": "stud"}
 TRANSCRIPTION, MAXIMIZATION = "2dof-transcription", "zone-maximization-100"
 RESOLUTION = 1e-5
 """m, of proven clearances."""
@@ -112,12 +116,39 @@ def measure_scene(case: str, effort: Effort) -> Iterator[Figure]:
     ]
     wall = time.perf_counter() - begin
     yield Figure(case, "optimized_time_s", sum(s.after.time for s in free), "s")
-    kept = [s.after.clearance for s in free]
-    proven = [c for c in kept if c is not None]
-    least = min(proven) if len(proven) == len(kept) else float("nan")
-    yield Figure(case, "clearance_mm", 1e3 * least, "mm")
+    yield _clearance(case, free)
     yield Figure(case, "wall_s", wall, "s")
     yield from _energy_figures(case, free)
+
+
+def measure_vias(case: str, effort: Effort) -> Iterator[Figure]:
+    """Figures of one scene with other numbers of via points."""
+    make, model = SCENES[VIAS[case]]
+    scene = make()
+    _solved(optimize_waypoints, scene, model, scene.programs[0], ONCE)
+    begin = time.process_time()
+    found = [
+        _solved(optimize_waypoints, scene, model, program, effort, ViaCount.CHANGE)
+        for program in scene.programs
+    ]
+    spent = time.process_time() - begin
+    yield Figure(case, "optimized_time_s", sum(s.after.time for s in found), "s")
+    yield _clearance(case, found)
+    given, now = (
+        sum(len(p.moves) - 1 for p in programs)
+        for programs in (scene.programs, [s.program for s in found])
+    )
+    yield Figure(case, "via_points", now, "1")
+    yield Figure(case, "via_points_given", given, "1")
+    yield Figure(case, "cpu_s", spent, "s")
+
+
+def _clearance(case: str, solutions: Sequence[Solution]) -> Figure:
+    """The least that is proven."""
+    kept = [s.after.clearance for s in solutions]
+    proven = [c for c in kept if c is not None]
+    least = min(proven) if len(proven) == len(kept) else float("nan")
+    return Figure(case, "clearance_mm", 1e3 * least, "mm")
 
 
 def _solved(
@@ -126,6 +157,7 @@ def _solved(
     model: MotionModel,
     program: Program,
     effort: Effort,
+    vias: ViaCount = ViaCount.KEEP,
 ) -> Solution:
     """A program bettered; one without via points as it is, with its proof."""
     controller = scene.controller(model, FINE)
@@ -137,7 +169,7 @@ def _solved(
         )
         held = measure(controller, run, proof)
         return Solution(program, program, held, held, proof)
-    task = Task(axes=scene.free, freed=freed, keep=scene.process)
+    task = Task(axes=scene.free, freed=freed, keep=scene.process, vias=vias)
     return solver(controller, program, scene.cell, task, effort)
 
 
@@ -246,8 +278,15 @@ def _measure(case: str, starts: int) -> Iterator[Figure]:
         return measure_maximization(case)
     if case == CLUTTER:
         return measure_scene(case, Effort(starts=min(starts, MOST_AMONG_MESHES), generations=0))
+    if case in VIAS:
+        return measure_vias(case, Effort(starts=starts, workers=1))
     return measure_scene(case, Effort(starts=starts))
 
 
 if __name__ == "__main__":
-    main(__doc__ or "", _measure, (*SCENES, TRANSCRIPTION, MAXIMIZATION), starts=Effort().starts)
+    main(
+        __doc__ or "",
+        _measure,
+        (*SCENES, *VIAS, TRANSCRIPTION, MAXIMIZATION),
+        starts=Effort().starts,
+    )

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
-import tomllib
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,6 +12,7 @@ import typer
 
 from ..core.errors import InputError
 from .console import print_json, print_rich, print_table, progress, warn
+from .installed import registry
 from .loading import robot_of
 from .logged_runs import find_runs
 from .options import AsJson, CellFile, Force, MotionFile, RobotName
@@ -116,7 +115,7 @@ def identify(
     command = _command(
         logs, arm, parameters, {"--cell": cell, "--motion": motion, "--columns": columns}
     )
-    text = _motion_file(fitted, command, _Start(robot, cell, motion))
+    text = _motion_file(fitted, command, logs, owner)
     _write("--out", out, lambda: text)
     _write("--report", report, lambda: _page(fitted, each, text))
     if json:
@@ -182,30 +181,6 @@ def _select(fitted: Fit, trait: str, workers: int, say: Any) -> list[Score]:
     )
 
 
-@dataclass(frozen=True)
-class _Start:
-    """Where the fit began, as the options name it."""
-
-    robot: str | None
-    cell: Path | None
-    motion: Path | None
-
-    def words(self) -> list[str]:
-        """All keys of the motion file."""
-        if self.motion is None:
-            return []
-        tables: list[Any] = [tomllib.loads(self.motion.read_text("utf-8"))]
-        found: list[str] = []
-        while tables:
-            table = tables.pop()
-            inner = table
-            if isinstance(table, dict):
-                found += table
-                inner = table.values()
-            tables += [value for value in inner if isinstance(value, dict | list)]
-        return found
-
-
 def _command(
     logs: list[Path], robot: Robot, parameters: list[str] | None, files: dict[str, Path | None]
 ) -> str:
@@ -218,12 +193,14 @@ def _command(
     return shlex.join(words)
 
 
-def _motion_file(fitted: Fit, command: str, start: _Start) -> str:
+def _motion_file(fitted: Fit, command: str, logs: list[Path], vendor: Vendor) -> str:
+    """To be laid on what the vendor states, whatever the fit began with."""
     from ..identification.fit import motion_file
 
-    vendor, robot = robot_of(start.robot, start.cell)
+    robot = fitted.runs[0].robot
     heading = f"How {robot.name} is driven, fitted to {len(fitted.runs)} logged runs."
-    return motion_file(fitted, command, heading, vendor.motion_of(robot), start.words())
+    stated = registry().find_vendor(vendor.name).motion_of(robot)
+    return motion_file(fitted, command, heading, stated, logs[0].resolve().stem)
 
 
 def _page(fitted: Fit, each: list[Outcome], text: str) -> str:

@@ -81,7 +81,10 @@ def optimize(
     predefined: Predefined = False,
     vias: Annotated[
         str,
-        typer.Option(help="keep: the number of via points stays; change: it may become another."),
+        typer.Option(
+            help="keep: the number of via points stays; change: idle ones go, and others come "
+            "where they pay."
+        ),
     ] = "keep",
     starts: Annotated[
         int | None, typer.Option(help="Paths to start from; more find better routes.")

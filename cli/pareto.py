@@ -187,7 +187,7 @@ def _wishes(
 
 def _consumption(motors: Path | None, robot: Robot) -> Consumption:
     from ..core.motion.consumption import SQUARED_TORQUE
-    from ..problems.energy.motors import load_motors
+    from ..core.motion.motors_file import load_motors
 
     if motors is None:
         return SQUARED_TORQUE

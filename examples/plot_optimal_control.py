@@ -68,33 +68,35 @@ def round_the_box() -> Optimum:
 
 
 def draw_limits(found: list[tuple[str, Optimum]], file: Path) -> None:
-    """Joints, speeds, accelerations and torques, as shares of their limits."""
+    """Joints, speeds, accelerations and torques, as shares of their limits; torques in N m where
+    they have none."""
     figure, axes = plt.subplots(4, len(found), figsize=(5.2 * len(found), 9.5), squeeze=False)
     for column, (title, optimum) in zip(axes.T, found, strict=True):
         t = np.linspace(0.0, optimum.time, SAMPLES)
-        limits = optimum.limits
+        limits, moving = optimum.limits, optimum.task.moving
         middle, half = 0.5 * (limits.lower + limits.upper), 0.5 * (limits.upper - limits.lower)
-        torque = limits.torque
-        if not np.isfinite(torque).all():
-            torque = np.abs(optimum.torque(t)).max(axis=0)
+        torque, most = optimum.torque(t)[:, moving], limits.torque[moving]
+        limited = bool(np.isfinite(most).all())
         rows = [
-            ("position", (optimum.motion.at(t) - middle) / half),
-            ("speed", optimum.motion.at(t, 1) / limits.velocity),
-            ("acceleration", optimum.motion.at(t, 2) / limits.acceleration),
-            ("torque", optimum.torque(t) / torque),
+            ("position in its range", (optimum.motion.at(t) - middle) / half),
+            ("speed / limit", optimum.motion.at(t, 1) / limits.velocity),
+            ("acceleration / limit", optimum.motion.at(t, 2) / limits.acceleration),
+            ("torque / limit", torque / most) if limited else ("torque in N m, no limit", torque),
         ]
-        names = [optimum.task.robot.axis_names[j] for j in optimum.task.moving]
         for axis, (name, values) in zip(column, rows, strict=True):
-            for line, joint in zip(values.T, names, strict=True):
-                axis.plot(t, line, lw=1.1, label=joint)
-            for side in (-1, 1):
-                axis.axhline(side, color="0.4", lw=0.8, ls="--")
-            share = name == "torque" and not np.isfinite(limits.torque).all()
-            axis.set_ylabel(f"{name} / {'largest' if share else 'limit'}")
-            axis.set_ylim(-1.15, 1.15)
+            for line, joint in zip(values.T, moving, strict=True):
+                label = optimum.task.robot.axis_names[joint]
+                axis.plot(t, line, lw=1.1, color=f"C{joint}", label=label)
+            if limited or axis is not column[-1]:
+                for side in (-1, 1):
+                    axis.axhline(side, color="0.4", lw=0.8, ls="--")
+                axis.set_ylim(-1.15, 1.15)
+            axis.set_ylabel(name)
             axis.grid(alpha=0.25)
-        column[0].set_title(f"{title}: {optimum.time:.3f} s")
-        column[0].legend(ncols=3, fontsize=8, loc="lower left")
+        column[0].set_title(f"{title}: {optimum.time:.3f} s", pad=24)
+        column[0].legend(
+            ncols=6, fontsize=8, loc="lower center", bbox_to_anchor=(0.5, 1.0), frameon=False
+        )
         column[-1].set_xlabel("time in s")
     _save(figure, file)
 
@@ -122,7 +124,7 @@ def draw_trace(optimum: Optimum, file: Path) -> None:
 
 def _save(figure: Any, file: Path) -> None:
     figure.tight_layout()
-    figure.savefig(file, dpi=110)
+    figure.savefig(file, dpi=110, bbox_inches="tight")
     plt.close(figure)
 
 

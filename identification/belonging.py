@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
@@ -14,14 +16,16 @@ from .matching import Match
 
 FloatArray = NDArray[np.float64]
 
-NEAR = 0.05
+NEAR = 0.03
 """rad (m) of the path of joints within which half of a log must lie, and …"""
-FAR = 0.2
-"""… nine tenths. A corner that is emulated badly is off by a tenth of that."""
+FAR = 0.1
+"""… nine tenths. Logs are off by up to a half and a third of that before their zones are fitted."""
 COVERED = 0.02
 """rad (m), or …"""
 COVERED_SHARE = 0.01
 """… share of the path that a log may lack at either end."""
+SKIPPED = 0.1
+"""Share of the path that no two samples may leave out between them."""
 SLOWEST, FASTEST = 0.02, 50.0
 """Emulated over logged time beyond which no override explains it."""
 _BETTER = 5.0
@@ -103,7 +107,9 @@ def _reason(robot: Robot, trajectory: Trajectory, q: FloatArray) -> str:
     """What would make the log fit, or where it is worst."""
     tree = cKDTree(trajectory.q)
     near = _typical(tree, q)
-    if _typical(tree, np.radians(q)) < min(near / _BETTER, NEAR):
+    # A log that is scaled down hardly moves, and may do so near the path.
+    moves = _reach(np.radians(q)) > 0.5 * _reach(trajectory.q)
+    if moves and _typical(tree, np.radians(q)) < min(near / _BETTER, NEAR):
         return 'it fits if its joints are in degrees: say unit = "deg" in a file of columns'
     if _typical(tree, np.degrees(q)) < min(near / _BETTER, NEAR):
         return _RADIANS
@@ -116,6 +122,13 @@ def _reason(robot: Robot, trajectory: Trajectory, q: FloatArray) -> str:
             return f"it fits if {name} counts from {np.degrees(shift):.3g}° instead of 0"
         if _typical(tree, flipped) < min(near / _BETTER, NEAR):
             return f"it fits if {name} counts the other way round"
+    for one, other in combinations(range(q.shape[1]), 2):
+        swapped = q.copy()
+        swapped[:, [one, other]] = q[:, [other, one]]
+        if _typical(tree, swapped) < min(near / _BETTER, NEAR):
+            return f"it fits if the columns of {robot.axis_names[one]} and " + (
+                f"{robot.axis_names[other]} are exchanged"
+            )
     below = np.maximum(
         trajectory.q.min(axis=0) - q.max(axis=0), q.min(axis=0) - trajectory.q.max(axis=0)
     )
@@ -136,6 +149,11 @@ def _shift(path: FloatArray, q: FloatArray, axis: int) -> float:
     return float(np.median(path[nearest, axis] - q[:, axis]))
 
 
+def _reach(q: FloatArray) -> float:
+    """How far joints (T, N) move, all together, rad (m)."""
+    return float(np.linalg.norm(np.ptp(q, axis=0)))
+
+
 def _typical(tree: cKDTree, q: FloatArray) -> float:
     """Median distance from the path's samples."""
     return float(np.median(tree.query(q)[0]))
@@ -148,7 +166,7 @@ def _span(values: FloatArray) -> str:
 def check_coverage(
     trajectory: Trajectory, q: FloatArray, found: Match, begin: int, end: int
 ) -> None:
-    """Refuse a log that begins late or ends early.
+    """Refuse a log that begins late, ends early or leaves out part of the path.
 
     Args:
         trajectory: the emulated motion.
@@ -173,6 +191,16 @@ def check_coverage(
         raise InputError(
             f"the log ends at {100 * last / found.length:.0f} % of the program's path: it is "
             "shorter than the program"
+        )
+    inside = slice(begin, end + 1)
+    moved = np.linalg.norm(np.diff(q[inside], axis=0), axis=1)
+    skipped = np.diff(found.arc[inside]) - 2.0 * moved
+    if skipped.max(initial=0.0) > max(COVERED, SKIPPED * found.length):
+        at = int(np.argmax(skipped))
+        first, last = (100 * found.arc[inside][k] / found.length for k in (at, at + 1))
+        raise InputError(
+            f"the log goes from {first:.0f} to {last:.0f} % of the program's path within one "
+            "sample, without moving that far: it began late, or the program starts elsewhere"
         )
 
 

@@ -15,6 +15,7 @@ from .belonging import check_limits
 from .logs.cleaning import CleanLog
 from .logs.run import LoggedRun
 from .residuals import Figures, Residuals, figures, residuals
+from .tearing import mended, tear
 
 PERIOD = 5e-4
 """s between samples of the emulation. At 1 m/s round a radius of 10 mm, chords are 3 µm off."""
@@ -28,7 +29,7 @@ class Prediction:
         name: of the run.
         robot: that moved.
         driven: the emulation.
-        log: what was logged.
+        log: what was logged, samples that mix two cycles put together.
         alignment: of both.
         residuals: log less emulation.
         figures: the same in numbers.
@@ -64,6 +65,10 @@ def predict(
         check_limits(robot, log.q)
         driven = controller.run(program, start_of(program, log, robot), period)
         aligned = align(robot, driven.trajectory, log)
+        torn = tear(driven.trajectory, aligned)
+        if torn is not None:
+            log = mended(log, driven.trajectory, aligned, torn)
+            aligned = align(robot, driven.trajectory, log)
     except InputError as error:
         raise InputError(f"{name}: {error}") from error
     found = residuals(robot, _tool(program), driven.trajectory, log, aligned)

@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.motion.controller import Run
-from ..core.motion.model import MotionModel, Overlap
+from ..core.motion.model import LineTurn, MotionModel, Overlap
+from ..core.motion.swivel import swivel
 from ..core.program.move import Move, MoveC, MoveJ
 from ..core.program.program import Program
 from ..core.program.speed import Speed
 from ..core.program.zone import ContourFraction, Fine, Radius
 from ..core.robot.model import Robot
-from ..core.spatial.rotation import rotation_vector
+from ..core.spatial.rotation import matrix_from_rotation_vector, rotation_vector
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -101,18 +102,27 @@ def away_from_legs(seen: Observed) -> FloatArray:
     return away
 
 
-def turned_away(seen: Observed) -> FloatArray:
-    """(S,) rad, how far the tool is from the shortest turn of its leg; 0 on other than lines."""
+def turned_away(seen: Observed, model: MotionModel) -> FloatArray:
+    """(S,) rad, how far the tool is from the even turn of its leg; 0 on other than lines."""
     away = np.zeros(len(seen.t))
     rotation, _ = seen.robot.forward(seen.corners)
     for k, move in enumerate(seen.moves):
         if isinstance(move, MoveJ | MoveC):
             continue
         rows = seen.segment == k
-        whole = rotation_vector(rotation[k].T @ rotation[k + 1])
-        done = rotation_vector(rotation[k].T @ seen.rotation[rows])
+        (whole,) = _even(rotation[k].T @ rotation[k + 1 : k + 2], model)
+        done = _even(rotation[k].T @ seen.rotation[rows], model)
         away[rows] = np.linalg.norm(done - _nearest_on_line(done, 0 * whole, whole), axis=1)
     return away
+
+
+def _even(turns: FloatArray, model: MotionModel) -> FloatArray:
+    """(S, d) rad, what grows in proportion along a line that turns the tool by turns (S, 3, 3)."""
+    if model.line_turn is LineTurn.AXIS:
+        return rotation_vector(turns)
+    swivelled = swivel(turns[:, :, 0])
+    rest = rotation_vector(matrix_from_rotation_vector(-swivelled) @ turns)
+    return np.concatenate([swivelled, rest], axis=1)
 
 
 def outside_zones(seen: Observed, model: MotionModel, turning: bool) -> NDArray[np.bool_]:

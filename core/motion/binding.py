@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .controller import Run
-from .limits import CENTRIPETAL
+from .limits import CENTRIPETAL, PathLimits
 from .stamping import CEILING, NEXT
 from .superposed import ZONE
 
@@ -43,12 +43,13 @@ def limit_shares(run: Run, axis_names: Sequence[str]) -> list[tuple[LimitShare, 
 def interval_limits(run: Run, axis_names: Sequence[str]) -> list[str]:
     """Name of the limit that binds in each of the K intervals of a run's path."""
     stamp = run.timing.stamp
+    rows = row_names(run.timing.path_limits, axis_names)
     names: list[str] = [STOP] * len(stamp.limit)
     # An interval that is cut short by what follows is held by the limit of what follows.
     for k in range(len(names) - 1, -1, -1):
         code = int(stamp.limit[k])
         if code >= 0:
-            names[k] = _acceleration(run, stamp.half_plane(code).row, axis_names)
+            names[k] = rows[stamp.half_plane(code).row]
         elif code == NEXT and k + 1 < len(names):
             names[k] = names[k + 1]
         elif code in (CEILING, NEXT):
@@ -56,15 +57,13 @@ def interval_limits(run: Run, axis_names: Sequence[str]) -> list[str]:
     return names
 
 
-def _acceleration(run: Run, row: int, axis_names: Sequence[str]) -> str:
-    if row < len(axis_names):
-        return f"{axis_names[row]} acceleration"
-    row -= len(axis_names)
-    along = ("TCP acceleration", "reorientation acceleration")
-    shares = run.timing.path_limits.shares
-    if row < len(along) or shares is None:
-        return along[row]
-    return f"{axis_names[(row - len(along)) % shares.h.shape[1]]} torque"
+def row_names(limits: PathLimits, axis_names: Sequence[str]) -> tuple[str, ...]:
+    """Names of the rows that a path is stamped by: accelerations, then torques from both sides."""
+    names = [f"{name} acceleration" for name in (*axis_names, "TCP", "reorientation")]
+    if limits.shares is not None:
+        torques = [f"{axis_names[j]} torque" for j in range(limits.shares.h.shape[1])]
+        names += 2 * torques
+    return tuple(names)
 
 
 def _velocity(run: Run, knot: int, axis_names: Sequence[str]) -> str:

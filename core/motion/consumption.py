@@ -1,20 +1,22 @@
 """What a motion consumes: the power of torques τ (N m) at joint velocities q̇ (rad/s).
 
-The papers' norm is Σ τⱼ² ("Towards Energy Optimization using Trajectory Smoothing", section 2). A
-drive takes from the mains what its windings turn into heat and what it does mechanically,
+All joints together have the power
 
-    p = Σ κⱼ τⱼ² + τⱼ q̇ⱼ,        consumed: p where p ≥ 0,  η p where p < 0,
+    p = Σ hⱼ τⱼ² + m τⱼ q̇ⱼ,        consumed: p where p ≥ 0,  η p where p < 0.
 
-for all drives of a controller share one DC link, so that what one gives back another may use. What
-is left over goes into the brake resistor (η = 0) or back to the mains (η up to 1).
+The papers' norm is Σ τⱼ² ("Towards Energy Optimization using Trajectory Smoothing", section 2):
+m = 0. Drives turn h τ² into heat in their windings and do τ q̇ mechanically, m = 1. All drives of a
+controller share one DC link, so that what one gives back another may use. What is left over goes
+into the brake resistor (η = 0) or back to the mains (η up to 1).
 """
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,29 +26,75 @@ from ..errors import InputError
 FloatArray = NDArray[np.float64]
 
 
-class Consumption(Protocol):
+class Rounded(NamedTuple):
+    """What is consumed (...), with its kink at p = 0 rounded, and two derivatives by p."""
+
+    value: FloatArray
+    slope: FloatArray
+    bend: FloatArray
+
+
+class Consumption(ABC):
     """The power of a motion, in a unit of its own."""
 
     @property
+    @abstractmethod
     def unit(self) -> str:
         """Of its integral over time."""
-        ...
+
+    @property
+    @abstractmethod
+    def mechanical(self) -> float:
+        """m: 1 where mechanical power counts, 0 where it does not."""
+
+    @property
+    @abstractmethod
+    def returned(self) -> float:
+        """η in [0, 1]: the share that comes back of what is left over."""
+
+    @abstractmethod
+    def squares(self, count: int) -> FloatArray:
+        """(count,), hⱼ of all joints.
+
+        Raises:
+            InputError: figures of more joints are given.
+        """
 
     def powers(self, torque: FloatArray, rate: FloatArray) -> FloatArray:
         """What each joint takes (..., N) at torques and joint velocities (..., N)."""
-        ...
+        heat = self.squares(torque.shape[-1]) * torque**2
+        return np.asarray(heat + self.mechanical * torque * rate)
+
+    def power_slopes(self, torque: FloatArray, rate: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Derivatives (..., N) of p with respect to torques and velocities."""
+        by_torque = 2.0 * self.squares(torque.shape[-1]) * torque + self.mechanical * rate
+        return by_torque, self.mechanical * torque
 
     def total(self, powers: FloatArray) -> FloatArray:
-        """What all joints (..., N) take together (...)."""
-        ...
+        """What all joints (..., N) take together (...); negative where the mains are given."""
+        p = powers.sum(axis=-1)
+        return np.asarray(np.maximum(p, self.returned * p))
 
     def slopes(self, torque: FloatArray, rate: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Derivatives (..., N) of the total with respect to torques and velocities."""
-        ...
+        """Derivatives (..., N) of the total with respect to torques and velocities; one-sided
+        where nothing flows."""
+        p = self.powers(torque, rate).sum(axis=-1, keepdims=True)
+        share = np.where(p >= 0.0, 1.0, self.returned)
+        by_torque, by_rate = self.power_slopes(torque, rate)
+        return share * by_torque, share * by_rate
+
+    def rounded(self, p: FloatArray, width: float) -> Rounded:
+        """What is consumed of p (...) with √(p² + width²) in the place of |p|.
+
+        It is too large by (1 − η) / 2 · width at most, where p = 0.
+        """
+        kept, lost = 0.5 * (1.0 + self.returned), 0.5 * (1.0 - self.returned)
+        size = np.sqrt(p**2 + width**2)
+        return Rounded(kept * p + lost * size, kept + lost * p / size, lost * width**2 / size**3)
 
 
 @dataclass(frozen=True)
-class SquaredTorque:
+class SquaredTorque(Consumption):
     """Σ wⱼ τⱼ².
 
     Args:
@@ -66,25 +114,23 @@ class SquaredTorque:
         """N² m² s."""
         return "N² m² s"
 
-    def powers(self, torque: FloatArray, rate: FloatArray) -> FloatArray:
-        """wⱼ τⱼ²."""
-        return np.asarray(self.weights(torque.shape[-1]) * torque**2)
+    @property
+    def mechanical(self) -> float:
+        """Torques alone count."""
+        return 0.0
 
-    def total(self, powers: FloatArray) -> FloatArray:
-        """Their sum."""
-        return np.asarray(powers.sum(axis=-1))
+    @property
+    def returned(self) -> float:
+        """Of no effect: the sum is never negative."""
+        return 1.0
 
-    def slopes(self, torque: FloatArray, rate: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """2 wⱼ τⱼ and nothing."""
-        return 2.0 * self.weights(torque.shape[-1]) * torque, np.zeros_like(rate)
-
-    def weights(self, count: int) -> FloatArray:
-        """(count,), of all joints."""
-        return _filled(self.weight, count, 1.0)
+    def squares(self, count: int) -> FloatArray:
+        """(count,), wⱼ."""
+        return _filled("SquaredTorque.weight", self.weight, count, 1.0)
 
 
 @dataclass(frozen=True)
-class Motors:
+class Motors(Consumption):
     """Heat in the windings and mechanical power, on one DC link; see the module.
 
     Args:
@@ -109,30 +155,26 @@ class Motors:
         """J."""
         return "J"
 
-    def powers(self, torque: FloatArray, rate: FloatArray) -> FloatArray:
-        """κⱼ τⱼ² + τⱼ q̇ⱼ, W."""
-        return np.asarray(self.losses(torque.shape[-1]) * torque**2 + torque * rate)
+    @property
+    def mechanical(self) -> float:
+        """All of it counts."""
+        return 1.0
 
-    def total(self, powers: FloatArray) -> FloatArray:
-        """What the mains give, W; negative where they are given."""
-        p = powers.sum(axis=-1)
-        return np.asarray(np.maximum(p, self.recuperation * p))
+    @property
+    def returned(self) -> float:
+        """η."""
+        return self.recuperation
 
-    def slopes(self, torque: FloatArray, rate: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Derivatives of the total; one-sided where nothing flows."""
-        p = self.powers(torque, rate).sum(axis=-1, keepdims=True)
-        share = np.where(p >= 0.0, 1.0, self.recuperation)
-        loss = self.losses(torque.shape[-1])
-        return share * (2.0 * loss * torque + rate), share * torque
-
-    def losses(self, count: int) -> FloatArray:
-        """(count,), κ of all joints."""
-        return _filled(self.copper, count, 0.0)
+    def squares(self, count: int) -> FloatArray:
+        """(count,), κⱼ."""
+        return _filled("Motors.copper", self.copper, count, 0.0)
 
 
-def _filled(values: Sequence[float], count: int, rest: float) -> FloatArray:
+def _filled(name: str, values: Sequence[float], count: int, rest: float) -> FloatArray:
+    if len(values) > count:
+        raise InputError(f"{name} has figures of {len(values)} joints; there are {count}")
     filled = np.full(count, rest)
-    filled[: min(len(values), count)] = values[:count]
+    filled[: len(values)] = values
     return filled
 
 

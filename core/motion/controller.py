@@ -29,6 +29,7 @@ from .model import DurationRule, MotionModel
 from .path import Path, build_path
 from .pieces import Sampling
 from .ramped import stamped_motion
+from .rests import InPosition
 from .route import RouteFinder
 from .smoothing import Motion, Smoothing, States
 from .start_ramp import SUDDEN, StartRamp
@@ -89,7 +90,7 @@ class Controller:
         self.robot = robot
         self.model = vendor.motion_of(robot) if model is None else model
         self.sampling = _sampling(self.model) if sampling is None else sampling
-        self._routes = RouteFinder(robot, vendor.label)
+        self._routes = RouteFinder(robot, vendor.label, self.model.line_turn)
 
     def run(
         self, program: Program, start: JointTarget | None = None, period: float | None = None
@@ -227,8 +228,14 @@ class Controller:
         ramp = self.model.ramp_at(gentlest)
         window += ramp
         wait = self.model.settling
+        stop = window if wait is None else min(wait, window)
         start = StartRamp(self.model.start_ramp)
-        return Settling(window if wait is None else min(wait, window), window, ramp, start)
+        return Settling(stop, window, ramp, start, self._in_position(window))
+
+    def _in_position(self, averaged: float) -> InPosition | None:
+        """What ends waits at stops early, where commands are averaged over so many seconds."""
+        near, time = self.model.in_position, self.model.in_position_time
+        return None if near == 0.0 else InPosition(near, averaged if time is None else time)
 
     def _commanded(self, smoothing: Smoothing, stamped: Motion, t: FloatArray) -> States:
         """The smoothed joints and what they lead their links by."""

@@ -177,7 +177,7 @@ def _rests(
     timing: Timing, allowed: Allowed, reach: float
 ) -> tuple[IntArray, FloatArray, FloatArray]:
     """Knots (R,) where the path rests or turns, for how long (R,) s, and how it turns (R, N)."""
-    wait = np.minimum(timing.begin[1:] - timing.end[:-1], reach)
+    wait = np.minimum(timing.least_waits, reach)
     turn = allowed.slope[0, 1:] - allowed.slope[4, :-1]
     steep = np.abs(allowed.slope).max(axis=(0, 2))
     turned = np.abs(turn).max(axis=1) > _ROUNDING * np.maximum(steep[1:], steep[:-1])

@@ -1,14 +1,14 @@
 """Exact derivatives of a driven program with respect to its own numbers.
 
-Reverse mode by hand: stamp → rows and ceilings → samples → inverse kinematics → curves → zones →
-waypoints → targets. Active limits, clipped zones, branches and sample counts are held, so that at
-a tie between two of them the derivative is one-sided.
+Reverse mode by hand: rests → stamp → rows and ceilings → samples → inverse kinematics → curves →
+zones → waypoints → targets. Active limits, clipped zones, which axis ends a rest, branches and
+sample counts are held, so that at a tie between two of them the derivative is one-sided.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,12 +21,12 @@ from .configurations import located
 from .consumption import SQUARED_TORQUE, Consumption
 from .controller import Controller
 from .energy import pull_energy
-from .limits import SpeedGradient, interval_samples, pull_path_limits, pull_turning
+from .limits import SpeedGradient, pull_path_limits, pull_turning
 from .path import Path
 from .path_gradient import RouteGradient, pull_path
 from .stamping_adjoint import stamp_adjoint
-from .tcp_samples import States
 from .timing import Timing
+from .timing_gradient import Seeds, pull_rests, seed_configuration
 from .zones import ZoneGradient
 
 FloatArray = NDArray[np.float64]
@@ -79,16 +79,6 @@ class ProgramGradient:
     orientation_blend: BlendDerivative
 
 
-@dataclass
-class _Seeds:
-    """Gradient of the wanted number with respect to the samples along ℓ and their stamp."""
-
-    states: States
-    x: FloatArray
-    t: FloatArray
-    spacing: FloatArray = field(repr=False)
-
-
 class Derivatives:
     """Derivatives of one driven program.
 
@@ -115,13 +105,14 @@ class Derivatives:
 
     def duration(self) -> ProgramGradient:
         """Derivative of the cycle time, s."""
-        seeds = self._seeds()
+        seeds = Seeds.zeros(self._timing)
         seeds.t[-1] = 1.0
+        seeds.rests[:] = 1.0
         return self._pull(seeds)
 
     def energy(self, consumption: Consumption = SQUARED_TORQUE) -> ProgramGradient:
         """Derivative of the energy, that of squared torques (N² m² s) if not said otherwise."""
-        seeds = self._seeds()
+        seeds = Seeds.zeros(self._timing)
         made = self._controller.energy(self._program, self._timing, consumption)
         seeds.x[:], seeds.t[:], seeds.spacing[:] = pull_energy(
             self._controller.robot, self._timing, made, seeds.states
@@ -135,63 +126,20 @@ class Derivatives:
             sample: index in ``path.q``.
             weights: (N,); a unit vector for one joint.
         """
-        seeds = self._seeds()
+        seeds = Seeds.zeros(self._timing)
         seeds.states.q[sample] = weights
         return self._pull(seeds)
 
     def configuration_at(self, t: float, weights: FloatArray) -> ProgramGradient:
         """Derivative of weights · q at time t (s), before any smoothing in time."""
-        seeds = self._seeds()
-        self._seed_time(t, np.asarray(weights, dtype=float), seeds)
+        seeds = Seeds.zeros(self._timing)
+        seed_configuration(self._timing, t, np.asarray(weights, dtype=float), seeds)
         return self._pull(seeds)
 
-    def _seeds(self) -> _Seeds:
-        stamp = self._timing.stamp
-        size = self._path.q.shape[1]
-        return _Seeds(
-            States.zeros(len(self._path.sigma), size),
-            np.zeros(len(stamp.x)),
-            np.zeros(len(stamp.t)),
-            np.zeros(len(stamp.limits.spacing)),
-        )
-
-    def _seed_time(self, t: float, w: FloatArray, seeds: _Seeds) -> None:
-        """Reverse of the quintic in `Timing.states_at`."""
-        timing, path = self._timing, self._path
-        k = max(int(np.searchsorted(timing.begin, t, side="right")) - 1, 0)
-        s = int(interval_samples(path.pieces)[k])
-        length = float(timing.along.spacing[k])
-        x0, x1 = timing.stamp.x[k], timing.stamp.x[k + 1]
-        tau = float(np.clip(t - timing.begin[k], 0.0, timing.end[k] - timing.begin[k]))
-        u, rate = (x1 - x0) / (2 * length), np.sqrt(x0)
-        z = tau * (rate + 0.5 * u * tau) / length
-        basis, slope = _quintic(z)
-        factors = np.array([1.0, length, length**2, 1.0, length, length**2])
-        powers = np.array([0, 1, 2, 0, 1, 2])
-        states = timing.along.states
-        values = [states.q[s], states.dq[s], states.ddq[s]]
-        values += [states.q[s + 1], states.dq[s + 1], states.ddq[s + 1]]
-        bars = seeds.states
-        for i, bar in enumerate((bars.q, bars.dq, bars.ddq)):
-            bar[s] += basis[i] * factors[i] * w
-            bar[s + 1] += basis[3 + i] * factors[i] * w
-        along = np.array([float(value @ w) for value in values])
-        length_bar = float(np.sum(basis * factors * powers * along)) / length
-        z_bar = float(np.sum(slope * factors * along))
-        moving = 0.0 < tau < timing.end[k] - timing.begin[k]
-        if moving:
-            step_bar = z_bar / length
-            length_bar -= z_bar * z / length + step_bar * 0.5 * tau**2 * u / length
-            seeds.t[k] -= step_bar * (rate + u * tau)
-            if rate > 0:
-                seeds.x[k] += step_bar * tau * 0.5 / rate
-            seeds.x[k] -= step_bar * tau**2 / (4 * length)
-            seeds.x[k + 1] += step_bar * tau**2 / (4 * length)
-        seeds.spacing[k] += length_bar
-
-    def _pull(self, seeds: _Seeds) -> ProgramGradient:
+    def _pull(self, seeds: Seeds) -> ProgramGradient:
         timing, path = self._timing, self._path
         speeds = SpeedGradient.zeros(len(path.route.moves))
+        pull_rests(timing, seeds)
         bar = stamp_adjoint(timing.stamp, seeds.x, seeds.t)
         bar.spacing[:] += seeds.spacing
         shares_bar, turning_bar = pull_path_limits(
@@ -210,7 +158,7 @@ class Derivatives:
             )
         sigma_bar = np.zeros(len(path.sigma))
         states_bar = timing.along.pull(path, seeds.states, bar.spacing, sigma_bar)
-        turn_bar = pull_turning(path.model, path.segments, turning_bar)
+        turn_bar = pull_turning(path.segments, turning_bar)
         return self._gather(pull_path(path, states_bar, sigma_bar, turn_bar), speeds)
 
     def _gather(self, route_bar: RouteGradient, speeds: SpeedGradient) -> ProgramGradient:
@@ -360,20 +308,3 @@ def _same(chains: Sequence[object]) -> list[list[int]]:
     for i, chain in enumerate(chains):
         groups.setdefault(id(chain), []).append(i)
     return list(groups.values())
-
-
-def _quintic(z: float) -> tuple[FloatArray, FloatArray]:
-    """Quintic Hermite basis for value, slope, bend at 0 and at 1, and its derivative."""
-    powers = np.array([1, z, z**2, z**3, z**4, z**5])
-    rates = np.array([0, 1, 2 * z, 3 * z**2, 4 * z**3, 5 * z**4])
-    table = np.array(
-        [
-            [1, 0, 0, -10, 15, -6],
-            [0, 1, 0, -6, 8, -3],
-            [0, 0, 0.5, -1.5, 1.5, -0.5],
-            [0, 0, 0, 10, -15, 6],
-            [0, 0, 0, -4, 7, -3],
-            [0, 0, 0, 0.5, -1, 0.5],
-        ]
-    )
-    return table @ powers, table @ rates

@@ -105,7 +105,7 @@ def _furthest(segments: Segments, k: int) -> tuple[int, float]:
         change = np.abs(ends.q[k, 1] - ends.q[k, 0])
         row = int(np.argmax(change))
         return row, float(change[row])
-    turn = float(np.linalg.norm(segments.turn_b[k]))
+    turn = float(segments.turn[k])
     length = float(segments.length[k])
     return (size, length) if length >= TURN_LENGTH * turn else (size + 1, turn)
 

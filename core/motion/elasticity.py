@@ -16,7 +16,11 @@ gear that holds a weight, or part of it where a spring balances the arm, has use
 slack at rest, at h: it leads by l + s (tanh((l + h) / s) − tanh(h / s)), as what it gives way by at
 rest is in the joints that a log starts from.
 
-Logs of measured joints show the arm's servos following, each by its own lag. What all have in
+What torque bends beside the gear that it passes, bearings and links, moves other joints' axes too:
+the compliance K⁻¹ is then no diagonal matrix. A joint leads by a share of what the torque on
+another joint makes that one's gear give way by, l + B l with B zero on the diagonal.
+
+The servos of a measured arm may follow, each by its own lag. What all have in
 common is an offset in time; the differences bend the path, and so are leads as well: lag q̇.
 """
 
@@ -54,6 +58,31 @@ class Carried:
     joint: int
     lead: tuple[float, ...]
 
+    @property
+    def entry(self) -> dict[str, Any]:
+        """As the file has it."""
+        return {"joint": self.joint, "lead_s2_per_m2": self.lead}
+
+
+@dataclass(frozen=True)
+class Coupled:
+    """A joint that the torque on another one bends as well.
+
+    Args:
+        joint: that leads, counted from one.
+        by: the joint whose torque does it, counted from one.
+        share: of what the stiffness of that one alone lets it give way by.
+    """
+
+    joint: int
+    by: int
+    share: float
+
+    @property
+    def entry(self) -> dict[str, Any]:
+        """As the file has it."""
+        return {"joint": self.joint, "by": self.by, "share": self.share}
+
 
 @dataclass(frozen=True)
 class Elasticity:
@@ -72,6 +101,7 @@ class Elasticity:
         lag: s that a joint is ahead of the others where it moves (below zero: behind), as the
             servos of a measured arm follow at different distances; joints beyond the last have
             none.
+        coupled: joints that the torque on others bends as well.
     """
 
     own: tuple[float, ...] = ()
@@ -80,6 +110,7 @@ class Elasticity:
     lag: tuple[float, ...] = ()
     weight: tuple[float, ...] = ()
     spring: tuple[float, ...] = ()
+    coupled: tuple[Coupled, ...] = ()
 
     def __post_init__(self) -> None:
         for key, values in (
@@ -87,6 +118,7 @@ class Elasticity:
             ("lag_s", self.lag),
             ("weight", self.weight),
             ("spring_rad", self.spring),
+            ("coupled.share", tuple(pair.share for pair in self.coupled)),
             *(("carried.lead_s2_per_m2", mass.lead) for mass in self.carried),
         ):
             for value in values:
@@ -104,6 +136,12 @@ class Elasticity:
                     f"carried by the joints before it; joint {mass.joint} has {mass.joint - 1}, "
                     f"lead_s2_per_m2 has {len(mass.lead)}"
                 )
+        for pair in self.coupled:
+            if min(pair.joint, pair.by) < 1 or pair.joint == pair.by:
+                raise InputError(
+                    "elasticity.coupled: joint and by are two joints, counted from one, not "
+                    f"{pair.joint} and {pair.by}"
+                )
 
     @property
     def figures(self) -> tuple[str, ...]:
@@ -111,6 +149,7 @@ class Elasticity:
         stated = (
             ("own_s2", self.own),
             ("carried", self.carried),
+            ("coupled", self.coupled),
             ("slack_rad", self.slack),
             ("lag_s", self.lag),
             ("weight", self.weight),
@@ -127,11 +166,28 @@ class Elasticity:
             J = jacobians(chain, q)[:, :3]
             pull = motions(chain, q, dq, ddq)[1][:, :3]
             out += filled(mass.lead, q.shape[1]) * np.einsum("tij,ti->tj", J, pull)
+        lead = out @ self.mixture(robot, q.shape[1]).T
         slack = filled(self.slack, q.shape[1])
         if slack.any():
             held, span = self.held(robot, q), np.where(slack > 0.0, slack, 1.0)
-            out += slack * (np.tanh((out + held) / span) - np.tanh(held / span))
-        return np.asarray(out + filled(self.lag, q.shape[1]) * dq)
+            lead += slack * (np.tanh((out + held) / span) - np.tanh(held / span))
+        return np.asarray(lead + filled(self.lag, q.shape[1]) * dq)
+
+    def mixture(self, robot: Robot, size: int) -> FloatArray:
+        """(size, size), I + B: leads by what the stiffness of each joint alone asks for.
+
+        Raises:
+            InputError: the arm does not have a joint that is named.
+        """
+        out = np.eye(size)
+        for pair in self.coupled:
+            last = max(pair.joint, pair.by)
+            if last > robot.arm_size:
+                raise InputError(
+                    f"elasticity.coupled: {robot.name} has {robot.arm_size} joints, no joint {last}"
+                )
+            out[pair.joint - 1, pair.by - 1] += pair.share
+        return out
 
     def held(self, robot: Robot, q: FloatArray) -> FloatArray:
         """What gears hold at rest (T, N), in rad (m) of lead, at configurations (T, N)."""
@@ -159,11 +215,11 @@ def elasticity(table: dict[str, Any], base: Elasticity = RIGID) -> Elasticity:
         "spring_rad": "spring",
         "lag_s": "lag",
     }
-    unknown = set(table) - {*rows, "carried"}
+    unknown = set(table) - {*rows, "carried", "coupled"}
     if unknown:
         raise InputError(
-            f"elasticity.{min(unknown)}: no such key; there are own_s2, carried, slack_rad, "
-            "weight, spring_rad and lag_s"
+            f"elasticity.{min(unknown)}: no such key; there are own_s2, carried, coupled, "
+            "slack_rad, weight, spring_rad and lag_s"
         )
     values: dict[str, Any] = {
         name: row_of(f"elasticity.{key}", table[key]) for key, name in rows.items() if key in table
@@ -173,6 +229,11 @@ def elasticity(table: dict[str, Any], base: Elasticity = RIGID) -> Elasticity:
         if not isinstance(entries, list):
             raise InputError(f"elasticity.carried: a list of tables is expected, not {entries!r}")
         values["carried"] = tuple(_carried(entry) for entry in entries)
+    if "coupled" in table:
+        entries = table["coupled"]
+        if not isinstance(entries, list):
+            raise InputError(f"elasticity.coupled: a list of tables is expected, not {entries!r}")
+        values["coupled"] = tuple(_coupled(entry) for entry in entries)
     return replace(base, **values)
 
 
@@ -196,7 +257,23 @@ def _carried(entry: Any) -> Carried:
         raise InputError(
             f"elasticity.carried: tables of joint and lead_s2_per_m2 are expected, not {entry!r}"
         )
-    joint = entry["joint"]
-    if isinstance(joint, bool) or not isinstance(joint, int):
-        raise InputError(f"elasticity.carried.joint: a whole number is expected, not {joint!r}")
+    joint = _joint("elasticity.carried.joint", entry["joint"])
     return Carried(joint, row_of("elasticity.carried.lead_s2_per_m2", entry["lead_s2_per_m2"]))
+
+
+def _coupled(entry: Any) -> Coupled:
+    if not isinstance(entry, Mapping) or set(entry) != {"joint", "by", "share"}:
+        raise InputError(
+            f"elasticity.coupled: tables of joint, by and share are expected, not {entry!r}"
+        )
+    return Coupled(
+        _joint("elasticity.coupled.joint", entry["joint"]),
+        _joint("elasticity.coupled.by", entry["by"]),
+        row_of("elasticity.coupled.share", [entry["share"]])[0],
+    )
+
+
+def _joint(key: str, value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise InputError(f"{key}: a whole number is expected, not {value!r}")
+    return value

@@ -62,7 +62,7 @@ def energy(
     motion = _motion(timing)
     segment = timing.interval_segments
     torque = np.empty_like(motion[0])
-    for load, rows in _by_load(loads, segment):
+    for load, rows in by_load(loads, segment):
         q, dq, ddq = (part[rows] for part in motion)
         torque[rows] = robot.inverse_dynamics(q, dq, ddq, load)
     if not np.isfinite(torque).all():
@@ -80,10 +80,15 @@ def energy_by_joint(timing: Timing, made: Energy) -> FloatArray:
     return np.asarray(0.5 * np.einsum("k,kej->j", timing.end - timing.begin, powers))
 
 
-def _by_load(
+def by_load(
     loads: Sequence[Inertia | None], segment: NDArray[np.int64]
 ) -> list[tuple[Inertia | None, NDArray[np.int64]]]:
-    """Intervals grouped by the load they are driven with."""
+    """Intervals grouped by the load they are driven with.
+
+    Args:
+        loads: (M,), what the flange carries on each segment.
+        segment: (K,), the segment of each interval.
+    """
     kinds = dict.fromkeys(loads)
     return [
         (load, np.flatnonzero(np.array([other == load for other in loads])[segment]))
@@ -114,7 +119,7 @@ def pull_energy(
     by_torque, by_rate = made.consumption.slopes(made.torque, made.motion[1])
     torque_bar = halves * by_torque
     bars = tuple(np.empty_like(made.torque) for _ in range(3))
-    for load, rows in _by_load(made.loads, timing.interval_segments):
+    for load, rows in by_load(made.loads, timing.interval_segments):
         q, dq, ddq = (part[rows] for part in made.motion)
         parts = robot.inverse_dynamics_derivatives(q, dq, ddq, load)
         for bar, part in zip(bars, parts, strict=True):

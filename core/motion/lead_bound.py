@@ -15,7 +15,8 @@ lead is A q̈_s + v² c(d), but for
 - lag, |lag| |q̇_s|.
 
 Where the path is straight within reach, A q̈_s is A d times an acceleration, and that one way is
-told from what is left; elsewhere joints are bounded one by one.
+told from what is left; elsewhere joints are bounded one by one. What torques on other joints add
+is B times these bounds (`Elasticity.mixture`).
 
 **Leads are worked out every** `LEAD_STEP`; a cubic spline through values within ±F stays within
 1.549 F (its Lebesgue constant is (1 + 3 √3)/4); with slopes up to M it is off by 0.775 M
@@ -61,6 +62,11 @@ class Leads:
     ways: FloatArray
     share: FloatArray
     rest: FloatArray
+
+    def mixed(self, mixture: FloatArray) -> Leads:
+        """Of what joints lead by as ``mixture`` (N, N) makes them share leads."""
+        rest = _bounded(self.rest, np.abs(mixture))
+        return Leads(self.ways @ mixture.T, self.share, rest)
 
     @property
     def most(self) -> FloatArray:
@@ -181,8 +187,14 @@ def most_leads(
         slope = np.abs(own) * bounds.jerk + sum(_slope(mass, bounds) for mass in masses)
     away = averages.reach + _SPLINE
     held = Held.of(elasticity, robot, course, masses, bounds)
-    more = _beside(elasticity, course, bounds, held, leads.most, slope, away)
-    return Leads(leads.ways, share, rest + more)
+    slack, mixture = filled(elasticity.slack, size), elasticity.mixture(robot, size)
+    taken = held.taken(slack, leads.most)
+    # By l slack has a slope from 0 to 1, by h from −1 to 1, as squares of 1 / cosh have.
+    soft = np.where(slack > 0.0, slope + held.slope, 0.0)
+    slope = _bounded(slope, np.abs(mixture)) + soft
+    leads = leads.mixed(mixture)
+    more = _beside(elasticity, course, bounds, taken, leads.most, slope, away)
+    return Leads(leads.ways, share, leads.rest + more)
 
 
 def _bounds(
@@ -273,23 +285,30 @@ class Held:
         return np.asarray(slack * (np.tanh((lead - against) / span) + np.tanh(against / span)))
 
 
+def _bounded(bounds: FloatArray, factors: FloatArray) -> FloatArray:
+    """(C, N), sums of bounds (C, N), none of which may be known, by factors (N, N) ≥ 0."""
+    parts = np.zeros((len(bounds), *factors.shape))
+    # No bound times nothing is nothing.
+    np.multiply(bounds[:, None, :], factors, out=parts, where=factors > 0.0)
+    return np.asarray(parts.sum(axis=2))
+
+
 def _beside(
     elasticity: Elasticity,
     course: Course,
     bounds: _Bounds,
-    held: Held,
+    taken: FloatArray,
     most: FloatArray,
     slope: FloatArray,
     away: float,
 ) -> FloatArray:
     """(C, N), what slack, lag and interpolation add to leads within ``most``.
 
-    ``slope`` (C, N) bounds what these change by in a second; those within ``away`` s matter.
+    ``taken`` (C, N) is what slack adds. ``slope`` (C, N) bounds what both change by in a second;
+    those within ``away`` s matter.
     """
-    size = most.shape[1]
-    slack, lag = filled(elasticity.slack, size), np.abs(filled(elasticity.lag, size))
-    more = held.taken(slack, most) + lag * bounds.velocity
-    # By l it has a slope from 0 to 1, by h from −1 to 1, as squares of 1 / cosh have.
-    slope = np.where(slack > 0.0, 2.0 * slope + held.slope, slope) + lag * bounds.acceleration
+    lag = np.abs(filled(elasticity.lag, most.shape[1]))
+    more = taken + lag * bounds.velocity
+    slope = slope + lag * bounds.acceleration
     over = np.minimum(_SPLINE_MOST * (most + more), SPLINE_BY_SLOPE * LEAD_STEP * slope)
     return more + np.stack([near(course, values, away) for values in over.T], -1)

@@ -21,10 +21,10 @@ from ..program.speed import Speed
 from ..robot.joint import JointKind
 from ..robot.model import Robot
 from . import stamping, stamping_adjoint
-from .model import MotionModel, TurnLimit
+from .model import MotionModel
 from .pieces import Pieces
 from .rates import pull_rates, pull_sideways, rates, sideways
-from .segments import JOINT_SEGMENT, LINE_SEGMENT, Segments
+from .segments import JOINT_SEGMENT, Segments
 from .superposed import lower_ceilings, pull_ceilings, room_along
 from .swivel import pull_turn_shares, turn_shares
 from .tcp_samples import States
@@ -86,7 +86,7 @@ class SegmentLimits:
         cls, robot: Robot, model: MotionModel, speeds: Sequence[Speed], segments: Segments
     ) -> SegmentLimits:
         """The limits of segments driven at these speeds."""
-        kinds, turning = segments.ends.kind, _turning(model, segments)
+        kinds, turning = segments.ends.kind, _turning(segments)
         known: dict[tuple[Speed, int], tuple[list[_Limit], list[_Limit]]] = {}
         for key in zip(speeds, map(int, kinds), strict=True):
             if key not in known:
@@ -135,16 +135,10 @@ class SegmentLimits:
         return turning_bar
 
 
-def _turning(model: MotionModel, segments: Segments) -> FloatArray:
+def _turning(segments: Segments) -> FloatArray:
     """(M,), the share of its turn that each segment's limits of turning count."""
-    split = _split(model, segments)
-    return np.where(split, turn_shares(segments.turn_b), 1.0)
-
-
-def _split(model: MotionModel, segments: Segments) -> NDArray[np.bool_]:
-    """(M,), lines on which swivel and rotation are limited, each for itself."""
-    apart = model.turn is TurnLimit.SPLIT
-    return np.asarray((segments.ends.kind == LINE_SEGMENT) & apart)
+    shares = turn_shares(segments.turn_a, segments.turn_b)
+    return np.where(segments.ends.swivels, shares, 1.0)
 
 
 _Limit = tuple[float, tuple[str, float] | None]
@@ -447,6 +441,7 @@ def pull_path_limits(
     return shares_bar, turning_bar
 
 
-def pull_turning(model: MotionModel, segments: Segments, turning_bar: FloatArray) -> FloatArray:
-    """Gradient (M, 3) of the segments' turns from that of `SegmentLimits.turning`."""
-    return pull_turn_shares(segments.turn_b, np.where(_split(model, segments), turning_bar, 0.0))
+def pull_turning(segments: Segments, turning_bar: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Gradients (M, 3) of the segments' turns a and b from that of `SegmentLimits.turning`."""
+    bar = np.where(segments.ends.swivels, turning_bar, 0.0)
+    return pull_turn_shares(segments.turn_a, segments.turn_b, bar)

@@ -17,6 +17,7 @@ from typing import Any
 from ..errors import InputError, UnknownNameError
 from .blend import PARABOLA, Blend
 from .elasticity import RIGID, Elasticity, elasticity
+from .provenance import Provenance, read_provenance
 from .smoothing import Smoothing, window_for_jerk
 from .torque import WITHOUT_LIMIT, Torque, torque
 
@@ -57,13 +58,13 @@ class DurationRule(StrEnum):
     """Accelerating over the first third of the time, braking over the last (UR)."""
 
 
-class TurnLimit(StrEnum):
-    """What limits of the tool's turning hold for, on lines."""
+class LineTurn(StrEnum):
+    """How the tool turns along lines, and what limits of turning hold for there."""
 
-    WHOLE = "whole"
-    """The whole turn."""
-    SPLIT = "split"
-    """The swivel of the tool's x axis and the rotation about it, each for itself (KUKA)."""
+    AXIS = "axis"
+    """About one axis; for the whole turn."""
+    SWIVEL = "swivel"
+    """By the swivel of its x axis and the rotation about that; for each of both (KUKA)."""
 
 
 class Pace(StrEnum):
@@ -73,21 +74,6 @@ class Pace(StrEnum):
     """As fast as the limits along the path allow."""
     SUPERPOSED = "superposed"
     """As fast as legs from rest to rest that overlap in time; see `superposed` (KUKA, UR)."""
-
-
-@dataclass(frozen=True)
-class Provenance:
-    """Where a figure comes from.
-
-    Args:
-        status: ``published``, ``fitted`` or ``assumed``.
-        source: the document, or the command and runs of a fit.
-        details: further entries of the file (residuals, runs).
-    """
-
-    status: str
-    source: str = ""
-    details: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -105,7 +91,7 @@ class MotionModel:
         pace: see `Pace`.
         tcp_acceleration: m/s² along the path where the program states none; None for no limit.
         reorientation_acceleration: rad/s², likewise.
-        turn: see `TurnLimit`.
+        line_turn: see `LineTurn`.
         centripetal: greatest centripetal acceleration of the TCP, as a multiple of the
             acceleration along the path; None for no limit.
         joint_acceleration_scale: what the robot's own acceleration limits are multiplied by, from
@@ -121,6 +107,10 @@ class MotionModel:
             joints; see `smoothing.Smoothing`.
         settling: s that the stamped motion waits at stops on the way; None waits until the
             commanded motion has come to rest, which takes the whole window.
+        in_position: rad (m for a linear axis), how near all axes are to be to a stop on the way
+            for the wait to end earlier; 0 for waits of one length; see `rests`.
+        in_position_time: s, for how long they are to be; None for as long as the whole window of
+            ramp and smoothing.
         elasticity: how far the commanded joints lead their links; see `Elasticity`.
         jerk: joint jerk limit as a multiple of each joint's acceleration limit per second, held
             by lengthening the longest moving average; None for no limit.
@@ -139,7 +129,7 @@ class MotionModel:
     pace: Pace = Pace.LIMITS
     tcp_acceleration: float | None = None
     reorientation_acceleration: float | None = None
-    turn: TurnLimit = TurnLimit.WHOLE
+    line_turn: LineTurn = LineTurn.AXIS
     centripetal: float | None = None
     joint_acceleration_scale: tuple[float, ...] = ()
     torque: Torque = WITHOUT_LIMIT
@@ -148,6 +138,8 @@ class MotionModel:
     ramp: float = 0.0
     smoothing: tuple[float, ...] = ()
     settling: float | None = None
+    in_position: float = 0.0
+    in_position_time: float | None = None
     elasticity: Elasticity = RIGID
     jerk: float | None = None
     provenance: Mapping[str, Provenance] = field(default_factory=dict)
@@ -166,7 +158,9 @@ class MotionModel:
             ("time.start_ramp_s", (self.start_ramp,)),
             ("time.ramp_s", (self.ramp,)),
             ("time.smoothing_s", self.smoothing),
-            ("time.settling_s", () if self.settling is None else (self.settling,)),
+            ("time.settling_s", _stated(self.settling)),
+            ("time.in_position_rad", (self.in_position,)),
+            ("time.in_position_time_s", _stated(self.in_position_time)),
         ):
             for value in durations:
                 if not 0 <= value < math.inf:
@@ -215,16 +209,18 @@ class MotionModel:
         return frozenset((*_SINGLE_FIGURES, *blends, *limits, *scale, *optional, *parts))
 
 
-_TABLES = ("blend", "zone", "time", "limit", "torque", "elasticity", "provenance")
+_TABLES = ("blend", "line", "zone", "time", "limit", "torque", "elasticity", "fits", "provenance")
 _BLENDS = ("tcp", "joint", "orientation")
 _LIMITS = ("tcp_acceleration", "reorientation_acceleration", "centripetal")
 _OPTIONAL = (
     ("zone.pace", "pace", Pace.LIMITS),
-    ("limit.turn", "turn", TurnLimit.WHOLE),
+    ("line.turn", "line_turn", LineTurn.AXIS),
     ("time.duration", "duration", DurationRule.SCALED),
     ("time.start_ramp_s", "start_ramp", 0.0),
     ("time.ramp_s", "ramp", 0.0),
     ("time.settling_s", "settling", None),
+    ("time.in_position_rad", "in_position", 0.0),
+    ("time.in_position_time_s", "in_position_time", None),
 )
 """Keys and fields of what most do without, and the values that stand for nothing."""
 _SINGLE_FIGURES = (
@@ -267,16 +263,17 @@ def load_motion_model(
 
 
 def _model(data: dict[str, Any], base: MotionModel) -> MotionModel:
-    blend, zone, time, limit, most, lead, origins = (_table(k, data.pop(k, {})) for k in _TABLES)
-    provenance = {key: _provenance(f"provenance.{key}", entry) for key, entry in origins.items()}
+    tables = (_table(key, data.pop(key, {})) for key in _TABLES)
+    blend, line, zone, time, limit, most, lead, fits, origins = tables
     values: dict[str, Any] = {
-        "provenance": {**base.provenance, **provenance},
+        "provenance": {**base.provenance, **read_provenance(fits, origins)},
         "torque": torque(most, base.torque),
         "elasticity": elasticity(lead, base.elasticity),
     }
     _take(data, values, "", {"period_s": ("period", _number)})
     blends = {name: (name, partial(_blend, getattr(base, name))) for name in _BLENDS}
     _take(blend, values, "blend.", blends)
+    _take(line, values, "line.", {"turn": ("line_turn", LineTurn)})
     _take(
         zone,
         values,
@@ -300,6 +297,8 @@ def _model(data: dict[str, Any], base: MotionModel) -> MotionModel:
             "ramp_s": ("ramp", _number),
             "smoothing_s": ("smoothing", _numbers),
             "settling_s": ("settling", _number),
+            "in_position_rad": ("in_position", _number),
+            "in_position_time_s": ("in_position_time", _number),
             "jerk": ("jerk", lambda v: None if v == "none" else _number(v)),
         },
     )
@@ -310,7 +309,6 @@ def _model(data: dict[str, Any], base: MotionModel) -> MotionModel:
         {
             "tcp_acceleration": ("tcp_acceleration", _number),
             "reorientation_acceleration": ("reorientation_acceleration", _number),
-            "turn": ("turn", TurnLimit),
             "centripetal": ("centripetal", _number),
             "joint_acceleration_scale": ("joint_acceleration_scale", _row),
         },
@@ -333,17 +331,14 @@ def _take(
             raise InputError(f"{prefix}{key}: {error}") from error
 
 
+def _stated(value: float | None) -> tuple[float, ...]:
+    return () if value is None else (value,)
+
+
 def _table(key: str, entry: Any) -> dict[str, Any]:
     if not isinstance(entry, dict):
         raise InputError(f"{key}: a table is expected, not {entry!r}")
     return entry
-
-
-def _provenance(key: str, entry: Any) -> Provenance:
-    details = dict(_table(key, entry))
-    if "status" not in details:
-        raise InputError(f"{key}: the status is missing (published, fitted or assumed)")
-    return Provenance(str(details.pop("status")), str(details.pop("source", "")), details)
 
 
 def _blend(base: Blend, entry: Any) -> Blend:

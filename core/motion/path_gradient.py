@@ -31,7 +31,10 @@ class RouteGradient:
 
 
 def pull_path(
-    path: Path, states_bar: States, sigma_bar: FloatArray, turn_bar: FloatArray
+    path: Path,
+    states_bar: States,
+    sigma_bar: FloatArray,
+    turn_bar: tuple[FloatArray, FloatArray],
 ) -> RouteGradient:
     """Carry a gradient with respect to the samples back to the route.
 
@@ -40,14 +43,15 @@ def pull_path(
         states_bar: gradient with respect to ``path.states``; used up.
         sigma_bar: (S,), gradient with respect to σ of the samples where it enters directly (the
             spacing of intervals); added to.
-        turn_bar: (M, 3), gradient with respect to the turns of segments where they enter directly
-            (limits of their parts).
+        turn_bar: (M, 3) each, gradients with respect to the turns a and b of segments where they
+            enter directly (limits of their parts).
     """
     route, layout, pieces = path.route, path.layout, path.pieces
     model = path.model
     layout_bar = LayoutGradient.zeros(layout)
     segments_bar = SegmentsGradient.zeros(layout.segments)
-    segments_bar.turn_b += turn_bar
+    segments_bar.turn_a += turn_bar[0]
+    segments_bar.turn_b += turn_bar[1]
     reach_bar = np.zeros_like(layout.corners.reach)
     gradient = RouteGradient(
         EndsGradient.zeros(route.ends),

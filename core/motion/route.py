@@ -25,7 +25,7 @@ from ..robot.model import Robot
 from ..robot.work_chain import work_chain
 from .configurations import ConfigurationFinder, Label, located
 from .layout import Layout
-from .model import MotionModel
+from .model import LineTurn, MotionModel
 from .path import Route
 from .segments import (
     ARC_SEGMENT,
@@ -43,8 +43,8 @@ FloatArray = NDArray[np.float64]
 _START = -1
 _FURTHEST = 1e3
 """m from the frame that it is given in beyond which a target, tool or work object is a mistake."""
-_HALF_TURN = np.cos(np.radians(179.9))
-"""Cosine of a reorientation from which on rounding decides the way round."""
+_HALF_TURN = np.radians(179.9)
+"""A turn about one axis from which on rounding decides the way round."""
 _COLLINEAR = 1e-4
 _NOWHERE = 1e-6
 """Scale (m or rad) below which a move goes nowhere: targets are written with about that precision,
@@ -89,10 +89,12 @@ class RouteFinder:
     Args:
         robot: the robot.
         label: the vendor's label of a configuration; None where vendors have none.
+        line_turn: how the tool turns along lines.
     """
 
-    def __init__(self, robot: Robot, label: Label) -> None:
+    def __init__(self, robot: Robot, label: Label, line_turn: LineTurn) -> None:
         self._robot = robot
+        self._line_turn = line_turn
         self._targets = ConfigurationFinder(robot, label)
         self._chains: dict[tuple[Tool, WorkObject], Chain] = {}
 
@@ -227,6 +229,7 @@ class RouteFinder:
             via,
             via_rotation,
             follows,
+            (kind == LINE_SEGMENT) & (self._line_turn is LineTurn.SWIVEL),
             np.array([math.inf if v.tcp is None else v.tcp for v in speeds]),
             np.array([math.inf if (a := v.tcp_acceleration) is None else a for v in speeds]),
         )
@@ -299,7 +302,8 @@ class RouteFinder:
     ) -> Route:
         """Join the stages and drop moves that go nowhere; their stops and waits stay."""
         ends = _joined(legs.ends)
-        keep = make_segments(ends).scale > _NOWHERE
+        segments = make_segments(ends)
+        keep = segments.scale > _NOWHERE
         zones: list[Zone] = []
         owners: list[int] = []
         dwell = [waypoints[_START].dwell]
@@ -317,7 +321,7 @@ class RouteFinder:
                 zones[-1], owners[-1] = here.zone, move
             if move != legs.at_start:
                 notes.append(Note("goes nowhere: it is at its target already", move))
-        notes += _half_turns(ends, keep, legs.moves)
+        notes += _half_turns(segments, keep, legs.moves)
         which = np.flatnonzero(keep)
         speeds = [program.moves[legs.moves[k]].speed for k in which]
         changes = [a != b for a, b in pairwise(speeds)]
@@ -358,10 +362,10 @@ def _check_near(move: Move, i: int) -> None:
             )
 
 
-def _half_turns(ends: Ends, keep: NDArray[np.bool_], moves: Sequence[int]) -> list[Note]:
+def _half_turns(segments: Segments, keep: NDArray[np.bool_], moves: Sequence[int]) -> list[Note]:
     """Notes of the linear moves that turn the tool by half a turn."""
-    trace = np.einsum("kij,kij->k", ends.rotation[:, 0], ends.rotation[:, 1])
-    half = (ends.kind == LINE_SEGMENT) & keep & (0.5 * (trace - 1.0) < _HALF_TURN)
+    turns = np.linalg.norm(np.stack([segments.turn_a, segments.turn_b]), axis=2).max(axis=0)
+    half = (segments.ends.kind == LINE_SEGMENT) & keep & (turns > _HALF_TURN)
     return [
         Note(
             "turns the tool by half a turn: rounding decides the way round; put a target between",

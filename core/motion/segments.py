@@ -4,11 +4,13 @@ A segment runs from λ = 0 to 1. TCP segments turn by
 
     R(λ) = R₀ exp(λ a) exp(λ b),
 
-with a = 0 and b = log(R₀ᵀ R₁) on a line; on an arc whose tool follows it, a is the turn of the
-arc and b the rest, so that the tool turns at a constant rate relative to the tangent.
+with a = 0 and b = log(R₀ᵀ R₁) on a line, or, where the controller turns so, a the swivel of the
+tool's x axis and b the rotation about it (`swivel`); on an arc whose tool follows it, a is the turn
+of the arc and b the rest, so that the tool turns at a constant rate relative to the tangent.
 
 Its scale Λ, the length it takes up on σ, is the joint distance in rad of a joint move, and
-√(length² + (c turn)² + external²) of a TCP move, c = `TURN_LENGTH`.
+√(length² + (c turn)² + external²) of a TCP move, c = `TURN_LENGTH`; the turn is √(a² + b²), on arcs
+b alone.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from numpy.typing import NDArray
 
 from ..spatial.rotation import matrix_from_rotation_vector, rotation_vector, skew
 from .curves import ARC, LINE
+from .swivel import pull_swivel, swivel
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -44,6 +47,7 @@ class Ends:
         via: (M, 3) m, the auxiliary point of arcs.
         via_rotation: (M, 3, 3), orientation at the auxiliary point, which tells the way round.
         follows: (M,) bool, arcs whose tool follows the tangent.
+        swivels: (M,) bool, lines whose tool turns by swivel and rotation.
         speed: (M,) m/s, programmed of the TCP; inf where none is.
         acceleration: (M,) m/s², programmed of the TCP along its path; inf where none is.
     """
@@ -56,6 +60,7 @@ class Ends:
     via: FloatArray
     via_rotation: FloatArray
     follows: NDArray[np.bool_]
+    swivels: NDArray[np.bool_]
     speed: FloatArray
     acceleration: FloatArray
 
@@ -99,6 +104,7 @@ class Segments:
             centre, radius vector to the start and its perpendicular of an arc.
         angle: (M,) rad, of arcs.
         turn_a, turn_b: (M, 3), rotation vectors in the start's orientation.
+        turn: (M,) rad, how far the tool turns, on arcs beside following them.
         delta_prescribed: (M, m).
         length: (M,) m, of the TCP's path (0 for joint moves).
         scale: (M,), Λ.
@@ -111,6 +117,7 @@ class Segments:
     angle: FloatArray
     turn_a: FloatArray
     turn_b: FloatArray
+    turn: FloatArray
     delta_prescribed: FloatArray
     length: FloatArray
     scale: FloatArray
@@ -130,6 +137,7 @@ class SegmentsGradient:
     angle: FloatArray
     turn_a: FloatArray
     turn_b: FloatArray
+    turn: FloatArray
     delta_prescribed: FloatArray
     length: FloatArray
     scale: FloatArray
@@ -158,6 +166,8 @@ def make_segments(ends: Ends) -> Segments:
         angle[arc] = swept
         follows = ends.follows[arc]
         turn_a[arc] = np.where(follows[:, None], swept[:, None] * _into(ends, arc, normal), 0.0)
+    if ends.swivels.any():
+        turn_a[ends.swivels] = swivel(_relative(ends, turn_a)[ends.swivels, :, 0])
     turn_b = np.zeros((len(tcp), 3))
     if tcp.any():
         turn_b[tcp] = rotation_vector(_relative(ends, turn_a)[tcp])
@@ -166,7 +176,9 @@ def make_segments(ends: Ends) -> Segments:
     delta_prescribed = np.where(tcp[:, None], ends.prescribed[:, 1] - ends.prescribed[:, 0], 0.0)
     span = np.linalg.norm(position[:, 1], axis=1)
     length = np.where(arc, angle * span, np.where(tcp, span, 0.0))
-    turn = np.linalg.norm(turn_b, axis=1)
+    turn = np.hypot(
+        np.where(arc, 0.0, np.linalg.norm(turn_a, axis=1)), np.linalg.norm(turn_b, axis=1)
+    )
     external = np.linalg.norm(delta_prescribed, axis=1)
     scale = np.where(
         tcp,
@@ -175,7 +187,7 @@ def make_segments(ends: Ends) -> Segments:
     )
     shape = np.where(arc, ARC, LINE)
     return Segments(
-        ends, shape, delta_q, position, angle, turn_a, turn_b, delta_prescribed, length, scale
+        ends, shape, delta_q, position, angle, turn_a, turn_b, turn, delta_prescribed, length, scale
     )
 
 
@@ -250,7 +262,11 @@ def pull_segments(segments: Segments, bar: SegmentsGradient, out: EndsGradient) 
     safe = np.where(segments.scale > 0, segments.scale, 1.0)
     share = (bar.scale / safe)[:, None]
     bar.delta_q += np.where(tcp[:, None], 0.0, share * segments.delta_q)
-    bar.turn_b += share * TURN_LENGTH**2 * segments.turn_b
+    bar.turn += share[:, 0] * TURN_LENGTH**2 * segments.turn
+    turned = np.where(segments.turn > 0, segments.turn, 1.0)
+    along = (bar.turn / turned)[:, None]
+    bar.turn_a += np.where(arc[:, None], 0.0, along * segments.turn_a)
+    bar.turn_b += along * segments.turn_b
     bar.delta_prescribed += share * segments.delta_prescribed
     bar.length += np.where(tcp, share[:, 0] * segments.length, 0.0)
     span = np.linalg.norm(segments.position[:, 1], axis=1)
@@ -266,6 +282,8 @@ def pull_segments(segments: Segments, bar: SegmentsGradient, out: EndsGradient) 
     out.position[line, 1] += bar.position[line, 1]
     if tcp.any():
         _pull_turns(segments, bar, out, tcp)
+    if ends.swivels.any():
+        _pull_swivels(segments, bar, out)
     if arc.any():
         _pull_arcs(segments, bar, out, arc)
 
@@ -303,6 +321,16 @@ def _pull_turns(
     outer = np.einsum("kij,kjl,kl->ki", ends.rotation[:, 0], forward, inner)
     out.turn[:, 1] += outer
     out.turn[:, 0] -= outer
+
+
+def _pull_swivels(segments: Segments, bar: SegmentsGradient, out: EndsGradient) -> None:
+    """Swivels follow from the x axis at the end, R₀ᵀ R₁ x."""
+    ends, lines = segments.ends, segments.ends.swivels
+    x = _relative(ends, np.zeros_like(segments.turn_a))[lines, :, 0]
+    turned = pull_swivel(x, bar.turn_a[lines])
+    outer = np.einsum("kij,kj->ki", ends.rotation[lines, 0], turned)
+    out.turn[lines, 1] += outer
+    out.turn[lines, 0] -= outer
 
 
 def _pull_arcs(

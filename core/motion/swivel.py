@@ -1,12 +1,20 @@
-"""How much of a turn of the tool counts where its two parts are limited, each for itself.
+"""Turns of a line taken apart: a swivel of the tool's x axis, and a rotation about it.
 
-A controller may take a turn apart into a *swivel*, which takes the tool's x axis the shortest way,
-and a *rotation* about that axis (KUKA: ``ORI1``, ``ORI2``). With θ the whole turn and nₓ its axis's
-part along the tool's x,
+A controller may turn the tool by two angles (KUKA: ``ORI1``, ``ORI2``). The *swivel* takes the
+tool's x axis the shortest way, at an even rate; the *rotation* turns the tool about that axis, at
+an even rate as well:
 
-    swivel = 2 asin(√(1 − nₓ²) sin θ/2),    rotation = 2 |atan2(nₓ sin θ/2, cos θ/2)|,
+    R(λ) = R₀ exp(λ a) exp(λ b),    a ⊥ x,  b ∥ x,
 
-and a limit holds for the greater of both, which is κ θ with κ ≤ 1.
+both in the tool's axes at the start. With u the x axis at the end, seen from the start,
+
+    a = θ / sin θ (x × u),    cos θ = x · u,    exp(b) = exp(−a) R₀ᵀ R₁.
+
+a stays square to the turned x axis, so that the tool turns by √(a² + b²) per λ all the way, and the
+way back is the same one. A limit of turning holds for the greater of both, a share κ of that.
+
+Where x turns round, rounding decides the way it swivels; there the tool turns about one axis, b
+alone.
 """
 
 from __future__ import annotations
@@ -16,43 +24,70 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
+_SMALL = 1e-3
+"""rad below which θ / sin θ is taken from its series."""
 _NO_TURN = 1e-9
-"""rad; smaller turns count whole."""
+"""rad; parts of smaller turns are rounding, and count whole."""
+_REVERSED = np.radians(179.9)
+"""A swivel from which on rounding decides the way."""
 
 
-def turn_shares(turn: FloatArray) -> FloatArray:
-    """κ (M,) of turns given as rotation vectors (M, 3) in the tool's axes."""
-    return _shares(turn)[0]
+def swivel(end: FloatArray) -> FloatArray:
+    """Rotation vectors a (M, 3) that take x the shortest way to unit vectors (M, 3); none to −x."""
+    return np.asarray(_ratio(end)[0][:, None] * _across(end))
 
 
-def pull_turn_shares(turn: FloatArray, bar: FloatArray) -> FloatArray:
-    """Reverse of `turn_shares`: gradient (M, 3) with respect to the turns."""
-    return bar[:, None] * _shares(turn)[1]
-
-
-def _shares(turn: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """κ and its derivative (M, 3); at a tie, that of the rotation."""
-    whole = np.linalg.norm(turn, axis=1)
-    turns = whole > _NO_TURN
-    size = np.where(turns, whole, 1.0)
-    axis = np.where(turns[:, None], turn / size[:, None], [0.0, 1.0, 0.0])
-    along, across = axis[:, 0], np.hypot(axis[:, 1], axis[:, 2])
-    sine, cosine = np.sin(0.5 * size), np.cos(0.5 * size)
-    # tan(rotation / 2) = along tan(θ / 2); sin(swivel / 2) = across sin(θ / 2).
-    rotation = 2.0 * np.arctan2(np.abs(along) * sine, cosine)
-    swivel = 2.0 * np.arcsin(np.minimum(across * sine, 1.0))
-    greater = swivel > rotation
-    part = np.where(greater, swivel, rotation)
-    square = cosine**2 + along**2 * sine**2  # cos² of half the swivel
-    root = np.sqrt(np.maximum(square, _NO_TURN**2))
-    by_size = np.where(greater, across * cosine / root, np.abs(along) / square)
-    by_along = np.where(
-        greater,
-        -2.0 * along * sine / (np.maximum(across, _NO_TURN) * root),
-        2.0 * np.sign(along) * sine * cosine / square,
+def pull_swivel(end: FloatArray, bar: FloatArray) -> FloatArray:
+    """Reverse of `swivel`: the gradient (M, 3) with respect to small turns of the ends."""
+    ratio, slope = _ratio(end)
+    # x × u = (0, −u_z, u_y).
+    by_end = np.stack(
+        [slope * np.sum(bar * _across(end), 1), ratio * bar[:, 2], -ratio * bar[:, 1]]
     )
-    share = np.where(turns, part / size, 1.0)
-    along_slope = (np.array([1.0, 0.0, 0.0]) - along[:, None] * axis) / size[:, None]
-    slope = ((by_size - part / size) / size)[:, None] * axis
-    slope += (by_along / size)[:, None] * along_slope
-    return share, np.where(turns[:, None], slope, 0.0)
+    return np.cross(end, by_end.T)
+
+
+def turn_shares(swivels: FloatArray, rotations: FloatArray) -> FloatArray:
+    """κ (M,) of turns by rotation vectors a and b (M, 3); 1 where the tool does not turn."""
+    one, two = (np.linalg.norm(part, axis=1) for part in (swivels, rotations))
+    whole = np.hypot(one, two)
+    turns = whole > _NO_TURN
+    return np.where(turns, np.maximum(one, two) / np.where(turns, whole, 1.0), 1.0)
+
+
+def pull_turn_shares(
+    swivels: FloatArray, rotations: FloatArray, bar: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Reverse of `turn_shares`: gradients (M, 3) of both; at a tie, that of the rotation."""
+    one, two = (np.linalg.norm(part, axis=1) for part in (swivels, rotations))
+    most, least = np.maximum(one, two), np.minimum(one, two)
+    # Where one part is none, κ = most / √(most² + least²) is flat.
+    both = (least > 0.0) & (np.hypot(one, two) > _NO_TURN)
+    cube = np.where(both, np.hypot(one, two), 1.0) ** 3
+    by_most, by_least = least**2 / cube, -most * least / cube
+    ahead = one > two
+    found = []
+    for part, size, slope in (
+        (swivels, one, np.where(ahead, by_most, by_least)),
+        (rotations, two, np.where(ahead, by_least, by_most)),
+    ):
+        weight = np.where(both, bar * slope / np.where(both, size, 1.0), 0.0)
+        found.append(weight[:, None] * part)
+    return found[0], found[1]
+
+
+def _across(end: FloatArray) -> FloatArray:
+    """x × u (M, 3)."""
+    return np.stack([np.zeros(len(end)), -end[:, 2], end[:, 1]], -1)
+
+
+def _ratio(end: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """θ / sin θ (M,) and its derivative with respect to cos θ = x · u."""
+    cosine, sine = end[:, 0], np.hypot(end[:, 1], end[:, 2])
+    angle = np.arctan2(sine, cosine)
+    series = angle < _SMALL
+    safe = np.where((sine > 0.0) & ~series, sine, 1.0)
+    ratio = np.where(series, 1.0 + angle**2 / 6.0, angle / safe)
+    slope = np.where(series, -1.0 / 3.0 - 2.0 / 15.0 * angle**2, (cosine * ratio - 1.0) / safe**2)
+    swivels = angle < _REVERSED
+    return np.where(swivels, ratio, 0.0), np.where(swivels, slope, 0.0)

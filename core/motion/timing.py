@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from .arc_length import ArcLength
 from .limits import PathLimits, SegmentLimits, interval_samples
 from .path import Path
+from .rests import InPosition, Rests
 from .stamping import Stamp
 from .start_ramp import SUDDEN, StartRamp
 from .tcp_samples import States
@@ -18,22 +19,27 @@ from .tcp_samples import States
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+_ROUNDING = 1e-12
+"""s, by which times may be off."""
+
 
 @dataclass(frozen=True)
 class Settling:
     """How long the stamped motion rests for what follows it in time.
 
     Args:
-        stop: s, at each stop on the way.
+        stop: s, at each stop on the way, at most.
         end: s, after the last.
         ramp: s, of this what the place on the path is averaged over.
         start: how time comes up to speed when the motion begins.
+        in_position: what is waited for at stops on the way; None waits for all of ``stop``.
     """
 
     stop: float = 0.0
     end: float = 0.0
     ramp: float = 0.0
     start: StartRamp = SUDDEN
+    in_position: InPosition | None = None
 
 
 @dataclass(frozen=True)
@@ -49,6 +55,7 @@ class Timing:
         begin: (K,) s, when each interval is entered, waits included.
         end: (K,) s, when it is left.
         duration: s, of everything, settling at the end included.
+        rests: at stops on the way, beside programmed waits.
         ramp: s, what the place on the path is averaged over afterwards; see `ramped.ramped`.
         start: how the controller's time comes up to speed; `begin`, `end` and `states_at` are
             without, see `driven_at`.
@@ -64,6 +71,7 @@ class Timing:
     begin: FloatArray
     end: FloatArray
     duration: float
+    rests: Rests
     ramp: float = 0.0
     start: StartRamp = SUDDEN
     lag: float = 0.0
@@ -89,9 +97,9 @@ class Timing:
         first = pieces.first_interval
         wait = np.zeros(first[-1] + 1)
         wait[first[waypoint_edge]] = path.route.dwell[pieces.source[waypoint_edge, 0]]
-        wait[first[path.pieces.stop]] += settling.stop
-        wait[0] -= settling.stop
-        wait[-1] += settling.end - settling.stop
+        rests = Rests.of(path, along, stamp, settling.stop, settling.in_position)
+        wait[rests.knot] += rests.length
+        wait[-1] += settling.end
         # A wait at a knot comes before the interval that leaves it.
         delay = np.cumsum(wait)
         begin, end = stamp.t[:-1] + delay[:-1], stamp.t[1:] + delay[:-1]
@@ -106,6 +114,7 @@ class Timing:
             begin,
             end,
             duration,
+            rests,
             settling.ramp,
             start,
             0.5 * settling.end,
@@ -116,6 +125,17 @@ class Timing:
         """(K,), the segment of each interval."""
         pieces = self.path.pieces
         return np.repeat(pieces.segment, pieces.intervals)
+
+    @property
+    def least_waits(self) -> FloatArray:
+        """(K - 1,) s, how long the path rests behind each interval but the last, at any speed."""
+        wait = self.begin[1:] - self.end[:-1]
+        shorter = self.rests.length > self.rests.least
+        knot = self.rests.knot[shorter]
+        dwell = wait[knot - 1] - (self.rests.length - self.rests.least)[shorter]
+        # Beginnings and ends are sums, in which what is left of nothing is rounding.
+        wait[knot - 1] = np.where(dwell > _ROUNDING, dwell, 0.0)
+        return wait
 
     def segment_durations(self) -> FloatArray:
         """(M,) s, time spent on each segment between its waypoints, waits left out."""

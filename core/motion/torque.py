@@ -46,6 +46,11 @@ class Borne:
     joint: int
     share: tuple[float, ...]
 
+    @property
+    def entry(self) -> dict[str, Any]:
+        """As the file has it."""
+        return {"joint": self.joint, "share_s2_per_m2": self.share}
+
 
 class Shares(NamedTuple):
     """Shares of torque along a path, T = a u + b x + h and |T| ≤ 1 - fade x, (S, L) each."""

@@ -221,7 +221,7 @@ class ZonePlanner:
     def _by_angle(self, segment: int, angle: float, corner: int) -> Reach:
         """Reach of a zone given as an angle (rad) of the tool's turn."""
         limit = Reach(self._model.neighbour_fraction)
-        turn = float(np.linalg.norm(self._segments.turn_b[segment]))
+        turn = float(self._segments.turn[segment])
         if self._segments.ends.kind[segment] == JOINT_SEGMENT:
             raise MotionError(
                 "a zone by orientation next to a joint move is not emulated; use a distance",
@@ -229,11 +229,9 @@ class ZonePlanner:
             )
         if turn <= angle * 1e-12 or turn == 0.0:
             return limit
-        slope = -angle / turn**2
-        unit = self._segments.turn_b[segment] / turn
         parts: tuple[Part, ...] = (
             ("angle", corner, 1.0 / turn),
-            ("turn_b", segment, slope * unit),
+            ("turn", segment, -angle / turn**2),
         )
         return least(Reach(angle / turn, parts), limit)
 
@@ -402,7 +400,7 @@ def pull_corners(
         "length": segments_bar.length,
         "angle": zones_bar.angle,
         "arc": segments_bar.angle,
-        "turn_b": segments_bar.turn_b,
+        "turn": segments_bar.turn,
         "q0": ends_bar.q[:, 0],
         "q1": ends_bar.q[:, 1],
         "tcp": zones_bar.tcp,

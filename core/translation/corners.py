@@ -74,7 +74,7 @@ def _corner(path: Path, i: int) -> Corner:
     if path.corners.kind[i] == STOP:
         return Corner(False, 0.0, 0.0, 0.0, zone)
     distance = _distances(path, i)
-    turn = float(np.linalg.norm(path.segments.turn_b[i])) * path.corners.reach[i, TURNING, 0]
+    turn = float(path.segments.turn[i]) * path.corners.reach[i, TURNING, 0]
     edges = float(min(distance[0], distance[-1]))
     return Corner(True, _least(path, i, distance), edges, turn, zone)
 

@@ -44,7 +44,7 @@ class Party:
     @cached_property
     def routes(self) -> RouteFinder:
         """Resolves waypoints."""
-        return RouteFinder(self.robot, self.vendor.label)
+        return RouteFinder(self.robot, self.vendor.label, self.model.line_turn)
 
     def route(self, program: Program, start: JointTarget | None = None) -> Route:
         """The route, on which the speed may change at every waypoint.

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion.path import Route
-from ..motion.segments import make_segments
 from ..program.move import MoveL
 from ..program.program import Program
 from ..program.target import PoseTarget
@@ -34,7 +33,6 @@ def decided(program: Program, route: Route, losses: LossesOfPart) -> Program:
         program, route: on the old robot.
         losses: where such lines are told.
     """
-    segments = make_segments(route.ends)
     moves, changed = list(program.moves), False
     before: FloatArray | None = None
     for k, i in enumerate(route.moves):
@@ -45,7 +43,8 @@ def decided(program: Program, route: Route, losses: LossesOfPart) -> Program:
         before = None
         if not isinstance(move, MoveL) or not isinstance(move.target, PoseTarget):
             continue
-        end = _nearer(start, route.ends.rotation[k, 1], segments.turn_b[k])
+        first, last = route.ends.rotation[k]
+        end = _nearer(start, last, rotation_vector(first.T @ last))
         if end is None:
             continue
         matrix = move.target.pose.matrix()

@@ -193,7 +193,7 @@ class _Translator:
             move = moves[i]
             if not isinstance(move, MoveC) or move.orientation is ArcOrientation.FIXED_FRAME:
                 continue
-            rest = float(np.linalg.norm(segments.turn_b[k]))
+            rest = float(segments.turn[k])
             if rest <= _RIGID:
                 continue
             # Up to half a circle, following and turning from pose to pose are nearly the same.

@@ -279,9 +279,10 @@ class Family:
         begin: MoveJ,
         moves: Sequence[Move],
     ) -> Candidate:
-        target = begin.target
-        program = Program((begin, *moves), name, target)  # type: ignore[arg-type]
-        start = np.array(target.joints)  # type: ignore[union-attr]
+        # Stars and axes are approached in joints.
+        assert isinstance(begin.target, JointTarget)
+        program = Program((begin, *moves), name, begin.target)
+        start = np.array(begin.target.joints)
         return Candidate(name, kind, self.number, speed, corners, program, start)
 
 

@@ -18,7 +18,6 @@ the joints' own accelerations.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -36,10 +35,10 @@ from ...core.program.program import Program
 from ...core.program.target import JointTarget
 from ...core.robot.model import Robot
 from ...core.vendor import Vendor
+from ..fit.keys import with_value
 from .plan import Candidate, Precision
 
 FloatArray = NDArray[np.float64]
-Change = Callable[[MotionModel, float], MotionModel]
 
 NOISE = 1e-4
 """rad (or m), by which logs of robots scatter about the best emulation: not their resolution."""
@@ -52,9 +51,9 @@ SMOOTHING = (0.05, 0.02)
 SETTLED = 0.7
 """Settling, as a share of all averages, that is looked at where a model waits for all of them."""
 SPREAD_BETA, SPREAD_WIDTH, SPREAD_SETTLING = 0.5, 0.02, 0.03
-SPREAD_SCALE, SPREAD_LEAD = 0.2, 2e-4
+SPREAD_SCALE, SPREAD_LEAD, SPREAD_NEARNESS = 0.2, 2e-4, 2e-3
 """Standard deviations beforehand: of β, of widths and settling in s, of accelerations as a share,
-of leads in s²."""
+of leads in s², of how near axes are to be to stops in rad."""
 _STEP = 0.02
 """Of a difference quotient, in standard deviations."""
 
@@ -67,14 +66,12 @@ class Figure:
         key: dotted key of the model's file.
         value: in the studied model.
         spread: standard deviation beforehand.
-        change: gives the model with another value.
         bends: the moves whose corners change with it; none if timing alone does.
     """
 
     key: str
     value: float
     spread: float
-    change: Change
     bends: tuple[type[Move], ...] = ()
 
     def shows_in(self, program: Program) -> bool:
@@ -83,66 +80,58 @@ class Figure:
         return not self.bends or any(isinstance(move, self.bends) for move in passed)
 
 
-def studied(model: MotionModel) -> MotionModel:
-    """The model that sensitivities are taken at: rigid, with averages and settling."""
+def studied(model: MotionModel, robot: Robot) -> MotionModel:
+    """The model that sensitivities are taken at: rigid, with averages and settling, and with all
+    figures of `figures_of`."""
     widths = tuple(width for width in model.smoothing if width > 0) or SMOOTHING
     settling = SETTLED * sum(widths) if model.settling is None else model.settling
-    return replace(model, smoothing=widths, settling=settling, elasticity=RIGID)
+    return replace(
+        model,
+        tcp=_padded(model.tcp),
+        joint=_padded(model.joint),
+        orientation=_padded(model.orientation),
+        smoothing=widths,
+        settling=settling,
+        joint_acceleration_scale=tuple(map(model.acceleration_scale, range(robot.arm_size))),
+        elasticity=RIGID,
+    )
 
 
-def figures_of(model: MotionModel, robot: Robot) -> list[Figure]:
-    """What a log can tell of the model, but for the leads of elastic joints."""
+def figures_of(model: MotionModel) -> list[Figure]:
+    """What a log can tell of a studied model, but for the leads of elastic joints."""
     found: list[Figure] = []
-    for name in ("tcp", "joint", "orientation"):
-        blend: Blend = getattr(model, name)
-        if blend.kind == "polynomial":
-            found += [_beta(name, blend, k) for k in range(BETAS)]
+    for name, blend in (
+        ("tcp", model.tcp),
+        ("joint", model.joint),
+        ("orientation", model.orientation),
+    ):
+        bends = (MoveJ,) if name == "joint" else (MoveL, MoveC)
+        for k, beta in enumerate(blend.beta if blend.kind == "polynomial" else ()):
+            found.append(Figure(f"blend.{name}.beta[{k}]", beta, SPREAD_BETA, bends))
     for k, width in enumerate(model.smoothing):
-        found.append(_width(k, width))
+        found.append(Figure(f"time.smoothing_s[{k}]", width, SPREAD_WIDTH))
     assert model.settling is not None
-    found.append(Figure("time.settling_s", model.settling, SPREAD_SETTLING, _set("settling")))
-    for name in ("tcp_acceleration", "reorientation_acceleration"):
-        value = getattr(model, name)
-        if value is not None:
-            found.append(Figure(f"limit.{name}", value, SPREAD_SCALE * value, _set(name)))
-    for joint in range(robot.arm_size):
-        scale = model.acceleration_scale(joint)
+    found.append(Figure("time.settling_s", model.settling, SPREAD_SETTLING))
+    if model.in_position > 0.0:
+        found.append(Figure("time.in_position_rad", model.in_position, SPREAD_NEARNESS))
+        if model.in_position_time is not None:
+            time = model.in_position_time
+            found.append(Figure("time.in_position_time_s", time, SPREAD_SETTLING))
+    for key, limit in (
+        ("limit.tcp_acceleration", model.tcp_acceleration),
+        ("limit.reorientation_acceleration", model.reorientation_acceleration),
+    ):
+        if limit is not None:
+            found.append(Figure(key, limit, SPREAD_SCALE * limit))
+    for joint, scale in enumerate(model.joint_acceleration_scale):
         key = f"limit.joint_acceleration_scale[{joint}]"
-        change = _scale(joint, robot.arm_size)
-        found.append(Figure(key, scale, SPREAD_SCALE * scale, change))
+        found.append(Figure(key, scale, SPREAD_SCALE * scale))
     return found
 
 
-def _set(name: str) -> Change:
-    return lambda model, value: replace(model, **{name: max(value, 0.0)})  # type: ignore[arg-type]
-
-
-def _beta(name: str, blend: Blend, k: int) -> Figure:
-    padded = (*blend.beta, *(0.0,) * (BETAS - len(blend.beta)))
-
-    def change(model: MotionModel, value: float) -> MotionModel:
-        beta = (*padded[:k], value, *padded[k + 1 :])
-        return replace(model, **{name: replace(blend, beta=beta)})  # type: ignore[arg-type]
-
-    bends = (MoveJ,) if name == "joint" else (MoveL, MoveC)
-    return Figure(f"blend.{name}.beta[{k}]", padded[k], SPREAD_BETA, change, bends)
-
-
-def _width(k: int, width: float) -> Figure:
-    def change(model: MotionModel, value: float) -> MotionModel:
-        widths = model.smoothing
-        return replace(model, smoothing=(*widths[:k], value, *widths[k + 1 :]))
-
-    return Figure(f"time.smoothing_s[{k}]", width, SPREAD_WIDTH, change)
-
-
-def _scale(joint: int, size: int) -> Change:
-    def change(model: MotionModel, value: float) -> MotionModel:
-        scales = [model.acceleration_scale(k) for k in range(size)]
-        scales[joint] = value
-        return replace(model, joint_acceleration_scale=tuple(scales))
-
-    return change
+def _padded(blend: Blend) -> Blend:
+    """With at least so many coefficients."""
+    return replace(blend, beta=(*blend.beta, *(0.0,) * (BETAS - len(blend.beta))))
 
 
 @dataclass(frozen=True)
@@ -166,8 +155,8 @@ class Informer:
     @classmethod
     def of(cls, vendor: Vendor, robot: Robot, period: float) -> Informer:
         """For the vendor's own model of the robot."""
-        model = studied(vendor.motion_of(robot))
-        return cls(vendor, robot, model, tuple(figures_of(model, robot)), period)
+        model = studied(vendor.motion_of(robot), robot)
+        return cls(vendor, robot, model, tuple(figures_of(model)), period)
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -211,7 +200,8 @@ class Informer:
     ) -> FloatArray:
         """(T, N), the command where a figure is a step larger."""
         value = figure.value + _STEP * figure.spread
-        controller = Controller(self.vendor, self.robot, figure.change(self.model, value))
+        model = with_value(self.model, figure.key, value)
+        controller = Controller(self.vendor, self.robot, model)
         if figure.bends:
             path = controller.plan(program, start)
         return _commanded(controller, program, path, controller.stamp(program, path), t)[0]

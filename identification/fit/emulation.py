@@ -32,6 +32,8 @@ _AFTER_STAMP = _NEVER | {"elasticity"}
 _AFTER_PATH = _AFTER_STAMP | {
     "smoothing",
     "settling",
+    "in_position",
+    "in_position_time",
     "jerk",
     "ramp",
     "torque",

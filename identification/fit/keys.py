@@ -11,11 +11,14 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Collection, Sequence
+from typing import TYPE_CHECKING, Any
 
 from ...core.errors import InputError
 from ...core.motion.model import MotionModel
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 Step = str | slice
 """A field's name in the file, or which entries of a list."""
@@ -46,15 +49,14 @@ def steps_of(key: str) -> tuple[Step, ...]:
     return tuple(steps)
 
 
-def figure_of(key: str, model: MotionModel) -> str | None:
-    """The figure of the file that a key belongs to, as its provenance names it; None if the model
-    states none, since it has the value that stands for nothing."""
+def figure_of(key: str, figures: Collection[str]) -> str | None:
+    """Which of some figures of the file a key belongs to; None if none of them."""
     name = ""
     for step in steps_of(key):
         if isinstance(step, slice):
             break
         name = f"{name}.{step}" if name else step
-        if name in model.figures:
+        if name in figures:
             return name
     return None
 
@@ -80,9 +82,9 @@ def with_value(model: MotionModel, key: str, value: float) -> MotionModel:
     return made
 
 
-def field_of(owner: object, name: str) -> str | None:
+def field_of(owner: DataclassInstance, name: str) -> str | None:
     """The field of a dataclass that a name in the file stands for; None if it only groups."""
-    names = [field.name for field in dataclasses.fields(owner)]  # type: ignore[arg-type]
+    names = [field.name for field in dataclasses.fields(owner)]
     fits = [own for own in names if name == own or name.startswith(f"{own}_")]
     return max(fits, key=len, default=None)
 
@@ -143,7 +145,7 @@ def _enter(
     owner: Any, step: str, rest: Sequence[Step], key: str
 ) -> tuple[str | None, Sequence[Step]]:
     """The field that a step leads to, and the steps behind it; no field where it only groups."""
-    if not dataclasses.is_dataclass(owner):
+    if not dataclasses.is_dataclass(owner) or isinstance(owner, type):
         raise InputError(f"{key!r}: nothing is called {step!r} there")
     field = field_of(owner, step)
     if field is not None:

@@ -69,8 +69,11 @@ _KNOWN = tuple(
         (r"blend\..*\.alpha\[", -20.0, 20.0, 0.5),
         (r"time\.smoothing_s", 1e-3, 0.5, 0.01),
         (r"time\.settling_s", 0.0, 1.0, 0.1),
+        (r"time\.in_position_rad", 0.0, 0.1, 2e-3),
+        (r"time\.in_position_time_s", 0.0, 1.0, 0.05),
         (r"time\.ramp_s", 0.0, 0.5, 0.02),
         (r"limit\..*_scale", 0.1, 10.0, 0.5),
+        (r"elasticity\.coupled", -2.0, 2.0, 0.1),
         (r"elasticity\.weight", -10.0, 10.0, 0.5),
         (r"elasticity\.", -5e-3, 5e-3, 1e-4),
         (r"torque\.own_s2", 1e-6, 10.0, 0.05),
@@ -135,8 +138,7 @@ def fitted_before(model: MotionModel) -> list[str]:
     """What the model's figures were fitted by, as their provenance says."""
     texts: dict[str, None] = {}
     for origin in model.provenance.values():
-        if origin.status == "fitted":
-            texts.update(dict.fromkeys(map(str, origin.details.get("fitted", ()))))
+        texts.update(dict.fromkeys(origin.fitted))
     return list(texts)
 
 

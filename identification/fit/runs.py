@@ -2,9 +2,14 @@
 
 A residual of joints e (N,) at a sample becomes rows W e (N + 3,):
 
-- e / (PLACE_JOINT + CLOCK v) with v the joints' speed near by: where a robot is *when*;
+- w wᵀ e / (PLACE_JOINT + CLOCK v) + (I − w wᵀ) e / (PLACE_JOINT + LAG v), with w the direction in
+  which the joints move and v their speed near by: where a robot is *when*, and where the joints'
+  *path* is, of which a log that is off in time alone has none;
 - (I − u uᵀ) J e / (PLACE + LAG V), with J the TCP's Jacobian, u the direction it moves in and V its
-  speed near by: where the TCP's *path* is. A log that is off in time alone has none of it.
+  speed near by: where the TCP's *path* is.
+
+Two joints are told apart by the joints' path alone wherever both move the TCP along its path; so
+much of leads would otherwise pass for an error in time.
 
 The two constants of each are what an emulator and a log may be off by without anybody minding.
 They make rows about one where a model is good, at 50 mm/s as at 1 m/s.
@@ -54,7 +59,7 @@ class PreparedRun:
         vendor, robot: who drove.
         log: its samples with their faults marked.
         t: (K,) s, stamps of the samples that count.
-        q: (K, N), their joints.
+        q: (K, N), their joints, put together where samples mix two cycles.
         weight: (K, M, N), rows per joint residual.
         cluster: (K,), the waypoint that each sample is nearest to in time: residuals about one are
             not independent.
@@ -134,6 +139,7 @@ def prepare(run: LoggedRun, vendor: Vendor, robot: Robot, model: MotionModel) ->
     at = found.alignment.time
     chosen = _chosen(found)
     rows, at = rows[chosen], at[chosen]
+    q = found.log.q[rows]
     window = controller.smoothing(run.program, found.driven.path).window + found.driven.timing.ramp
     middle = at - 0.5 * window
     offset = float(np.median(log.t[rows] - (1 + found.alignment.drift) * middle))
@@ -143,8 +149,8 @@ def prepare(run: LoggedRun, vendor: Vendor, robot: Robot, model: MotionModel) ->
         robot,
         log,
         log.t[rows],
-        log.q[rows],
-        _weights(found, log.q[rows], at),
+        q,
+        _weights(found, q, at),
         np.searchsorted(_between_waypoints(found), at),
         offset,
         found.alignment.drift,
@@ -175,17 +181,26 @@ def _chosen(found: Prediction) -> IntArray:
 def _weights(found: Prediction, q: FloatArray, at: FloatArray) -> FloatArray:
     """(K, N + 3, N), see the module."""
     trajectory = found.driven.trajectory
-    joint_speed = _near(np.linalg.norm(trajectory.dq, axis=1))
+    w, joint_speed = _directions(trajectory.t, trajectory.dq, at)
     step = np.gradient(trajectory.position, trajectory.t, axis=0)
-    speed = np.linalg.norm(step, axis=1)
-    direction = np.where((speed > 1e-4)[:, None], step / np.maximum(speed, 1e-12)[:, None], 0.0)
-    u = np.stack([np.interp(at, trajectory.t, column) for column in direction.T], -1)
+    u, speed = _directions(trajectory.t, step, at)
     J = tcp_jacobian(found.robot, found.driven.program.moves[0].tool, q)
     across = J - u[:, :, None] * np.einsum("ki,kij->kj", u, J)[:, None, :]
-    across /= (PLACE + LAG * np.interp(at, trajectory.t, _near(speed)))[:, None, None]
-    when = PLACE_JOINT + CLOCK * np.interp(at, trajectory.t, joint_speed)
-    joints = np.eye(q.shape[1]) / when[:, None, None]
+    across /= (PLACE + LAG * speed)[:, None, None]
+    along = w[:, :, None] * w[:, None, :]
+    joints = along / (PLACE_JOINT + CLOCK * joint_speed)[:, None, None]
+    joints += (np.eye(q.shape[1]) - along) / (PLACE_JOINT + LAG * joint_speed)[:, None, None]
     return np.concatenate([joints, across], axis=1)
+
+
+def _directions(
+    t: FloatArray, velocity: FloatArray, at: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Unit directions (K, N) of motion at times, none at rest, and speeds (K,) near by."""
+    speed = np.linalg.norm(velocity, axis=1)
+    direction = np.where((speed > 1e-4)[:, None], velocity / np.maximum(speed, 1e-12)[:, None], 0.0)
+    unit = np.stack([np.interp(at, t, column) for column in direction.T], -1)
+    return unit, np.interp(at, t, _near(speed))
 
 
 def _near(speed: FloatArray) -> FloatArray:

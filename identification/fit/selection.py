@@ -48,9 +48,9 @@ def candidates(parameters: ParameterSet) -> list[Candidate]:
     """All parameters, and all but those of one figure of the motion file, for each figure; a
     figure that is not fitted stays where the base of the parameters has it."""
     figures: dict[str, list[str]] = {}
-    model = parameters.model(parameters.start)
+    stated = parameters.model(parameters.start).figures
     for one in parameters.parameters:
-        figure = figure_of(one.keys[0], model) or one.keys[0]
+        figure = figure_of(one.keys[0], stated) or one.keys[0]
         figures.setdefault(figure, []).append(one.name)
     found = [Candidate("all", parameters)]
     if len(figures) > 1:

@@ -53,9 +53,9 @@ def in_order(
         raise InputError(f"{file}: a log needs at least two samples")
     latest = np.maximum.accumulate(t)
     later = np.concatenate([[True], t[1:] > latest[:-1]])
-    if later.sum() < 2:
+    if later.sum() < 2 and t.min() == t[0]:
         raise InputError(f"{file}: time stands still: all samples have the time {t[0]:g} s")
-    period = float(np.median(np.diff(t[later])))
+    period = float(np.median(np.diff(t[later]))) if later.sum() > 1 else 0.0
     behind = latest - t
     if behind.max() > BACK * period:
         at = int(np.argmax(behind > BACK * period))

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import csv
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +20,8 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 DELIMITERS = (";", "\t", ",")
 """Looked for in this order, since a semicolon or a tab leaves the comma to the decimals."""
+_EXCEL = re.compile(r"sep=(.)")
+"""A first line that spreadsheets write and hide."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +90,10 @@ class Table:
         except ValueError:
             raise InputError(f"{where}: column {column!r}: {cell[:40]!r} is no number") from None
         if not math.isfinite(value):
-            raise InputError(f"{where}: column {column!r}: {cell[:40]!r} is not finite")
+            raise InputError(
+                f"{where}: column {column!r}: {cell[:40]!r} is not finite; delete the line, if "
+                "the others are sound"
+            )
         return value
 
 
@@ -110,6 +118,11 @@ def parse_table(text: str, file: str, delimiter: str | None = None) -> Table:
     numbered = [(k, line) for k, line in enumerate(lines_of(text), 1) if line.strip()]
     if not numbered:
         raise InputError(f"{file}: an empty log")
+    told = _EXCEL.fullmatch(numbered[0][1].strip())
+    if told is not None:
+        numbered, delimiter = numbered[1:], delimiter or told[1]
+    if not numbered:
+        raise InputError(f"{file}: an empty log")
     head, first = numbered[0]
     delimiter = _delimiter(first) if delimiter is None else delimiter
     names = _cells(first.lstrip("# \t") if first.startswith("#") else first, delimiter)
@@ -121,8 +134,32 @@ def parse_table(text: str, file: str, delimiter: str | None = None) -> Table:
     if len(rows) > 1 and len(rows[-1]) < len(rows[-2]):
         rows, body = rows[:-1], body[:-1]
         notes = ("the last line breaks off and is left out",)
+    _check_width(names, rows, body, file, delimiter)
     lines = np.array([k for k, _ in body], dtype=np.int64)
-    return Table(file, tuple(names), head, tuple(rows), lines, delimiter != ",", notes)
+    commas = delimiter != "," or '"' in text
+    return Table(file, tuple(names), head, tuple(rows), lines, commas, notes)
+
+
+def _check_width(
+    names: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    body: Sequence[tuple[int, str]],
+    file: str,
+    delimiter: str,
+) -> None:
+    """Refuse a line with more cells than there are names; empty ones at its end do not count.
+
+    Raises:
+        InputError: naming the line.
+    """
+    if not names:
+        return
+    for (line, _), row in zip(body, rows, strict=True):
+        if len(row) > len(names) and any(row[len(names) :]):
+            commas = ": with decimal commas, divide by semicolons" if delimiter == "," else ""
+            raise InputError(
+                f"{file}:{line}: the line has {len(row)} cells, the header {len(names)}{commas}"
+            )
 
 
 def _delimiter(line: str) -> str:
@@ -131,6 +168,10 @@ def _delimiter(line: str) -> str:
 
 def _cells(line: str, delimiter: str) -> list[str]:
     cells = line.split() if delimiter == " " else line.split(delimiter)
+    if delimiter != " " and '"' in line:
+        # What stands in quotes may hold delimiters; a cell too long for a table is none of quotes.
+        with contextlib.suppress(csv.Error):
+            cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))
     return [cell.strip().strip('"').strip() for cell in cells]
 
 

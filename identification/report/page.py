@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import io
 from collections.abc import Iterable, Sequence
 from html import escape
 
@@ -25,6 +26,8 @@ img { width: 100%; height: auto }
 pre { background: #f6f6f6; padding: 1rem; overflow-x: auto }
 p.note { color: #555 }
 """
+_WIDTH, _COLOURS = 1600, 128
+"""Pixels and colours of a picture."""
 _BEFORE_AFTER = " → "
 _CORNERS = 12
 """Corners of a run that are listed; those where the log strays most."""
@@ -160,13 +163,25 @@ def _times(outcomes: Sequence[Outcome]) -> str:
 
 
 def _run(one: Outcome) -> str:
-    picture = base64.b64encode(draw_prediction(one.after, "png")).decode("ascii")
+    picture = base64.b64encode(_small(draw_prediction(one.after, "png"))).decode("ascii")
     notes = "".join(f'<p class="note">{escape(note)}</p>' for note in one.run.log.notes)
     name = escape(one.run.name)
     return (
         f"<h3>{name}</h3>{notes}{_corners(cut_corners(one.after))}"
         f'<img alt="log and emulation of {name}" src="data:image/png;base64,{picture}">'
     )
+
+
+def _small(picture: bytes) -> bytes:
+    """A PNG with few colours and no wider than pages show, a quarter of the size."""
+    from PIL import Image
+
+    image = Image.open(io.BytesIO(picture)).convert("RGB")
+    height = round(image.height * min(1.0, _WIDTH / image.width))
+    resized = image.resize((min(image.width, _WIDTH), height), Image.Resampling.LANCZOS)
+    buffer = io.BytesIO()
+    resized.quantize(_COLOURS, Image.Quantize.FASTOCTREE).save(buffer, "PNG", optimize=True)
+    return buffer.getvalue()
 
 
 def _corners(corners: Sequence[CutCorner]) -> str:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import io
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.motion.controller import Run
 from ...core.robot.model import Robot
-from ...drawing.geometry import PathGeometry, path_geometry, tcp_speed
-from ...drawing.style import DPI, NOMINAL, STYLE, ZONE
+from ...drawing.geometry import PathGeometry, path_geometry
+from ...drawing.style import DPI, NOMINAL, STOP, STYLE, ZONE
 from ..prediction import Prediction
 from ..residuals import Residuals
 from .corners import AROUND, CutCorner, cut_corners
@@ -22,7 +22,13 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 
 LOGGED, EMULATED = "#b3261e", "#1f4e9c"
-MOST_CORNERS = 4
+WIDTH = 15
+"""Inches."""
+CORNERS_IN_A_ROW, MOST_CORNERS = 4, 8
+MAGNIFIED = 0.3
+"""Zone radii that the greatest deviation in a corner is drawn as, about."""
+MOST_POINTS = 400
+"""Of a path in a corner, where its deviation is drawn."""
 SPAN = 9
 """Samples over which the log's speed and acceleration are taken."""
 
@@ -33,11 +39,17 @@ def draw_prediction(prediction: Prediction, kind: str) -> bytes:
     from matplotlib.figure import Figure
 
     robot, found = prediction.robot, prediction.residuals
+    geometry = path_geometry(prediction.driven, robot)
+    corners = cut_corners(prediction, geometry)
+    rows = -(-min(max(len(corners), 1), MOST_CORNERS) // CORNERS_IN_A_ROW)
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(15, 13), layout="constrained")
-        halves: Any = figure.subfigures(2, 1, height_ratios=(1.0, 2.0))
-        corners, below = halves
-        _draw_corners(corners, prediction)
+        figure = Figure(figsize=(WIDTH, 3.6 * rows + 8.0), layout="constrained")
+        halves: Any = figure.subfigures(2, 1, height_ratios=(3.6 * rows, 8.0))
+        above, below = halves
+        if corners:
+            _draw_corners(above, rows, corners, prediction, geometry)
+        else:
+            _draw_whole_path(above.subplots(), prediction, geometry)
         place, joints, speed, acceleration = below.subplots(4, 1)
         _draw_deviation(place, joints, robot, found)
         _draw_profiles(speed, acceleration, prediction)
@@ -52,52 +64,111 @@ def draw_prediction(prediction: Prediction, kind: str) -> bytes:
     return buffer.getvalue()
 
 
-def _draw_corners(figure: Any, prediction: Prediction) -> None:
-    """The corners where the log strays most; without corners the whole path."""
-    run, found = prediction.driven, prediction.residuals
-    geometry = path_geometry(run, prediction.robot)
-    worst = sorted(cut_corners(prediction, geometry), key=lambda corner: -corner.off)
-    chosen = sorted(worst[:MOST_CORNERS], key=lambda corner: corner.waypoint)
-    axes = np.atleast_1d(figure.subplots(1, max(len(chosen), 1)))
-    if not chosen:
-        first, second = np.argsort(-np.ptp(run.trajectory.position, axis=0))[:2]
-        view = np.eye(3)[[first, second]]
-        _draw_paths(axes[0], np.zeros(3), view, run.trajectory.position, found.tcp)
-        axes[0].set_title("path of the TCP, mm")
-    for corner, one in zip(chosen, axes, strict=False):
-        _draw_corner(one, corner, run, geometry, found)
-    handles, labels = axes[0].get_legend_handles_labels()
-    axes[0].legend(handles, labels, loc="best")
+def _draw_corners(
+    figure: Any,
+    rows: int,
+    corners: list[CutCorner],
+    prediction: Prediction,
+    geometry: PathGeometry,
+) -> None:
+    """The corners where the log strays most."""
+    worst = sorted(corners, key=lambda corner: -corner.off)[:MOST_CORNERS]
+    columns = -(-len(worst) // rows)
+    axes = figure.subplots(rows, columns, squeeze=False).ravel()
+    for one in axes[len(worst) :]:
+        one.set_axis_off()
+    for corner, one in zip(sorted(worst, key=lambda c: c.waypoint), axes, strict=False):
+        _draw_corner(one, corner, prediction, geometry)
+    axes[0].legend(loc="best")
+    if len(corners) > len(worst):
+        figure.suptitle(
+            f"the {len(worst)} of {len(corners)} corners where the log strays most", fontsize=9
+        )
+
+
+def _draw_whole_path(axes: Axes, prediction: Prediction, geometry: PathGeometry) -> None:
+    made = prediction.driven.trajectory.position
+    across = np.argsort(-np.ptp(made, axis=0))[:2]
+    _draw_paths(axes, np.zeros(3), np.eye(3)[across], made, prediction.residuals.tcp)
+    stops = 1e3 * geometry.waypoints[:, across]
+    axes.plot(*stops.T, "s", color=STOP, fillstyle="none", markersize=5, label="waypoints")
+    axes.set_title("path of the TCP")
+    axes.set_xlabel(f"{'xyz'[across[0]]}, mm")
+    axes.set_ylabel(f"{'xyz'[across[1]]}, mm")
+    axes.legend(loc="best")
 
 
 def _draw_corner(
-    axes: Axes, corner: CutCorner, run: Run, geometry: PathGeometry, found: Residuals
+    axes: Axes, corner: CutCorner, prediction: Prediction, geometry: PathGeometry
 ) -> None:
     from matplotlib.patches import Circle
 
     centre, radius = geometry.waypoints[corner.waypoint], corner.radius
     reach = AROUND * radius
-    near = _near(run.trajectory.position, centre, reach)
+    driven = prediction.driven.trajectory.position
+    near, further = (_near(driven, centre, far) for far in (reach, 1.1 * reach))
+    logged = _near(prediction.residuals.tcp, centre, reach)
     view = _plane(near, centre)
     for leg in geometry.nominal:
         fine = _near(_refined(leg, radius / 20), centre, reach)
         if len(fine):
             drawn = 1e3 * (fine - centre) @ view.T
             axes.plot(*drawn.T, color=NOMINAL, linestyle=(0, (4, 3)), linewidth=0.8)
-    axes.add_patch(Circle((0, 0), 1e3 * radius, facecolor="none", edgecolor=ZONE, linewidth=0.8))
-    logged = _near(found.tcp, centre, reach)
+    axes.add_artist(Circle((0, 0), 1e3 * radius, facecolor="none", edgecolor=ZONE, linewidth=0.8))
     _draw_paths(axes, centre, view, near, logged)
-    axes.set_title(f"corner of move {corner.move + 1}: {1e3 * corner.off:.3f} mm off")
+    times = _draw_magnified(axes, centre, view, further, logged, MAGNIFIED * radius)
+    thin = f" (thin: × {times:g})" if times > 1 else ""
+    axes.set_title(f"corner of move {corner.move + 1}: {1e3 * corner.off:.3f} mm off{thin}")
     axes.set_xlabel("mm from the waypoint")
+    axes.set_ylabel("mm")
 
 
 def _draw_paths(
     axes: Axes, centre: FloatArray, view: FloatArray, emulated: FloatArray, logged: FloatArray
 ) -> None:
     drawn, points = (1e3 * (path - centre) @ view.T for path in (emulated, logged))
-    axes.plot(*drawn.T, color=EMULATED, linewidth=1.2, label="emulated")
+    axes.plot(*drawn.T, color=EMULATED, linewidth=1.2, zorder=3, label="emulated")
     axes.plot(*points.T, ".", color=LOGGED, markersize=3, label="logged")
-    axes.set_aspect("equal", adjustable="box")
+    # The whole frame is used, with one scale in both directions.
+    axes.set_aspect("equal", adjustable="datalim")
+
+
+def _draw_magnified(
+    axes: Axes,
+    centre: FloatArray,
+    view: FloatArray,
+    emulated: FloatArray,
+    logged: FloatArray,
+    size: float,
+) -> float:
+    """The log as it would be if it were so many times as far from the emulation; how many."""
+    path = emulated[:: -(-len(emulated) // MOST_POINTS)]
+    points = logged[:: -(-len(logged) // MOST_POINTS)]
+    if len(path) < 2:
+        return 1.0
+    feet = _nearest(points, path)
+    off = float(np.linalg.norm(points - feet, axis=1).max())
+    times = _round_factor(size / max(off, 1e-7))
+    if times > 1:
+        drawn = 1e3 * (feet + times * (points - feet) - centre) @ view.T
+        axes.plot(*drawn.T, color=LOGGED, linewidth=0.7, alpha=0.7)
+    return times
+
+
+def _nearest(points: FloatArray, line: FloatArray) -> FloatArray:
+    """The points (K, 3) of a polyline (P, 3) that are nearest to points (K, 3)."""
+    steps = np.diff(line, axis=0)
+    away = points[:, None] - line[None, :-1]
+    share = np.einsum("kpx,px->kp", away, steps) / np.maximum((steps**2).sum(axis=1), 1e-18)
+    at = np.clip(share, 0.0, 1.0)[..., None] * steps
+    best = ((away - at) ** 2).sum(axis=2).argmin(axis=1)
+    return np.asarray(line[best] + at[np.arange(len(points)), best])
+
+
+def _round_factor(value: float) -> float:
+    """The greatest of 1, 2, 5, 10, 20, … that is no greater; at most a million."""
+    power = 10.0 ** math.floor(math.log10(min(max(value, 1.0), 1e6)))
+    return max(step * power for step in (1, 2, 5) if step * power <= max(value, 1.0))
 
 
 def _plane(points: FloatArray, centre: FloatArray) -> FloatArray:
@@ -139,15 +210,16 @@ def _draw_profiles(speed: Axes, acceleration: Axes, prediction: Prediction) -> N
     found, offset = prediction.residuals, prediction.alignment.offset
     t, logged_speed, logged_acceleration = tcp_profiles(found.t - offset, found.tcp)
     made = prediction.driven.trajectory
-    emulated_speed = tcp_speed(prediction.driven)
-    velocity = np.gradient(made.position, made.t, axis=0)
-    emulated = np.linalg.norm(np.gradient(velocity, made.t, axis=0), axis=1)
+    # Seen as the log is: over as many samples, as far apart.
+    at = np.arange(0.0, made.t[-1], np.median(np.diff(found.t)))
+    tcp = np.stack([np.interp(at, made.t, column) for column in made.position.T], axis=-1)
+    at, emulated_speed, emulated = tcp_profiles(at, tcp)
     for axes, log, ours, unit, scale in (
         (speed, logged_speed, emulated_speed, "speed of the TCP, mm/s", 1e3),
         (acceleration, logged_acceleration, emulated, "acceleration of the TCP, m/s²", 1.0),
     ):
         axes.plot(t, scale * log, ".-", color=LOGGED, markersize=2.5, linewidth=0.5, label="logged")
-        axes.plot(made.t, scale * ours, color=EMULATED, linewidth=1.2, label="emulated")
+        axes.plot(at, scale * ours, color=EMULATED, linewidth=1.2, label="emulated")
         for hole in prediction.log.holes:
             axes.axvspan(hole.begin - offset, hole.end - offset, color="#e6e6e6", zorder=0)
         axes.set_ylim(0.0, 1.3 * scale * max(float(ours.max()), float(np.percentile(log, 99))))

@@ -10,30 +10,26 @@ and 3. What it does and what it reaches stands in docs/optimal_control.md.
 from .audit import Audit
 from .effort import Effort
 from .motion import Motion
-from .motor import SQUARED_TORQUE, Motors, RunningCost, SquaredTorque
 from .optimize import optimize
-from .result import Optimum, Step, energy_of
+from .result import Optimum, Step, energy_by_joint, energy_of
 from .scheme import SchemeKind
 from .surroundings import Surroundings
 from .task import ControlLimits, Objective, Task, TorqueLine, Waypoint
 
 __all__ = [
-    "SQUARED_TORQUE",
     "Audit",
     "ControlLimits",
     "Effort",
     "Motion",
-    "Motors",
     "Objective",
     "Optimum",
-    "RunningCost",
     "SchemeKind",
-    "SquaredTorque",
     "Step",
     "Surroundings",
     "Task",
     "TorqueLine",
     "Waypoint",
+    "energy_by_joint",
     "energy_of",
     "optimize",
 ]

@@ -100,10 +100,6 @@ class _Samples:
     ) -> None:
         self._task, self._limits, self._plant, self._motion = task, limits, plant, motion
         self._tolerance = tolerance
-        own = np.flatnonzero(np.isfinite(limits.torque))
-        self._joint = np.concatenate([own, limits.line_joint])
-        self._most = np.concatenate([limits.torque[own], limits.line_most])
-        self._slope = np.concatenate([np.zeros(len(own)), limits.line_slope])
         self._rates = self._bounded_rates()
 
     def _bounded_rates(self) -> FloatArray:
@@ -118,8 +114,8 @@ class _Samples:
     def torques(self) -> tuple[FloatArray, FloatArray]:
         """Proven and sampled shares (K, R)."""
         count = len(self._motion)
-        proven, sampled = np.zeros((2, count, len(self._joint)))
-        if self._plant is None or not len(self._joint):
+        proven, sampled = np.zeros((2, count, len(self._limits.torques.axis)))
+        if self._plant is None or not self._limits.dynamic:
             return proven, sampled
         bends = self._torque_bends()
         rows, parts = np.arange(count), _FIRST
@@ -144,9 +140,9 @@ class _Samples:
         )
         q, dq, ddq = (piece.on_pieces(shares, k).reshape(-1, self._most_joints) for k in range(3))
         state = State(q, dq, ddq, np.repeat(piece.leg, parts + 1))
-        torque = self._plant.torques(state)[:, self._joint]
-        driven = np.abs(torque + self._slope * dq[:, self._joint]) / self._most
-        return np.asarray(driven.reshape(len(rows), parts + 1, -1).max(axis=1))
+        torque, rate = self._plant.torques(state), self._plant.rates(state)
+        used = np.abs(self._limits.torques.shares(torque, rate))
+        return np.asarray(used.reshape(len(rows), parts + 1, -1).max(axis=1))
 
     @property
     def _most_joints(self) -> int:
@@ -160,9 +156,7 @@ class _Samples:
             rows = legs == leg
             found = BendBounds(task.robot, task.load(int(leg)), task.tcp, self._rates[rows])
             out[rows] = found.torques()
-        joints = task.moving[self._joint]
-        jerk = self._rates[:, joints, 3]
-        return np.asarray((out[:, joints] + self._slope * jerk) / self._most)
+        return self._limits.torques.shares(out, self._rates[:, :, 3])
 
     def tcp_speeds(self) -> FloatArray:
         """(K,), proven shares of the TCP's speed limit."""

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
-from ...core.errors import InputError
+from ..checks import of_kind, positive, whole
 from .aiming import MOST_TRIALS
 from .scheme import SchemeKind
 
@@ -49,14 +48,10 @@ class Effort:
 
     def __post_init__(self) -> None:
         for name in ("intervals", "outer", "places", "slots"):
-            count = getattr(self, name)
-            if not isinstance(count, int) or count < 1:
-                raise InputError(f"Effort.{name} is a whole number, one or more, not {count}")
-        if not 0 <= self.trials <= MOST_TRIALS:
-            raise InputError(f"Effort.trials is from 0 to {MOST_TRIALS}, not {self.trials}")
-        if self.group is not None and self.group < 1:
-            raise InputError(f"Effort.group is one or more, or None, not {self.group}")
+            whole(f"Effort.{name}", getattr(self, name), 1)
+        whole("Effort.trials", self.trials, 0, MOST_TRIALS)
+        if self.group is not None:
+            whole("Effort.group", self.group, 1)
+        of_kind("Effort.scheme", self.scheme, SchemeKind)
         for name in ("tolerance", "solver_tolerance", "gain", "box"):
-            value = getattr(self, name)
-            if not 0.0 < value < math.inf:
-                raise InputError(f"Effort.{name} is above zero and finite, not {value}")
+            positive(f"Effort.{name}", getattr(self, name))

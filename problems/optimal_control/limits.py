@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,14 +15,34 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
+class TorqueLimits(NamedTuple):
+    """R limits |τ + slope q̇| ≤ most, those that are constant first.
+
+    Attributes:
+        axis: (R,), of all N axes.
+        most: (R,) N m or N.
+        slope: (R,) N m s/rad or N s/m; 0 where the limit is constant.
+    """
+
+    axis: IntArray
+    most: FloatArray
+    slope: FloatArray
+
+    def shares(self, torque: FloatArray, rate: FloatArray) -> FloatArray:
+        """(Z, R), what is used of them by torques and joint velocities (Z, N); ±1 is all."""
+        driven = torque[:, self.axis] + self.slope * rate[:, self.axis]
+        return np.asarray(driven / self.most)
+
+
 @dataclass(frozen=True)
 class Limits:
-    """Limits of the n joints that move; infinite where there is none.
+    """Limits of the n joints that move, and of the torques of all N axes: those that stand still
+    have to be held. Infinite where there is none.
 
     Args:
-        lower, upper, velocity, acceleration, torque, jerk: (n,).
-        line_joint: (L,), the joint (of those that move) of each speed-dependent torque limit.
-        line_most, line_slope: (L,), |τ + slope v| ≤ most.
+        lower, upper, velocity, acceleration, jerk: (n,).
+        torque: (N,), the constant ones of the N axes.
+        torques: all that count.
         tcp_speed: m/s.
     """
 
@@ -29,17 +50,15 @@ class Limits:
     upper: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
-    torque: FloatArray
     jerk: FloatArray
-    line_joint: IntArray
-    line_most: FloatArray
-    line_slope: FloatArray
+    torque: FloatArray
+    torques: TorqueLimits
     tcp_speed: float
 
     @property
     def dynamic(self) -> bool:
         """Whether torques are limited."""
-        return bool(np.isfinite(self.torque).any() or len(self.line_joint))
+        return len(self.torques.axis) > 0
 
     @classmethod
     def of(cls, task: Task) -> Limits:
@@ -47,7 +66,7 @@ class Limits:
 
         Raises:
             InputError: one is not positive, a joint has neither an acceleration nor a torque to
-                limit it, or a torque line names no joint that moves.
+                limit it, or a torque line names no axis.
         """
         own, given, moving = task.robot.limits, task.limits, task.moving
         none = np.full(task.robot.size, np.inf)
@@ -55,37 +74,41 @@ class Limits:
         acceleration = _chosen(task, "acceleration", given.acceleration, own.acceleration)
         torque = _chosen(task, "torque", given.torque, own.effort)
         jerk = _chosen(task, "jerk", given.jerk, none)
-        for j in range(len(moving)):
+        for j in moving:
             if not min(acceleration[j], torque[j]) < np.inf:
                 raise InputError(
-                    f"joint {task.robot.axis_names[moving[j]]} has neither an acceleration nor a "
-                    "torque limit: nothing would bound its motion"
-                )
-        try:
-            speed = np.inf if given.tcp_speed is None else float(given.tcp_speed)
-        except (TypeError, ValueError):
-            speed = np.nan
-        if not speed > 0.0:
-            raise InputError(f"the TCP's speed limit must be positive, not {given.tcp_speed!r}")
-        names = [task.robot.axis_names[j] for j in moving]
-        for line in given.curves:
-            if line.axis not in names:
-                raise InputError(
-                    f"a torque line is given for {line.axis!r}; the joints that move are "
-                    f"{', '.join(names)}"
+                    f"joint {task.robot.axis_names[j]} has neither an acceleration nor a torque "
+                    "limit: nothing would bound its motion"
                 )
         return cls(
             own.lower[moving],
             own.upper[moving],
-            velocity,
-            acceleration,
+            velocity[moving],
+            acceleration[moving],
+            jerk[moving],
             torque,
-            jerk,
-            np.array([names.index(line.axis) for line in given.curves], dtype=np.int64),
-            np.array([line.most for line in given.curves]),
-            np.array([line.slope for line in given.curves]),
-            speed,
+            _torques(task, torque),
+            np.inf if given.tcp_speed is None else given.tcp_speed,
         )
+
+
+def _torques(task: Task, constant: FloatArray) -> TorqueLimits:
+    """Limits of axes, from constant ones (N,) and the task's lines."""
+    names, lines = task.robot.axis_names, task.limits.curves
+    for line in lines:
+        if line.axis not in names:
+            raise InputError(
+                f"a torque line is given for {line.axis!r}; the axes are {', '.join(names)}"
+            )
+    # External axes that stand still are held by their brakes.
+    driven = np.arange(task.robot.size) < task.robot.arm_size
+    driven[task.moving] = True
+    own = np.flatnonzero(np.isfinite(constant) & driven)
+    return TorqueLimits(
+        np.array([*own, *(names.index(line.axis) for line in lines)], dtype=np.int64),
+        np.array([*constant[own], *(line.most for line in lines)]),
+        np.array([*(0.0 for _ in own), *(line.slope for line in lines)]),
+    )
 
 
 def _chosen(task: Task, name: str, given: ArrayLike | None, own: FloatArray) -> FloatArray:
@@ -94,7 +117,8 @@ def _chosen(task: Task, name: str, given: ArrayLike | None, own: FloatArray) -> 
         values = own if given is None else np.asarray(given, dtype=float)
     except (TypeError, ValueError):
         raise InputError(
-            f"the {name} limits must be {robot.size} numbers, one an axis, not {given!r}"
+            f"the {name} limits need one number an axis ({', '.join(robot.axis_names)}), not "
+            f"{given!r}"
         ) from None
     if values.shape != (robot.size,):
         raise InputError(
@@ -106,4 +130,4 @@ def _chosen(task: Task, name: str, given: ArrayLike | None, own: FloatArray) -> 
             f"joint {robot.axis_names[wrong[0]]}: the {name} limit must be positive, not "
             f"{values[wrong[0]]:g}"
         )
-    return np.asarray(values[task.moving], dtype=float)
+    return np.asarray(values, dtype=float)

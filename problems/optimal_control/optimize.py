@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 
 from numpy.typing import ArrayLike
 
 from ...core.errors import MotionError, Note
+from ..checks import of_kind
 from .audit import audit
 from .effort import Effort
 from .limits import Limits
 from .opening import opening
 from .proof import prove
-from .refusal import check_task
+from .refusal import check_corners, check_task
 from .result import Optimum
 from .sampled import Plant
 from .scheme import Scheme
@@ -46,19 +49,40 @@ def optimize(
         MotionError: the robot collides at a station or on the path to begin with, or no motion
             within the limits was found.
     """
+    of_kind("task", task, Task)
+    of_kind("around", around, Surroundings | None)
+    of_kind("effort", effort, Effort | None)
     effort = effort or Effort()
     limits = Limits.of(task)
     needed = limits.dynamic or task.objective.time_weight < 1.0
     plant = Plant(task) if needed else None
     check_task(task, limits, plant, around, effort.scheme)
     line = opening(task, around, vias)
+    check_corners(task, line.points)
     scheme = Scheme(effort.scheme)
     guess = first_guess(task, limits, plant, line, scheme, effort.intervals, effort.group)
     if around is not None:
         _check_first(task, guess, around)
-    search = Search(task, limits, plant, around, effort, guess, report)
-    converged = search.run()
-    return _optimum(search, guess, converged)
+    ask = partial(Search, limits=limits, plant=plant, around=around, guess=guess, report=report)
+    searches = []
+    if around is not None and task.objective.time_weight < 1.0:
+        searches.append(ask(_hurried(task), effort=replace(effort, trials=0)))
+        searches[0].run()
+    if not (searches and searches[0].interrupted):
+        begin = searches[0].base if searches else guess
+        searches.append(ask(task, effort=effort, begin=begin))
+        searches[-1].run()
+    return _optimum(task, guess, searches)
+
+
+def _hurried(task: Task) -> Task:
+    """The task for time alone.
+
+    Where energy counts among obstacles it is done first. From a stop at every corner, slow motions
+    get stuck on long ways round: what they gain by a shorter way is little against what they lose
+    by hurrying. The fastest motion's way is short.
+    """
+    return replace(task, objective=replace(task.objective, time_weight=1.0))
 
 
 def _check_first(task: Task, guess: Guess, around: Surroundings) -> None:
@@ -70,13 +94,14 @@ def _check_first(task: Task, guess: Guess, around: Surroundings) -> None:
         )
 
 
-def _optimum(search: Search, guess: Guess, converged: bool) -> Optimum:
+def _optimum(task: Task, guess: Guess, searches: Sequence[Search]) -> Optimum:
+    """What the last search has found."""
+    search = searches[-1]
+    steps = tuple(step for each in searches for step in each.steps)
     if search.best is None:
-        seen = audit(
-            search.task, search.limits, search.plant, search.base.motion, search.effort.tolerance
-        )
-        reason = search.steps[-1].what if search.steps else "the search was ended"
-        longest = search.task.objective.longest
+        seen = audit(task, search.limits, search.plant, search.base.motion, search.effort.tolerance)
+        reason = steps[-1].what if steps else "the search was ended"
+        longest = task.objective.longest
         within = "" if longest is None else f" that takes {longest:g} s at most"
         raise MotionError(
             f"no motion within the limits{within} was found: the best one takes "
@@ -85,16 +110,9 @@ def _optimum(search: Search, guess: Guess, converged: bool) -> Optimum:
             "another path"
         )
     _, motion, seen, proof = search.best
+    converged = search.converged and search.task is task
     notes = []
     if not converged:
         notes.append(Note("the search ended before it converged: a longer one may find better"))
-    return Optimum(
-        search.task,
-        motion,
-        guess.motion,
-        seen,
-        None if proof is None else proof.certificate,
-        tuple(search.steps),
-        converged,
-        tuple(notes),
-    )
+    certificate = None if proof is None else proof.certificate
+    return Optimum(task, motion, guess.motion, seen, certificate, steps, converged, tuple(notes))

@@ -31,7 +31,7 @@ def check_task(
     _check_bounded(task, limits, scheme)
     names = _station_names(task)
     for name, q in zip(names, task.stations, strict=True):
-        _check_range(task, name, q)
+        _check_range(task, f"the {name}", q)
     for name, velocity in (("start", task.start_velocity), ("end", task.end_velocity)):
         own = np.abs(np.asarray(velocity))[task.moving]
         fast = np.flatnonzero(own > limits.velocity)
@@ -63,6 +63,18 @@ def _check_bounded(task: Task, limits: Limits, scheme: SchemeKind) -> None:
         )
 
 
+def check_corners(task: Task, points: np.ndarray) -> None:
+    """Refuse corners (L, n), of the joints that move, out of their ranges.
+
+    Raises:
+        InputError: there is one.
+    """
+    for k, point in enumerate(points):
+        q = np.array(task.start, dtype=float)
+        q[task.moving] = point
+        _check_range(task, f"corner {k} of the path to begin with", q)
+
+
 def _station_names(task: Task) -> list[str]:
     return ["start", *(f"waypoint {k + 1}" for k in range(len(task.waypoints))), "end"]
 
@@ -75,7 +87,7 @@ def _check_range(task: Task, name: str, q: np.ndarray) -> None:
         joints = [*task.robot.joints, *(axis.joint for axis in task.robot.external_axes)]
         joint = joints[j]
         raise InputError(
-            f"the {name} cannot be reached: joint {joint.name} at {joint.shown(float(q[j]))} is "
+            f"{name} cannot be reached: joint {joint.name} at {joint.shown(float(q[j]))} is "
             f"outside {joint.shown(joint.lower)} to {joint.shown(joint.upper)}"
         )
 
@@ -84,18 +96,17 @@ def _check_held(task: Task, limits: Limits, plant: Plant, names: list[str]) -> N
     """Torque limits have to hold the arm where it rests."""
     resting = [not np.any(task.start_velocity), *(w.stop for w in task.waypoints)]
     resting.append(not np.any(task.end_velocity))
-    most = limits.torque.copy()
-    np.minimum.at(most, limits.line_joint, limits.line_most)
+    axis, most, _ = limits.torques
     for k, (name, q, rests) in enumerate(zip(names, task.stations, resting, strict=True)):
         for leg in {max(k - 1, 0), min(k, task.legs - 1)} if rests else ():
             still = q[None, task.moving]
             state = State(still, 0 * still, 0 * still, np.array([leg]))
-            torque = plant.torques(state)[0]
+            torque = plant.torques(state)[0, axis]
             weak = np.flatnonzero(np.abs(torque) > most)
             if len(weak):
                 j = int(weak[0])
                 raise InputError(
-                    f"the {name}: joint {task.robot.axis_names[task.moving[j]]} needs "
+                    f"the {name}: joint {task.robot.axis_names[axis[j]]} needs "
                     f"{abs(torque[j]):.4g} N m (N) against gravity, more than its limit of "
                     f"{most[j]:.4g}; raise the limit or lighten the load"
                 )

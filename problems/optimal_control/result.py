@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ...core.collision.verdict import Certificate
 from ...core.errors import InputError, Note
+from ...core.motion.consumption import SQUARED_TORQUE, Consumption
 from ...core.motion.trajectory import Trajectory, sample_times
 from ...core.program.tool import WORLD, Tool
 from ...core.robot.chain_kernels import poses
@@ -18,7 +19,6 @@ from ...core.spatial.rotation import quaternion_from_matrix
 from .audit import Audit
 from .limits import Limits
 from .motion import Motion
-from .motor import SQUARED_TORQUE, RunningCost
 from .sampled import Plant, State
 from .task import Task
 
@@ -93,12 +93,16 @@ class Optimum:
         """That counted."""
         return Limits.of(self.task)
 
-    def energy(self, cost: RunningCost = SQUARED_TORQUE) -> FloatArray:
-        """(n,), ∫ ℓ dt of each joint that moves, without smoothing."""
-        return energy_of(self.task, self.motion, cost)
+    def energy(self, consumption: Consumption = SQUARED_TORQUE) -> float:
+        """What all axes consume together, without smoothing."""
+        return energy_of(self.task, self.motion, consumption)
+
+    def energy_by_joint(self, consumption: Consumption = SQUARED_TORQUE) -> FloatArray:
+        """(N,), what each axis takes; of squared torques it adds up to the whole."""
+        return energy_by_joint(self.task, self.motion, consumption)
 
     def torque(self, t: FloatArray) -> FloatArray:
-        """(T, n) of the joints that move at times (T,) s."""
+        """(T, N) of all axes at times (T,) s."""
         plant = Plant(self.task)
         q, dq, ddq = (self.motion.at(t, k) for k in range(3))
         return plant.torques(State(q, dq, ddq, self.motion.leg[self.motion.pieces(t)]))
@@ -108,17 +112,31 @@ class Optimum:
         return sampled_trajectory(self.task, self.motion, period)
 
 
-def energy_of(task: Task, motion: Motion, cost: RunningCost) -> FloatArray:
-    """(n,), ∫ ℓ dt of each joint that moves."""
+def energy_of(task: Task, motion: Motion, consumption: Consumption = SQUARED_TORQUE) -> float:
+    """What all axes consume together, as `core.motion.energy` has it of a program."""
+    weights, torque, rate = _driven(task, motion)
+    return float(weights @ consumption.total(consumption.powers(torque, rate)))
+
+
+def energy_by_joint(
+    task: Task, motion: Motion, consumption: Consumption = SQUARED_TORQUE
+) -> FloatArray:
+    """(N,), what each axis takes."""
+    weights, torque, rate = _driven(task, motion)
+    return np.asarray(weights @ consumption.powers(torque, rate))
+
+
+def _driven(task: Task, motion: Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Samples: weights (Z,) s of integrals over time, torques and velocities (Z, N)."""
     plant = Plant(task)
     shares = np.linspace(0.0, 1.0, _DENSE + 1)
     size = motion.coefficients.shape[2]
     q, dq, ddq = (motion.on_pieces(shares, k).reshape(-1, size) for k in range(3))
     state = State(q, dq, ddq, np.repeat(motion.leg, _DENSE + 1))
-    rate = cost.exact(plant.torques(state), dq).reshape(len(motion), _DENSE + 1, -1)
     weights = np.tile([2.0, 4.0], _DENSE // 2 + 1)[: _DENSE + 1] / (3 * _DENSE)
     weights[[0, -1]] = 1.0 / (3 * _DENSE)
-    return np.asarray(np.einsum("k,u,kun->n", motion.durations, weights, rate))
+    whole = np.multiply.outer(motion.durations, weights).ravel()
+    return whole, plant.torques(state), plant.rates(state)
 
 
 def sampled_trajectory(task: Task, motion: Motion, period: float) -> Trajectory:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.motion.consumption import Consumption, Rounded
 from .layout import Layout
-from .limits import Limits
-from .motor import RunningCost
+from .limits import TorqueLimits
 from .rows import Places
 from .sampled import State, TcpSpeed, TorqueField
 
@@ -46,24 +46,19 @@ class SamplePlaces:
 
 
 class TorqueRows:
-    """−1 ≤ τ / τ_max ≤ 1 and −1 ≤ (τ + slope q̇) / most ≤ 1 at every sample.
+    """−1 ≤ (τ + slope q̇) / most ≤ 1 at every sample.
 
     Args:
         layout: the variables.
         field: torques.
-        limits: of the joints.
-        scale: T₀, s.
+        limits: of the torques.
     """
 
-    def __init__(self, layout: Layout, field: TorqueField, limits: Limits, scale: float) -> None:
+    def __init__(self, layout: Layout, field: TorqueField, limits: TorqueLimits) -> None:
         self._places = SamplePlaces(layout)
         self._field = field
-        self._scale = scale
-        own = np.flatnonzero(np.isfinite(limits.torque))
-        self.joint = np.concatenate([own, limits.line_joint])
-        self._most = np.concatenate([limits.torque[own], limits.line_most])
-        self._slope = np.concatenate([np.zeros(len(own)), limits.line_slope])
-        count = len(self._places) * len(self.joint)
+        self._limits = limits
+        count = len(self._places) * len(limits.axis)
         self.lower, self.upper = -np.ones(count), np.ones(count)
 
     def tightened(self, margin: FloatArray) -> TorqueRows:
@@ -76,23 +71,20 @@ class TorqueRows:
 
     def values(self, x: FloatArray) -> FloatArray:
         state = self._state(x)
-        driven = self._field.torques(state)[:, self.joint] + self._slope * state.dq[:, self.joint]
-        return np.asarray((driven / self._most).ravel())
+        return self._limits.shares(self._field.torques(state), self._field.rates(state)).ravel()
 
     @property
     def jacobian_places(self) -> Places:
         columns = self._places.columns
-        wide = np.repeat(columns, len(self.joint), axis=0)
+        wide = np.repeat(columns, len(self._limits.axis), axis=0)
         return np.repeat(np.arange(len(wide)), wide.shape[1]), wide.ravel()
 
     def jacobian(self, x: FloatArray) -> FloatArray:
         state, S = self._state(x), float(x[0])
-        slopes = self._field.slopes(state, S)[:, self.joint]
-        n, time = state.q.shape[1], self._scale * np.sqrt(S)
-        rows = np.arange(len(self.joint))
-        slopes[:, rows, n + self.joint] += self._slope / time
-        slopes[:, rows, -1] -= 0.5 * self._slope * state.dq[:, self.joint] / S
-        return np.asarray((slopes / self._most[:, None]).ravel())
+        axis, most, slope = self._limits
+        slopes = self._field.slopes(state, S)[:, axis]
+        slopes += slope[:, None] * self._field.rate_slopes(state, S)[:, axis]
+        return np.asarray((slopes / most[:, None]).ravel())
 
     @property
     def hessian_places(self) -> Places:
@@ -100,18 +92,13 @@ class TorqueRows:
 
     def hessian(self, x: FloatArray, multipliers: FloatArray) -> FloatArray:
         state, S = self._state(x), float(x[0])
-        y = multipliers.reshape(len(self._places), -1) / self._most
-        count, n = state.q.shape
-        weights = np.zeros((count, n))
-        np.add.at(weights.T, self.joint, y.T)
-        H = bends_where(self._field, state, S, weights)
-        sped = np.zeros((count, n))
-        np.add.at(sped.T, self.joint, (y * self._slope).T)
-        time = self._scale * np.sqrt(S)
-        edge = -0.5 * sped / time / S
-        H[:, n : 2 * n, -1] += edge
-        H[:, -1, n : 2 * n] += edge
-        H[:, -1, -1] += 0.75 * np.sum(sped * state.dq, axis=1) / S**2
+        axis, most, slope = self._limits
+        y = multipliers.reshape(len(self._places), -1) / most
+        driven, sped = np.zeros((2, *self._field.rates(state).shape))
+        np.add.at(driven.T, axis, y.T)
+        np.add.at(sped.T, axis, (y * slope).T)
+        H = bends_where(self._field, state, S, driven)
+        H += self._field.rate_bends(state, S, sped)
         return convex_part(H).ravel()
 
 
@@ -183,17 +170,26 @@ class TcpSpeedRows:
 
 
 class EnergyTerm:
-    """∫ Σ_j ℓ(τ_j, q̇_j) dt by the grid's quadrature.
+    """∫ of a consumption over time, with its kink rounded, by the grid's quadrature.
 
     Args:
         layout: the variables.
         field: torques.
-        cost: ℓ.
+        consumption: what is integrated.
         scale: T₀, s.
+        width: W, of the kink; see `Consumption.rounded`.
     """
 
-    def __init__(self, layout: Layout, field: TorqueField, cost: RunningCost, scale: float) -> None:
-        self._layout, self._field, self._cost, self._scale = layout, field, cost, scale
+    def __init__(
+        self,
+        layout: Layout,
+        field: TorqueField,
+        consumption: Consumption,
+        scale: float,
+        width: float,
+    ) -> None:
+        self._layout, self._field, self._scale = layout, field, scale
+        self._consumption, self._width = consumption, width
         self._places = SamplePlaces(layout)
         self._interval, self._sample, self._share = layout.quadrature
 
@@ -205,18 +201,22 @@ class EnergyTerm:
     def _state(self, x: FloatArray) -> State:
         return self._field.state(*self._places.split(x), self._places.leg)
 
-    def value(self, x: FloatArray) -> float:
-        state = self._state(x)
-        cost = self._cost(self._field.torques(state), state.dq).value.sum(axis=1)
-        return float(self._scale * np.sqrt(x[0]) * (self._weights(x) @ cost))
+    def _driven(self, state: State) -> tuple[FloatArray, FloatArray, Rounded]:
+        """Torques and velocities (Z, N), and what they consume (Z,)."""
+        torque, rate = self._field.torques(state), self._field.rates(state)
+        power = self._consumption.powers(torque, rate).sum(axis=1)
+        return torque, rate, self._consumption.rounded(power, self._width)
 
-    def _speeds(self, state: State, S: float) -> FloatArray:
-        """∂q̇/∂z, (Z, n, 3 n + 1)."""
-        count, n = state.q.shape
-        out = np.zeros((count, n, 3 * n + 1))
-        out[:, np.arange(n), n + np.arange(n)] = 1.0 / (self._scale * np.sqrt(S))
-        out[:, :, -1] = -0.5 * state.dq / S
-        return out
+    def size(self, x: FloatArray) -> float:
+        """∫ |p| dt: what is consumed and what is left over, added up."""
+        state = self._state(x)
+        torque, rate = self._field.torques(state), self._field.rates(state)
+        power = self._consumption.powers(torque, rate).sum(axis=1)
+        return float(self._scale * np.sqrt(x[0]) * (self._weights(x) @ np.abs(power)))
+
+    def value(self, x: FloatArray) -> float:
+        found = self._driven(self._state(x))[2]
+        return float(self._scale * np.sqrt(x[0]) * (self._weights(x) @ found.value))
 
     def _by_stretch(self, x: FloatArray, values: FloatArray) -> FloatArray:
         """Entries (terms,) of ∂(Σ weight · values)/∂stretch."""
@@ -226,20 +226,20 @@ class EnergyTerm:
     def gradient(self, x: FloatArray) -> FloatArray:
         """(size,)."""
         state, S = self._state(x), float(x[0])
-        found = self._cost(self._field.torques(state), state.dq)
-        local = np.einsum("zj,zjk->zk", found.by_torque, self._field.slopes(state, S))
-        local += np.einsum("zj,zjk->zk", found.by_speed, self._speeds(state, S))
+        torque, rate, found = self._driven(state)
+        by_torque, by_rate = self._consumption.power_slopes(torque, rate)
+        local = np.einsum("zj,zjk->zk", by_torque, self._field.slopes(state, S))
+        local += np.einsum("zj,zjk->zk", by_rate, self._field.rate_slopes(state, S))
         time, weights = self._scale * np.sqrt(S), self._weights(x)
         out = np.bincount(
             self._places.columns.ravel(),
-            (time * weights[:, None] * local).ravel(),
+            (time * (weights * found.slope)[:, None] * local).ravel(),
             self._layout.size,
         )
-        cost = found.value.sum(axis=1)
-        out[0] += 0.5 * time / S * (weights @ cost)
+        out[0] += 0.5 * time / S * (weights @ found.value)
         if self._layout.stretches:
             columns = self._layout.stretch[self._interval]
-            np.add.at(out, columns, time * self._by_stretch(x, cost))
+            np.add.at(out, columns, time * self._by_stretch(x, found.value))
         return np.asarray(out)
 
     @property
@@ -254,29 +254,30 @@ class EnergyTerm:
 
     def hessian(self, x: FloatArray, factor: float) -> FloatArray:
         state, S = self._state(x), float(x[0])
-        found = self._cost(self._field.torques(state), state.dq)
-        J, V = self._field.slopes(state, S), self._speeds(state, S)
-        n, time = state.q.shape[1], self._scale * np.sqrt(S)
-        H = bends_where(self._field, state, S, found.by_torque)
-        mixed = np.einsum("zji,zj,zjk->zik", J, found.by_torque_speed, V)
-        H += np.einsum("zji,zj,zjk->zik", J, found.by_torque_torque, J)
+        torque, rate, found = self._driven(state)
+        by_torque, by_rate = self._consumption.power_slopes(torque, rate)
+        J, V = self._field.slopes(state, S), self._field.rate_slopes(state, S)
+        # Of the power p: Σ hⱼ τⱼ² + m τⱼ q̇ⱼ.
+        squares = self._consumption.squares(torque.shape[1])
+        H = 2.0 * np.einsum("zji,j,zjk->zik", J, squares, J)
+        mixed = self._consumption.mechanical * np.einsum("zji,zjk->zik", J, V)
         H += mixed + mixed.transpose(0, 2, 1)
-        H += np.einsum("zji,zj,zjk->zik", V, found.by_speed_speed, V)
-        edge = -0.5 * found.by_speed / time / S
-        H[:, n : 2 * n, -1] += edge
-        H[:, -1, n : 2 * n] += edge
-        H[:, -1, -1] += 0.75 * np.sum(found.by_speed * state.dq, axis=1) / S**2
-        local = np.einsum("zj,zjk->zk", found.by_torque, J)
-        local += np.einsum("zj,zjk->zk", found.by_speed, V)
-        cost = found.value.sum(axis=1)
+        H += bends_where(self._field, state, S, by_torque)
+        H += self._field.rate_bends(state, S, by_rate)
+        slope = np.einsum("zj,zjk->zk", by_torque, J) + np.einsum("zj,zjk->zk", by_rate, V)
+        # Of what is consumed of it.
+        H *= found.slope[:, None, None]
+        H += found.bend[:, None, None] * slope[:, :, None] * slope[:, None, :]
+        local = found.slope[:, None] * slope
         # The factor T₀ √S before the sum.
         H[:, :, -1] += 0.5 / S * local
         H[:, -1, :] += 0.5 / S * local
-        H[:, -1, -1] -= 0.25 / S**2 * cost
+        H[:, -1, -1] -= 0.25 / S**2 * found.value
+        time = self._scale * np.sqrt(S)
         blocks = (factor * time * self._weights(x)[:, None, None] * convex_part(H)).ravel()
         if not self._layout.stretches:
             return np.asarray(blocks)
-        local[:, -1] += 0.5 / S * cost
-        rate = self._layout.grid.width[self._interval] * self._share
-        cross = (factor * time * rate[:, None] * local[self._sample]).ravel()
+        local[:, -1] += 0.5 / S * found.value
+        width = self._layout.grid.width[self._interval] * self._share
+        cross = (factor * time * width[:, None] * local[self._sample]).ravel()
         return np.concatenate([blocks, cross, cross])

@@ -42,10 +42,17 @@ class State:
 
 
 class Plant:
-    """The equations of motion of the joints that move, with the loads of the legs.
+    """The equations of motion with the loads of the legs: torques of all N axes, by the n joints
+    that move. Axes that stand still have to be held.
+
+    An external axis that stands still, and whose inertia is not known, counts nothing.
 
     Args:
         task: what is asked.
+
+    Attributes:
+        moving: (n,), indices of the joints that move.
+        size: N.
 
     Raises:
         InputError: inertias are not known.
@@ -53,42 +60,50 @@ class Plant:
 
     def __init__(self, task: Task) -> None:
         self._task = task
-        self._moving = task.moving
+        self.moving, self.size = task.moving, task.robot.size
         self._rest = np.asarray(task.start, dtype=float)
         self._dynamics = [task.robot.dynamics(task.load(leg)) for leg in range(task.legs)]
-        self._check_known()
+        self._unknown = self._checked_unknown()
 
-    def _check_known(self) -> None:
+    def _checked_unknown(self) -> IntArray:
+        """Axes whose torques are not known; none of them moves."""
         at = self._rest[None]
         torque = self._dynamics[0].torques(at, np.zeros_like(at), np.zeros_like(at))[0]
-        unknown = [j for j in self._moving if not np.isfinite(torque[j])]
-        if unknown:
+        unknown = np.flatnonzero(~np.isfinite(torque))
+        moving = np.intersect1d(unknown, self.moving)
+        if len(moving):
             raise InputError(
-                f"torques need the inertia of axis {self._task.robot.axis_names[unknown[0]]}, "
+                f"torques need the inertia of axis {self._task.robot.axis_names[moving[0]]}, "
                 "which is not known"
             )
+        return unknown
 
     def full(self, part: FloatArray, rest: FloatArray) -> FloatArray:
         """(Z, N) from values (Z, n) of the joints that move."""
         whole = np.tile(rest, (len(part), 1))
-        whole[:, self._moving] = part
+        whole[:, self.moving] = part
         return whole
 
+    def rates(self, state: State) -> FloatArray:
+        """(Z, N), velocities of all axes."""
+        return self.full(state.dq, np.zeros_like(self._rest))
+
     def torques(self, state: State) -> FloatArray:
-        """(Z, n) N m or N."""
-        out = np.empty_like(state.q)
+        """(Z, N) N m or N."""
+        out = np.empty((len(state.q), len(self._rest)))
         for leg, rows in self._legs(state.leg):
-            out[rows] = self._dynamics[leg].torques(*self._motion(state, rows))[:, self._moving]
+            out[rows] = self._dynamics[leg].torques(*self._motion(state, rows))
+        out[:, self._unknown] = 0.0
         return out
 
     def derivatives(self, state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """∂τ/∂q, ∂τ/∂q̇, ∂τ/∂q̈, each (Z, n, n)."""
-        size = state.q.shape[1]
-        out = np.empty((3, len(state.q), size, size))
+        """∂τ/∂q, ∂τ/∂q̇, ∂τ/∂q̈, each (Z, N, n)."""
+        out = np.empty((3, len(state.q), len(self._rest), state.q.shape[1]))
         for leg, rows in self._legs(state.leg):
             parts = self._dynamics[leg].torque_derivatives(*self._motion(state, rows))
             for k, part in enumerate(parts):
-                out[k, rows] = part[:, self._moving[:, None], self._moving]
+                out[k, rows] = part[:, :, self.moving]
+        out[:, :, self._unknown] = 0.0
         return out[0], out[1], out[2]
 
     def _motion(self, state: State, rows: IntArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -104,7 +119,7 @@ class Plant:
 
 
 class TorqueField:
-    """τ (Z, n) as a function of z = (q, d, e, S), first and contracted second derivatives.
+    """τ (Z, N) as a function of z = (q, d, e, S), first and contracted second derivatives.
 
     Args:
         plant: the equations of motion.
@@ -121,18 +136,39 @@ class TorqueField:
         return State(q, d / time, e / time**2, leg)
 
     def torques(self, state: State) -> FloatArray:
-        """(Z, n)."""
+        """(Z, N)."""
         return self._plant.torques(state)
 
+    def rates(self, state: State) -> FloatArray:
+        """(Z, N), q̇."""
+        return self._plant.rates(state)
+
+    def rate_slopes(self, state: State, S: float) -> FloatArray:
+        """∂q̇/∂z, (Z, N, 3 n + 1)."""
+        count, n = state.q.shape
+        out = np.zeros((count, self._plant.size, 3 * n + 1))
+        out[:, self._plant.moving, n + np.arange(n)] = 1.0 / (self._scale * np.sqrt(S))
+        out[:, :, -1] = -0.5 * self._plant.rates(state) / S
+        return out
+
+    def rate_bends(self, state: State, S: float, weights: FloatArray) -> FloatArray:
+        """Σ_j weights_j ∂²q̇_j/∂z², (Z, 3 n + 1, 3 n + 1), weights (Z, N)."""
+        count, n = state.q.shape
+        own = weights[:, self._plant.moving]
+        H = np.zeros((count, 3 * n + 1, 3 * n + 1))
+        _edge(H, slice(n, 2 * n), 3 * n, -0.5 * own / (self._scale * np.sqrt(S)) / S)
+        H[:, -1, -1] = 0.75 * np.sum(own * state.dq, axis=1) / S**2
+        return H
+
     def slopes(self, state: State, S: float) -> FloatArray:
-        """∂τ/∂z, (Z, n, 3 n + 1)."""
+        """∂τ/∂z, (Z, N, 3 n + 1)."""
         by_q, by_v, by_a = self._plant.derivatives(state)
         time = self._scale * np.sqrt(S)
         by_S = -(0.5 * _along(by_v, state.dq) + _along(by_a, state.ddq)) / S
         return np.concatenate([by_q, by_v / time, by_a / time**2, by_S[..., None]], axis=2)
 
     def bends(self, state: State, S: float, weights: FloatArray) -> FloatArray:
-        """Σ_j weights_j ∂²τ_j/∂z², (Z, 3 n + 1, 3 n + 1), weights (Z, n)."""
+        """Σ_j weights_j ∂²τ_j/∂z², (Z, 3 n + 1, 3 n + 1), weights (Z, N)."""
         count, n = state.q.shape
         time = self._scale * np.sqrt(S)
         by_q, by_v, by_a = (

@@ -59,14 +59,16 @@ class Search:
 
     Args:
         task, limits, plant, around, effort: what is asked.
-        guess: to begin with.
+        guess: a motion whose time and energy are the units of the objective.
         report: is told of every outer iteration; True ends the search.
+        begin: a free motion to begin with; None for the guess.
 
     Attributes:
         base: the motion so far.
         best: the best motion so far that keeps all limits and is proven, with its audit and
             proof; None if there was none yet.
         steps: of the search.
+        converged, interrupted: whether it has ended by itself, or by the user.
     """
 
     def __init__(
@@ -78,18 +80,20 @@ class Search:
         effort: Effort,
         guess: Guess,
         report: Report | None = None,
+        begin: Guess | None = None,
     ) -> None:
         self.task, self.limits, self.plant = task, limits, plant
         self.around, self.effort, self.report = around, effort, report
-        self.base = guess
+        self.base = begin or guess
         self.steps: list[Step] = []
+        self.converged, self.interrupted = False, False
         self.best: tuple[float, Motion, Audit, Proof | None] | None = None
         longest = task.objective.longest
         self._longest = np.inf if longest is None else longest * (1.0 + effort.tolerance)
         self._box = effort.box
         self._clean = False
         self._energy_unit = self._first_energy(guess)
-        self._margins = PieceMargins.none(self._audited(guess.motion))
+        self._margins = PieceMargins.none(self._audited(self.base.motion))
         self._rounds = 0
         self._most_intervals = 4 * len(guess.layout.grid)
         self._warm: Result | None = None
@@ -100,13 +104,13 @@ class Search:
             return None
         assert self.plant is not None
         field = TorqueField(self.plant, guess.scale)
-        cost = self.task.objective.cost
-        return EnergyTerm(guess.layout, field, cost, guess.scale).value(guess.x)
+        consumption = self.task.objective.consumption
+        return EnergyTerm(guess.layout, field, consumption, guess.scale, 0.0).size(guess.x)
 
     # The outer iteration
 
-    def run(self) -> bool:
-        """Search; whether it ended by itself."""
+    def run(self) -> None:
+        """Search."""
         given = (self.task.start_velocity, self.task.end_velocity)
         if not any(np.asarray(velocity, dtype=float).any() for velocity in given):
             # The first guess is at rest at both ends.
@@ -115,10 +119,10 @@ class Search:
         try:
             for _ in range(self.effort.outer):
                 if self._iterate():
-                    return True
+                    self.converged = True
+                    return
         except (Interrupted, KeyboardInterrupt):
-            return False
-        return False
+            self.interrupted = True
 
     def _iterate(self) -> bool:
         """One outer iteration; whether nothing is left to do."""

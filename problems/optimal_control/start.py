@@ -191,23 +191,20 @@ def _line_time(
     ddq = np.interp(np.linspace(0, 1, len(s)), np.linspace(0, 1, len(e)), e)[:, None] * step
     motion = State(q, dq, ddq, np.full(len(q), leg))
     still = plant.torques(State(q, 0 * q, 0 * q, motion.leg))
-    used = _most_used(limits, still, 0 * q)
+    used = _most_used(limits, still, 0 * still)
     held = used < _HELD
     # Where the torques cannot hold the joints on this line, what is left of them when nothing
     # has to be held sets the pace: the optimisation finds its own way there.
     bias = 0.0 if held else still
     aim = max(_USED, 0.5 * (1.0 + used)) if held else _USED
     for _ in range(_ATTEMPTS):
-        driven = plant.torques(State(q, dq / time, ddq / time**2, motion.leg)) - bias
-        if _most_used(limits, driven, dq / time) <= aim:
+        driven = State(q, dq / time, ddq / time**2, motion.leg)
+        if _most_used(limits, plant.torques(driven) - bias, plant.rates(driven)) <= aim:
             break
         time *= 1.25
     return float(time)
 
 
-def _most_used(limits: Limits, torque: FloatArray, dq: FloatArray) -> float:
+def _most_used(limits: Limits, torque: FloatArray, rate: FloatArray) -> float:
     """The largest share of a torque limit that is used."""
-    own = np.abs(torque) / limits.torque
-    driven = torque[:, limits.line_joint] + limits.line_slope * dq[:, limits.line_joint]
-    lines = np.abs(driven) / limits.line_most
-    return float(max(own.max(), lines.max(initial=0.0)))
+    return float(np.abs(limits.torques.shares(torque, rate)).max())

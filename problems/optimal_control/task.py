@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...core.errors import InputError
+from ...core.motion.consumption import SQUARED_TORQUE, Consumption
 from ...core.robot.inertia import Inertia
 from ...core.robot.model import Robot
 from ...core.spatial.pose import IDENTITY, Pose
-from .motor import SQUARED_TORQUE, RunningCost
+from ..checks import all_of_kind, of_kind, positive, within
 
 FloatArray = NDArray[np.float64]
 AT_REST = "at rest"
@@ -38,11 +39,7 @@ class TorqueLine:
 
     def __post_init__(self) -> None:
         for name in ("most", "slope"):
-            if not 0.0 < getattr(self, name) < math.inf:
-                raise InputError(
-                    f"torque line of {self.axis}: {name} must be positive and finite, not "
-                    f"{getattr(self, name)}"
-                )
+            positive(f"torque line of {self.axis}: {name}", getattr(self, name))
 
 
 @dataclass(frozen=True)
@@ -57,6 +54,10 @@ class ControlLimits:
         jerk: (N,) rad/s³ or m/s³; None for none.
         curves: torque that depends on speed.
         tcp_speed: m/s; None for none.
+
+    Raises:
+        InputError: a curve is no `TorqueLine`, or the speed is no number above zero. Arrays are
+            looked at with the robot.
     """
 
     velocity: ArrayLike | None = None
@@ -66,29 +67,39 @@ class ControlLimits:
     curves: tuple[TorqueLine, ...] = ()
     tcp_speed: float | None = None
 
+    def __post_init__(self) -> None:
+        all_of_kind("ControlLimits.curves", self.curves, TorqueLine)
+        if self.tcp_speed is not None and self.tcp_speed != math.inf:
+            positive("ControlLimits.tcp_speed", self.tcp_speed)
+
 
 @dataclass(frozen=True)
 class Objective:
-    """f = w T/T₀ + (1 − w) E/E₀, with T₀ and E₀ of the first guess.
+    """f = w T/T₀ + (1 − w) E/E₀, with T₀ and E₀ of the first guess: E₀ is what it consumes and what
+    it leaves over, ∫ |p| dt, so that it is never negative.
 
     Args:
         time_weight: w, 1 for time alone, 0 for energy alone.
-        cost: what E is the integral of.
+        consumption: whose integral over time is E; figures are of all axes of the robot.
         longest: s, bound of the time; None for twenty times the first guess's.
+        smoothing: where the consumption has a kink at p = 0, the search rounds it over this share
+            of the first guess's mean |p|; see `Consumption.rounded`.
 
     Raises:
         InputError: a number out of its range.
     """
 
     time_weight: float = 1.0
-    cost: RunningCost = SQUARED_TORQUE
+    consumption: Consumption = SQUARED_TORQUE
     longest: float | None = None
+    smoothing: float = 0.1
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.time_weight <= 1.0:
-            raise InputError(f"time_weight is between 0 and 1, not {self.time_weight}")
-        if self.longest is not None and not 0.0 < self.longest < math.inf:
-            raise InputError(f"the longest time is above zero and finite, not {self.longest}")
+        within("Objective.time_weight", self.time_weight, 0.0, 1.0)
+        of_kind("Objective.consumption", self.consumption, Consumption)
+        if self.longest is not None:
+            positive("Objective.longest", self.longest)
+        positive("Objective.smoothing", self.smoothing)
 
 
 @dataclass(frozen=True)
@@ -137,6 +148,12 @@ class Task:
     joints: Sequence[int] | None = None
 
     def __post_init__(self) -> None:
+        of_kind("Task.robot", self.robot, Robot)
+        of_kind("Task.limits", self.limits, ControlLimits)
+        of_kind("Task.objective", self.objective, Objective)
+        of_kind("Task.tcp", self.tcp, Pose)
+        all_of_kind("Task.waypoints", self.waypoints, Waypoint)
+        all_of_kind("Task.loads", self.loads, Inertia | None)
         size = self.robot.size
         for name in ("start", "end", "start_velocity", "end_velocity"):
             value = getattr(self, name)
@@ -144,25 +161,14 @@ class Task:
                 value = np.zeros(size)
             object.__setattr__(self, name, _vector(self.robot, name, value))
         for k, waypoint in enumerate(self.waypoints):
-            if not isinstance(waypoint, Waypoint):
-                raise InputError(f"waypoint {k + 1} is a Waypoint, not {waypoint!r}")
             _vector(self.robot, f"waypoint {k + 1}", waypoint.q)
-        joints = tuple(range(size) if self.joints is None else self.joints)
-        if not joints or len(set(joints)) != len(joints) or not set(joints) <= set(range(size)):
-            raise InputError(
-                f"joints are different indices below {size}, at least one, not {joints}"
-            )
-        object.__setattr__(self, "joints", joints)
+        object.__setattr__(self, "joints", self._checked_joints())
         if len(self.loads) not in (1, self.legs):
             raise InputError(
                 f"{len(self.loads)} loads were given for {self.legs} legs between waypoints; give "
                 "one for all, or one a leg"
             )
-        known = self.objective.cost.joints
-        if known not in (None, len(joints)):
-            raise InputError(
-                f"the running cost has figures of {known} joints; {len(joints)} joints move"
-            )
+        self.objective.consumption.squares(size)
         self._check_still()
 
     @property
@@ -185,6 +191,17 @@ class Task:
         """What is carried on a leg."""
         return self.loads[leg % len(self.loads)]
 
+    def _checked_joints(self) -> tuple[int, ...]:
+        size = self.robot.size
+        if self.joints is None:
+            return tuple(range(size))
+        joints = tuple(self.joints) if isinstance(self.joints, Iterable) else ()
+        if not joints or len(set(joints)) != len(joints) or not set(joints) <= set(range(size)):
+            raise InputError(
+                f"Task.joints are different indices below {size}, one at least, not {self.joints!r}"
+            )
+        return joints
+
     def _check_still(self) -> None:
         still = np.setdiff1d(np.arange(self.robot.size), self.moving)
         away = np.abs(self.stations - self.stations[0])[:, still]
@@ -203,7 +220,7 @@ def _vector(robot: Robot, name: str, value: ArrayLike) -> FloatArray:
         array = np.array(value, dtype=float)
     except (TypeError, ValueError):
         raise InputError(
-            f"{name} must be {robot.size} numbers, one an axis, not {value!r}"
+            f"{name} needs one number an axis ({', '.join(robot.axis_names)}), not {value!r}"
         ) from None
     if array.shape != (robot.size,):
         raise InputError(

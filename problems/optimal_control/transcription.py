@@ -71,7 +71,7 @@ class Transcription:
 
     Args:
         task: what is asked.
-        limits: of the joints that move.
+        limits: that count.
         layout: the variables.
         scale: T₀, s.
         energy_unit: E₀; None where only time counts.
@@ -96,8 +96,9 @@ class Transcription:
         self._energy = None
         if energy_unit is not None:
             assert self._field is not None
-            cost = task.objective.cost
-            self._energy = EnergyTerm(layout, self._field, cost, scale)
+            width = task.objective.smoothing * energy_unit / scale
+            consumption = task.objective.consumption
+            self._energy = EnergyTerm(layout, self._field, consumption, scale, width)
         self._energy_unit = energy_unit or 1.0
 
     def _make_rows(self) -> list[Rows]:
@@ -114,7 +115,7 @@ class Transcription:
             if wanted.any():
                 rows.append(GivenVelocity(layout.d[point], wanted * scale))
         if self._field is not None and limits.dynamic:
-            torque = TorqueRows(layout, self._field, limits, scale)
+            torque = TorqueRows(layout, self._field, limits.torques)
             rows.append(torque if self._margins is None else torque.tightened(self._margins.torque))
         if np.isfinite(limits.tcp_speed):
             speed = TcpSpeed(self.task, scale)

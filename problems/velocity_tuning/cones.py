@@ -15,14 +15,14 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from ...core.errors import FlybyError, InputError
-from ...core.motion.consumption import Motors, SquaredTorque
+from ...core.errors import FlybyError
 from .rows import Knots, Rows, jerk_rows, kinematic_rows, torque_rows
 from .task import Task
 
@@ -116,17 +116,37 @@ class ConeProgram:
         return made
 
     def _energy(self, xi: Any, pace: Any, at: FloatArray) -> tuple[Any, list[Any]]:
-        """∫ of the consumption as an expression, and the constraints that make it one."""
-        consumption = self._task.objective.consumption
-        shape = self._task.torques.a.shape
-        if isinstance(consumption, SquaredTorque):
-            weights = np.sqrt(consumption.weights(shape[2]))
-            return self._squares(self._torque(xi, at, weights), pace, range(2))
-        if isinstance(consumption, Motors):
-            return self._drawn(xi, pace, at, consumption)
-        raise InputError(
-            f"velocity tuning knows SquaredTorque and Motors, not {type(consumption).__name__}"
-        )
+        """∫ of the consumption as an expression, and the constraints that make it one.
+
+        The power p is convex, heat by cones and mechanical power linear, and so is the larger of
+        p and η p, as η ≤ 1. With η = 1 nothing is cut off, and the ends of an interval add up.
+        """
+        import cvxpy as cp  # takes a second
+
+        returned = self._task.objective.consumption.returned
+        total: Any = 0.0
+        constraints: list[Any] = []
+        for ends in [(0, 1)] if returned == 1.0 else [(0,), (1,)]:
+            power, cones = self._power(xi, pace, at, ends)
+            constraints += cones
+            if returned < 1.0:
+                unit = max(self._scale, self._typical_work)
+                drawn = cp.Variable(self._knots.count)
+                constraints += [power / unit <= drawn, returned / unit * power <= drawn]
+                power = unit * drawn
+            total = total + cp.sum(power)
+        return total, constraints
+
+    def _power(
+        self, xi: Any, pace: Any, at: FloatArray, ends: Iterable[int]
+    ) -> tuple[Any, list[Any]]:
+        """½ Σ h p at some ends of the intervals, (K,), and the cones that bound it."""
+        consumption, size = self._task.objective.consumption, self._task.path.size
+        heat = self._torque(xi, at, np.sqrt(consumption.squares(size)))
+        power, cones = self._squares(heat, pace, ends)
+        if consumption.mechanical > 0.0:
+            power = power + self._work(self._torque(xi, at, np.ones(size)), ends)
+        return power, cones
 
     def _torque(self, xi: Any, at: FloatArray, weight: FloatArray) -> list[list[Any]]:
         """Weighted torques as expressions (K,), by end and by joint; √x by its tangent."""
@@ -150,60 +170,45 @@ class ConeProgram:
     def _squares(
         self, torque: list[list[Any]], pace: Any, ends: Iterable[int]
     ) -> tuple[Any, list[Any]]:
-        """½ Σ h_k Σ τ² at some ends of the intervals."""
+        """½ h Σ τ² of weighted torques at some ends of the intervals, (K,), and its cone."""
         import cvxpy as cp  # takes a second
 
         scale = self._scale
         root = np.sqrt(0.5 * self._steps / scale)
         parts = [cp.multiply(root, tau) for e in ends for tau in torque[e]]
         if not parts:
-            return 0.0, []
+            return np.zeros(self._knots.count), []
         bound = cp.Variable(self._knots.count)
         cone = cp.SOC(bound + pace, cp.vstack([bound - pace, *(2.0 * p for p in parts)]), axis=0)
-        return scale * cp.sum(bound), [cone]
+        return scale * bound, [cone]
 
-    @property
-    def _scale(self) -> float:
-        """About what one interval takes of squared torques."""
-        torques = self._task.torques
-        size = np.abs(torques.c).max() + np.abs(torques.a).max() * 1e-12
-        size = max(float(size), float(np.abs(self._typical()).max()))
-        return max(size**2 * float(self._steps.mean()), 1e-30)
-
-    def _typical(self) -> FloatArray:
-        """Torques of the known motion."""
-        x = self._unit
-        return self._task.torques.at(x, np.diff(x) / (2.0 * self._knots.spacing))
-
-    def _drawn(self, xi: Any, pace: Any, at: FloatArray, motors: Motors) -> tuple[Any, list[Any]]:
-        """What the mains give: the larger of p and η p at every end of every interval."""
+    def _work(self, torque: list[list[Any]], ends: Iterable[int]) -> Any:
+        """½ h τ q̇ = ½ Δ τ q′ at some ends of the intervals, (K,)."""
         import cvxpy as cp  # takes a second
 
-        size = self._task.path.size
-        heat = self._torque(xi, at, np.sqrt(motors.losses(size)))
-        plain = self._torque(xi, at, np.ones(size))
-        constraints: list[Any] = []
-        total: Any = 0.0
-        for e in range(2):
-            way = 0.5 * self._knots.spacing[:, None] * self._task.path.dq[:, e]
-            power: Any = 0.0
-            for j in range(size):
-                power = power + cp.multiply(way[:, j], plain[e][j])
-            if heat[e]:
-                scale = self._scale * max(motors.copper)
-                root = np.sqrt(0.5 * self._steps / scale)
-                bound = cp.Variable(self._knots.count)
-                parts = [2.0 * cp.multiply(root, tau) for tau in heat[e]]
-                constraints.append(cp.SOC(bound + pace, cp.vstack([bound - pace, *parts]), axis=0))
-                power = power + scale * bound
-            if motors.recuperation == 1.0:
-                total = total + cp.sum(power)
-                continue
-            unit = max(float(np.abs(way * self._typical()[:, e]).max()), 1e-12)
-            drawn = cp.Variable(self._knots.count)
-            constraints += [power / unit <= drawn, motors.recuperation / unit * power <= drawn]
-            total = total + unit * cp.sum(drawn)
-        return total, constraints
+        way = 0.5 * self._knots.spacing[:, None, None] * self._task.path.dq
+        return sum(cp.multiply(way[:, e, j], tau) for e in ends for j, tau in enumerate(torque[e]))
+
+    @cached_property
+    def _scale(self) -> float:
+        """About what an interval takes of weighted squared torques."""
+        torques, squares = self._task.torques, self._task.objective.consumption.squares
+        size = max(np.abs(torques.c).max(), np.abs(self._typical).max())
+        most = float(squares(self._task.path.size).max()) * float(size) ** 2
+        return max(most * float(self._steps.mean()), 1e-30)
+
+    @cached_property
+    def _typical_work(self) -> float:
+        """About the most that an interval takes of mechanical power."""
+        way = 0.5 * self._knots.spacing[:, None, None] * self._task.path.dq
+        mechanical = self._task.objective.consumption.mechanical
+        return mechanical * float(np.abs(way * self._typical).max())
+
+    @cached_property
+    def _typical(self) -> FloatArray:
+        """(K, 2, N), torques of the known motion."""
+        x = self._unit
+        return self._task.torques.at(x, np.diff(x) / (2.0 * self._knots.spacing))
 
 
 def _solve(problem: Any) -> None:

@@ -14,12 +14,14 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from numbers import Real
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import InputError
 from ...core.robot.model import Robot
+from ..checks import all_of_kind, not_negative, of_kind
 
 FloatArray = NDArray[np.float64]
 
@@ -44,6 +46,8 @@ class TorqueCurve:
     torque: tuple[float, ...]
 
     def __post_init__(self) -> None:
+        all_of_kind("TorqueCurve.speed", self.speed, Real)
+        all_of_kind("TorqueCurve.torque", self.torque, Real)
         numbers = (*self.speed, *self.torque)
         if not self.speed or len(self.speed) != len(self.torque):
             raise InputError("TorqueCurve: as many torques as speeds are needed, one at least")
@@ -148,11 +152,9 @@ class Drive:
     inertia: float = 0.0
 
     def __post_init__(self) -> None:
+        of_kind("Drive.torque", self.torque, TorqueCurve)
         for name in ("coulomb", "viscous", "inertia"):
-            if not 0.0 <= getattr(self, name) < math.inf:
-                raise InputError(
-                    f"Drive.{name} must be finite and zero or more, not {getattr(self, name)}"
-                )
+            not_negative(f"Drive.{name}", getattr(self, name))
 
 
 def drives_of(robot: Robot) -> tuple[Drive, ...]:

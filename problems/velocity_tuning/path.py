@@ -19,13 +19,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import InputError
+from ...core.motion.binding import row_names
 from ...core.motion.controller import Controller
+from ...core.motion.energy import by_load
 from ...core.motion.limits import interval_ends
 from ...core.motion.stamping import Limits
 from ...core.motion.timing import Timing
 from ...core.program.program import Program
 from ...core.robot.inertia import Inertia
 from ...core.robot.model import Robot
+from ..checks import of_kind
 from .drives import Drive
 
 FloatArray = NDArray[np.float64]
@@ -48,6 +51,7 @@ class FixedPath:
         dq, ddq: (K, 2, N), q' and q'' at both ends of each interval, one-sided.
         rigid: torques of the arm; None where they are not known.
         names: (N,) of the axes, for messages.
+        rows: names of the limits' rows, for reports.
 
     Raises:
         InputError: shapes do not fit.
@@ -58,17 +62,31 @@ class FixedPath:
     ddq: FloatArray
     rigid: Rigid | None = None
     names: tuple[str, ...] = ()
+    rows: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        of_kind("FixedPath.limits", self.limits, Limits)
         count = len(self.limits.spacing)
+        for name in ("dq", "ddq"):
+            of_kind(f"FixedPath.{name}", getattr(self, name), np.ndarray)
         shape = self.dq.shape
         if len(shape) != 3 or shape[:2] != (count, 2):
             raise InputError(f"FixedPath.dq has shape {shape}; it must be ({count}, 2, N)")
         for name, part in (("ddq", self.ddq), *zip("abc", self.rigid or (), strict=False)):
             if part.shape != shape:
                 raise InputError(f"FixedPath: {name} has shape {part.shape}, dq has {shape}")
+        if not (np.isfinite(self.dq).all() and np.isfinite(self.ddq).all()):
+            raise InputError("FixedPath: q' and q'' must be finite")
         if not self.names:
             object.__setattr__(self, "names", tuple(f"J{j + 1}" for j in range(shape[2])))
+        count = self.limits.a.shape[2]
+        if not self.rows:
+            named = [f"{name} acceleration" for name in self.names][:count]
+            rest = [f"row {k + 1}" for k in range(len(named), count)]
+            object.__setattr__(self, "rows", (*named, *rest))
+        for what, given, wanted in (("names", self.names, shape[2]), ("rows", self.rows, count)):
+            if len(given) != wanted:
+                raise InputError(f"FixedPath.{what}: {wanted} are needed, not {len(given)}")
 
     @classmethod
     def of(cls, controller: Controller, program: Program, timing: Timing) -> FixedPath:
@@ -87,7 +105,8 @@ class FixedPath:
         rigid = None
         if robot.links:
             rigid = rigid_torques(robot, q, dq, ddq, loads, timing.interval_segments)
-        return cls(timing.path_limits.rows, dq, ddq, rigid, robot.axis_names)
+        rows = row_names(timing.path_limits, robot.axis_names)
+        return cls(timing.path_limits.rows, dq, ddq, rigid, robot.axis_names, rows)
 
     @property
     def stops(self) -> NDArray[np.bool_]:
@@ -120,8 +139,7 @@ def rigid_torques(
     """
     a, b, c = (np.empty_like(q) for _ in range(3))
     still = np.zeros_like(q)
-    for load in dict.fromkeys(loads):
-        rows = np.flatnonzero(np.array([other == load for other in loads])[segments])
+    for load, rows in by_load(loads, segments):
         at, rest = q[rows], still[rows]
         c[rows] = robot.inverse_dynamics(at, rest, rest, load)
         a[rows] = robot.inverse_dynamics(at, rest, dq[rows], load) - c[rows]
@@ -147,10 +165,8 @@ class Torques:
             drives: one an axis.
 
         Raises:
-            InputError: there is not one drive an axis, or torques are not known.
+            InputError: torques are not known.
         """
-        if len(drives) != path.size:
-            raise InputError(f"{path.size} drives are needed, one an axis, not {len(drives)}")
         if path.rigid is None:
             raise InputError(
                 "torques need the inertias of the robot's links, which are not known; add them to "

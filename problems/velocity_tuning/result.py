@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.motion.controller import Controller
+from ...core.motion.energy import by_load
 from ...core.motion.timing import Settling, Timing
 from ...core.program.program import Program
 from .task import Task
+from .usage import excess, jerks, usage
 
 FloatArray = NDArray[np.float64]
 
@@ -90,6 +92,18 @@ class Tuned:
         return jerks(self.task, self.x)
 
     @property
+    def usage(self) -> dict[str, FloatArray]:
+        """Share (K,) of each limit, by name, that is used in each interval; 1 is all."""
+        return usage(self.task, self.x)
+
+    @property
+    def active(self) -> tuple[str, ...]:
+        """(K,), the limit that is used most in each interval."""
+        used = self.usage
+        names = tuple(used)
+        return tuple(names[k] for k in np.argmax(list(used.values()), axis=0))
+
+    @property
     def excess(self) -> float:
         """Largest share by which a limit is exceeded at a knot; 0 or a rounding error."""
         return excess(self.task, self.x)
@@ -121,59 +135,9 @@ class Tuned:
         interval = np.clip(np.searchsorted(own.begin, t, "right") - 1, 0, None)
         segment = own.interval_segments[interval]
         torque = np.empty_like(q)
-        loads = controller.loads(program, timing.path)
-        for load in dict.fromkeys(loads):
-            rows = np.flatnonzero(np.array([other == load for other in loads])[segment])
+        for load, rows in by_load(controller.loads(program, timing.path), segment):
             torque[rows] = controller.robot.inverse_dynamics(q[rows], dq[rows], ddq[rows], load)
         for j, drive in enumerate(self.task.drives):
             torque[:, j] += drive.inertia * ddq[:, j] + drive.viscous * dq[:, j]
             torque[:, j] += drive.coulomb * np.sign(dq[:, j])
         return np.asarray(torque)
-
-
-def jerks(task: Task, x: FloatArray) -> FloatArray:
-    """(K + 1, N), as `Tuned.jerk`; at a stop the larger of both sides'."""
-    path = task.path
-    root = np.sqrt(x)
-    steps = 2.0 * path.limits.spacing / (root[:-1] + root[1:])
-    middle = middle_accelerations(task, x)
-    before = np.concatenate([np.zeros((1, path.size)), middle])
-    after = np.concatenate([middle, np.zeros((1, path.size))])
-    half = 0.5 * np.concatenate([[0.0], steps]), 0.5 * np.concatenate([steps, [0.0]])
-    stops = path.stops
-    passed = (after - before) / (half[0] + half[1])[:, None]
-    into = np.abs(before) / np.where(half[0] > 0, half[0], np.inf)[:, None]
-    out = np.abs(after) / np.where(half[1] > 0, half[1], np.inf)[:, None]
-    return np.asarray(np.where(stops[:, None], np.maximum(into, out), passed))
-
-
-def middle_accelerations(task: Task, x: FloatArray) -> FloatArray:
-    """(K, N), the mean of the joints' accelerations at both ends of each interval."""
-    path = task.path
-    u = np.diff(x) / (2.0 * path.limits.spacing)
-    ends = np.stack([x[:-1], x[1:]], -1)[..., None]
-    return np.asarray((path.dq * u[:, None, None] + path.ddq * ends).mean(axis=1))
-
-
-def excess(task: Task, x: FloatArray) -> float:
-    """Largest share by which a limit is exceeded at a knot."""
-    path = task.path
-    limits = path.limits
-    u = np.diff(x) / (2.0 * limits.spacing)
-    ends = np.stack([x[:-1], x[1:]], -1)[..., None]
-    value = limits.a * u[:, None, None] + limits.b * ends
-    worst = [0.0]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        for side, bound in ((value, limits.upper), (-value, -limits.lower)):
-            share = np.where(np.isfinite(bound) & (bound > 0.0), side / bound - 1.0, 0.0)
-            worst.append(float(share.max(initial=0.0)))
-        over = np.where(limits.ceiling > 0.0, x / limits.ceiling - 1.0, 0.0)
-    worst.append(float(over.max()))
-    if task.limited:
-        torque, speed = task.torques.at(x, u), np.abs(path.dq) * np.sqrt(ends)
-        for j, drive in enumerate(task.drives):
-            share = np.abs(torque[..., j]) / drive.torque.at(speed[..., j]) - 1.0
-            worst.append(float(share.max()))
-    if task.jerk is not None:
-        worst.append(float((np.abs(jerks(task, x)) / task.jerk).max()) - 1.0)
-    return max(worst)

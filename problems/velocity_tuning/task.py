@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ...core.errors import InputError
 from ...core.motion.consumption import SQUARED_TORQUE, Consumption
 from ...core.motion.stamping import Limits, StandingStillError
+from ..checks import all_of_kind, of_kind, positive, within
 from .drives import Drive
 from .path import FixedPath, Torques
 
@@ -36,10 +37,10 @@ class Objective:
     duration: float | None = None
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.time_weight <= 1.0:
-            raise InputError(f"Objective.time_weight lies in [0, 1], not {self.time_weight}")
-        if self.duration is not None and not 0.0 < self.duration < math.inf:
-            raise InputError(f"Objective.duration is above zero, not {self.duration}")
+        within("Objective.time_weight", self.time_weight, 0.0, 1.0)
+        of_kind("Objective.consumption", self.consumption, Consumption)
+        if self.duration is not None:
+            positive("Objective.duration", self.duration)
 
 
 FASTEST = Objective()
@@ -66,13 +67,16 @@ class Task:
     objective: Objective = FASTEST
 
     def __post_init__(self) -> None:
+        of_kind("Task.path", self.path, FixedPath)
+        of_kind("Task.objective", self.objective, Objective)
+        all_of_kind("Task.drives", self.drives, Drive)
+        if len(self.drives) not in (0, self.path.size):
+            raise InputError(
+                f"Task.drives: one an axis ({', '.join(self.path.names)}), not {len(self.drives)}"
+            )
         if self.jerk is not None:
-            jerk = np.asarray(self.jerk, dtype=float)
-            if jerk.shape != (self.path.size,) or not (jerk > 0.0).all():
-                raise InputError(
-                    f"Task.jerk needs {self.path.size} values above zero, not {self.jerk}"
-                )
-            object.__setattr__(self, "jerk", jerk)
+            object.__setattr__(self, "jerk", self._checked_jerk())
+        self.objective.consumption.squares(self.path.size)
         if self.drives:
             self._check_standing()
 
@@ -122,6 +126,18 @@ class Task:
             )
         )
         return Limits(limits.spacing, a, b, lower, upper, limits.ceiling)
+
+    def _checked_jerk(self) -> FloatArray:
+        try:
+            jerk = np.asarray(self.jerk, dtype=float)
+        except (TypeError, ValueError):
+            jerk = np.empty(0)
+        if jerk.shape != (self.path.size,) or not (jerk > 0.0).all():
+            raise InputError(
+                f"Task.jerk: one number above zero an axis ({', '.join(self.path.names)}), not "
+                f"{self.jerk!r}"
+            )
+        return jerk
 
     def _check_standing(self) -> None:
         if not self.limited:

@@ -17,10 +17,12 @@ from numpy.typing import NDArray
 
 from ...core.errors import InputError
 from ...core.motion.stamping import stamp
+from ..checks import of_kind
 from .cones import ConeProgram, Shares, TuningError
-from .result import Tuned, Way, excess
+from .result import Tuned, Way
 from .rows import FLOOR
 from .task import FASTEST, Task
+from .usage import excess
 
 FloatArray = NDArray[np.float64]
 
@@ -50,6 +52,7 @@ def tune(task: Task, report: Report | None = None) -> Tuned:
         StampingError: the path cannot be passed within its limits.
         TuningError: no motion is short enough, or the solver failed.
     """
+    of_kind("task", task, Task)
     if not task.convex:
         return tune_in_sequence(task, report)
     return tune_by_sweeps(task) if _timely(task) else tune_by_cones(task)

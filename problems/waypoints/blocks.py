@@ -43,7 +43,7 @@ def cut(program: Program, path: Path, variables: Variables, arm_size: int) -> tu
         variables: all of them.
         arm_size: number of the arm's own joints.
     """
-    bounds = _stretches(path, len(program.moves))
+    bounds = stretches(path, len(program.moves))
     owner = np.repeat(np.arange(len(bounds)), [last - first + 1 for first, last in bounds])
     spans: list[list[int]] = []
     for part in variables.parts:
@@ -55,7 +55,7 @@ def cut(program: Program, path: Path, variables: Variables, arm_size: int) -> tu
     )
 
 
-def _stretches(path: Path, count: int) -> list[tuple[int, int]]:
+def stretches(path: Path, count: int) -> list[tuple[int, int]]:
     """First and last move of every stretch from stop to stop."""
     route = path.route
     ends = [route.moves[k] for k, zone in enumerate(route.zones) if isinstance(zone, Fine)]

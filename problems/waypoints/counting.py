@@ -1,39 +1,34 @@
-"""The number of via points: idle ones are left out, others are added where they pay."""
+"""The number of via points: idle ones are left out, others come where they pay.
+
+It is done stretch by stretch, from stop to stop, while all others stay. A via point goes if a short
+search from there ends no higher without it. Then every one is cut in two (`doubling`) and searched
+from there, briefly; the best of these is searched longer, and stays if it is better by enough.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...core.collision.verdict import Certificate
 from ...core.motion.controller import Run
-from ...core.motion.path import Path
-from ...core.motion.segments import JOINT_SEGMENT, LINE_SEGMENT
-from ...core.program.move import Move, MoveC, MoveJ, MoveL, Statement
 from ...core.program.program import Program
-from ...core.program.target import JointTarget, PoseTarget
-from ...core.program.zone import Radius
-from ...core.spatial.pose import Pose
-from ...core.spatial.rotation import (
-    matrix_from_rotation_vector,
-    quaternion_from_matrix,
-    rotation_vector,
-)
+from .blocks import stretches
+from .doubling import doubled, without
+from .limits import Fixed, Free, PointLimit
 from .options import Effort, Task
 from .selection import Selection
 
 _SERVES_NOTHING = 1e-4
-"""Share of the cost that a via point must save to stay."""
+"""Share of the stretch's cost that a via point must save to stay."""
 _PAYS = 2e-3
-"""Share of the cost that a new via point must save."""
-_MOST_CHANGES = 6
+"""Share of the stretch's cost that one more must save."""
+_MOST = 4
+"""Via points more in a stretch."""
 _BRIEF = 30
-"""Iterations of a search without a via point, from the optimum with it."""
-_ZONE = 0.25
-"""Share of the way to the nearer neighbour that a new via point's zone begins with."""
-_SMALLEST = 2e-3
+"""Iterations of a search that only compares."""
 
 
 @dataclass(frozen=True)
@@ -55,27 +50,7 @@ class Counted:
 
 Improved = Callable[[Program, Task, Effort], Counted | None]
 Selected = Callable[[Counted], Selection]
-
-
-def change_count(best: Counted, improved: Improved, selected: Selected, effort: Effort) -> Counted:
-    """The program with as many via points as it is best with.
-
-    Args:
-        best: as it is.
-        improved: optimises a program; None where it cannot.
-        selected: what may change in a program.
-        effort: of the searches so far; these are shorter, as they begin near an optimum.
-    """
-    brief = replace(effort, starts=1, generations=0, iterations=min(_BRIEF, effort.iterations))
-    longer = replace(effort, starts=1, generations=min(1, effort.generations))
-    for _ in range(_MOST_CHANGES):
-        changed = _without_one(best, improved, selected(best), brief) or _with_one(
-            best, improved, selected(best), longer
-        )
-        if changed is None:
-            return best
-        best = changed
-    return best
+Renumbering = Callable[[int], int | None]
 
 
 def idle_points(
@@ -88,95 +63,153 @@ def idle_points(
         selection: what may change in it.
         judged: a program's cost; None if it does not keep its clearance.
     """
-    for i in _removable(selection):
-        cost = judged(_without(best.run.program, i))
+    for i in _alone(selection):
+        cost = judged(without(best.run.program, i))
         if cost is not None and cost <= best.cost * (1.0 + 1e-9):
             yield i
 
 
-def _removable(selection: Selection) -> list[int]:
+def change_count(
+    best: Counted, improved: Improved, selected: Selected, effort: Effort, arm_size: int
+) -> Counted:
+    """The program with as many via points as it is best with.
+
+    Args:
+        best: as it is.
+        improved: optimises a program; None where it cannot, or where the user has ended the work.
+        selected: what may change in a program.
+        effort: of the searches so far; these are shorter, as they begin near an optimum.
+        arm_size: number of the arm's own joints.
+    """
+    for number in range(len(_stretches(best))):
+        turn = _Turn(number, improved, selected, effort, arm_size)
+        best = turn.with_more(turn.with_fewer(best))
+    return best
+
+
+@dataclass(frozen=True)
+class _Turn:
+    """The changes of one stretch.
+
+    Args:
+        number: of the stretch; it stays the same, as no stop comes or goes.
+        improved, selected, effort, arm_size: as in `change_count`.
+    """
+
+    number: int
+    improved: Improved
+    selected: Selected
+    effort: Effort
+    arm_size: int
+
+    def with_fewer(self, best: Counted) -> Counted:
+        """Without those that serve nothing."""
+        while (fewer := self._without_one(best)) is not None:
+            best = fewer
+        return best
+
+    def with_more(self, best: Counted) -> Counted:
+        """With those that pay."""
+        for _ in range(_MOST):
+            more = self._with_one(best)
+            if more is None:
+                break
+            best = more
+        return best
+
+    def _without_one(self, best: Counted) -> Counted | None:
+        most = best.cost * (1.0 + _SERVES_NOTHING * self._share(best))
+        for i in self._here(best, _alone(self.selected(best))):
+            found = self._search(best, without(best.run.program, i), _gone(i), self._brief)
+            if found is not None and found.cost <= most:
+                return found
+        return None
+
+    def _with_one(self, best: Counted) -> Counted | None:
+        tried = [found for i in self._divisible(best) if (found := self._divided(best, i))]
+        if not tried:
+            return None
+        found = min(tried, key=lambda counted: counted.cost)
+        longer = replace(self.effort, starts=1, generations=min(1, self.effort.generations))
+        found = self._search(found, found.run.program, lambda k: k, longer) or found
+        return found if found.cost < best.cost * (1.0 - _PAYS * self._share(best)) else None
+
+    def _divisible(self, best: Counted) -> list[int]:
+        """Via points that go where they like; what limits one says nothing of two."""
+        task = best.task
+        candidates = self._here(best, _alone(self.selected(best)))
+        return [i for i in candidates if isinstance(task.limits.get(i, task.limit), Free)]
+
+    def _divided(self, best: Counted, i: int) -> Counted | None:
+        program = doubled(best.run.program, best.run.path, i, self.arm_size)
+        return None if program is None else self._search(best, program, _later(i), self._brief)
+
+    def _search(
+        self, best: Counted, program: Program, new: Renumbering, effort: Effort
+    ) -> Counted | None:
+        """A changed program at its best.
+
+        Args:
+            best: without the change.
+            program: with it.
+            new: indices of its moves.
+            effort: of the search.
+        """
+        found = self.improved(program, self._confined(best).renumbered(new), effort)
+        return None if found is None else replace(found, task=best.task.renumbered(new))
+
+    def _confined(self, best: Counted) -> Task:
+        """The task of a search that leaves all other stretches alone.
+
+        Limits are about where a point was in the program as it was given; those points have had
+        their way, and stay.
+        """
+        task = best.task
+        here = self._here(best, range(len(best.run.program.moves)))
+        others = set(range(len(best.run.program.moves))) - set(here)
+        return replace(
+            task,
+            keep={*task.keep, *others},
+            limits={i: _spent(limit) for i, limit in task.limits.items()},
+            limit=_spent(task.limit),
+        )
+
+    @property
+    def _brief(self) -> Effort:
+        iterations = min(_BRIEF, self.effort.iterations)
+        return replace(self.effort, starts=1, generations=0, iterations=iterations)
+
+    def _here(self, best: Counted, moves: Iterable[int]) -> list[int]:
+        """Those of the moves that are in the stretch."""
+        first, last = _stretches(best)[self.number]
+        return [i for i in moves if first <= i <= last]
+
+    def _share(self, best: Counted) -> float:
+        """Of the motion's time that the stretch takes, and so about of its cost."""
+        spent = best.run.timing.segment_durations()
+        moves = list(best.run.path.route.moves)
+        here = np.isin(moves, self._here(best, moves))
+        return float(spent[here].sum() / spent.sum())
+
+
+def _stretches(best: Counted) -> list[tuple[int, int]]:
+    return stretches(best.run.path, len(best.run.program.moves))
+
+
+def _alone(selection: Selection) -> list[int]:
+    """Via points that move, and share their target with no other."""
     return [group[0] for group in selection.points if len(group) == 1]
 
 
-def _without_one(
-    best: Counted, improved: Improved, selection: Selection, effort: Effort
-) -> Counted | None:
-    for i in _removable(selection):
-        task = best.task.renumbered(_gone(i))
-        found = improved(_without(best.run.program, i), task, effort)
-        if found is not None and found.cost <= best.cost * (1.0 + _SERVES_NOTHING):
-            return found
-    return None
+def _spent(limit: PointLimit) -> PointLimit:
+    return limit if isinstance(limit, Free) else Fixed()
 
 
-def _with_one(
-    best: Counted, improved: Improved, selection: Selection, effort: Effort
-) -> Counted | None:
-    """With a via point in the middle of the longest leg next to one that moves."""
-    path = best.run.path
-    moving = {i for group in selection.points for i in group}
-    legs = [
-        k
-        for k, move in enumerate(path.route.moves)
-        if move in moving or (k > 0 and path.route.moves[k - 1] in moving)
-    ]
-    for k in sorted(legs, key=lambda k: -path.segments.scale[k]):
-        i = path.route.moves[k]
-        middle = _middle(best.run.program.moves[i], path, k, best.task.pattern)
-        if i in best.task.keep or middle is None:
-            continue
-        task = best.task.renumbered(_later(i))
-        found = improved(_inserted(best.run.program, i, middle), task, effort)
-        if found is not None and found.cost < best.cost * (1.0 - _PAYS):
-            return found
-        return None
-    return None
-
-
-def _gone(index: int) -> Callable[[int], int | None]:
+def _gone(index: int) -> Renumbering:
     """New indices of moves when one has been left out."""
     return lambda k: None if k == index else k - (k > index)
 
 
-def _later(index: int) -> Callable[[int], int | None]:
-    """New indices of moves when one has been put before ``index``."""
+def _later(index: int) -> Renumbering:
+    """New indices of moves when one has come before ``index``."""
     return lambda k: k + (k >= index)
-
-
-def _without(program: Program, index: int) -> Program:
-    statements = list(program.statements)
-    del statements[_place(program, index)]
-    return replace(program, statements=tuple(statements))
-
-
-def _inserted(program: Program, index: int, move: Move) -> Program:
-    statements: list[Statement] = list(program.statements)
-    statements.insert(_place(program, index), move)
-    return replace(program, statements=tuple(statements))
-
-
-def _place(program: Program, index: int) -> int:
-    """Index among the statements of a move."""
-    places = [k for k, s in enumerate(program.statements) if isinstance(s, MoveJ | MoveL | MoveC)]
-    return places[index]
-
-
-def _middle(move: Move, path: Path, segment: int, pattern: Radius) -> Move | None:
-    """A move to the middle of a leg, like the one that drives it; None where that cannot be."""
-    ends = path.segments.ends
-    if len(path.route.prescribed):
-        return None
-    q = ends.q[segment].mean(axis=0)
-    p0, p1 = ends.position[segment]
-    radius = max(_SMALLEST, _ZONE * 0.5 * float(np.linalg.norm(p1 - p0)))
-    zone = pattern.resized(radius)
-    plain = replace(move, zone=zone, events=(), origin=None)
-    if ends.kind[segment] == JOINT_SEGMENT:
-        return replace(plain, target=JointTarget(tuple(map(float, q))))
-    if ends.kind[segment] != LINE_SEGMENT:
-        return None
-    R0, R1 = ends.rotation[segment]
-    half = R0 @ matrix_from_rotation_vector(0.5 * rotation_vector(R0.T @ R1))
-    x, y, z = (float(v) for v in 0.5 * (p0 + p1))
-    w, i, j, k = (float(v) for v in quaternion_from_matrix(half))
-    return replace(plain, target=PoseTarget(Pose((x, y, z), (w, i, j, k))))

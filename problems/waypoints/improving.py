@@ -12,7 +12,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 
@@ -52,8 +51,21 @@ Report = Callable[[Progress], bool | None]
 """Told of progress; True ends the work."""
 
 
-def improve(shop: Workshop, report: Report | None = None) -> tuple[Answer | None, ...]:
-    """The best proven values of every block; None where the input is not bettered.
+@dataclass(frozen=True)
+class Improved:
+    """What came of it.
+
+    Args:
+        best: proven values of every block; None where the input is not bettered.
+        ended: whether the user has ended the work.
+    """
+
+    best: tuple[Answer | None, ...]
+    ended: bool
+
+
+def improve(shop: Workshop, report: Report | None = None) -> Improved:
+    """The best proven values of every block.
 
     Args:
         shop: the problem.
@@ -68,9 +80,11 @@ def improve(shop: Workshop, report: Report | None = None) -> tuple[Answer | None
             made.vary()
         except KeyboardInterrupt:
             made.over = True
-        with suppress(KeyboardInterrupt):
+        try:
             made.prove()
-    return tuple(made.best)
+        except KeyboardInterrupt:
+            made.over = True
+    return Improved(tuple(made.best), made.over)
 
 
 class _Improvement:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from ...core.cell.cell import Cell
 from ...core.collision.certificate import SceneOf, certify, scenes_of
@@ -89,9 +89,14 @@ def optimize_waypoints(
     return made.solution(program, read_back)
 
 
-@dataclass(frozen=True)
+@dataclass
 class _Optimization:
-    """One optimisation; arguments as above."""
+    """One optimisation; arguments as above.
+
+    Attributes:
+        ended: whether the user has ended it.
+        given: s, and energy where it counts, of the program as it was given.
+    """
 
     controller: Controller
     cell: Cell
@@ -99,6 +104,8 @@ class _Optimization:
     effort: Effort
     freedom: Freedom
     report: Report | None
+    ended: bool = field(default=False, init=False)
+    given: tuple[float, float] = field(default=(1.0, 1.0), init=False)
 
     def solution(self, program: Program, read_back: ReadBack) -> Solution:
         """All of it."""
@@ -106,6 +113,7 @@ class _Optimization:
         given = self.controller.run(program, self.task.start)
         proof = self._proof(given, scenes)
         check_start(self.controller, given, scenes, proof, self.task.residual)
+        self.given = self._costs(given)
         notes = list(scene_notes(scenes, program))
         base = self._freed(program)
         found = self._improved(base, self.task, self.effort, scenes, notes)
@@ -158,8 +166,9 @@ class _Optimization:
         if not blocks:
             return None
         shop = Workshop(self.controller, scenes, task, effort, self._clearance, blocks)
-        answers = improve(shop, self.report)
-        chosen = [a if a is not None and a.objective < 1.0 - _GAIN else None for a in answers]
+        made = improve(shop, self.report)
+        self.ended = self.ended or made.ended
+        chosen = [a if a is not None and a.objective < 1.0 - _GAIN else None for a in made.best]
         return self._together(program, task, blocks, chosen, scenes, notes)
 
     def _together(
@@ -204,6 +213,8 @@ class _Optimization:
         """With via points left out that serve nothing, and new ones that pay."""
 
         def improved(program: Program, task: Task, effort: Effort) -> Counted | None:
+            if self.ended:
+                return None
             try:
                 found = self._improved(program, task, effort, scenes, [])
             except MotionError:
@@ -213,7 +224,8 @@ class _Optimization:
         def selected(counted: Counted) -> Selection:
             return select(counted.run.program, counted.run.path, counted.task, self.freedom)
 
-        return change_count(found, improved, selected, self.effort)
+        arm_size = self.controller.robot.arm_size
+        return change_count(found, improved, selected, self.effort, arm_size)
 
     def _as_it_is(self, program: Program, task: Task, scenes: SceneOf) -> Counted | None:
         """A program in which nothing is left to change, or to better; None if it is not proven."""
@@ -255,12 +267,16 @@ class _Optimization:
         )
 
     def _cost(self, run: Run) -> float:
-        """The objective, of programs that are compared with each other."""
+        """The objective: of time and energy the shares of what the given program takes."""
         weight = self.task.time_weight
-        if weight == 1.0:
-            return run.duration
-        energy = self.controller.energy(run.program, run.timing).value
-        return weight * run.duration + (1.0 - weight) * energy
+        time, energy = self._costs(run)
+        return weight * time / self.given[0] + (1.0 - weight) * energy / self.given[1]
+
+    def _costs(self, run: Run) -> tuple[float, float]:
+        """Time, and energy where it counts."""
+        if self.task.time_weight == 1.0:
+            return run.duration, 1.0
+        return run.duration, self.controller.energy(run.program, run.timing).value
 
 
 def _assembled(

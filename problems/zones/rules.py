@@ -71,7 +71,7 @@ class Rules:
 
     def _turn(self, segment: int) -> float:
         """rad that the tool turns on a segment, beside the turn of an arc."""
-        return float(np.linalg.norm(self._segments.turn_b[segment]))
+        return float(self._segments.turn[segment])
 
     def _way(self, segment: int, corner: int) -> float:
         """m from the waypoint to the point of a leg up to which its zone may reach."""

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from ...core.errors import MotionError
 from ...core.motion.controller import Controller, Run
 from ...core.motion.derivatives import Derivatives
-from ...core.motion.model import MotionModel, TurnLimit
+from ...core.motion.model import LineTurn, MotionModel
 from ...core.motion.pieces import Sampling
 from ...core.motion.trajectory import Trajectory
 from ...core.program.move import Move, MoveC, MoveJ, MoveL, Wait
@@ -70,7 +70,7 @@ class EmulationChecks(Subject):
     ) -> None:
         robot, run = self._drive(data, fly_by_zones(self.zones))
         seen, model = Observed.of(robot, run), self.vendor.motion_of(robot)
-        for away, turning in ((away_from_legs(seen), False), (turned_away(seen), True)):
+        for away, turning in ((away_from_legs(seen), False), (turned_away(seen, model), True)):
             outside = outside_zones(seen, model, turning)
             assert away[outside].max(initial=0.0) < ON_PATH
 
@@ -110,7 +110,7 @@ class EmulationChecks(Subject):
         assert (np.abs(seen.ddq) <= SLACK * robot.limits.acceleration).all()
         twist = seen.twist()
         # Of two parts that are limited, each for itself, the whole may take √2 times as much.
-        split = self.vendor.motion_of(robot).turn is TurnLimit.SPLIT
+        split = self.vendor.motion_of(robot).line_turn is LineTurn.SWIVEL
         turning = math.sqrt(2.0) if split else 1.0
         for k, move in enumerate(seen.moves):
             rows = seen.segment == k

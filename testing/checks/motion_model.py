@@ -5,8 +5,6 @@ from __future__ import annotations
 from ...core.motion.model import MotionModel
 from .subject import Subject
 
-STATUSES = {"published", "assumed", "fitted"}
-
 
 class MotionModelChecks(Subject):
     """The file of blend and stamping parameters is whole."""
@@ -19,15 +17,6 @@ class MotionModelChecks(Subject):
     def test_every_figure_has_a_provenance(self) -> None:
         for model in self._models():
             assert set(model.provenance) == model.figures
-
-    def test_a_provenance_can_be_followed(self) -> None:
-        entries = [entry for model in self._models() for entry in model.provenance.items()]
-        for key, entry in entries:
-            assert entry.status in STATUSES, key
-            if entry.status == "fitted":
-                assert "command" in entry.details, f"{key}: a fit states the command that made it"
-            else:
-                assert entry.source, f"{key}: {entry.status} by whom?"
 
     def _models(self) -> list[MotionModel]:
         """Of the controller, and of the robots of which more is known."""

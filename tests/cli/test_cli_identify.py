@@ -73,7 +73,9 @@ def test_a_model_is_fitted_and_written(flyby: Flyby, folder: Path, tmp_path: Pat
     robot = find_robot(ROBOT)
     made = load_motion_model(out, vendor.motion_of(robot), ROBOT)
     assert made.tcp.beta[0] == pytest.approx(-0.9, abs=0.02)
-    told = shlex.split(made.provenance["blend.tcp.beta"].details["command"])
+    origin = made.provenance["blend.tcp.beta"].fit
+    assert origin is not None and origin.name == folder.name
+    told = shlex.split(origin.command)
     assert told == ["flyby", "identify", folder.name, "--robot", ROBOT, *FIT]
     # The file is what --motion takes: the log is predicted with it.
     again = flyby(

@@ -96,16 +96,18 @@ def test_motors_count_in_joules(flyby: Flyby, module: Path, tmp_path: Path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("copper = [1]", "no such key: copper"),
-        ("recuperation = 0.5", "copper_w_per_nm2 is missing"),
-        ("copper_w_per_nm2 = 3", "list of finite numbers"),
-        ("copper_w_per_nm2 = [true]", "list of finite numbers"),
-        ("copper_w_per_nm2 = [1]\nrecuperation = 2", "recuperation is a number from 0 to 1, not 2"),
-        ("copper_w_per_nm2 = [nan]", "copper_w_per_nm2 is a list of finite numbers"),
-        ("copper_w_per_nm2 = [1]\nrecuperation = nan", "recuperation is a number from 0 to 1"),
-        ("copper_w_per_nm2 = [1]\nrecuperation = 'all'", "recuperation is a number"),
+        ("copper = [1]", "copper_w_per_nm2: is missing"),
+        ("recuperation = 0.5", "copper_w_per_nm2: is missing"),
+        ("copper_w_per_nm2 = 3", "must be a list of numbers, not 3"),
+        ("copper_w_per_nm2 = [true]", "must be a number, not True"),
+        ("copper_w_per_nm2 = [1]\nrecuperation = 2", "recuperation: must be from 0 to 1, not 2"),
+        ("copper_w_per_nm2 = [nan]", "copper_w_per_nm2: must be finite, not nan"),
+        ("copper_w_per_nm2 = [-1]", "copper_w_per_nm2: must be zero or more, not -1"),
+        ("copper_w_per_nm2 = [1]\nheat = 2", "heat: unknown key"),
+        ("copper_w_per_nm2 = [1]\nrecuperation = nan", "recuperation: must be finite"),
+        ("copper_w_per_nm2 = [1]\nrecuperation = 'all'", "recuperation: must be a number"),
         ("copper_w_per_nm2 = [1, 1, 1, 1, 1, 1, 1]", "has 6 axes"),
-        ("copper_w_per_nm2 = [", "cannot be read as TOML"),
+        ("copper_w_per_nm2 = [", "is not TOML"),
     ],
 )
 def test_motor_files_that_are_refused(

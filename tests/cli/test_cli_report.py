@@ -84,6 +84,7 @@ def test_the_figures_agree_with_the_motion(
 
 MODELS = {
     "as fitted": CONTROLLER.model,
+    "stops in position": replace(CONTROLLER.model, in_position=0.02, in_position_time=0.12),
     "nothing averaged": find_vendor("abb").motion(),
     "time comes up to speed": replace(CONTROLLER.model, start_ramp=0.15, settling=None),
 }

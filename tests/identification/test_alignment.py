@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -11,12 +13,12 @@ from flyby.core.errors import InputError
 from flyby.core.program.tool import FLANGE, Tool
 from flyby.core.spatial.pose import Pose
 from flyby.identification.alignment import align, moving_time
-from flyby.identification.belonging import check_limits
+from flyby.identification.belonging import check_coverage, check_limits, check_path
 from flyby.identification.logs.cleaning import clean_samples
-from flyby.identification.matching import match
+from flyby.identification.matching import COARSE, match
 from flyby.identification.residuals import figures, residuals
 
-from .faulty_logs import HOME, ROBOT, emulated, faulty, joints, program
+from .faulty_logs import HOME, PERIOD, ROBOT, emulated, faulty, joints, program
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +47,8 @@ def test_offset_and_path_of_a_faulty_log(run, seed, shift) -> None:
     assert seen.offset == pytest.approx(shift, abs=2e-4)
     assert abs(seen.drift) < 5e-4
     assert seen.joint_path_p99 < 5e-5
-    assert seen.path_max < 5e-4
+    # Two torn samples side by side may hide each other: they are off by up to a cycle's way.
+    assert seen.path_max < 0.25 * PERIOD
     assert seen.path_p99 < 5e-5
     # The moments themselves are stamped with 1 ms of jitter, but the stamps are true.
     assert seen.joint_time_p99 < 2e-4
@@ -109,15 +112,18 @@ def test_a_tool_that_stands_still_is_measured_at_the_flange(run) -> None:
 @settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 10**6), count=st.integers(2, 60))
 def test_samples_of_a_path_lie_on_it_in_order(seed, count) -> None:
-    """Any polyline, back and forth as well: its own points are matched to their own moments."""
+    """Any polyline, back and forth as well: its own points are matched to their own moments, but
+    for single ones that are nearer to a knot of another stretch."""
     rng = np.random.default_rng(seed)
     line = np.cumsum(rng.normal(size=(8, 3)), axis=0)
     t = np.sort(rng.uniform(0, 1, 8)) + np.arange(8)
     time = np.sort(np.concatenate([[t[0], t[-1]], rng.uniform(t[0], t[-1], count)]))
     q = np.stack([np.interp(time, t, column) for column in line.T], -1)
     found = match(t, line, q)
-    assert found.distance.max() < 1e-9
-    np.testing.assert_allclose(found.time, time, atol=1e-6)
+    assert found.distance.max() <= 0.5 * found.length / COARSE
+    right = np.abs(found.time - time) < 1e-6
+    assert right.mean() >= 0.8
+    assert found.distance[right].max() < 1e-9
     assert found.length == pytest.approx(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
 
 
@@ -154,6 +160,36 @@ def test_another_program_or_robot(run, other) -> None:
     assert "does not follow this program" in refused(run, made.t, made.q)
     assert "another robot, program, start or tool" in refused(run, made.t, made.q + 1.0)
     assert "wrong robot" in refused(run, made.t, np.hstack([made.q, made.q[:, :1]]))
+
+
+def test_a_log_that_leaves_out_a_part() -> None:
+    """There and back and on; the other log begins where the path comes back."""
+    course = np.concatenate([np.linspace(0, 1, 300), np.linspace(1, -1, 600)])
+    path = course[:, None] * np.ones(6)
+    motion = SimpleNamespace(t=np.arange(900.0), q=path)
+    whole, late = path[::3], np.vstack([path[:1], path[603::3]])
+    check_coverage(motion, whole, match(motion.t, path, whole), 0, len(whole) - 1)
+    with pytest.raises(InputError, match=r"from 0 to 6. % .* within one sample"):
+        check_coverage(motion, late, match(motion.t, path, late), 0, len(late) - 1)
+
+
+def test_columns_in_another_order_are_named(run) -> None:
+    made = faulty(run, 5)
+    for one, other in ((0, 1), (2, 4)):
+        q = made.q.copy()
+        q[:, [one, other]] = q[:, [other, one]]
+        names = f"{ROBOT.axis_names[one]} and {ROBOT.axis_names[other]}"
+        assert f"it fits if the columns of {names} are exchanged" in refused(run, made.t, q)
+
+
+def test_a_log_that_hardly_moves_near_the_path_is_none_in_degrees() -> None:
+    """Joints off the path, which passes through zero."""
+    t = np.linspace(0.0, 4.0, 1000)
+    path = np.linspace(-1.2, 1.2, 1000)[:, None] * np.ones(6)
+    q = path + np.array([0.5, -0.5, 0.5, -0.5, 0.5, -0.5])
+    with pytest.raises(InputError) as error:
+        check_path(ROBOT, SimpleNamespace(t=t, q=path), q, match(t, path, q), slice(0, 1000))
+    assert "degrees" not in str(error.value)
 
 
 def test_joints_beyond_the_limits(run) -> None:

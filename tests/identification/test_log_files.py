@@ -135,7 +135,10 @@ def test_a_record_may_name_the_catalogue_robot(tmp_path) -> None:
             r"log\.csv:3: column 'q3': 'x' is no number",
         ),
         (f"{HEADER}\n0,0\n0.1,0,0,0,0,0,0\n", r"log\.csv:2: the line has no column 'q2'"),
-        (f"{HEADER}\n0,0,0,0,0,0,0\n0.1,0,nan,0,0,0,0\n", r"log\.csv:3: column 'q2'.*not finite"),
+        (
+            f"{HEADER}\n0,0,0,0,0,0,0\n0.1,0,nan,0,0,0,0\n",
+            r"log\.csv:3: column 'q2'.*not finite; delete",
+        ),
         (f"{HEADER}\n0,0,0,0,0,0,0\n", "two samples"),
         (f"{HEADER}\n", "two samples"),
         (f"{HEADER}\n" + "1,0,0,0,0,0,0\n" * 9, "time stands still"),
@@ -169,6 +172,7 @@ def test_single_samples_whose_time_does_not_increase_are_left_out(tmp_path) -> N
     [
         ([*np.arange(0, 3, 0.1), *np.arange(0, 3, 0.1)], r"log\.csv:32: time runs back by 2\.9"),
         (np.repeat(np.arange(0, 3, 0.1), 2), "30 of 60 samples does not increase"),
+        (np.arange(3, 0, -0.1), r"log\.csv:3: time runs back"),
     ],
 )
 def test_time_that_is_none_is_refused(tmp_path, times, message) -> None:

@@ -80,6 +80,39 @@ def test_latin_text_with_decimal_commas(tmp_path, robot) -> None:
     check(path, robot)
 
 
+def spreadsheet(delimiter: str, quote: str = "") -> str:
+    """As spreadsheets save tables where numbers have decimal commas."""
+    rows = [HEADS["plain"], *([*map(str, row)] for row in np.column_stack([T, Q]))]
+    cells = ([quote + cell.replace(".", ",") + quote for cell in row] for row in rows)
+    return "".join(delimiter.join(row) + "\r\n" for row in cells)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        spreadsheet(";"),
+        spreadsheet("\t"),
+        spreadsheet(";", '"'),
+        spreadsheet(",", '"'),
+        "sep=;\r\n" + spreadsheet(";"),
+        spreadsheet(";").replace("\r\n", ";;\r\n"),
+    ],
+    ids=["semicolons", "tabs", "quotes", "commas in quotes", "separator named", "empty cells"],
+)
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "cp1252"])
+def test_tables_of_spreadsheets(tmp_path, robot, text, encoding) -> None:
+    path = tmp_path / "log.csv"
+    path.write_bytes(text.encode(encoding))
+    check(path, robot)
+
+
+def test_commas_that_divide_and_are_decimal_are_refused(tmp_path, robot) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text(spreadsheet(","), "utf-8")
+    with pytest.raises(InputError, match=r"log\.csv:2: .* the header 7: with decimal commas, div"):
+        read_samples(path, robot)
+
+
 def test_a_line_that_breaks_off_is_left_out_and_said(tmp_path, robot) -> None:
     text = text_of(HEADS["plain"], [*T, 0.04], [*Q, Q[-1]])
     path = tmp_path / "log.csv"

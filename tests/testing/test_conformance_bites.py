@@ -86,12 +86,6 @@ def no_provenance() -> MotionModel:
     return replace(SOUND.motion(), provenance={})
 
 
-def empty_source() -> MotionModel:
-    model = SOUND.motion()
-    entry = replace(next(iter(model.provenance.values())), status="assumed", source="")
-    return replace(model, provenance={**model.provenance, "period_s": entry})
-
-
 @pytest.mark.parametrize(
     ("change", "check"),
     [
@@ -102,7 +96,6 @@ def empty_source() -> MotionModel:
         ({"label": lambda robot, q: WrongLabel()}, "test_a_label_matches_itself"),
         ({"label": lambda robot, q: SameLabel()}, "test_an_exact_label_names_one_solution"),
         ({"motion": no_provenance}, "test_every_figure_has_a_provenance"),
-        ({"motion": empty_source}, "test_a_provenance_can_be_followed"),
         ({"reader": Reader(KeyError("token"))}, "test_the_reader_survives_any_text"),
         ({"reader": Reader(None)}, "test_the_reader_survives_any_text"),
         ({"reader": Reader(Program(()))}, "test_what_is_written_is_read_again"),

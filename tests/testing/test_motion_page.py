@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from flyby.core.motion.blend import Blend
-from flyby.core.motion.model import OrientationZone, Overlap, Pace, TurnLimit
+from flyby.core.motion.model import LineTurn, OrientationZone, Overlap, Pace
 from flyby.core.registry import find_vendor
 
 ROOT = Path(__file__).parents[2]
@@ -57,8 +57,8 @@ def test_the_vendors_table_states_their_rules() -> None:
         assert averages.startswith(widths if model.smoothing else "none")
         superposed = model.pace is Pace.SUPERPOSED
         assert superposed == ("superposed (fitted)" in cells("legs in a zone")[k])
-        assert cells("limits of turning")[k].startswith(
-            "of swivel and rotation" if model.turn is TurnLimit.SPLIT else "of the whole turn"
+        assert cells("turn along lines")[k].startswith(
+            "by swivel and rotation" if model.line_turn is LineTurn.SWIVEL else "about one axis"
         )
         assert model.jerk is None
 

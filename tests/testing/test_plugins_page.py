@@ -13,6 +13,7 @@ import pytest
 
 from flyby.core import hookspec, vendor
 from flyby.core.errors import InputError, SourceError
+from flyby.core.motion.provenance import read_provenance
 from flyby.core.registry import Registry
 from flyby.testing.conformance import VendorConformance
 
@@ -42,8 +43,8 @@ def test_every_block_is_of_a_language_that_is_tested() -> None:
 
 
 def test_the_page_is_a_plugin(page: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
-    (entry,) = blocks("toml")
-    ((group, points),) = tomllib.loads(entry)["project"]["entry-points"].items()
+    entry = next(data for data in map(tomllib.loads, blocks("toml")) if "project" in data)
+    ((group, points),) = entry["project"]["entry-points"].items()
     assert group == hookspec.GROUP
     ((name, module),) = points.items()
     monkeypatch.setitem(sys.modules, module, page)
@@ -52,6 +53,12 @@ def test_the_page_is_a_plugin(page: ModuleType, monkeypatch: pytest.MonkeyPatch)
     registry = Registry.discover([point])
     assert registry.broken == ()
     assert registry.robot_names == ("acme/swift-6",)
+
+
+def test_the_provenance_of_the_page_is_read() -> None:
+    data = next(data for data in map(tomllib.loads, blocks("toml")) if "fits" in data)
+    found = read_provenance(data["fits"], data["provenance"])
+    assert [origin.status for origin in found.values()] == ["published", "fitted"]
 
 
 def test_the_suite_of_the_page_is_the_suite(page: ModuleType) -> None:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from flyby.core.collision.strays import Strays, strays_of, stretches
 from flyby.core.errors import MotionError
 from flyby.core.motion.controller import Controller, Run
-from flyby.core.motion.elasticity import Carried, Elasticity
+from flyby.core.motion.elasticity import Carried, Coupled, Elasticity
 from flyby.core.motion.model import MotionModel
 from flyby.core.motion.torque import Borne, Torque
 from flyby.core.program.move import MoveJ, MoveL
@@ -31,7 +31,13 @@ GEARS = Elasticity(
     (Carried(3, (3e-5, 7e-5)), Carried(5, (1e-4, 5e-5, -2e-5))),
     slack=(9e-5, 1e-5),
 )
-LOADED = replace(GEARS, slack=(1.5e-4, 2e-4, 1e-4), weight=(0.0, 2.0, 1.0), spring=(0.0, 3e-3))
+LOADED = replace(
+    GEARS,
+    coupled=(Coupled(3, 1, 0.3), Coupled(1, 2, -0.2), Coupled(5, 1, -1.0)),
+    slack=(1.5e-4, 2e-4, 1e-4),
+    weight=(0.0, 2.0, 1.0),
+    spring=(0.0, 3e-3),
+)
 WEAK = Torque((0.03, 0.05, 0.09), (Borne(5, (0.03, 0.03)),), fade=(0.2, 0.1))
 SPEED = Speed(tcp=2.0, reorientation=6.0)
 DIRECTIONS = np.concatenate([np.eye(6), np.random.default_rng(3).normal(size=(20, 6))])
@@ -42,6 +48,9 @@ MODELS = {
     "one average": MotionModel(smoothing=(0.06,)),
     "cascade": MotionModel(smoothing=(0.04, 0.04, 0.03)),
     "short settling": MotionModel(smoothing=(0.05, 0.05), settling=0.02),
+    "short settling, in position": MotionModel(
+        smoothing=(0.05, 0.05), settling=0.08, in_position=0.05, in_position_time=0.12
+    ),
     "ramp": MotionModel(smoothing=(0.04, 0.04), ramp=0.04),
     "ramp, short settling": MotionModel(smoothing=(0.05, 0.04), ramp=0.05, settling=0.03),
     "elastic": MotionModel(smoothing=(0.04, 0.03), elasticity=GEARS),

@@ -87,6 +87,51 @@ def test_what_is_drawn_lies_between(values, share):
     assert drawn[0] >= 0.0
 
 
+@given(st.floats(-1e3, 1e3), st.floats(0.0, 1.0), st.floats(0.5, 100.0))
+def test_a_rounded_kink(power, share, width):
+    """Never below what is consumed, and never further above it than it says."""
+    motors, p = Motors(COPPER, share), np.array([power])
+    rounded, sharp = motors.rounded(p, width), motors.total(p[:, None])
+    slack = rounded.value - sharp
+    assert -1e-9 <= slack[0] <= 0.5 * (1.0 - share) * width + 1e-9
+    step = 1e-3 * width
+    up, down = (motors.rounded(p + s * step, width) for s in (1, -1))
+    assert rounded.slope == pytest.approx((up.value - down.value) / (2 * step), abs=1e-5)
+    assert rounded.bend == pytest.approx((up.slope - down.slope) / (2 * step), abs=1e-5 / width)
+    if share == 1.0:
+        assert rounded.value == pytest.approx(p) and rounded.bend[0] == 0.0
+
+
+@given(st.floats(-100.0, 100.0), st.floats(-3.0, 3.0), st.sampled_from([0.0, 0.4, 1.0]))
+def test_slopes_of_powers(torque, rate, share):
+    motors = Motors(COPPER[:3], share)
+    state = np.array([torque, 5.0, -2.0]), np.array([rate, 0.3, 1.0])
+    found = motors.slopes(*state)
+    power = motors.powers(*state).sum()
+    if abs(power) < 1e-2:  # beside the kink
+        return
+    step = 1e-6
+    for k in range(2):
+        for j in range(3):
+            sides = []
+            for sign in (1.0, -1.0):
+                moved = [part.copy() for part in state]
+                moved[k][j] += sign * step
+                sides.append(float(motors.total(motors.powers(*moved))))
+            quotient = (sides[0] - sides[1]) / (2 * step)
+            assert found[k][j] == pytest.approx(quotient, abs=1e-5)
+
+
+def test_nothing_comes_back_and_all_comes_back():
+    torque, rate = np.array([10.0, -20.0]), np.array([1.0, 2.0])
+    for share, drawn in ((0.0, 0.0), (0.25, -7.5), (1.0, -30.0)):
+        motors = Motors((), share)
+        assert float(motors.total(motors.powers(torque, rate))) == pytest.approx(drawn)
+    # One drive uses what another gives back before anything is burnt.
+    motors = Motors((), 0.0)
+    assert float(motors.total(motors.powers(torque, -rate))) == pytest.approx(30.0)
+
+
 @given(st.floats(0.1, 10.0))
 def test_squared_torque_scales(factor):
     torque = np.array([1.0, -2.0, 3.0])
@@ -139,3 +184,12 @@ def test_recuperating_everything_leaves_heat_and_height():
 def test_what_is_no_consumption(make):
     with pytest.raises(InputError):
         make()
+
+
+def test_figures_of_joints_that_there_are_not():
+    for made, name in (
+        (Motors((1.0, 1.0)), "Motors.copper"),
+        (SquaredTorque((1.0, 1.0)), "weight"),
+    ):
+        with pytest.raises(InputError, match=rf"{name} has figures of 2 joints; there are 1"):
+            made.squares(1)

@@ -15,7 +15,7 @@ from flyby.core.errors import InputError
 from flyby.core.motion.blend import Blend
 from flyby.core.motion.controller import Controller
 from flyby.core.motion.derivatives import Derivatives, ProgramGradient
-from flyby.core.motion.model import MotionModel, Pace, TurnLimit
+from flyby.core.motion.model import LineTurn, MotionModel, Pace
 from flyby.core.motion.torque import Borne, Torque
 from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
@@ -117,7 +117,7 @@ MODELS = {
     "superposed": replace(
         VENDOR.motion(),
         pace=Pace.SUPERPOSED,
-        turn=TurnLimit.SPLIT,
+        line_turn=LineTurn.SWIVEL,
         tcp_acceleration=2.0,
         reorientation_acceleration=0.9,
     ),

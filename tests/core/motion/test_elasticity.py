@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.motion.elasticity import RIGID, Carried, Elasticity
+from flyby.core.motion.elasticity import RIGID, Carried, Coupled, Elasticity
 from flyby.core.motion.model import MotionModel, load_motion_model
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
@@ -183,6 +183,53 @@ def test_a_lag_leads_by_its_time(lag, seed) -> None:
     made = replace(GEARS, lag=tuple(lag))
     more = made.leads(arm, q, dq, ddq) - GEARS.leads(arm, q, dq, ddq)
     np.testing.assert_allclose(more, np.array(lag) * dq, atol=1e-12)
+
+
+@settings(max_examples=20, deadline=None)
+@given(share=st.floats(-0.5, 0.5), seed=st.integers(0, 1000))
+def test_a_coupled_joint_leads_by_a_share_of_what_stiffness_asks_of_another(share, seed) -> None:
+    arm = find_robot("abb/irb6640-180-255")
+    q, dq, ddq = states(arm.size, seed)
+    stiff = replace(GEARS, own=(1e-4, 2e-4, 1e-4, 1e-5))
+    lead = stiff.leads(arm, q, dq, ddq)
+    coupled = (Coupled(3, 1, share), Coupled(2, 1, -share), Coupled(6, 4, 1.0))
+    expected = lead.copy()
+    expected[:, 2] += share * lead[:, 0]
+    expected[:, 1] -= share * lead[:, 0]
+    expected[:, 5] += lead[:, 3]
+    made = replace(stiff, coupled=coupled)
+    np.testing.assert_allclose(made.leads(arm, q, dq, ddq), expected, rtol=0, atol=1e-15)
+    # Slack is in the gear itself: it neither bends others nor softens what others bend.
+    slack = (1e-3, 0.0, 5e-4)
+    more = replace(made, slack=slack).leads(arm, q, dq, ddq) - expected
+    soft = replace(stiff, slack=slack).leads(arm, q, dq, ddq) - lead
+    np.testing.assert_allclose(more, soft, rtol=0, atol=1e-15)
+
+
+def test_coupled_joints_are_read_with_their_key(tmp_path) -> None:
+    file = tmp_path / "motion.toml"
+    file.write_text("[elasticity]\ncoupled = [{ joint = 3, by = 1, share = 0.25 }]\n")
+    model = load_motion_model(file)
+    assert model.elasticity == Elasticity(coupled=(Coupled(3, 1, 0.25),))
+    assert "elasticity.coupled" in model.figures
+
+
+@pytest.mark.parametrize(
+    "entry",
+    ["joint = 3, by = 3, share = 1.0", "joint = 0, by = 1, share = 1.0", "joint = 3, by = 1"]
+    + [f"joint = {j}, by = 1, share = {s}" for j, s in (("3.5", 1), (3, "nan"), (3, "'a'"))],
+)
+def test_coupled_joints_that_make_no_sense_are_refused(entry, tmp_path) -> None:
+    file = tmp_path / "motion.toml"
+    file.write_text(f"[elasticity]\ncoupled = [{{ {entry} }}]\n")
+    with pytest.raises(InputError, match=r"elasticity\.coupled"):
+        load_motion_model(file)
+
+
+def test_a_coupled_joint_that_an_arm_does_not_have_is_refused() -> None:
+    arm = find_robot("ur/ur10e")
+    with pytest.raises(InputError, match="no joint 7"):
+        Elasticity(coupled=(Coupled(7, 1, 0.1),)).leads(arm, *np.zeros((3, 1, 6)))
 
 
 def test_what_gears_hold_is_read_with_its_keys(tmp_path) -> None:

@@ -18,6 +18,9 @@ BROKEN = {
     "[time]\nsmoothing_s = [0.04, -1]": "time.smoothing_s",
     "[time]\nsmoothing_s = [0.04, 'a']": "time.smoothing_s",
     "[time]\nsettling_s = nan": "time.settling_s",
+    "[time]\nin_position_rad = nan": "time.in_position_rad",
+    "[time]\nin_position_rad = 'near'": "time.in_position_rad",
+    "[time]\nin_position_time_s = -0.1": "time.in_position_time_s",
     "[time]\njerk = nan": "time.jerk",
     "elasticity = 1": "elasticity",
     "[limit]\njoint_acceleration_scale = 2": "limit.joint_acceleration_scale",
@@ -41,7 +44,7 @@ BROKEN = {
     '[blend.tcp]\nalpha = ["a"]': "blend.tcp",
     "provenance = 1": "provenance",
     "[provenance]\nperiod_s = 1": "provenance.period_s",
-    "[provenance.period_s]\nsource = 'a book'": "provenance.period_s",
+    "[provenance.period_s]\nsource = 'a book'": "provenance.period_s: the status is missing",
 }
 
 
@@ -60,6 +63,9 @@ def test_a_broken_file_is_named_with_the_key(text, tmp_path) -> None:
         {"period": math.inf},
         {"smoothing": (math.nan,)},
         {"settling": -0.1},
+        {"in_position": -1e-3},
+        {"in_position": math.nan},
+        {"in_position_time": math.inf},
         {"jerk": math.nan},
         {"jerk": 0.0},
         {"tcp_acceleration": -1.0},
@@ -76,7 +82,8 @@ def test_a_sound_file_is_read(tmp_path) -> None:
     path = tmp_path / "motion.toml"
     path.write_text(
         "period_s = 0.002\n[time]\njerk = 'none'\n[zone]\nstops_at_pure_reorientation = true\n"
-        "[blend.tcp]\nalpha = [0, 1]\n[provenance.period_s]\nstatus = 'fitted'\nruns = 3\n",
+        "[blend.tcp]\nalpha = [0, 1]\n[provenance.period_s]\n"
+        "status = 'assumed'\nsource = 'a'\nruns = 3\n",
         "utf-8",
     )
     model = load_motion_model(path)
@@ -89,6 +96,7 @@ def test_what_is_done_in_time_is_read(tmp_path) -> None:
     path = tmp_path / "motion.toml"
     path.write_text(
         "[time]\nsmoothing_s = [0.04, 0, 0.02]\nsettling_s = 0.1\n"
+        "in_position_rad = 6e-3\nin_position_time_s = 0.15\n"
         "[elasticity]\nown_s2 = [1e-4, 0]\n"
         "carried = [{ joint = 3, lead_s2_per_m2 = [2e-4, 1e-4] }]\n"
         "[limit]\njoint_acceleration_scale = [1.5, 0.5]\n",
@@ -96,11 +104,14 @@ def test_what_is_done_in_time_is_read(tmp_path) -> None:
     )
     model = load_motion_model(path)
     assert model.smoothing_at(1.0) == Smoothing((0.04, 0.02)) and model.settling == 0.1
+    assert (model.in_position, model.in_position_time) == (6e-3, 0.15)
     assert model.elasticity == Elasticity((1e-4, 0.0), (Carried(3, (2e-4, 1e-4)),))
     assert [model.acceleration_scale(j) for j in range(3)] == [1.5, 0.5, 1.0]
     keys = {
         "limit.joint_acceleration_scale",
         "time.settling_s",
+        "time.in_position_rad",
+        "time.in_position_time_s",
         "elasticity.own_s2",
         "elasticity.carried",
     }
@@ -119,7 +130,8 @@ def test_a_file_lies_on_a_base(tmp_path) -> None:
     )
     layer.write_text(
         "robot = 'acme/one'\n[blend.tcp]\nbeta = [0.5]\n[elasticity]\nown_s2 = [2e-4]\n"
-        "[provenance]\n'blend.tcp.beta' = { status = 'fitted', source = 'b' }\n",
+        "[fits.b]\nsource = 'b'\ncommand = 'c'\n"
+        "[provenance]\n'blend.tcp.beta' = { status = 'fitted', by = 'b' }\n",
         "utf-8",
     )
     model = load_motion_model(layer, load_motion_model(base), "acme/one")

@@ -26,6 +26,7 @@ from flyby.core.spatial.rotation import matrix_from_rotation_vector, rotation_ve
 
 KIND = np.array([JOINT_SEGMENT, LINE_SEGMENT, ARC_SEGMENT, ARC_SEGMENT, LINE_SEGMENT, ARC_SEGMENT])
 FOLLOWS = np.array([False, False, True, False, False, True])
+SWIVELS = np.array([False, False, False, False, True, False])
 TCP, ARC = KIND != JOINT_SEGMENT, KIND == ARC_SEGMENT
 SEEDS = st.integers(0, 10_000)
 
@@ -46,6 +47,7 @@ def ends(seed) -> Ends:
         via,
         via_rotation,
         FOLLOWS,
+        SWIVELS,
         *rng.uniform(0.1, 2.0, (2, count)),
     )
 
@@ -65,7 +67,9 @@ def test_segments_meet_their_ends(seed) -> None:
     np.testing.assert_allclose(end, e.position[ARC, 1], atol=1e-7)
     turn = matrix_from_rotation_vector(s.turn_a) @ matrix_from_rotation_vector(s.turn_b)
     np.testing.assert_allclose((e.rotation[:, 0] @ turn)[TCP], e.rotation[TCP, 1], atol=1e-9)
-    assert np.all(s.turn_a[~FOLLOWS] == 0)
+    assert np.all(s.turn_a[~FOLLOWS & ~SWIVELS] == 0)
+    own = np.where(ARC[:, None], 0.0, s.turn_a)
+    np.testing.assert_allclose(s.turn**2, np.sum(own**2 + s.turn_b**2, axis=1))
 
 
 @settings(max_examples=40, deadline=None)
@@ -95,6 +99,7 @@ def test_a_tool_that_follows_the_arc_turns_at_a_constant_rate_relative_to_the_ta
         np.array([[np.sqrt(0.5), np.sqrt(0.5), 0.0]]),
         np.eye(3)[None],
         np.array([True]),
+        np.array([False]),
         *np.ones((2, 1)),
     )
     s = make_segments(e)
@@ -118,6 +123,7 @@ def test_the_auxiliary_point_tells_which_way_the_tool_turns_round_a_half_circle(
             np.array([[0.0, 1.0, 0.0]]),
             middle[None],
             np.array([True]),
+            np.array([False]),
             *np.ones((2, 1)),
         )
         s = make_segments(e)
@@ -164,7 +170,7 @@ def test_the_reverse_is_the_gradient(seed) -> None:
     weights["position"][~TCP] = 0.0
     weights["position"][TCP & ~ARC, 2] = 0.0
     weights["delta_q"][TCP] = 0.0
-    for name in ("turn_a", "turn_b", "delta_prescribed", "length"):
+    for name in ("turn_a", "turn_b", "turn", "delta_prescribed", "length"):
         weights[name][~TCP] = 0.0
     bar = SegmentsGradient(**{name: w.copy() for name, w in weights.items()})
     out = EndsGradient.zeros(e)

@@ -12,15 +12,13 @@ from hypothesis import strategies as st
 from flyby.core.errors import InputError
 from flyby.core.motion.binding import limit_shares
 from flyby.core.motion.blend import TANGENT_ARC
-from flyby.core.motion.model import MotionModel, Pace, TurnLimit, load_motion_model
+from flyby.core.motion.model import LineTurn, MotionModel, Pace, load_motion_model
 from flyby.core.motion.superposed import ZONE
-from flyby.core.motion.swivel import pull_turn_shares, turn_shares
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
-from flyby.core.spatial.rotation import matrix_from_rotation_vector, rotation_vector
 
 SUPERPOSED = MotionModel(pace=Pace.SUPERPOSED)
 ARCS = MotionModel(pace=Pace.SUPERPOSED, tcp=TANGENT_ARC)
@@ -109,7 +107,7 @@ def test_there_and_back_take_the_same_time(abb, seed, arcs) -> None:
     zones = [Radius(0.3 * rng.uniform(0.1, 1.0) * abb.leg) for _ in range(2)]
     speeds = [Speed(tcp=v, tcp_acceleration=A) for v in rng.uniform(0.2, 2.0, 3)]
     model = replace(
-        ARCS if arcs else SUPERPOSED, reorientation_acceleration=0.7, turn=TurnLimit.SPLIT
+        ARCS if arcs else SUPERPOSED, reorientation_acceleration=0.7, line_turn=LineTurn.SWIVEL
     )
 
     def there(order, zones, speeds):
@@ -122,7 +120,6 @@ def test_there_and_back_take_the_same_time(abb, seed, arcs) -> None:
 
     forth = there([0, 1, 2, 3], zones, speeds)
     back = there([3, 2, 1, 0], zones[::-1], speeds[::-1])
-    # κ is that of the tool's axes at a leg's start; x swivels by as much on the way back.
     assert forth.sum() == pytest.approx(back.sum(), rel=2e-3)
 
 
@@ -143,40 +140,17 @@ def test_joint_limits_hold_between_samples(abb, seed) -> None:
     assert (np.abs(ddq) / abb.robot.limits.acceleration).max() < 1.1
 
 
-@settings(max_examples=40, deadline=None)
-@given(seed=st.integers(0, 10_000))
-def test_a_turn_apart_is_a_swivel_and_a_rotation_about_x(seed) -> None:
-    rng = np.random.default_rng(seed)
-    turn = rng.normal(size=(1, 3))
-    turn *= rng.uniform(0.01, 3.0) / np.linalg.norm(turn)
-    R = matrix_from_rotation_vector(turn[0])
-    axis = np.cross([1.0, 0, 0], R[:, 0])
-    swivel = np.arctan2(np.linalg.norm(axis), R[0, 0])
-    shortest = matrix_from_rotation_vector(axis / np.linalg.norm(axis) * swivel)
-    rotation = np.linalg.norm(rotation_vector(shortest.T @ R))
-    share = turn_shares(turn)[0]
-    assert share * np.linalg.norm(turn) == pytest.approx(max(swivel, rotation), abs=1e-7)
-    assert share <= 1.0 + 1e-12
-    way, h = rng.normal(size=(1, 3)), 1e-6
-    slope = (turn_shares(turn + h * way) - turn_shares(turn - h * way))[0] / (2 * h)
-    if abs(swivel - rotation) > 1e-3:
-        made = float(pull_turn_shares(turn, np.ones(1))[0] @ way[0])
-        assert made == pytest.approx(slope, rel=1e-5, abs=1e-6)
-
-
-def test_turns_that_are_none_or_about_one_axis_count_whole() -> None:
-    turns = np.array([[0.0, 0, 0], [0.4, 0, 0], [0, 0.3, 0.2], [1e-12, 0, 0]])
-    np.testing.assert_allclose(turn_shares(turns), 1.0)
-    assert np.isfinite(pull_turn_shares(turns, np.ones(4))).all()
-
-
 def test_keys_of_the_file(tmp_path) -> None:
     path = tmp_path / "motion.toml"
-    path.write_text('[zone]\npace = "superposed"\n[limit]\nturn = "split"\ncentripetal = 1.5\n')
+    path.write_text(
+        '[zone]\npace = "superposed"\n[line]\nturn = "swivel"\n[limit]\ncentripetal = 1.5\n'
+    )
     model = load_motion_model(path)
-    assert (model.pace, model.turn, model.centripetal) == (Pace.SUPERPOSED, TurnLimit.SPLIT, 1.5)
-    assert {"zone.pace", "limit.turn", "limit.centripetal"} <= model.figures
-    assert not {"zone.pace", "limit.turn", "limit.centripetal"} & MotionModel().figures
+    assert (model.pace, model.centripetal) == (Pace.SUPERPOSED, 1.5)
+    assert model.line_turn is LineTurn.SWIVEL
+    stated = {"zone.pace", "line.turn", "limit.centripetal"}
+    assert stated <= model.figures
+    assert not stated & MotionModel().figures
     path.write_text("[limit]\ncentripetal = 0.0\n")
     with pytest.raises(InputError, match="centripetal"):
         load_motion_model(path)
@@ -188,7 +162,7 @@ def test_what_logs_showed_of_the_controllers(name) -> None:
     model = find_vendor(name.split("/")[0]).motion_of(find_robot(name))
     assert model.pace is Pace.SUPERPOSED
     if name.startswith("kuka"):
-        assert model.turn is TurnLimit.SPLIT
+        assert model.line_turn is LineTurn.SWIVEL
         assert model.reorientation_acceleration == pytest.approx(np.radians(100.0))
     else:
         assert model.centripetal == pytest.approx(1.2)

@@ -33,11 +33,20 @@ KEYS = {
 def test_a_key_reads_and_writes_one_figure(key: str) -> None:
     figure, value = KEYS[key]
     assert value_of(START, key) == value
-    assert figure_of(key, START) == figure
+    assert figure_of(key, START.figures) == figure
     made = with_value(START, key, 0.5)
     assert value_of(made, key) == 0.5
     others = [other for other in KEYS if other != key]
     assert [value_of(made, other) for other in others] == [KEYS[k][1] for k in others]
+
+
+def test_names_that_begin_alike_are_told_apart() -> None:
+    model = with_value(replace(START, in_position=6e-3), "time.in_position_time_s", 0.15)
+    assert (model.in_position, model.in_position_time) == (6e-3, 0.15)
+    for key in ("time.in_position_rad", "time.in_position_time_s"):
+        assert figure_of(key, model.figures) == key
+    assert value_of(with_value(model, "time.in_position_rad", 1e-3), "time.in_position_rad") == 1e-3
+    assert figure_of("time.in_position_rad", START.figures) is None
 
 
 @given(value=st.floats(0.01, 10), at=st.integers(0, 5))

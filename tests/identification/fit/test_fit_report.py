@@ -12,7 +12,12 @@ from flyby.identification.fit import ParameterSet, fit, motion_file, outcomes
 from flyby.identification.logs.synthetic import Faults
 from flyby.identification.report.corners import cut_corners
 from flyby.identification.report.page import page
-from flyby.identification.report.picture import draw_prediction, tcp_profiles
+from flyby.identification.report.picture import (
+    _nearest,
+    _round_factor,
+    draw_prediction,
+    tcp_profiles,
+)
 
 from .known_truth import START, TRUE_VALUES, logged, ready
 
@@ -74,6 +79,7 @@ def test_the_page_is_whole_in_one_file_and_escapes_what_it_is_told(fitted, each)
     assert "<script>" not in made and "&lt;script&gt;" in made
     assert len(re.findall(r'src="data:image/png;base64,', made)) == len(each)
     assert "http" not in made
+    assert len(made) < 250_000 * len(each)
     assert made == page(fitted, each, "robot = '<script>'")
 
 
@@ -111,3 +117,11 @@ def test_logs_with_holes_are_drawn() -> None:
     run = ready(logged(0.03, 0.3, faults=faults))
     other = fit(ParameterSet.named(START, [next(iter(TRUE_VALUES))]), [run])
     assert draw_prediction(outcomes(other)[0].after, "png").startswith(b"\x89PNG")
+
+
+def test_deviations_are_magnified_from_the_nearest_place_by_a_round_factor() -> None:
+    line = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]])
+    points = np.array([[0.3, 0.1, 0.0], [1.2, 0.6, 0.0], [-1.0, 0.0, 0.0], [0.9, -0.2, 0.1]])
+    feet = np.array([[0.3, 0.0, 0.0], [1.0, 0.6, 0.0], [0.0, 0.0, 0.0], [0.9, 0.0, 0.0]])
+    assert _nearest(points, line) == pytest.approx(feet)
+    assert [_round_factor(v) for v in (0.2, 1.9, 2.0, 49.0, 730.0)] == [1, 1, 2, 20, 500]

@@ -17,7 +17,7 @@ from flyby.identification.fit.emulation import Nuisance, RunEmulator, commanded
 from flyby.identification.fit.loss import curvature, influence, loss, square_root
 from flyby.identification.fit.parameters import ParameterSet
 from flyby.identification.fit.problem import Problem, Variables, first_nuisances
-from flyby.identification.fit.runs import prepare
+from flyby.identification.fit.runs import CLOCK, LAG, prepare
 from flyby.identification.fit.selection import candidates, compare_models, grouped
 from flyby.identification.fit.zone_sizes import alike, guess, resized
 from flyby.identification.logs import clean
@@ -36,6 +36,23 @@ def test_the_truth_leaves_nothing(run) -> None:
     window = sum(TRUTH.smoothing)
     rest = emulator.residuals(TRUTH, Nuisance(0.5 * window))
     assert np.abs(rest).max() < 0.05
+
+
+def test_a_log_that_is_late_is_not_beside_the_path(run) -> None:
+    """Late by ε, rows are within ε / CLOCK; as far beside the joints' path they count 1 / LAG."""
+    one = ready(run.run, TRUTH)
+    emulator, middle, late = RunEmulator(one), 0.5 * sum(TRUTH.smoothing), 1e-3
+    rows = emulator.residuals(TRUTH, Nuisance(middle + late))
+    moving = np.linalg.norm(rows, axis=1) > 0.1
+    assert moving.sum() > 20
+    assert np.linalg.norm(rows, axis=1).max() < 1.1 * late / CLOCK
+    e = np.linalg.solve(one.weight[:, : ROBOT.size], rows[:, : ROBOT.size, None])[moving, :, 0]
+    beside = np.roll(e, 1, axis=1)
+    beside -= e * (np.sum(e * beside, axis=1) / np.sum(e * e, axis=1))[:, None]
+    beside *= (np.linalg.norm(e, axis=1) / np.linalg.norm(beside, axis=1))[:, None]
+    counted = np.einsum("kmn,kn->km", one.weight[moving, : ROBOT.size], beside)
+    share = np.linalg.norm(counted, axis=1) / np.linalg.norm(rows[moving], axis=1)
+    assert np.median(share) > 0.6 * CLOCK / LAG
 
 
 def test_the_fit_commands_what_the_controller_does() -> None:

@@ -76,8 +76,8 @@ def test_every_fitted_figure_says_where_it_comes_from() -> None:
         arm = find_robot(robot)
         model = find_vendor(robot.split("/")[0]).motion_of(arm)
         for figure, origin in model.provenance.items():
-            if origin.status == "fitted":
-                assert origin.source, figure
+            if origin.fit is not None:
+                assert origin.fit.source and origin.fit.command, figure
         named = ParameterSet.named(model, fitted_before(model))
         for one in named.parameters:
             assert one.lower <= one.start <= one.upper

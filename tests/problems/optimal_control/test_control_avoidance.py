@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -12,7 +13,8 @@ from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry
 from flyby.core.collision.scene import CollisionScene
 from flyby.core.errors import InputError, MotionError
-from flyby.core.robot.inertia import Inertia
+from flyby.core.motion.consumption import SquaredTorque
+from flyby.core.robot.inertia import Inertia, carried_inertia
 from flyby.core.robot.joint import Joint, JointKind
 from flyby.core.robot.model import Robot
 from flyby.core.robot.shape import Box, LinkShape, Sphere
@@ -22,14 +24,15 @@ from flyby.problems.optimal_control import (
     Effort,
     Objective,
     SchemeKind,
-    SquaredTorque,
     Step,
     Surroundings,
     Task,
+    TorqueLine,
     Waypoint,
     optimize,
 )
 from flyby.problems.optimal_control.proof import prove
+from flyby.problems.scenes.stud_welding import stud_welding
 from flyby.problems.scenes.two_joints import two_joints
 
 from .control_tasks import ARM, END, START, TORQUE, arm_task, cart, pendulum
@@ -108,6 +111,32 @@ def test_two_joints_round_a_box() -> None:
     assert tip[:, 2].max() > 0.75 and np.abs(tip[:, 1]).max() < 1e-9
 
 
+def test_least_energy_does_not_keep_to_the_way_of_the_first_guess() -> None:
+    """From a stop at every corner the search for energy alone ends at 8.3e6 N² m² s."""
+    scene = stud_welding()
+    program = scene.programs[13]
+    targets = [program.start, *(move.target for move in program.moves)]
+    q = [np.array(target.joints) for target in targets]  # type: ignore[union-attr]
+    around = Surroundings(CollisionScene(scene.cell, scene.tool), scene.cell.clearance)
+    load = carried_inertia(scene.tool)
+    task = Task(
+        scene.cell.robot,
+        q[0],
+        q[-1],
+        joints=scene.free,
+        tcp=scene.tool.tcp,
+        loads=(load,),
+        objective=Objective(0.0),
+    )
+    effort, vias = Effort(intervals=16, trials=0), [np.array(q[1:-1])]
+    found = optimize(task, around, effort, vias=vias)
+    assert found.converged and found.proven
+    assert found.energy() < 4.7e6
+    ended = optimize(task, around, effort, vias=vias, report=lambda step: step.accepted)
+    assert ended.proven and not ended.converged and ended.task is task
+    assert found.energy() < ended.energy() and ended.time < ended.first.duration
+
+
 def test_two_joints_round_a_box_with_weak_drives() -> None:
     scene = two_joints()
     program = scene.programs[0]
@@ -181,19 +210,28 @@ def test_missing_inertias() -> None:
     [
         ({"start": [0.0, 1.0]}, r"start has shape \(2,\)"),
         ({"end": [np.nan]}, "joint X is not finite"),
-        ({"joints": (0, 0)}, "joints are different indices"),
+        ({"joints": (0, 0)}, "Task.joints are different indices"),
         ({"loads": (None, None)}, "2 loads were given for 1 legs"),
         ({"start_velocity": [200.0]}, "joint X is to move at 200, faster than its limit of 100"),
         ({"limits": ControlLimits(acceleration=[np.inf])}, "joint X has neither"),
         ({"limits": ControlLimits(velocity=[-1.0])}, "joint X: the velocity limit must be"),
         ({"waypoints": (Waypoint([99.0]),)}, "waypoint 1 cannot be reached: joint X"),
-        ({"objective": Objective(0.5, SquaredTorque((1.0, 2.0)))}, "figures of 2 joints; 1 joints"),
+        ({"objective": Objective(0.5, SquaredTorque((1.0, 2.0)))}, "of 2 joints; there are 1"),
         ({"limits": ControlLimits(torque=[np.nan])}, "joint X: the torque limit must be"),
-        ({"limits": ControlLimits(torque="abc")}, "torque limits must be 1 numbers, one an axis"),
-        ({"limits": ControlLimits(tcp_speed="fast")}, "speed limit must be positive, not 'fast'"),  # type: ignore[arg-type]
-        ({"waypoints": ([1.0],)}, r"waypoint 1 is a Waypoint, not \[1.0\]"),
-        ({"start": ["here"]}, "start must be 1 numbers, one an axis, not"),
-        ({"limits": ControlLimits(tcp_speed=np.nan)}, "TCP's speed limit must be positive"),
+        (
+            {"limits": ControlLimits(torque="abc")},
+            r"need one number an axis \(X\), not 'abc'",
+        ),
+        ({"waypoints": ([1.0],)}, r"Task.waypoints, number 1 is of type Waypoint, not \[1.0\]"),
+        ({"waypoints": Waypoint([1.0])}, "Task.waypoints is a tuple of Waypoint values, not"),
+        ({"loads": Inertia(1.0)}, "Task.loads is a tuple of Inertia or None values, not"),
+        ({"loads": (30.0,)}, "Task.loads, number 1 is of type Inertia or None, not 30.0"),
+        ({"tcp": None}, "Task.tcp is of type Pose, not None"),
+        ({"robot": "abb/irb6640"}, "Task.robot is of type Robot, not 'abb/irb6640'"),
+        ({"objective": 0.5}, "Task.objective is of type Objective, not 0.5"),
+        ({"limits": {"torque": [1.0]}}, "Task.limits is of type ControlLimits, not {"),
+        ({"joints": 0}, "Task.joints are different indices below 1, one at least, not 0"),
+        ({"start": ["here"]}, r"start needs one number an axis \(X\), not"),
     ],
 )
 def test_bad_tasks(change: dict[str, object], message: str) -> None:
@@ -209,14 +247,38 @@ def test_a_time_that_is_too_short_is_refused() -> None:
         optimize(task, effort=Effort(intervals=12))
 
 
-def test_bad_settings() -> None:
-    for wrong in (np.nan, -0.001):
-        with pytest.raises(InputError, match="clearance is zero or more metres"):
-            Surroundings(gantry().scene, wrong)
-    with pytest.raises(InputError, match=r"intervals is a whole number, one or more, not 2.5"):
-        Effort(intervals=2.5)  # type: ignore[arg-type]
-    with pytest.raises(InputError, match=r"trials is from 0 to 16, not 17"):
-        Effort(trials=17)
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Surroundings(gantry().scene, np.nan), "clearance is zero or more metres"),
+        (lambda: Surroundings(gantry().scene, -0.001), "clearance is zero or more metres"),
+        (lambda: Effort(intervals=2.5), "intervals is a whole number, 1 or more, not 2.5"),
+        (lambda: Effort(trials=17), "trials is a whole number, from 0 to 16, not 17"),
+        (lambda: Effort(group=0), "group is a whole number, 1 or more, not 0"),
+        (lambda: Effort(scheme="rk4"), "scheme is of type SchemeKind, not 'rk4'"),
+        (lambda: Effort(gain="small"), "gain is a finite number above zero, not 'small'"),
+        (lambda: Objective("fast"), "time_weight is a number from 0 to 1, not 'fast'"),
+        (lambda: Objective(np.nan), "time_weight is a number from 0 to 1, not nan"),
+        (lambda: Objective(0.5, None), "consumption is of type Consumption, not None"),
+        (lambda: Objective(longest=-1.0), "longest is a finite number above zero, not -1.0"),
+        (lambda: Objective(smoothing=0.0), "smoothing is a finite number above zero, not 0.0"),
+        (lambda: ControlLimits(tcp_speed="fast"), "tcp_speed is a finite number above zero"),
+        (lambda: ControlLimits(tcp_speed=np.nan), "tcp_speed is a finite number above zero"),
+        (lambda: ControlLimits(curves=TorqueLine("X", 1.0, 1.0)), "curves is a tuple of Torque"),
+        (lambda: TorqueLine("X", "a lot", 1.0), "torque line of X: most is a finite number"),
+        (lambda: optimize(arm_task(), effort={"intervals": 8}), "effort is of type Effort or"),
+        (lambda: optimize(arm_task(), "cell.toml"), "around is of type Surroundings or None"),
+    ],
+)
+def test_bad_settings(make: Callable[[], object], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        make()
+
+
+def test_corners_out_of_range() -> None:
+    around = gantry()
+    with pytest.raises(InputError, match=r"corner 1 of the path .* joint Y .* is outside"):
+        optimize(across(around), around, vias=[[[0.0, 99.0]]])
 
 
 def test_a_joint_that_may_not_move_cannot_be_asked_to() -> None:
@@ -228,3 +290,12 @@ def test_a_jerk_limit_needs_a_scheme_with_jerk() -> None:
     task = Task(cart(), [0.0], [1.0], limits=ControlLimits(jerk=[5.0]))
     with pytest.raises(InputError, match="have no jerk to limit"):
         optimize(task, effort=Effort(scheme=SchemeKind.CONSTANT))
+
+
+def test_joints_that_stand_still_have_to_be_held() -> None:
+    ends = np.array([START, START])
+    ends[1, [1, 2]] += 0.7
+    weak = list(TORQUE)
+    weak[4] = 1.0
+    with pytest.raises(InputError, match=r"the start: joint J5 needs .* against gravity"):
+        optimize(Task(ARM, *ends, joints=(1, 2), limits=ControlLimits(torque=weak)))

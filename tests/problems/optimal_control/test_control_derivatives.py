@@ -10,13 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from flyby.core.motion.consumption import Motors
 from flyby.core.robot.inertia import Inertia
 from flyby.core.spatial.pose import Pose
 from flyby.core.sqp import NLP
 from flyby.problems.optimal_control import (
     ControlLimits,
     Motion,
-    Motors,
     Objective,
     SchemeKind,
     Task,
@@ -43,7 +43,7 @@ def everything(scheme: SchemeKind) -> Task:
     limits = ControlLimits(
         torque=TORQUE, tcp_speed=2.0, jerk=jerk, curves=(TorqueLine("J2", 5000.0, 500.0),)
     )
-    objective = Objective(0.5, Motors((1e-4,) * 6, 0.3, 50.0))
+    objective = Objective(0.5, Motors((1e-4,) * 6, 0.3), smoothing=0.2)
     return arm_task(
         waypoints=(middle(),),
         loads=(None, LOAD),

@@ -165,6 +165,22 @@ def test_a_sequence_ends_where_one_program_does():
     assert sequence.duration == pytest.approx(convex.duration, rel=5e-3)
 
 
+def test_all_ways_agree_where_all_apply():
+    """Time alone by all three; energy on a DC link by the two that know it."""
+    path = scene()[3]
+    most = 1.3 * np.abs(path.rigid.c).max(axis=(0, 1)) + 10.0
+    plain = Task(path, limited(*most))
+    times = [way(plain).duration for way in (tune_by_sweeps, tune_by_cones, tune_in_sequence)]
+    assert times == pytest.approx([times[0]] * 3, rel=1e-3)
+    for share in (0.0, 0.6, 1.0):
+        motors = Objective(0.5, Motors((1e-5,) * 6, share))
+        task = Task(path, limited(*most), objective=motors)
+        one, many = tune_by_cones(task), tune_in_sequence(task)
+        assert (one.way, many.way) == (Way.CONVEX, Way.SEQUENTIAL)
+        assert many.duration == pytest.approx(one.duration, rel=5e-3)
+        assert many.energy == pytest.approx(one.energy, rel=5e-3)
+
+
 def test_toppra_agrees():
     """Another implementation of the same problem, on the same samples."""
     constraint = pytest.importorskip("toppra.constraint")
@@ -394,3 +410,59 @@ def test_rigid_torques_are_the_arms():
     torque = controller.energy(program, found.timing(timing)).torque
     assert found.torque == pytest.approx(torque, abs=1e-6 * np.abs(torque).max())
     assert isinstance(path.rigid, Rigid)
+
+
+# ------------------------------------------------------------------ reports
+
+
+def test_active_limits_are_named():
+    """A cruise between two ramps, by the limit that each is driven at."""
+    swift = tune(Task(slider(4.0, 60, velocity=1.0, acceleration=2.0)))
+    assert set(swift.active) == {"J1 acceleration", "speed"}
+    assert swift.active[0] == swift.active[-1] == "J1 acceleration"
+    assert swift.active[30] == "speed"
+    pushed = tune(Task(slider(4.0, 60, velocity=1.0), limited(2.0)))
+    assert set(pushed.active) == {"J1 torque", "speed"}
+    smooth = tune(Task(slider(4.0, 60), jerk=np.array([5.0])))
+    assert set(smooth.active) == {"J1 jerk"}
+
+
+def test_every_limit_of_an_arm_is_reported():
+    path = scene()[3]
+    most = 1.2 * np.abs(path.rigid.c).max(axis=(0, 1)) + 50.0
+    found = tune(Task(path, limited(*most)))
+    used = found.usage
+    assert {"speed", "J2 torque", "J2 acceleration", "TCP acceleration"} <= set(used)
+    assert max(shares.max() for shares in used.values()) == pytest.approx(1.0 + found.excess)
+    assert used["J2 torque"] == pytest.approx(
+        np.abs(found.torque[..., 1]).max(axis=1) / most[1], rel=1e-12
+    )
+    # In a fastest motion something is used up nearly everywhere.
+    busiest = np.max(list(used.values()), axis=0)
+    assert np.mean(busiest > 0.999) > 0.9
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Task(None), "Task.path is of type FixedPath, not None"),
+        (lambda: Task(slider(1.0, 9), Drive()), "Task.drives is a tuple of Drive values"),
+        (lambda: Task(slider(1.0, 9), (Drive(), Drive())), r"one an axis \(J1\), not 2"),
+        (lambda: Task(slider(1.0, 9), jerk="x"), r"Task.jerk: one number above zero an axis"),
+        (lambda: Task(slider(1.0, 9), jerk=[math.nan]), r"Task.jerk: one number above zero"),
+        (lambda: Task(slider(1.0, 9), objective=0.5), "Task.objective is of type Objective"),
+        (
+            lambda: Task(slider(1.0, 9), objective=Objective(0.5, Motors((1.0, 1.0)))),
+            "Motors.copper has figures of 2 joints; there are 1",
+        ),
+        (lambda: Objective("x"), "Objective.time_weight is a number from 0 to 1, not 'x'"),
+        (lambda: Objective(0.5, None), "Objective.consumption is of type Consumption"),
+        (lambda: Objective(0.5, duration=math.nan), "Objective.duration is a finite number"),
+        (lambda: Drive(5.0), "Drive.torque is of type TorqueCurve, not 5.0"),
+        (lambda: Drive(coulomb=-1.0), "Drive.coulomb is a finite number, zero or more"),
+        (lambda: TorqueCurve(0.0, 5.0), "TorqueCurve.speed is a tuple"),
+    ],
+)
+def test_what_is_refused_by_name(make, message):
+    with pytest.raises(InputError, match=message):
+        make()

@@ -1,0 +1,74 @@
+"""Logs read joint by joint while the controller goes on."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flyby.core.motion.controller import Controller
+from flyby.core.motion.model import MotionModel
+from flyby.core.registry import find_vendor
+from flyby.identification.alignment import align
+from flyby.identification.logs.cleaning import clean_samples
+from flyby.identification.prediction import predict
+from flyby.identification.tearing import mended, tear
+
+from .faulty_logs import ROBOT, emulated, joints, program
+
+READ, NOISE = 0.02, 1e-5
+
+
+@pytest.fixture(scope="module")
+def run():
+    return emulated(program())
+
+
+def read(run, seed: int, delay: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """t, q every 20 ms, late, of joints that are read later from some one on; and as they were."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, run.trajectory.duration, READ)
+    t = t + rng.uniform(-0.2, 0.2, len(t)) * READ
+    whole, later = joints(run, t), joints(run, t + delay)
+    torn = np.arange(6) >= rng.integers(0, 6, len(t))[:, None]
+    q = np.where(torn, later, whole) + NOISE * rng.normal(size=whole.shape)
+    return t + rng.uniform(0.0, 0.005, len(t)), q, whole
+
+
+@settings(max_examples=8, deadline=None)
+@given(seed=st.integers(0, 10**6), delay=st.floats(0.003, 0.012), ahead=st.booleans())
+def test_torn_samples_are_put_together(run, seed, delay, ahead) -> None:
+    delay = delay if ahead else -delay
+    t, q, whole = read(run, seed, delay)
+    log = clean_samples(t, q)
+    found = align(ROBOT, run.trajectory, log)
+    torn = tear(run.trajectory, found)
+    assert torn is not None
+    assert torn.delay == pytest.approx(delay, abs=2e-4)
+    healed = mended(log, run.trajectory, found, torn)
+    again = align(ROBOT, run.trajectory, healed)
+    # From five times the tear's size to the noise; where joints turn sharply, speeds change.
+    off = np.linalg.norm(again.off, axis=1)
+    assert np.median(off) < 4 * NOISE
+    assert off.mean() < 0.25 * np.linalg.norm(found.off, axis=1).mean()
+    assert np.median(np.abs(healed.q - whole)[again.rows]) < 3 * NOISE
+    assert "mix joints of two cycles" in healed.notes[-1]
+
+
+@settings(max_examples=8, deadline=None)
+@given(seed=st.integers(0, 10**6), bend=st.floats(0.0, 5e-4))
+def test_whole_samples_stay(run, seed, bend) -> None:
+    """Noise, jitter, and a path that is emulated a little wrong are no tears."""
+    t, q, _ = read(run, seed, 0.0)
+    q = q + bend * np.sin(3.0 * t)[:, None] * np.array([1.0, -0.5, 0.7, 0.2, -1.0, 0.4])
+    found = align(ROBOT, run.trajectory, clean_samples(t, q))
+    assert tear(run.trajectory, found) is None
+
+
+def test_predictions_mend_what_they_compare(run) -> None:
+    controller = Controller(find_vendor("ur"), ROBOT, MotionModel())
+    t, q, _ = read(run, 1, 0.004)
+    found = predict(controller, "torn", program(), clean_samples(t, q))
+    assert found.figures.path_p99 < 5e-5
+    assert any("two cycles" in note for note in found.log.notes)

@@ -1,0 +1,161 @@
+"""The number of via points: corners cut in two, and searches that leave all else alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from flyby.core.collision.certificate import certify, scenes_of
+from flyby.core.motion.controller import Controller
+from flyby.core.motion.path import Path
+from flyby.core.program.move import Move, MoveJ, MoveL
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.target import JointTarget, PoseTarget, Target
+from flyby.core.program.tool import WORLD
+from flyby.core.program.zone import FINE, Radius
+from flyby.core.robot.chain_kernels import poses
+from flyby.core.robot.work_chain import work_chain
+from flyby.core.spatial.pose import Pose
+from flyby.core.spatial.rotation import quaternion_from_matrix
+from flyby.problems.scenes.scene import PARABOLAS, joint_target, with_zone
+from flyby.problems.scenes.two_joints import two_joints
+from flyby.problems.waypoints import (
+    Box,
+    Effort,
+    Fixed,
+    Progress,
+    Task,
+    ViaCount,
+    optimize_waypoints,
+)
+from flyby.problems.waypoints.counting import Counted, change_count
+from flyby.problems.waypoints.doubling import doubled
+from flyby.problems.waypoints.options import Freedom
+from flyby.problems.waypoints.selection import Selection, select
+
+FloatArray = NDArray[np.float64]
+
+SCENE = two_joints()
+THREE = with_zone(SCENE.programs[0], Radius(0.1))
+TWO = replace(THREE, statements=tuple(THREE.statements[k] for k in (0, 2, 3)))
+ARM = 6
+QUICK = Effort(starts=1, generations=0, iterations=4, workers=1)
+
+
+def controller() -> Controller:
+    return SCENE.controller(PARABOLAS)
+
+
+def tool_centres(path: Path) -> FloatArray:
+    """(S, 3)."""
+    chain = work_chain(SCENE.cell.robot, SCENE.tool, WORLD)
+    return poses(chain, path.q)[1]
+
+
+def bent(program: Program) -> Program:
+    """With a wrist that is nowhere singular."""
+
+    def turned(target: Target | None) -> JointTarget:
+        assert isinstance(target, JointTarget)
+        return replace(target, joints=(*target.joints[:4], 0.5, target.joints[5]))
+
+    moves = tuple(replace(move, target=turned(move.target)) for move in program.moves)
+    return replace(program.with_moves(moves), start=turned(program.start))
+
+
+def by_lines(program: Program) -> Program:
+    """The same corners, driven to by the TCP on lines."""
+    chain = work_chain(SCENE.cell.robot, SCENE.tool, WORLD)
+    moves: list[Move] = []
+    for move in program.moves:
+        assert isinstance(move.target, JointTarget)
+        R, p = poses(chain, np.array([move.target.joints]))
+        x, y, z = map(float, p[0])
+        w, i, j, k = map(float, quaternion_from_matrix(R[0]))
+        target = PoseTarget(Pose((x, y, z), (w, i, j, k)))
+        moves.append(MoveL(target, Speed(tcp=1.0), move.zone, SCENE.tool))
+    return program.with_moves(tuple(moves))
+
+
+@pytest.mark.parametrize("make", [lambda p: p, by_lines], ids=["joints", "lines"])
+@given(index=st.integers(0, 2), radius=st.floats(0.01, 0.12))
+@settings(max_examples=15, deadline=None)
+def test_a_corner_cut_in_two_is_hardly_another_path(
+    make: Callable[[Program], Program], index: int, radius: float
+) -> None:
+    program = make(bent(with_zone(THREE, Radius(radius))))
+    before = controller().plan(program)
+    found = doubled(program, before, index, ARM)
+    assert found is not None and len(found.moves) == len(program.moves) + 1
+    after = controller().plan(found)
+    assert after.q[[0, -1]] == pytest.approx(before.q[[0, -1]])
+    assert all(isinstance(move, type(program.moves[0])) for move in found.moves)
+    ways = np.linalg.norm(tool_centres(after)[:, None] - tool_centres(before)[None], axis=-1)
+    assert ways.min(axis=1).max() < 0.75 * radius
+    assert not any("zone" in note.message for note in after.notes)
+
+
+def test_a_corner_between_kinds_keeps_its_point() -> None:
+    """The move to it cannot end on the next one's leg."""
+    joints = bent(THREE)
+    mixed = joints.with_moves((*joints.moves[:2], *by_lines(joints).moves[2:]))
+    found = doubled(mixed, controller().plan(mixed), 1, ARM)
+    assert found is not None
+    assert [type(move) for move in found.moves] == [MoveJ, MoveJ, MoveJ, MoveL, MoveL]
+    assert found.moves[2].target == mixed.moves[1].target
+
+
+def test_stops_have_no_corner_to_cut() -> None:
+    sharp = with_zone(THREE, Radius(0.0))
+    assert doubled(sharp, controller().plan(sharp), 1, ARM) is None
+
+
+def test_one_more_pays_and_the_user_may_end_it() -> None:
+    """Five searches of two via points, and the one after those, are 18 reports."""
+    seen: list[Progress] = []
+
+    def report(state: Progress) -> bool:
+        seen.append(state)
+        return len(seen) > 18
+
+    plane = Task(axes=SCENE.free)
+    kept = optimize_waypoints(controller(), TWO, SCENE.cell, plane, QUICK)
+    task = replace(plane, vias=ViaCount.CHANGE)
+    more = optimize_waypoints(controller(), TWO, SCENE.cell, task, QUICK, report=report)
+    assert more.proven and len(more.program.moves) > len(kept.program.moves)
+    assert more.after.time < 0.998 * kept.after.time
+    assert len(seen) < 25
+
+
+def test_other_stretches_and_limited_points_are_left_alone() -> None:
+    """There and back: the first way's second point is limited, and only the others are cut."""
+    moves = list(THREE.moves)
+    again = replace(moves[1], target=joint_target((0.0, -6.0, 44.0, 0.0, 0.0, 0.0)))
+    home = replace(moves[1], target=THREE.start, zone=FINE)
+    program = replace(THREE, statements=(*moves, again, home))
+    run = controller().run(program)
+    proof = certify(controller(), run, scenes_of(SCENE.cell), 0.005)
+    task = Task(axes=SCENE.free, limits={1: Box(joints=(0.1,) * ARM)})
+    asked: list[tuple[Program, Task]] = []
+
+    def improved(changed: Program, own: Task, effort: Effort) -> None:
+        asked.append((changed, own))
+
+    def selected(counted: Counted) -> Selection:
+        return select(program, run.path, counted.task, Freedom.WAYPOINTS_AND_ZONES)
+
+    best = Counted(run, proof, 1.0, task)
+    assert change_count(best, improved, selected, QUICK, ARM) is best
+    fewer = [own for changed, own in asked if len(changed.moves) < len(program.moves)]
+    more = [own for changed, own in asked if len(changed.moves) > len(program.moves)]
+    assert len(fewer) == 4 and len(more) == 3
+    # One more before the limited point, one after it, and one on the way back.
+    assert [own.limits for own in more] == [{2: Fixed()}, {1: Fixed()}, {1: Fixed()}]
+    assert [set(own.keep) for own in more] == [{5, 6}, {5, 6}, {0, 1, 2, 3}]
