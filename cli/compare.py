@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from ..core.vendor import Vendor
     from ..identification.logs import LoggedRun
     from ..identification.prediction import Prediction
+    from ..identification.residuals import Figures
 
 RECORD = ".json"
 COLUMNS = (("", "left"), ("greatest", "right"), ("99 %", "right"), ("RMS", "right"))
@@ -145,10 +146,27 @@ def _tell(compared: Prediction, run: LoggedRun, *, as_json: bool) -> None:
     if as_json:
         print_json(_json(compared, run))
         return
+    f, log, aligned = compared.figures, compared.log, compared.alignment
+    rows = _rows(f)
+    if compared.read is not None:
+        rows += [(f"{name}, as read", *told) for name, *told in _rows(compared.read)]
+    print_rich(f"{run.name} on {compared.robot.name}: log less emulation")
+    print_table(COLUMNS, rows)
+    print_rich(
+        f"cycle time {aligned.moving:.3f} s emulated, {aligned.logged_moving:.3f} s logged: "
+        f"ratio {f.cycle_time_ratio:.4f}",
+        f"the log's clock is {f.offset:+.4f} s off, and {1e3 * f.drift:+.1f} ms more at the end "
+        "than at the start",
+        f"{len(aligned.rows)} of {len(log.t)} samples compared, every {1e3 * log.period:.3g} ms "
+        f"(jitter {1e3 * log.jitter:.2g} ms); {len(log.torn)} off the path, {len(log.held)} held, "
+        f"{len(log.holes)} holes",
+    )
+
+
+def _rows(f: Figures) -> list[tuple[str, ...]]:
     import numpy as np
 
-    f, log, aligned = compared.figures, compared.log, compared.alignment
-    rows = [
+    return [
         (
             "path of the TCP, mm",
             f"{1e3 * f.path_max:.3f}",
@@ -174,29 +192,39 @@ def _tell(compared: Prediction, run: LoggedRun, *, as_json: bool) -> None:
             f"{np.degrees(f.joint_clock_rms):.4f}",
         ),
     ]
-    print_rich(f"{run.name} on {compared.robot.name}: log less emulation")
-    print_table(COLUMNS, rows)
-    print_rich(
-        f"cycle time {aligned.moving:.3f} s emulated, {aligned.logged_moving:.3f} s logged: "
-        f"ratio {f.cycle_time_ratio:.4f}",
-        f"the log's clock is {f.offset:+.4f} s off, and {1e3 * f.drift:+.1f} ms more at the end "
-        "than at the start",
-        f"{len(aligned.rows)} of {len(log.t)} samples compared, every {1e3 * log.period:.3g} ms "
-        f"(jitter {1e3 * log.jitter:.2g} ms); {len(log.torn)} off the path, {len(log.held)} held, "
-        f"{len(log.holes)} holes",
-    )
 
 
 def _json(compared: Prediction, run: LoggedRun) -> dict[str, Any]:
     """SI units, in the keys."""
     import numpy as np
 
-    f, log, aligned = compared.figures, compared.log, compared.alignment
+    log, aligned = compared.log, compared.alignment
     place = np.abs(compared.residuals.joint_path).max(axis=0)
     moment = np.abs(compared.residuals.joint_time).max(axis=0)
     return {
         "run": run.name,
         "robot": compared.robot.name,
+        **_figures(compared.figures),
+        "cycle_time_s": aligned.moving,
+        "logged_cycle_time_s": aligned.logged_moving,
+        "axes": [
+            {"name": name, "path_max": float(a), "time_max": float(b)}
+            for name, a, b in zip(compared.robot.axis_names, place, moment, strict=True)
+        ],
+        "samples": len(log.t),
+        "compared": len(aligned.rows),
+        "torn": len(log.torn),
+        "held": len(log.held),
+        "holes": [{"begin_s": hole.begin, "end_s": hole.end} for hole in log.holes],
+        "period_s": log.period,
+        "jitter_s": log.jitter,
+        "notes": list(log.notes),
+        "as_read": None if compared.read is None else _figures(compared.read),
+    }
+
+
+def _figures(f: Figures) -> dict[str, float]:
+    return {
         "path_max_m": f.path_max,
         "path_p99_m": f.path_p99,
         "path_rms_m": f.path_rms,
@@ -211,19 +239,5 @@ def _json(compared: Prediction, run: LoggedRun) -> dict[str, Any]:
         "joint_clock_rms_rad": f.joint_clock_rms,
         "offset_s": f.offset,
         "drift_s": f.drift,
-        "cycle_time_s": aligned.moving,
-        "logged_cycle_time_s": aligned.logged_moving,
         "cycle_time_ratio": f.cycle_time_ratio,
-        "axes": [
-            {"name": name, "path_max": float(a), "time_max": float(b)}
-            for name, a, b in zip(compared.robot.axis_names, place, moment, strict=True)
-        ],
-        "samples": len(log.t),
-        "compared": len(aligned.rows),
-        "torn": len(log.torn),
-        "held": len(log.held),
-        "holes": [{"begin_s": hole.begin, "end_s": hole.end} for hole in log.holes],
-        "period_s": log.period,
-        "jitter_s": log.jitter,
-        "notes": list(log.notes),
     }

@@ -244,7 +244,8 @@ def _tell(made: Front, robot: Robot, written: Sequence[Sequence[Path]], plot: Pa
 
 def _row(given: Point, point: Point, joints: Sequence[int]) -> tuple[str, ...]:
     def change(value: float, before: float) -> str:
-        return "" if point is given else f"{100.0 * (value / before - 1.0):+.1f}"
+        # What motors take is negative where more comes back.
+        return "" if point is given else f"{100.0 * (value - before) / abs(before):+.1f}"
 
     proof = point.certificate
     return (

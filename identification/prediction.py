@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..core.errors import InputError
 from ..core.motion.controller import Controller, Run
@@ -33,6 +33,8 @@ class Prediction:
         alignment: of both.
         residuals: log less emulation.
         figures: the same in numbers.
+        read: the numbers of the samples as they were read, if some were put together; None if all
+            are as they were read.
     """
 
     name: str
@@ -42,6 +44,7 @@ class Prediction:
     alignment: Alignment
     residuals: Residuals
     figures: Figures
+    read: Figures | None = None
 
 
 def predict(
@@ -66,12 +69,21 @@ def predict(
         driven = controller.run(program, start_of(program, log, robot), period)
         aligned = align(robot, driven.trajectory, log)
         torn = tear(driven.trajectory, aligned)
-        if torn is not None:
-            log = mended(log, driven.trajectory, aligned, torn)
-            aligned = align(robot, driven.trajectory, log)
+        if torn is None:
+            return _prediction(name, robot, driven, log, aligned)
+        read = _prediction(name, robot, driven, log, aligned).figures
+        log = mended(log, driven.trajectory, aligned, torn)
+        aligned = align(robot, driven.trajectory, log)
     except InputError as error:
         raise InputError(f"{name}: {error}") from error
-    found = residuals(robot, _tool(program), driven.trajectory, log, aligned)
+    return replace(_prediction(name, robot, driven, log, aligned), read=read)
+
+
+def _prediction(
+    name: str, robot: Robot, driven: Run, log: CleanLog, aligned: Alignment
+) -> Prediction:
+    """With what is left of the log."""
+    found = residuals(robot, _tool(driven.program), driven.trajectory, log, aligned)
     return Prediction(name, robot, driven, log, aligned, found, figures(robot, found, aligned))
 
 

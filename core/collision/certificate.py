@@ -102,10 +102,12 @@ def certify_stretch(
         if not first <= last:
             raise InputError(f"a stretch runs from a first to a last σ, not from {first} to {last}")
     enclosure = Enclosure.of(run.path)
-    strays = strays_of(controller, run)
     left = Budget(budget)
-    owners = _owners(run, scenes, spans)
-    provers = [Prover(enclosure, scene, strays, residual, left) for scene, _ in owners]
+    owned, bands = _owners(run, scenes, spans), strays_of(controller, run)
+    owners = [owner for _ in bands for owner in owned]
+    provers = [
+        Prover(enclosure, scene, strays, residual, left) for strays in bands for scene, _ in owned
+    ]
     reader = Reader(run)
     wanted = max(clearance - TOLERANCE, CONTACT)
     findings = [

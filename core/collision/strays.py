@@ -1,7 +1,14 @@
 """How far smoothing in time and elastic joints take a motion off its path, place by place.
 
 See `motion.averaging` for the first and `motion.lead_bound` for the second. The bounds hold for all
-motions within the path's limits, so at every override that stays as it is.
+motions within the path's limits that rest no shorter than reckoned with, so at every override that
+stays as it is where rests are always as long.
+
+Where rests end by an in-position window (`motion.rests`), slow motions rest less, and fast ones
+without rests would stray far. So motions are told apart by how much slower they are: an override
+lowers limits of speed, or lets time run slower, or both. From `_SPEEDS` and `_TIME` on up rests are
+those where both are as low; below, no rests are reckoned with, but speeds, or speeds and
+accelerations, are low.
 """
 
 from __future__ import annotations
@@ -18,6 +25,8 @@ from ..motion.controller import Controller, Run
 from ..motion.course import Course
 from ..motion.elasticity import RIGID
 from ..motion.lead_bound import most_leads
+from ..motion.smoothing import Smoothing
+from ..motion.timing import Timing
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -26,6 +35,10 @@ _CELLS = 40
 """Cells within what averages reach."""
 _STEP = 2e-3
 """s of a cell where there are no averages."""
+_SPEEDS, _TIME = 0.1, 0.7
+"""Shares of speeds and of the rate of time below which motions are slow."""
+_COARSER = 3.0
+"""How much longer cells are of motions that are slow."""
 _FEWEST = 2
 """Averages after a ramp that bound the joints' accelerations."""
 
@@ -92,20 +105,59 @@ def _greatest(most: FloatArray, first: IntArray, last: IntArray) -> FloatArray:
     return out
 
 
-def strays_of(controller: Controller, run: Run) -> Strays:
-    """How far the commanded joints of a run may be from its path, at every steady override."""
+class _Band(NamedTuple):
+    """Motions on a path.
+
+    Args:
+        timing: of the path.
+        allowed: what they keep to.
+        rests: (S,) s, how long they rest at stops on the way at least.
+        coarser: how much longer cells may be.
+    """
+
+    timing: Timing
+    allowed: Allowed
+    rests: FloatArray
+    coarser: float = 1.0
+
+
+def strays_of(controller: Controller, run: Run) -> tuple[Strays, ...]:
+    """How far the commanded joints of a run may be from its path, at every steady override.
+
+    A motion keeps to one of them from beginning to end.
+    """
     smoothing = controller.smoothing(run.program, run.path)
-    elasticity, timing = controller.model.elasticity, run.timing
-    if not smoothing.widths and elasticity == RIGID:
-        return Strays.within(np.zeros(run.path.q.shape[1]))
+    if not smoothing.widths and controller.model.elasticity == RIGID:
+        return (Strays.within(np.zeros(run.path.q.shape[1])),)
+    return tuple(_within(controller, smoothing, band) for band in _bands(controller, run))
+
+
+def _bands(controller: Controller, run: Run) -> list[_Band]:
+    """Bands in one of which a run is at any override."""
+    timing, allowed, rests = run.timing, Allowed.of(run.timing), run.timing.rests
+    if not rests.length.any() or rests.in_position is None:
+        return [_Band(timing, allowed, rests.length)]
+    slow = controller.stamp_slower(run.program, timing, _SPEEDS)
+    least = np.minimum(slow.rests.where_time_runs(_TIME), rests.length)
+    none = np.zeros_like(least)
+    return [
+        _Band(timing, allowed, least),
+        _Band(timing, allowed.where_time_runs(_TIME), none, _COARSER),
+        _Band(slow, Allowed.of(slow), none, _COARSER),
+    ]
+
+
+def _within(controller: Controller, smoothing: Smoothing, band: _Band) -> Strays:
+    """How far the commanded joints of motions in a band may be from their path."""
+    timing, allowed, elasticity = band.timing, band.allowed, controller.model.elasticity
+    size = timing.path.q.shape[1]
     reach = smoothing.window + timing.ramp
-    step = reach / _CELLS if reach > 0.0 else _STEP
-    allowed = Allowed.of(timing)
-    course = Course.of(timing, allowed, step, max(reach, step))
+    step = band.coarser * (reach / _CELLS if reach > 0.0 else _STEP)
+    course = Course.of(timing, allowed, band.rests, step, max(reach, step))
     few = elasticity != RIGID and len(smoothing.widths) < _FEWEST
     if timing.ramp > 0.0 and (few or (course.way[:, 0] <= 0.0).any()):
         # No bound is known: where what a ramp averages may stand still, it tells no place.
-        return Strays.within(np.full(run.path.q.shape[1], np.inf))
+        return Strays.within(np.full(size, np.inf))
     averages = Averages(course, smoothing, timing.ramp)
     offsets = averages.offsets()
     ways, share, rest = offsets.axis[:, None], offsets.along[:, None], offsets.aside
@@ -117,7 +169,6 @@ def strays_of(controller: Controller, run: Run) -> Strays:
             course,
             averages,
             offsets,
-            smoothing,
             timing.start,
         )
         ways = np.concatenate([ways, leads.ways], axis=1)

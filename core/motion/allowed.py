@@ -13,7 +13,7 @@ hull (R. T. Farouki, "The Bernstein polynomial basis: a centennial retrospective
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -81,6 +81,10 @@ class Allowed:
         push = (ends[:, :, 1] - ends[:, :, 0]) / (2.0 * rows.spacing[:, None])
         corners = np.concatenate([push[:, :, None], ends], axis=2)
         return cls(rows.spacing, *states, corners, count)
+
+    def where_time_runs(self, rate: float) -> Allowed:
+        """What is allowed where time runs at a rate: x and u go with its square."""
+        return replace(self, corners=rate**2 * self.corners)
 
     @property
     def fastest(self) -> FloatArray:

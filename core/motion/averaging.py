@@ -20,6 +20,14 @@ joints over T is from the joints of the mean place, p = dq/dλ. For the longest 
 of them with plus. As G ≥ 0, D is within −∫ G dp⁻ and ∫ G dp⁺: with R the greatest of the one and of
 the other nearby, added, it makes R by w₁, 2 R by w₁ w₂, and 4 R by w₁ w₂ w₃.
 
+Slow motions cannot accelerate for long: k has one hump, so that for any y, of which a velocity and
+its part beside the path are examples,
+
+    |∫ k ẏ| = |∫ k' y| ≤ k(0) (max y − min y),    k(0) = P(|τ₂| < w₁ / 2) / w₁,
+
+extremes being those within reach and τ₂ what all averages but the longest make. Time that comes up
+to speed only makes y less. Ramps count among the averages, w₁ included.
+
 At a rest in which joints turn, the first half of it counts as what was before, the other as what
 comes. How far E Λ may be beyond the place of the rest then is added to how far joints are off.
 
@@ -43,9 +51,11 @@ from .averaging_kernels import (
     bound_ramp,
     bound_veer,
     greatest_between,
+    tail,
 )
 from .course import Course
 from .smoothing import Smoothing
+from .velocity_ranges import velocity_ranges
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -93,6 +103,7 @@ class Averages:
             course.moves,
             course.parts,
         )
+        self._peak = peak(self._all)
         count = len(course.moves)
         self._first, self._last = np.full(count, count), np.full(count, -1)
 
@@ -118,6 +129,7 @@ class Averages:
         course, off = self._course, self._of_ramp()
         speed = self.mean(course.speed[:, None], 0.0)[:, 0]
         push = more * self.mean(course.push[:, None], start)[:, 0]
+        push = self.slowly(push, self._ranges(np.zeros_like(course.speed), course.speed))
         veer = np.zeros_like(course.turn)
         bound_veer(
             self._cells,
@@ -151,11 +163,11 @@ class Averages:
             about: (C, N), d.
             start, more: as in `rates`.
         """
-        out = np.zeros_like(about)
+        out, course = np.zeros_like(about), self._course
         ddq = allowed.accelerations
         bound_accelerations(
             self._cells,
-            self._course.interval,
+            course.interval,
             self._all,
             self._half,
             start,
@@ -170,7 +182,53 @@ class Averages:
             about,
             out,
         )
-        return more * out
+        ranges = velocity_ranges(
+            course.theta,
+            course.interval,
+            course.speed,
+            self._half,
+            self._first,
+            self._last,
+            allowed.slope,
+            matrix,
+            about,
+        )
+        return self.slowly(more * out, ranges)
+
+    def velocity_ranges(self, allowed: Allowed) -> FloatArray:
+        """(C, N), by how much joints' velocities differ at most within reach of the averages."""
+        k, speed = self._course.interval, self._course.speed[:, None]
+        # At rests the last interval's, by no speed.
+        ends = allowed.slope.min(axis=0)[k] * speed, allowed.slope.max(axis=0)[k] * speed
+        pairs = zip(*(values.T for values in ends), strict=True)
+        return np.stack([self._ranges(least, most) for least, most in pairs], -1)
+
+    def slowly(self, accelerations: FloatArray, ranges: FloatArray) -> FloatArray:
+        """Bounds of mean accelerations, where velocities have ranges (of the same shape)."""
+        return _least(accelerations, self._peak, ranges)
+
+    def jerks(self, accelerations: FloatArray, ranges: FloatArray) -> FloatArray:
+        """(C, N), bounds of what joints' accelerations change by in a second, ramps left out.
+
+        Args:
+            accelerations: (C, N), bounds of them by what drives them, within reach of each cell.
+            ranges: (C, N), `velocity_ranges`.
+        """
+        # Differences over the longest average; without it there, but within reach.
+        others = np.concatenate([self._widths[:-1], self._all[len(self._widths) :]])
+        longest = max(self._widths, default=0.0)
+        return divided(2.0 * _least(accelerations, peak(others), ranges), longest)
+
+    def _ranges(self, least: FloatArray, most: FloatArray) -> FloatArray:
+        """(C,), from the least (C,) ≤ 0 to the most within reach of each cell, 0 included."""
+        theta, used = self._course.theta, self._last >= 0
+        first, last = np.zeros((2, len(most)), dtype=np.int64)
+        begin, end = theta[self._first[used]] - self._half, theta[self._last[used] + 1] + self._half
+        first[used] = np.searchsorted(theta[1:], begin)
+        last[used] = np.searchsorted(theta[:-1], end, "right")
+        return np.asarray(
+            greatest_between(most, first, last) + greatest_between(-least, first, last)
+        )
 
     def mean(self, values: FloatArray, start: float) -> FloatArray:
         """(C, D), the greatest means of values (C, D) ≥ 0 that the averages can make of them."""
@@ -218,6 +276,21 @@ class Averages:
         beside = steepest[moving[after - 1]], steepest[moving[after]]
         steepest[turns] = np.maximum(*beside)
         return steepest
+
+
+def peak(widths: FloatArray) -> float:
+    """1/s, the greatest value of the kernel of averages of these widths; inf of none."""
+    if not len(widths):
+        return np.inf
+    *others, longest = np.sort(widths)
+    return float((1.0 - 2.0 * tail(np.array(others), 0, 0.5 * longest)) / longest)
+
+
+def _least(accelerations: FloatArray, most: float, ranges: FloatArray) -> FloatArray:
+    """The less of accelerations and of ranges of velocities by the kernel's greatest value."""
+    if not np.isfinite(most):
+        return accelerations
+    return np.minimum(accelerations, most * ranges)
 
 
 def divided(values: FloatArray, widths: float) -> FloatArray:

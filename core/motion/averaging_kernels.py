@@ -440,14 +440,13 @@ def _greatest_of(
     """Write the greatest |A (q̈ − d u)| (N,) of one interval."""
     size = about.size
     out[:] = 0.0
-    ddq = np.empty(size)
     for c in range(push.shape[0]):
-        for v in range(corners.shape[0]):
-            u, before, after = corners[v, 0], corners[v, 1], corners[v, 2]
+        for i in range(size):
+            by_u = by_before = by_after = 0.0
             for j in range(size):
-                ddq[j] = (push[c, j] - about[j]) * u + left[c, j] * before + right[c, j] * after
-            for i in range(size):
-                total = 0.0
-                for j in range(size):
-                    total += matrix[i, j] * ddq[j]
-                out[i] = max(out[i], abs(total))
+                by_u += matrix[i, j] * (push[c, j] - about[j])
+                by_before += matrix[i, j] * left[c, j]
+                by_after += matrix[i, j] * right[c, j]
+            for v in range(corners.shape[0]):
+                u, before, after = corners[v, 0], corners[v, 1], corners[v, 2]
+                out[i] = max(out[i], abs(by_u * u + by_before * before + by_after * after))

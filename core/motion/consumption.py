@@ -16,6 +16,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
+from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
@@ -74,6 +75,13 @@ class Consumption(ABC):
         """What all joints (..., N) take together (...); negative where the mains are given."""
         p = powers.sum(axis=-1)
         return np.asarray(np.maximum(p, self.returned * p))
+
+    def flow(self, powers: FloatArray) -> FloatArray:
+        """What all joints (..., N) take or leave over together, |p| (...).
+
+        Over time it is the size of an energy that may come back: never less than what is consumed.
+        """
+        return np.asarray(np.abs(powers.sum(axis=-1)))
 
     def slopes(self, torque: FloatArray, rate: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Derivatives (..., N) of the total with respect to torques and velocities; one-sided
@@ -147,8 +155,9 @@ class Motors(Consumption):
 
     def __post_init__(self) -> None:
         _check("Motors.copper", self.copper)
-        if not 0.0 <= self.recuperation <= 1.0:
-            raise InputError(f"Motors.recuperation lies in [0, 1], not {self.recuperation}")
+        share: object = self.recuperation
+        if not isinstance(share, Real) or not 0.0 <= float(share) <= 1.0:
+            raise InputError(f"Motors.recuperation lies in [0, 1], not {share!r}")
 
     @property
     def unit(self) -> str:
@@ -178,10 +187,12 @@ def _filled(name: str, values: Sequence[float], count: int, rest: float) -> Floa
     return filled
 
 
-def _check(name: str, values: Sequence[float]) -> None:
+def _check(name: str, values: object) -> None:
+    if not isinstance(values, tuple | list):
+        raise InputError(f"{name} must be a tuple of numbers, one a joint, not {values!r}")
     for value in values:
-        if not 0.0 <= value < math.inf:
-            raise InputError(f"{name} must be finite and zero or more, not {value}")
+        if not isinstance(value, Real) or not 0.0 <= float(value) < math.inf:
+            raise InputError(f"{name} must be finite and zero or more, not {value!r}")
 
 
 SQUARED_TORQUE = SquaredTorque()

@@ -170,6 +170,19 @@ class Controller:
         except MotionError as error:
             raise _located(error, program) from error
 
+    def stamp_slower(self, program: Program, timing: Timing, share: float) -> Timing:
+        """The timing of the same path at a share of its speeds; accelerations are as they were.
+
+        Args:
+            program: that was stamped.
+            timing: of its path.
+            share: of all limits of speed, those included that hold programmed durations.
+        """
+        segments = range(len(timing.path.route.moves))
+        limits = timing.limits.with_velocities_scaled(segments, share)
+        settling = self._settling(program, timing.path)
+        return stamp_path(timing.path, timing.along, limits, timing.path_limits.shares, settling)
+
     def _shares(self, along: ArcLength) -> Shares | None:
         """What shares of the torques' limits the path takes, if the model has any."""
         if self.model.torque == WITHOUT_LIMIT:

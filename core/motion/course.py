@@ -64,12 +64,15 @@ class Course:
     parts: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, timing: Timing, allowed: Allowed, step: float, reach: float) -> Course:
+    def of(
+        cls, timing: Timing, allowed: Allowed, rests: FloatArray, step: float, reach: float
+    ) -> Course:
         """Cut a path.
 
         Args:
             timing: of it.
             allowed: what its limits allow.
+            rests: (S,) s, at stops on the way, beside programmed waits; at least.
             step: s, the longest cell.
             reach: s, the longest rest that makes a difference.
         """
@@ -83,7 +86,7 @@ class Course:
         z = span[k, None] * share * (most[k, None] + pace) / (2.0 * allowed.spacing[k, None])
         z[n == 0, 0], z[n + 1 == count[k], 1] = 0.0, 1.0
         moving = _moving(timing, allowed, k, z, pace.max(axis=1), span[k] / count[k])
-        return _with_rests(moving, *_rests(timing, allowed, reach), count, step, reach)
+        return _with_rests(moving, *_rests(timing, allowed, rests, reach), count, step, reach)
 
     @property
     def moves(self) -> NDArray[np.bool_]:
@@ -174,10 +177,10 @@ def _ways(timing: Timing) -> tuple[FloatArray, FloatArray]:
 
 
 def _rests(
-    timing: Timing, allowed: Allowed, reach: float
+    timing: Timing, allowed: Allowed, rests: FloatArray, reach: float
 ) -> tuple[IntArray, FloatArray, FloatArray]:
     """Knots (R,) where the path rests or turns, for how long (R,) s, and how it turns (R, N)."""
-    wait = np.minimum(timing.least_waits, reach)
+    wait = np.minimum(timing.waits(rests), reach)
     turn = allowed.slope[0, 1:] - allowed.slope[4, :-1]
     steep = np.abs(allowed.slope).max(axis=(0, 2))
     turned = np.abs(turn).max(axis=1) > _ROUNDING * np.maximum(steep[1:], steep[:-1])

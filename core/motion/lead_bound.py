@@ -34,12 +34,11 @@ from numpy.typing import NDArray
 from ..robot.chain_kernels import jacobians, motions
 from ..robot.model import Robot
 from .allowed import Allowed
-from .averaging import Averages, Rates, divided, near
+from .averaging import Averages, Rates, near
 from .averaging_kernels import Offsets
 from .course import Course
 from .elasticity import LEAD_STEP, Carried, Elasticity
 from .point_masses import chain_to_axis, filled
-from .smoothing import Smoothing
 from .start_ramp import StartRamp
 
 FloatArray = NDArray[np.float64]
@@ -146,7 +145,6 @@ def most_leads(
     course: Course,
     averages: Averages,
     offsets: Offsets,
-    smoothing: Smoothing,
     start: StartRamp,
 ) -> Leads:
     """Bounds of what commanded joints lead their links by.
@@ -157,7 +155,6 @@ def most_leads(
         allowed: what its limits allow.
         course: of the path.
         averages, offsets: of the motion.
-        smoothing: in time, of the commanded motion.
         start: how time comes up to speed.
     """
     count, size = course.tangent.shape
@@ -178,7 +175,7 @@ def most_leads(
     still = np.zeros_like(push)
     share = np.stack([np.stack([-push, push], -1), np.stack([still, rates.speed**2], -1)], 1)
     turned = sum((mass.centrifugal for mass in masses), none)
-    bounds = _bounds(averages, allowed, course, offsets, rates, smoothing, late)
+    bounds = _bounds(averages, allowed, course, offsets, rates, late)
     for mass in masses:
         rest = rest + _change(mass, bounds)
     leads = Leads(np.stack([along, turned], axis=1), share, rest)
@@ -203,20 +200,20 @@ def _bounds(
     course: Course,
     offsets: Offsets,
     rates: Rates,
-    smoothing: Smoothing,
     late: tuple[float, float],
 ) -> _Bounds:
     tangent, (start, more) = np.abs(course.tangent), late
     most = allowed.greatest(allowed.accelerations, np.abs)[course.interval]
     most[~course.moves] = 0.0
     mean = more * averages.mean(most, start)
+    ranges = averages.velocity_ranges(allowed)
     off = course.half + offsets.aside
     off += np.abs(offsets.axis) * np.abs(offsets.along).max(axis=1, keepdims=True)
-    # Differences over the longest average; less averaged there, but within reach.
     nearby = np.stack([near(course, a, averages.reach + start) for a in mean.T], -1)
-    jerk = divided(2.0 * nearby, max(smoothing.widths, default=0.0)) + rates.jolted
+    jerk = averages.jerks(nearby, ranges) + rates.jolted
     velocity = tangent * rates.speed[:, None] + rates.veer
-    return _Bounds(off, tangent, velocity, rates.veer, mean + rates.ramped, jerk, rates.speed)
+    acceleration = averages.slowly(mean, ranges) + rates.ramped
+    return _Bounds(off, tangent, velocity, rates.veer, acceleration, jerk, rates.speed)
 
 
 def _change(mass: _Mass, bounds: _Bounds) -> FloatArray:

@@ -73,14 +73,18 @@ class Rests:
     Args:
         knot: (S,), the interval that begins at each stop.
         length: (S,) s.
-        least: (S,) s, what is left of them where the same path is driven however slowly.
+        most: s.
+        in_position: what is waited for; None rests for ``most`` in any case.
+        approach: (S,) s, from when on the motion is within the window, to the stop; 0 without.
         entries: by which they are shorter than the longest; None where all are equal.
         counted: (S,) bool, those that end a time after an entry.
     """
 
     knot: IntArray
     length: FloatArray
-    least: FloatArray
+    most: float
+    in_position: InPosition | None
+    approach: FloatArray
     entries: Entries | None
     counted: NDArray[np.bool_]
 
@@ -104,13 +108,21 @@ class Rests:
         """
         stops = np.flatnonzero(path.pieces.stop[1:-1]) + 1
         knot = path.pieces.first_interval[stops]
-        longest = np.full(len(knot), most)
+        longest, none = np.full(len(knot), most), np.zeros(len(knot))
         if in_position is None:
-            return cls(knot, longest, longest, None, np.zeros(len(knot), dtype=np.bool_))
+            return cls(knot, longest, most, None, none, None, none > 0.0)
         entries = _entries(path, along, stamp, knot, in_position.window)
-        left = in_position.time - (stamp.t[knot] - entries.t)
+        approach = stamp.t[knot] - entries.t
+        left = in_position.time - approach
         counted = (left > 0.0) & (left < most)
-        return cls(knot, np.clip(left, 0.0, most), np.zeros(len(knot)), entries, counted)
+        length = np.clip(left, 0.0, most)
+        return cls(knot, length, most, in_position, approach, entries, counted)
+
+    def where_time_runs(self, rate: float) -> FloatArray:
+        """(S,) s, the rests where time runs at a rate, but that of what is waited for."""
+        if self.in_position is None:
+            return self.length
+        return np.clip(self.in_position.time - self.approach / rate, 0.0, self.most)
 
 
 def _entries(path: Path, along: ArcLength, stamp: Stamp, knot: IntArray, window: float) -> Entries:

@@ -126,15 +126,17 @@ class Timing:
         pieces = self.path.pieces
         return np.repeat(pieces.segment, pieces.intervals)
 
-    @property
-    def least_waits(self) -> FloatArray:
-        """(K - 1,) s, how long the path rests behind each interval but the last, at any speed."""
+    def waits(self, rests: FloatArray) -> FloatArray:
+        """(K - 1,) s, how long the path rests behind each interval but the last.
+
+        Programmed waits included, and with other rests (S,) s than it has.
+        """
         wait = self.begin[1:] - self.end[:-1]
-        shorter = self.rests.length > self.rests.least
-        knot = self.rests.knot[shorter]
-        dwell = wait[knot - 1] - (self.rests.length - self.rests.least)[shorter]
+        other = self.rests.length != rests
+        knot = self.rests.knot[other]
+        left = wait[knot - 1] - (self.rests.length - rests)[other]
         # Beginnings and ends are sums, in which what is left of nothing is rounding.
-        wait[knot - 1] = np.where(dwell > _ROUNDING, dwell, 0.0)
+        wait[knot - 1] = np.where(left > _ROUNDING, left, 0.0)
         return wait
 
     def segment_durations(self) -> FloatArray:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion.path import Route
+from ..motion.segments import Segments, make_segments
 from ..program.move import MoveL
 from ..program.program import Program
 from ..program.target import PoseTarget
@@ -24,6 +25,8 @@ FloatArray = NDArray[np.float64]
 
 NEARER = 2e-5
 """rad that a half turn is made smaller: many times what the digits of any language leave open."""
+_SHORT = 1.0 - 1e-7
+"""Share of a turn that is told from one the other way round, whatever is rounded."""
 
 
 def decided(program: Program, route: Route, losses: LossesOfPart) -> Program:
@@ -33,6 +36,7 @@ def decided(program: Program, route: Route, losses: LossesOfPart) -> Program:
         program, route: on the old robot.
         losses: where such lines are told.
     """
+    turns = _turns(make_segments(route.ends))
     moves, changed = list(program.moves), False
     before: FloatArray | None = None
     for k, i in enumerate(route.moves):
@@ -43,8 +47,7 @@ def decided(program: Program, route: Route, losses: LossesOfPart) -> Program:
         before = None
         if not isinstance(move, MoveL) or not isinstance(move.target, PoseTarget):
             continue
-        first, last = route.ends.rotation[k]
-        end = _nearer(start, last, rotation_vector(first.T @ last))
+        end = _nearer(start, route.ends.rotation[k, 1], turns[k])
         if end is None:
             continue
         matrix = move.target.pose.matrix()
@@ -57,6 +60,14 @@ def decided(program: Program, route: Route, losses: LossesOfPart) -> Program:
             f"target is {np.degrees(NEARER):.1g}° nearer, for the way that the old robot goes",
         )
     return program.with_moves(tuple(moves)) if changed else program
+
+
+def _turns(segments: Segments) -> FloatArray:
+    """(M, 3), how tools turn as a whole, the way round that their parts a and b go."""
+    # All but half a turn leaves no doubt.
+    parts = (_SHORT * segments.turn_a, _SHORT * segments.turn_b)
+    one, other = (matrix_from_rotation_vector(part) for part in parts)
+    return np.asarray(rotation_vector(one @ other))
 
 
 def _frames_agree(program: Program, moves: Sequence[int]) -> bool:

@@ -164,12 +164,24 @@ def _times(outcomes: Sequence[Outcome]) -> str:
 
 def _run(one: Outcome) -> str:
     picture = base64.b64encode(_small(draw_prediction(one.after, "png"))).decode("ascii")
-    notes = "".join(f'<p class="note">{escape(note)}</p>' for note in one.run.log.notes)
+    notes = "".join(f'<p class="note">{escape(note)}</p>' for note in _notes(one))
     name = escape(one.run.name)
     return (
         f"<h3>{name}</h3>{notes}{_corners(cut_corners(one.after))}"
         f'<img alt="log and emulation of {name}" src="data:image/png;base64,{picture}">'
     )
+
+
+def _notes(one: Outcome) -> list[str]:
+    """What was wrong with the log, and what it would be off by as it was read."""
+    found, notes = one.after, list(one.after.log.notes)
+    if found.read is not None:
+        path, place, _ = _numbers(found.read)[::3]
+        notes.append(
+            f"As read, the TCP is off its path by up to {path:.3f} mm, the joints off theirs by up "
+            f"to {place:.3f}°."
+        )
+    return notes
 
 
 def _small(picture: bytes) -> bytes:

@@ -9,6 +9,7 @@ from enum import StrEnum
 
 from ...core.errors import InputError
 from ...core.motion.consumption import SQUARED_TORQUE, Consumption
+from ..checks import positive, within
 from ..waypoints import Effort
 from ..waypoints import Task as Wishes
 
@@ -86,8 +87,9 @@ class Goal:
         Raises:
             InputError: a number out of its range.
         """
-        if not 0.0 <= weight <= 1.0:
-            raise InputError(f"the weight of time lies between 0 and 1, not {weight}")
+        within("Goal.weighted, weight", weight, 0.0, 1.0)
+        positive("Goal.weighted, time", time)
+        positive("Goal.weighted, energy", energy)
         return cls(weight / time, (1.0 - weight) / energy)
 
 

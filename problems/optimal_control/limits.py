@@ -95,14 +95,15 @@ class Limits:
 def _torques(task: Task, constant: FloatArray) -> TorqueLimits:
     """Limits of axes, from constant ones (N,) and the task's lines."""
     names, lines = task.robot.axis_names, task.limits.curves
-    for line in lines:
-        if line.axis not in names:
-            raise InputError(
-                f"a torque line is given for {line.axis!r}; the axes are {', '.join(names)}"
-            )
     # External axes that stand still are held by their brakes.
     driven = np.arange(task.robot.size) < task.robot.arm_size
     driven[task.moving] = True
+    known = [name for name, counts in zip(names, driven, strict=True) if counts]
+    for line in lines:
+        if line.axis not in known:
+            raise InputError(
+                f"a torque line is given for {line.axis!r}; the axes are {', '.join(known)}"
+            )
     own = np.flatnonzero(np.isfinite(constant) & driven)
     return TorqueLimits(
         np.array([*own, *(names.index(line.axis) for line in lines)], dtype=np.int64),

@@ -211,8 +211,8 @@ class EnergyTerm:
         """∫ |p| dt: what is consumed and what is left over, added up."""
         state = self._state(x)
         torque, rate = self._field.torques(state), self._field.rates(state)
-        power = self._consumption.powers(torque, rate).sum(axis=1)
-        return float(self._scale * np.sqrt(x[0]) * (self._weights(x) @ np.abs(power)))
+        flow = self._consumption.flow(self._consumption.powers(torque, rate))
+        return float(self._scale * np.sqrt(x[0]) * (self._weights(x) @ flow))
 
     def value(self, x: FloatArray) -> float:
         found = self._driven(self._state(x))[2]

@@ -183,7 +183,11 @@ class ConeProgram:
         return scale * bound, [cone]
 
     def _work(self, torque: list[list[Any]], ends: Iterable[int]) -> Any:
-        """½ h τ q̇ = ½ Δ τ q′ at some ends of the intervals, (K,)."""
+        """½ Δ τ q′ at some ends of the intervals, (K,): half of ∫ τ q̇ dt = ∫ τ q′ dσ each.
+
+        The rule over the path, which is linear in x, stands for that over time: both ends together
+        differ by terms of the second order in the interval's width.
+        """
         import cvxpy as cp  # takes a second
 
         way = 0.5 * self._knots.spacing[:, None, None] * self._task.path.dq

@@ -80,6 +80,13 @@ class Tuned:
         return 0.5 * float(self.steps @ power.sum(axis=1))
 
     @property
+    def flow(self) -> float:
+        """∫ |p| dt: what is consumed and what is left over, added up."""
+        consumption = self.task.objective.consumption
+        flow = consumption.flow(consumption.powers(self.torque, self.rates))
+        return 0.5 * float(self.steps @ flow.sum(axis=1))
+
+    @property
     def energy_by_joint(self) -> FloatArray:
         """(N,), what each joint takes of it."""
         powers = self.task.objective.consumption.powers(self.torque, self.rates)

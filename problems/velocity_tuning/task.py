@@ -21,7 +21,8 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Objective:
-    """w T / T₀ + (1 − w) E / E₀, with T₀ and E₀ of the fastest motion within the same limits.
+    """w T / T₀ + (1 − w) E / E₀, with T₀ and E₀ = ∫ |p| dt of the fastest motion within the same
+    limits.
 
     Args:
         time_weight: w in [0, 1]: 1 for time alone, 0 for energy alone.

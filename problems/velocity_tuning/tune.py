@@ -158,7 +158,7 @@ def _hurried(task: Task) -> Task:
 
 def _shares(task: Task, fastest: Tuned) -> Shares:
     """Time and energy in shares of those of the fastest motion."""
-    most = abs(fastest.energy)
+    most = fastest.flow
     if most == 0.0:
         raise InputError("the fastest motion takes no energy: there is nothing to compare with")
     weight = task.objective.time_weight

@@ -14,6 +14,7 @@ import numpy as np
 
 from ...core.collision.verdict import Certificate
 from ...core.motion.controller import Run
+from ...core.program.move import Opaque, Wait
 from ...core.program.program import Program
 from .blocks import stretches
 from .doubling import doubled, without
@@ -63,7 +64,7 @@ def idle_points(
         selection: what may change in it.
         judged: a program's cost; None if it does not keep its clearance.
     """
-    for i in _alone(selection):
+    for i in _countable(best, selection):
         cost = judged(without(best.run.program, i))
         if cost is not None and cost <= best.cost * (1.0 + 1e-9):
             yield i
@@ -119,7 +120,7 @@ class _Turn:
 
     def _without_one(self, best: Counted) -> Counted | None:
         most = best.cost * (1.0 + _SERVES_NOTHING * self._share(best))
-        for i in self._here(best, _alone(self.selected(best))):
+        for i in self._here(best, _countable(best, self.selected(best))):
             found = self._search(best, without(best.run.program, i), _gone(i), self._brief)
             if found is not None and found.cost <= most:
                 return found
@@ -137,7 +138,7 @@ class _Turn:
     def _divisible(self, best: Counted) -> list[int]:
         """Via points that go where they like; what limits one says nothing of two."""
         task = best.task
-        candidates = self._here(best, _alone(self.selected(best)))
+        candidates = self._here(best, _countable(best, self.selected(best)))
         return [i for i in candidates if isinstance(task.limits.get(i, task.limit), Free)]
 
     def _divided(self, best: Counted, i: int) -> Counted | None:
@@ -196,9 +197,24 @@ def _stretches(best: Counted) -> list[tuple[int, int]]:
     return stretches(best.run.path, len(best.run.program.moves))
 
 
-def _alone(selection: Selection) -> list[int]:
-    """Via points that move, and share their target with no other."""
-    return [group[0] for group in selection.points if len(group) == 1]
+def _countable(best: Counted, selection: Selection) -> list[int]:
+    """Via points that move, share their target with no other, and at which nothing is done: what
+    is switched there would be switched elsewhere."""
+    busy = _busy(best.run.program)
+    alone = [group[0] for group in selection.points if len(group) == 1]
+    return [i for i in alone if i not in busy]
+
+
+def _busy(program: Program) -> set[int]:
+    """Moves that something else than a move comes after, such as an output."""
+    found: set[int] = set()
+    index = -1
+    for statement in program.statements:
+        if isinstance(statement, Wait | Opaque):
+            found.add(index)
+        else:
+            index += 1
+    return found
 
 
 def _spent(limit: PointLimit) -> PointLimit:

@@ -217,9 +217,13 @@ class _Optimization:
                 return None
             try:
                 found = self._improved(program, task, effort, scenes, [])
+                return found or self._as_it_is(program, task, scenes)
+            except KeyboardInterrupt:
+                # Between searches, too: what is proven already stays.
+                self.ended = True
             except MotionError:
-                return None
-            return found or self._as_it_is(program, task, scenes)
+                pass
+            return None
 
         def selected(counted: Counted) -> Selection:
             return select(counted.run.program, counted.run.path, counted.task, self.freedom)

@@ -23,8 +23,9 @@ def segment_strays(controller: Controller, run: Run, moves: Sequence[int]) -> Fl
             all of them.
     """
     waypoint = run.path.layout.waypoint
-    strays = strays_of(controller, run)
-    most = stretches(strays, waypoint[:-1], waypoint[1:]).most
+    bands = strays_of(controller, run)
+    found = [stretches(strays, waypoint[:-1], waypoint[1:]).most for strays in bands]
+    most = np.max(found, axis=0)
     row = {move: k for k, move in enumerate(run.path.route.moves)}
     greatest = most.max(axis=0)
     return np.stack([most[row[move]] if move in row else greatest for move in moves])

@@ -54,6 +54,7 @@ def test_a_log_of_the_emulation_is_predicted(flyby: Flyby, log: Path) -> None:
     assert found["cycle_time_ratio"] == pytest.approx(1.0, abs=0.01)
     assert (found["torn"], found["held"], found["holes"], found["notes"]) == (0, 0, [], [])
     assert len(found["axes"]) == 6
+    assert found["as_read"] is None
 
 
 def test_faults_are_warned_of_and_shown(flyby: Flyby, log: Path, tmp_path: Path) -> None:
@@ -72,6 +73,23 @@ def test_faults_are_warned_of_and_shown(flyby: Flyby, log: Path, tmp_path: Path)
     text = plot.read_text("utf-8")
     assert text.startswith("<?xml") and len(text) > 50_000
     assert flyby("compare", SQUARE, log, "--robot", ROBOT, "--plot", plot).exit_code == 1
+
+
+def test_what_was_read_stands_beside_samples_put_together(
+    flyby: Flyby, log: Path, tmp_path: Path
+) -> None:
+    data = load(log)
+    late = np.stack([np.interp(data[:, 0] + 0.004, data[:, 0], q) for q in data[:, 1:].T], -1)
+    breaks = np.random.default_rng(0).integers(1, 6, len(data))
+    data[:, 1:] = np.where(np.arange(6) >= breaks[:, None], late, data[:, 1:])
+    save(log, data)
+    words = ("compare", SQUARE, log, "--robot", ROBOT)
+    found = json.loads(flyby(*words, "--json").stdout)
+    assert found["as_read"]["path_p99_m"] > 5 * found["path_p99_m"]
+    assert any("mix joints of two cycles" in note for note in found["notes"])
+    result = flyby(*words)
+    assert "mix joints of two cycles" in " ".join(result.stderr.split())
+    assert "path of the TCP, mm, as read" in result.stdout
 
 
 def test_columns_are_mapped_by_a_file(flyby: Flyby, log: Path, tmp_path: Path) -> None:

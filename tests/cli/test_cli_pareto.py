@@ -5,10 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from typer.testing import Result
 
+from flyby.cli import pareto as pareto_command
 from flyby.core.motion.controller import Controller
 from flyby.core.registry import find_robot, find_vendor
 
@@ -83,6 +86,14 @@ def test_a_script_is_patched(flyby: Flyby, tmp_path: Path):
     text = (out / "point-2" / "m.script").read_text("ascii")
     assert text.startswith("def m():\n  movej([0,-1.6,0.1,-1.6,0,0], a=") and text != SCRIPT
     assert "wrote" in result.stdout and "energy N² m² s" in result.stdout
+
+
+def test_an_energy_that_comes_back_is_less_when_more_comes_back():
+    given, point = (
+        SimpleNamespace(duration=t, energy=e, by_joint=np.array([j]), certificate=None)
+        for t, e, j in ((2.0, -100.0, -50.0), (2.2, -120.0, -40.0))
+    )
+    assert pareto_command._row(given, point, [0])[1:5] == ("+10.0", "-120", "-20.0", "+20.0")
 
 
 def test_motors_count_in_joules(flyby: Flyby, module: Path, tmp_path: Path):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -13,7 +14,14 @@ from flyby.core.toml_text import LINE, command_text, pair_text, value_text
 
 WORDS = st.text(st.characters(exclude_categories=["Cs"]))
 VALUES = st.recursive(
-    WORDS | st.booleans() | st.integers(-(2**60), 2**60) | st.floats(allow_nan=False),
+    WORDS
+    | st.booleans()
+    | st.integers(-(2**60), 2**60)
+    | st.floats(allow_nan=False)
+    | st.floats(allow_nan=False).map(np.float64)
+    | st.dates()
+    | st.times()
+    | st.datetimes(),
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(WORDS, inner, max_size=3),
     max_leaves=6,
 )

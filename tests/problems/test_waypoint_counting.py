@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from flyby.core.collision.certificate import certify, scenes_of
 from flyby.core.motion.controller import Controller
 from flyby.core.motion.path import Path
-from flyby.core.program.move import Move, MoveJ, MoveL
+from flyby.core.program.move import Move, MoveJ, MoveL, Opaque
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget, Target
@@ -35,7 +35,8 @@ from flyby.problems.waypoints import (
     ViaCount,
     optimize_waypoints,
 )
-from flyby.problems.waypoints.counting import Counted, change_count
+from flyby.problems.waypoints import optimize as optimizing
+from flyby.problems.waypoints.counting import Counted, change_count, idle_points
 from flyby.problems.waypoints.doubling import doubled
 from flyby.problems.waypoints.options import Freedom
 from flyby.problems.waypoints.selection import Selection, select
@@ -159,3 +160,49 @@ def test_other_stretches_and_limited_points_are_left_alone() -> None:
     # One more before the limited point, one after it, and one on the way back.
     assert [own.limits for own in more] == [{2: Fixed()}, {1: Fixed()}, {1: Fixed()}]
     assert [set(own.keep) for own in more] == [{5, 6}, {5, 6}, {0, 1, 2, 3}]
+
+
+def test_a_point_where_something_is_switched_stays_one() -> None:
+    """It is neither left out nor cut in two: the output would come elsewhere."""
+    switch = Opaque("SetDO do1,1;")
+    statements = (*THREE.statements[:2], switch, *THREE.statements[2:])
+    program = replace(THREE, statements=statements)
+    run = controller().run(program)
+    proof = certify(controller(), run, scenes_of(SCENE.cell), 0.005)
+    task = Task(axes=SCENE.free)
+    asked: list[Program] = []
+
+    def improved(changed: Program, own: Task, effort: Effort) -> None:
+        asked.append(changed)
+
+    def selected(counted: Counted) -> Selection:
+        chosen = counted.run
+        return select(chosen.program, chosen.path, counted.task, Freedom.WAYPOINTS_AND_ZONES)
+
+    best = Counted(run, proof, 1.0, task)
+    assert list(selected(best).points) == [(0,), (1,), (2,)]
+    change_count(best, improved, selected, QUICK, ARM)
+    assert [len(changed.moves) for changed in asked] == [3, 3, 5, 5]
+    for changed in asked:
+        place = changed.statements.index(switch)
+        assert changed.statements[place - 1] == program.statements[1]
+    assert list(idle_points(best, selected(best), lambda changed: 0.0)) == [0, 2]
+
+
+def test_ctrl_c_between_two_searches_keeps_what_is_proven(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The input's proof is the first, that of what was found the second."""
+    proofs = 0
+
+    def interrupted(*arguments: object, **options: object) -> object:
+        nonlocal proofs
+        proofs += 1
+        if proofs == 3:
+            raise KeyboardInterrupt
+        return certify(*arguments, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(optimizing, "certify", interrupted)
+    task = Task(axes=SCENE.free, vias=ViaCount.CHANGE)
+    found = optimize_waypoints(controller(), TWO, SCENE.cell, task, QUICK)
+    assert proofs == 4 and found.proven
+    assert len(found.program.moves) == len(TWO.moves)
+    assert found.after.time < found.before.time

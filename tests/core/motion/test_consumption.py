@@ -85,6 +85,9 @@ def test_what_is_drawn_lies_between(values, share):
     drawn = [float(m.total(m.powers(torque, rate))) for m in (none, some)]
     assert net <= drawn[1] + 1e-9 <= drawn[0] + 2e-9
     assert drawn[0] >= 0.0
+    flow = float(all_.flow(all_.powers(torque, rate)))
+    assert flow == pytest.approx(abs(net))
+    assert all(drawn_ <= flow + 1e-9 for drawn_ in drawn)
 
 
 @given(st.floats(-1e3, 1e3), st.floats(0.0, 1.0), st.floats(0.5, 100.0))
@@ -179,6 +182,9 @@ def test_recuperating_everything_leaves_heat_and_height():
         lambda: Motors((1.0, math.inf)),
         lambda: Motors((1.0,), 1.5),
         lambda: Motors((1.0,), math.nan),
+        lambda: Motors((1.0,), "all"),
+        lambda: Motors(2e-5),
+        lambda: Motors(("2e-5",)),
     ],
 )
 def test_what_is_no_consumption(make):

@@ -14,6 +14,7 @@ from flyby.core.motion.controller import Controller
 from flyby.core.motion.derivatives import Derivatives, ProgramGradient
 from flyby.core.motion.limits import interval_ends
 from flyby.core.motion.model import MotionModel
+from flyby.core.motion.rests import InPosition, Rests
 from flyby.core.motion.timing import Timing
 from flyby.core.program.move import Move, MoveC, MoveJ, MoveL, Wait
 from flyby.core.program.program import Program
@@ -136,6 +137,34 @@ def test_a_slower_approach_rests_no_longer(program, model, share) -> None:
     faster = stamped(program, model)
     assert (slower.rests.length <= faster.rests.length + 1e-9).all()
     assert slower.duration >= faster.duration - 1e-9
+
+
+@settings(max_examples=15, deadline=None)
+@given(program=programs(), model=models(), share=st.floats(0.05, 1.0), rate=st.floats(0.1, 1.0))
+def test_rests_of_slower_motions_are_foretold(program, model, share, rate) -> None:
+    """A share of all speeds is driven like a program of those; where time runs, x is scaled."""
+    at_once = stamped(program, model)
+    controller = Controller(ABB, ROBOT, model)
+    slower = controller.stamp_slower(program, at_once, share)
+    moves = tuple(replace(move, speed=slowed(move.speed, share)) for move in program.moves)
+    told = stamped(program.with_moves(moves), model)
+    np.testing.assert_allclose(slower.begin, told.begin, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(slower.rests.length, told.rests.length, atol=1e-9)
+    of = slower.stamp
+    stamp = replace(of, x=rate**2 * of.x, t=of.t / rate)
+    waited = InPosition(model.in_position, model.in_position_time)
+    late = Rests.of(slower.path, slower.along, stamp, slower.rests.most, waited)
+    np.testing.assert_allclose(slower.rests.where_time_runs(rate), late.length, atol=1e-9)
+
+
+def slowed(told: Speed, share: float) -> Speed:
+    assert told.joint is None
+    return replace(
+        told,
+        tcp=share * told.tcp,
+        reorientation=share * told.reorientation,
+        joint_fraction=share * told.joint_fraction,
+    )
 
 
 def test_without_a_window_all_rest_alike() -> None:

@@ -10,8 +10,9 @@ import pytest
 from flyby.core.errors import InputError, MotionError, Span
 from flyby.core.motion.blend import TANGENT_ARC, Blend
 from flyby.core.motion.controller import Controller
+from flyby.core.motion.segments import make_segments
 from flyby.core.program.event import Event
-from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, Opaque, Wait
+from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, Opaque, Wait
 from flyby.core.program.origin import MoveOrigin, Origin, Ownership
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -24,6 +25,9 @@ from flyby.core.robot.posture import posture
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
 from flyby.core.translation.corners import corners_of
+from flyby.core.translation.emulation import Party
+from flyby.core.translation.half_turns import decided
+from flyby.core.translation.losses import Losses
 from flyby.core.translation.translate import translate
 
 
@@ -432,6 +436,33 @@ def test_half_turns_go_the_way_of_the_old_robot_whatever_is_rounded(pair) -> Non
         turns = matrix_from_rotation_vector(0.5 * np.stack([s.turn_a, s.turn_b]))
         halfway.append((turns[0] @ turns[1])[1:])
     assert np.allclose(*halfway, atol=1e-4)
+
+
+def test_half_turns_about_the_tools_axis_go_that_way_too(between) -> None:
+    """A KUKA's rotation by half a turn, beside a swivel: rounding decides the sign of each."""
+    pair = between("kuka", "abb")
+    # The tool's x axis is the flange's z axis.
+    tool = Tool("torch", Pose((0.0, 0.0, 0.1), (np.sqrt(0.5), 0.0, -np.sqrt(0.5), 0.0)))
+    turned = tool.tcp.matrix()[:3, :3]
+
+    def at(move: Move, swivel: np.ndarray, rotation: float) -> Move:
+        matrix = move.target.pose.matrix()
+        part = matrix_from_rotation_vector(swivel) @ matrix_from_rotation_vector(
+            np.array([rotation, 0.0, 0.0])
+        )
+        matrix[:3, :3] = matrix[:3, :3] @ turned @ part
+        return replace(move, tool=tool, target=PoseTarget(Pose.from_matrix(matrix)))
+
+    party = Party(*side(pair.old))
+    for angle in np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False):
+        swivel = 0.8 * np.array([0.0, np.cos(angle), np.sin(angle)])
+        program = Program(
+            (at(pair.joint(), 0.0 * swivel, 0.0), at(pair.line((0.05, 0.0, 0.0)), swivel, np.pi))
+        )
+        route = party.route(program)
+        made = decided(program, route, Losses(program).through(range(2)))
+        old, new = (make_segments(one.ends).turn_b[-1] for one in (route, party.route(made)))
+        np.testing.assert_allclose(new, old, atol=1e-4)
 
 
 # ------------------------------------------------------------------------------ statements

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
@@ -72,6 +73,16 @@ def test_the_page_states_what_was_found(fitted, each) -> None:
         before, after = map(float, path.split(" → "))
         assert before == pytest.approx(1e3 * one.before.figures.path_max, abs=6e-4)
         assert after == pytest.approx(1e3 * one.after.figures.path_max, abs=6e-4)
+
+
+def test_the_page_says_what_samples_were_as_read(fitted, each) -> None:
+    one = each[0]
+    log = replace(one.after.log, notes=("put together",))
+    read = replace(one.after.figures, path_max=0.01234, joint_path_max=np.radians(0.567))
+    told = replace(one, after=replace(one.after, log=log, read=read))
+    made = page(fitted, [told, *each[1:]], "")
+    assert "put together" in made and "up to 12.340 mm" in made and "up to 0.567°" in made
+    assert made.count("As read") == 1
 
 
 def test_the_page_is_whole_in_one_file_and_escapes_what_it_is_told(fitted, each) -> None:

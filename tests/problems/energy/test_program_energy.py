@@ -354,6 +354,8 @@ def test_a_collision_is_refused():
         lambda: Goal(0.0, 0.0),
         lambda: Goal(1.0, 0.0, 0.0),
         lambda: Goal.weighted(1.5, 1.0, 1.0),
+        lambda: Goal.weighted(0.5, 0.0, 1.0),
+        lambda: Goal.weighted(0.5, 1.0, -1.0),
         lambda: Task(slowest=0.0),
     ],
 )

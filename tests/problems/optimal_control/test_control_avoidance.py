@@ -15,7 +15,7 @@ from flyby.core.collision.scene import CollisionScene
 from flyby.core.errors import InputError, MotionError
 from flyby.core.motion.consumption import SquaredTorque
 from flyby.core.robot.inertia import Inertia, carried_inertia
-from flyby.core.robot.joint import Joint, JointKind
+from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from flyby.core.robot.model import Robot
 from flyby.core.robot.shape import Box, LinkShape, Sphere
 from flyby.core.spatial.pose import IDENTITY, Pose
@@ -284,6 +284,16 @@ def test_corners_out_of_range() -> None:
 def test_a_joint_that_may_not_move_cannot_be_asked_to() -> None:
     with pytest.raises(InputError, match="joint J1 has to move"):
         Task(ARM, START, END, joints=(1, 2, 3, 4, 5))
+
+
+def test_a_torque_line_of_an_axis_that_brakes_hold() -> None:
+    track = Joint("E1", Pose(), (1.0, 0.0, 0.0), -1, 1, 1, 1, kind=JointKind.PRISMATIC)
+    robot = ARM.with_external_axes([ExternalAxis(track, ExternalRole.TRACK)])
+    for axis, message in (("J9", "given for 'J9'"), ("E1", "'E1'; the axes are J1, .*, J6$")):
+        limits = ControlLimits(curves=(TorqueLine(axis, 100.0, 1.0),))
+        task = Task(robot, [*START, 0.0], [*END, 0.0], joints=range(6), limits=limits)
+        with pytest.raises(InputError, match=message):
+            optimize(task)
 
 
 def test_a_jerk_limit_needs_a_scheme_with_jerk() -> None:

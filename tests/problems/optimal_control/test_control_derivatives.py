@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from flyby.core.motion.consumption import Motors
+from flyby.core.motion.consumption import SQUARED_TORQUE, Consumption, Motors
 from flyby.core.robot.inertia import Inertia
 from flyby.core.spatial.pose import Pose
 from flyby.core.sqp import NLP
@@ -95,11 +95,14 @@ def _agree(exact: object, sides: tuple[object, object], share: float = 1e-6) -> 
     assert float(np.abs(np.asarray(exact) - numeric).max()) <= share * size
 
 
-def test_the_hessian_that_is_used_is_convex_on_a_fixed_grid() -> None:
-    task = arm_task(objective=Objective(0.5))
+@pytest.mark.parametrize("consumption", [SQUARED_TORQUE, Motors((1e-4,) * 6)], ids=str)
+def test_the_hessian_that_is_used_is_convex_on_a_fixed_grid(consumption: Consumption) -> None:
+    task = arm_task(objective=Objective(0.5, consumption))
     guess, nlp = program(task, SchemeKind.LINEAR, None)
-    y = np.random.default_rng(1).standard_normal(nlp.m)
-    assert np.linalg.eigvalsh(nlp.hessian(guess.x, 1.0, np.abs(y)).toarray()).min() >= -1e-8
+    y = np.abs(np.random.default_rng(1).standard_normal(nlp.m))
+    hessian = nlp.hessian(guess.x, 1.0, y).toarray()
+    assert np.linalg.eigvalsh(hessian).min() >= -1e-8
+    assert np.abs(hessian - nlp.hessian(guess.x, 0.0, y).toarray()).max() > 1e-3
 
 
 @given(st.lists(st.floats(-10, 10), min_size=1, max_size=6))

@@ -274,6 +274,17 @@ def test_recuperation_pays():
         assert more.duration < less.duration
 
 
+def test_an_energy_that_nearly_cancels_weighs_no_more_than_others():
+    """What the fastest motion takes passes zero at η = 0.674; its share of the price does not."""
+    path = scene()[3]
+    found = [
+        tune(Task(path, objective=Objective(0.5, Motors((), share)))) for share in (0.5, 0.674, 1.0)
+    ]
+    fastest = tune(Task(path, objective=Objective(1.0, Motors((), 0.674))))
+    assert abs(fastest.energy) < 1e-2 * fastest.flow
+    assert found[0].duration > found[1].duration > found[2].duration
+
+
 @given(st.sampled_from([0.0, 0.4, 1.0]), st.floats(1.05, 2.0))
 @settings(max_examples=4, deadline=None)
 def test_no_other_motion_takes_less(share, slower):

@@ -8,9 +8,11 @@ import pytest
 
 from flyby.core.errors import InputError, SourceError
 from flyby.core.program.move import Opaque, Wait
+from flyby.core.registry import find_vendor
 from flyby.core.source.answers import Answers, key
 from flyby.core.source.limits import Limits
 from flyby.core.source.reading import ReadOptions
+from flyby.vendors.kuka.krl import writer
 from flyby.vendors.kuka.language import Krl
 
 INIT = "$TOOL=$NULLFRAME\n$BASE=$NULLFRAME\nBAS(#INITMOV,0)\n"
@@ -223,6 +225,15 @@ def test_answers_of_other_kinds(krl):
     assert visited(program) == [3.5]
 
 
+def test_what_is_passed_is_passed_when_it_is_written_and_read_again(krl):
+    program = krl(INIT + f"{P[1]} C_DIS\nCONTINUE\n$OUT[2]=FALSE\n{P[2]}")
+    texts = [s.text for s in program.statements if isinstance(s, Opaque)]
+    assert texts == ["CONTINUE", "$OUT[2]=FALSE"]
+    written = writer.write(program, find_vendor("kuka").robot("kr30-3"), {})
+    source = next(text for name, text in written.items() if name.endswith(".src"))
+    assert "CONTINUE\n$OUT[2]=FALSE\n" in source.replace("\r", "")
+
+
 def test_stops(krl):
     body = (
         f"{P[1]}\nIF $IN[1] THEN\nENDIF\n{P[2]}\nCONTINUE\nIF $IN[1] THEN\nENDIF\n{P[3]}\n"
@@ -235,6 +246,7 @@ def test_stops(krl):
     kept = {s.text: s.stops for s in statements if isinstance(s, Opaque)}
     assert kept == {
         "$OUT[1]=TRUE": True,
+        "CONTINUE": False,
         "$OUT[2]=FALSE": False,
         "$OUT_C[3]=TRUE": False,
         "WAIT FOR $IN[2]": True,

@@ -230,7 +230,12 @@ class Interpreter:
         self._notes.setdefault(kind, Note(message, span=span))
 
     def keep(self, span: Span, name: str, why: Kept) -> None:
-        """Keep a statement as it stands, with one note per kind, at the first of them."""
+        """Keep a statement as it stands, with one note per kind, at the first of them.
+
+        So is the ``CONTINUE`` that lets the robot pass it.
+        """
+        if why.stops and self._advance:
+            self.emit(Opaque("CONTINUE", span=span))
         self.emit(Opaque(self.text(span), why.stops and not self._advance, span))
         if why.why:
             message = f"{name} is kept and not carried out: {why.why}"
