@@ -527,7 +527,7 @@ def test_times_of_joint_moves_count_how_controllers_settle(back) -> None:
     """The IRB 6640's settles for 0.1 s at every stop, the KR 30's does not."""
     names = ["abb/irb6640-180-255", "kuka/kr30-3"]
     old, new = map(side, reversed(names) if back else names)
-    speed = Speed(joint_fraction=0.3) if back else Speed(tcp=0.6, reorientation=2.0)
+    speed = Speed(joint_fraction=0.3) if back else Speed(tcp=0.56, reorientation=2.0)
     home = (0.0, -1.4, 1.6, 0.0, 0.9, 0.0) if back else (0.0, 0.2, 0.2, 0.0, 1.0, 0.0)
     turns = (home[0], 0.6, -0.4, 0.3)
     moves = tuple(MoveJ(JointTarget((turn, *home[1:])), speed, FINE) for turn in turns)
