@@ -43,7 +43,7 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.fit import Fit, ParameterSet, PreparedRun, fit, prepare
 from flyby.identification.fit.crew import Crew
 from flyby.identification.fit.emulation import Nuisance
-from flyby.identification.fit.fitting import minimise
+from flyby.identification.fit.minimum import minimise
 from flyby.identification.fit.outcome import predicted
 from flyby.identification.fit.parameters import fitted_before
 from flyby.identification.fit.problem import first_nuisances
@@ -143,13 +143,7 @@ def by_other_corners(case: str, run: PreparedRun) -> Iterator[Figure]:
     path, joints, sizes = [], [], []
     for half in (0, 1):
         taught = run.cluster % 2 == half
-        part = replace(
-            run,
-            t=run.t[taught],
-            q=run.q[taught],
-            weight=run.weight[taught],
-            cluster=run.cluster[taught],
-        )
+        part = run.only(taught)
         with Crew([part]) as crew:
             (own,) = minimise(crew, ParameterSet(model, ()), first_nuisances([part])).nuisances
         found = predicted(run, model, own)
@@ -210,7 +204,7 @@ def fit_abb(case: str) -> Iterator[Figure]:
     yield Figure(case, "wall_s", seconds, "s", "target", 120.0)
     yield Figure(case, "cpu_s", _cpu() - spent, "s")
     yield Figure(case, "iterations", found.iterations, "")
-    yield Figure(case, "loss_at_start", found.before, "")
+    yield Figure(case, "loss_before", found.before, "")
     yield Figure(case, "loss", found.after, "", "from shipped", shipped.after)
     for one in found.intervals:
         yield Figure(case, one.name, one.value, "", "standard deviation", one.deviation)

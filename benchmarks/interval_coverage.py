@@ -34,9 +34,9 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
 from flyby.identification.fit import ParameterSet, prepare
 from flyby.identification.fit.crew import Crew
-from flyby.identification.fit.fitting import minimise
 from flyby.identification.fit.intervals import clusters_of, intervals
 from flyby.identification.fit.loss import influence
+from flyby.identification.fit.minimum import minimise
 from flyby.identification.fit.problem import Problem, first_nuisances
 from flyby.identification.logs.synthetic import Faults, synthetic_run
 

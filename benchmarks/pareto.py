@@ -33,6 +33,7 @@ scene's path with torque limits.
 
 from __future__ import annotations
 
+import math
 import os
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -210,7 +211,7 @@ def _fastest(base: Baseline, program: Program, starts: int) -> Program:
     freed = passable_stops(program)
     if not freed:
         return program
-    wishes = Wishes(axes=base.scene.free, freed=freed)
+    wishes = Wishes(axes=base.scene.free, tilt=math.pi, freed=freed)
     found = optimize_waypoints(
         base.controller, program, base.scene.cell, wishes, Effort(starts=starts, generations=1)
     )
@@ -220,7 +221,7 @@ def _fastest(base: Baseline, program: Program, starts: int) -> Program:
 def _point(base: Baseline, program: Program, goal: Goal) -> Point:
     """The program that serves a goal best, begun at the fastest one."""
     scope = Scope.WAYPOINTS if len(program.moves) > 1 else Scope.SPEEDS
-    task = Task(scope, wishes=Wishes(axes=base.scene.free))
+    task = Task(scope, wishes=Wishes(axes=base.scene.free, tilt=math.pi))
     cell, effort = base.scene.cell, Effort(starts=1, generations=0, workers=1)
     (point,) = optimize_energy(
         base.controller, program, goal, cell, task, effort, ABB.speaks, _written
@@ -242,7 +243,7 @@ def two_joint_front() -> tuple[Controller, Front]:
     """The front of the two-joint program, begun at the fastest one that is found."""
     base = Baseline.of(two_joints())
     program = _fastest(base, base.scene.programs[0], 6)
-    task = Task(wishes=Wishes(axes=base.scene.free))
+    task = Task(wishes=Wishes(axes=base.scene.free, tilt=math.pi))
     effort = Effort(starts=1, generations=0, workers=1)
     cell = base.scene.cell
     front = pareto(base.controller, program, cell, task, POINTS, effort, ABB.speaks, _written)

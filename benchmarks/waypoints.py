@@ -38,6 +38,7 @@ The peer: pip install flyby[benchmarks]
 
 from __future__ import annotations
 
+import math
 import os
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -169,7 +170,7 @@ def _solved(
         )
         held = measure(controller, run, proof)
         return Solution(program, program, held, held, proof)
-    task = Task(axes=scene.free, freed=freed, keep=scene.process, vias=vias)
+    task = Task(axes=scene.free, tilt=math.pi, freed=freed, keep=scene.process, vias=vias)
     return solver(controller, program, scene.cell, task, effort)
 
 

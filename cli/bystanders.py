@@ -50,7 +50,7 @@ def _note(found: Bystander) -> Note:
     more = f" and {len(lines) - _SHOWN} more" if len(lines) > _SHOWN else ""
     where = f"line{'s' if len(lines) > 1 else ''} {', '.join(lines[:_SHOWN])}{more}"
     return Note(
-        f"{found.datum} has changed, and is also named in {where}, which this run has not driven: "
+        f"{found.datum} has changed, and is also used in {where}, which this run has not driven: "
         "nothing is proven of what happens there",
         found.move,
         found.places[0],

@@ -57,7 +57,7 @@ def check(
 
     with progress("checking the program"):
         vendor, arm = robot_of(robot, cell, motion)
-        found = _findings(Source.of(program, entry, io, others), vendor, arm, start)
+        found = _findings(Source.of(program, entry, io, others, start), vendor, arm, start)
     if json:
         print_json({"robot": arm.name, "findings": [_json(finding) for finding in found]})
     else:

@@ -23,15 +23,17 @@ from .options import (
     RobotName,
     Start,
 )
-from .outputs import check_outputs, check_plot_name, writing
+from .outputs import check_outputs, check_plot_name, write_all
 
 if TYPE_CHECKING:
+    from ..core.motion.model import ArcTurn
     from ..core.program.target import JointTarget
     from ..core.robot.model import Robot
     from ..core.vendor import Vendor
     from ..identification.logs import LoggedRun
     from ..identification.prediction import Prediction
     from ..identification.residuals import Figures
+    from ..identification.time_scale import TimeScale
 
 RECORD = ".json"
 COLUMNS = (("", "left"), ("greatest", "right"), ("99 %", "right"), ("RMS", "right"))
@@ -65,7 +67,7 @@ def compare(
 ) -> None:
     """Hold a controller's log against the emulation of its program: in space and in time."""
     check_plot_name(plot)
-    source = Source.of(program, entry, io, others)
+    source = Source.of(program, entry, io, others, start)
     check_outputs(
         {"--plot": plot}, source.inputs(cell, log, columns, motion), replace_existing=force
     )
@@ -73,12 +75,13 @@ def compare(
         vendor, arm, run = _load(source, log, _Driven(robot, cell, motion), columns)
         stand = start_of(start, arm)
         say(f"emulating {len(run.program.moves)} moves")
-        compared = _compare(vendor, arm, run, stand)
+        compared, scale = _compare(vendor, arm, run, stand)
         if plot is not None:
             _draw(compared, plot)
     for note in (*run.notes, *compared.log.notes[len(run.notes) :]):
         warn(f"{program if log is None else log}: {note}")
-    _tell(compared, run, as_json=json)
+    _warn(compared, scale, vendor.motion_of(arm).arc_turn)
+    _tell(compared, run, scale, as_json=json)
     if plot is not None and not json:
         print_rich(f"wrote {plot}")
 
@@ -120,31 +123,46 @@ def _load(
     return vendor, arm, found
 
 
-def _compare(vendor: Vendor, robot: Robot, run: LoggedRun, start: JointTarget | None) -> Prediction:
+def _compare(
+    vendor: Vendor, robot: Robot, run: LoggedRun, start: JointTarget | None
+) -> tuple[Prediction, TimeScale | None]:
+    """The log beside its emulation, and what alone explains its times."""
     from ..core.motion.controller import Controller
     from ..identification.logs import clean
     from ..identification.prediction import predict
+    from ..identification.time_scale import time_scale
 
     try:
         log = clean(run)
     except InputError as error:
         raise InputError(f"{run.name}: {error}") from error
     program = run.program if start is None else replace(run.program, start=start)
-    return predict(Controller(vendor, robot), run.name, program, log)
+    controller = Controller(vendor, robot)
+    found = predict(controller, run.name, program, log)
+    scale = time_scale(controller, found) if run.timed else None
+    return found, scale if scale is not None and scale.alone else None
+
+
+def _warn(compared: Prediction, scale: TimeScale | None, turn: ArcTurn) -> None:
+    if scale is not None:
+        warn(f"{compared.name}: {scale.told}")
+    if compared.turn is not None and compared.turn is not turn:
+        warn(
+            f'{compared.name}: along arcs the tool turns as arc.turn = "{compared.turn}" says, '
+            f'not "{turn}" as the motion model does: so it was emulated. flyby identify writes it'
+        )
 
 
 def _draw(found: Prediction, plot: Path) -> None:
-    from ..core.motion.trajectory import write_whole
     from ..identification.report.picture import draw_prediction
 
     data = draw_prediction(found, plot.suffix.lower()[1:])
-    with writing("--plot", plot):
-        write_whole(plot, data)
+    write_all("--plot", {plot: data})
 
 
-def _tell(compared: Prediction, run: LoggedRun, *, as_json: bool) -> None:
+def _tell(compared: Prediction, run: LoggedRun, scale: TimeScale | None, *, as_json: bool) -> None:
     if as_json:
-        print_json(_json(compared, run))
+        print_json(_json(compared, run, scale))
         return
     f, log, aligned = compared.figures, compared.log, compared.alignment
     rows = _rows(f)
@@ -194,7 +212,7 @@ def _rows(f: Figures) -> list[tuple[str, ...]]:
     ]
 
 
-def _json(compared: Prediction, run: LoggedRun) -> dict[str, Any]:
+def _json(compared: Prediction, run: LoggedRun, scale: TimeScale | None) -> dict[str, Any]:
     """SI units, in the keys."""
     import numpy as np
 
@@ -219,6 +237,8 @@ def _json(compared: Prediction, run: LoggedRun) -> dict[str, Any]:
         "period_s": log.period,
         "jitter_s": log.jitter,
         "notes": list(log.notes),
+        "arc_turn": compared.turn,
+        "time_scale": None if scale is None else {"cause": scale.cause, "value": scale.value},
         "as_read": None if compared.read is None else _figures(compared.read),
     }
 

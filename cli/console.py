@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
+from ..core.display import shown
+
 WIDE = 160
 """Columns of a table that goes into a file or a pipe."""
 
@@ -25,7 +27,7 @@ def print_rich(*parts: Any) -> None:
     if not console.is_terminal:
         console.width = WIDE
     for part in parts:
-        console.print(part)
+        console.print(shown(part) if isinstance(part, str) else part)
 
 
 def print_table(
@@ -52,7 +54,7 @@ def print_table(
             overflow="fold",
         )
     for row in rows:
-        table.add_row(*(Text(cell) for cell in row))
+        table.add_row(*(Text(shown(cell)) for cell in row))
     print_rich(table)
 
 
@@ -70,7 +72,7 @@ def _complain(label: str, style: str, message: str) -> None:
     from rich.console import Console
     from rich.text import Text
 
-    text = Text.assemble((f"{label}: ", style), message)
+    text = Text.assemble((f"{label}: ", style), shown(message))
     Console(stderr=True, highlight=False).print(text, soft_wrap=True)
 
 

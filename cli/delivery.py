@@ -71,12 +71,10 @@ def deliver(
     Raises:
         InputError: see `Places.write`.
     """
-    from ..core.source.patching import reading_of
-
     concerned = bystander_notes(made, vendor)
     made = replace(made, notes=(*made.notes, *concerned))
     written: list[Path] = []
     refused = places.in_place and bool(concerned)
     if made.changed and (made.proven or unproven) and not refused:
-        written = places.write(files, reading_of(made.original).files)
+        written = places.write(files, made.original)
     return Delivery(made, concerned, written, places)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -47,7 +48,9 @@ class Emission:
             read = self._patching.read_back(program)
             self.files = self._patching.files
             return read
-        read, sources = written_anew(self._vendor, self._robot, program)
+        # Where the user says that the robot stands is no part of the program.
+        own = replace(program, start=self._original.start)
+        read, sources = written_anew(self._vendor, self._robot, own)
         self.files = {file: SourceFile(file, text) for file, text in sources.items()}
         return read
 

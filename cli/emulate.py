@@ -25,7 +25,7 @@ from .options import (
     RobotName,
     Start,
 )
-from .outputs import check_outputs, check_plot_name, writing
+from .outputs import check_outputs, check_plot_name, write_all
 
 if TYPE_CHECKING:
     from ..core.motion.controller import Run
@@ -87,7 +87,7 @@ def emulate(
     force: Force = False,
 ) -> None:
     """Drive a program as the robot's controller would: cycle time, path, what limits each move."""
-    source = Source.of(program, entry, io, others)
+    source = Source.of(program, entry, io, others, start)
     files = _Files(csv, npz, plot, write)
     _check_opaque(opaque, write)
     check_plot_name(plot)
@@ -140,28 +140,21 @@ def _write_files(
     replace_existing: bool,
 ) -> list[Path]:
     """Make everything that can fail first, then write; returns what was written."""
-    from ..core.motion.trajectory import write_whole
-
-    made: list[tuple[str, Path, bytes]] = []
+    made: dict[Path, bytes] = {}
+    if files.csv is not None:
+        made[files.csv] = run.trajectory.csv()
+    if files.npz is not None:
+        made[files.npz] = run.trajectory.npz()
     if files.write is not None:
         sources = _sources(files.write, vendor, robot, run.program, options)
         check_outputs({f"--write: {path.name}": path for path in sources}, inputs, replace_existing)
-        made += [("--write", path, text.encode()) for path, text in sources.items()]
+        made |= {path: text.encode() for path, text in sources.items()}
     if files.plot is not None:
         from ..drawing.run import draw
 
-        made.append(("--plot", files.plot, draw(run, robot, files.plot.suffix.lower()[1:])))
-    for option, path, data in made:
-        with writing(option, path):
-            write_whole(path, data)
-    if files.csv is not None:
-        with writing("--csv", files.csv):
-            run.trajectory.save_csv(files.csv)
-    if files.npz is not None:
-        with writing("--npz", files.npz):
-            run.trajectory.save_npz(files.npz)
-    written = [path for _, path, _ in made]
-    return [*filter(None, (files.csv, files.npz)), *written]
+        made[files.plot] = draw(run, robot, files.plot.suffix.lower()[1:])
+    write_all(", ".join(option for option, path in files.by_option().items() if path), made)
+    return list(made)
 
 
 def _sources(

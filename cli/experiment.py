@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json as json_text
 import math
-from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,16 +12,14 @@ import typer
 from ..core.errors import InputError
 from . import values
 from .console import print_json, print_rich, print_table, progress, warn
-from .installed import registry
-from .loading import robot_of
-from .options import AsJson, CellFile, Force, MotionFile, RobotName
-from .outputs import check_folder, check_outputs, writing
+from .loading import cell_of, robot_of
+from .options import AsJson, CellFile, Force, MotionFile, NoFloor, RobotName
+from .outputs import check_folder, check_outputs, write_in
 
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell
     from ..core.program.tool import Tool
     from ..core.robot.model import Robot
-    from ..core.vendor import Vendor
     from ..identification.experiment.plan import Experiment, Kind, Plan
 
 PAGE, PICTURE, RECORD = "README.md", "overview.png", ".json"
@@ -44,6 +41,7 @@ def experiment(
     out: Annotated[Path, typer.Option("--out", help="Folder to write programs and records to.")],
     robot: RobotName = None,
     cell: CellFile = None,
+    no_floor: NoFloor = False,
     motion: MotionFile = None,
     tool: Annotated[
         str | None, typer.Option(help="Tool of the cell that is mounted; the flange if unset.")
@@ -92,7 +90,7 @@ def experiment(
         from ..identification.experiment.design import design
 
         vendor, arm = robot_of(robot, cell, motion)
-        where = _cell(vendor, arm, cell)
+        where = cell_of((vendor, arm), cell, no_floor=no_floor)
         plan = _plan(
             arm,
             tool=_tool(tool, where, cell),
@@ -111,18 +109,11 @@ def experiment(
         )
         made = design(vendor, where, plan, bare=cell is None, say=say)
         say("writing")
-        written = _write(out, _files(made, where, cell), inputs, force)
+        written = write_in("--out", out, _files(made, where, cell), inputs, force)
     if json:
         print_json(_json(made, written))
     else:
         _tell(made, out)
-
-
-def _cell(vendor: Vendor, robot: Robot, file: Path | None) -> Cell:
-    from ..core.cell.cell import Cell
-    from ..core.cell.file import load_cell
-
-    return Cell(robot, vendor.name) if file is None else load_cell(file, registry())
 
 
 def _tool(name: str | None, cell: Cell, file: Path | None) -> Tool:
@@ -189,24 +180,6 @@ def _files(made: Experiment, cell: Cell, file: Path | None) -> dict[Path, bytes]
     found[Path(PAGE)] = page(made, None if file is None else file.name).encode()
     found[Path(PICTURE)] = draw_experiment(cell, made)
     return found
-
-
-def _write(
-    folder: Path, files: Mapping[Path, bytes], inputs: Iterable[Path], replace_existing: bool
-) -> list[Path]:
-    from ..core.motion.trajectory import write_whole
-
-    paths = {folder / name: data for name, data in files.items()}
-    for inside in dict.fromkeys([folder, *(path.parent for path in paths)]):
-        with writing("--out", inside):
-            inside.mkdir(exist_ok=True)
-    check_outputs(
-        {f"--out: {path.relative_to(folder)}": path for path in paths}, inputs, replace_existing
-    )
-    for path, data in paths.items():
-        with writing("--out", path):
-            write_whole(path, data)
-    return list(paths)
 
 
 def _tell(made: Experiment, out: Path) -> None:

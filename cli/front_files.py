@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.errors import FlybyError
 from .emission import written_anew
-from .outputs import check_outputs, writing
+from .outputs import write_in
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
@@ -49,11 +50,12 @@ class FrontFiles:
         try:
             files = self._vendor.patch(program, self._robot, _OWN)
         except FlybyError:
-            read, sources = written_anew(self._vendor, self._robot, program)
+            # Where the user says that the robot stands is no part of the program.
+            own = replace(program, start=self._original.start)
+            read, sources = written_anew(self._vendor, self._robot, own)
             texts = {name: text.encode() for name, text in sources.items()}
         else:
-            reading = reading_of(program)
-            read, texts = reading.again(files), _bytes({**reading.files, **files})
+            read, texts = reading_of(program).again(files), self._set(files)
         self._known.append((read, texts))
         return read
 
@@ -77,33 +79,28 @@ class FrontFiles:
         Raises:
             InputError: one of them must not be written; then none is.
         """
-        from ..core.motion.trajectory import write_whole
-
         if out is None:
             return []
         planned = {
-            out / f"point-{k + 1}" / name: data
+            Path(f"point-{k + 1}") / name: data
             for k, program in enumerate(programs)
             for name, data in self._texts(program).items()
         }
-        for path in planned:
-            with writing("--out", path.parent):
-                path.parent.mkdir(parents=True, exist_ok=True)
-        check_outputs({f"--out: {path}": path for path in planned}, inputs, replace_existing)
-        for path, data in planned.items():
-            with writing("--out", path):
-                write_whole(path, data)
+        written = write_in("--out", out, planned, inputs, replace_existing)
         folders = [out / f"point-{k + 1}" for k in range(len(programs))]
-        return [[path for path in planned if path.parent == folder] for folder in folders]
+        return [[path for path in written if path.parent == folder] for folder in folders]
 
     def _texts(self, program: Program) -> dict[str, bytes]:
-        from ..core.source.patching import reading_of
-
         for known, texts in self._known:
             if known is program:
                 return texts
-        return _bytes(reading_of(self._original).files)
+        return self._set({})
 
+    def _set(self, changed: Files) -> dict[str, bytes]:
+        """The files of the original, of which some have changed, that run alone."""
+        from ..core.source.patching import reading_of, runnable_set
+        from ..core.source.reading import named_apart
 
-def _bytes(files: Files) -> dict[str, bytes]:
-    return {Path(name).name: file.data for name, file in files.items()}
+        reading = reading_of(self._original)
+        files = runnable_set(self._original, changed or {reading.main: reading.files[reading.main]})
+        return {name: file.data for name, file in named_apart(files).items()}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,12 +15,12 @@ from .installed import registry
 from .loading import robot_of
 from .logged_runs import find_runs
 from .options import AsJson, CellFile, Force, MotionFile, RobotName
-from .outputs import check_outputs, writing
+from .outputs import check_outputs, write_all
 
 if TYPE_CHECKING:
     from ..core.robot.model import Robot
     from ..core.vendor import Vendor
-    from ..identification.fit import Fit, Outcome, ParameterSet, PreparedRun
+    from ..identification.fit import Fit, Judgement, Outcome, ParameterSet, PreparedRun
     from ..identification.fit.selection import Score
     from ..identification.logs import LoggedRun
 
@@ -111,22 +110,32 @@ def identify(
         from ..identification.fit import outcomes
 
         each = outcomes(fitted)
+        judged = _judge(fitted, workers, say)
         scores = [] if select is None else _select(fitted, select, workers, say)
     command = _command(
         logs, arm, parameters, {"--cell": cell, "--motion": motion, "--columns": columns}
     )
     text = _motion_file(fitted, command, logs, owner)
-    _write("--out", out, lambda: text)
-    _write("--report", report, lambda: _page(fitted, each, text))
+    kept = judged is not None and not judged.better and not force
+    files = {} if out is None or kept else {out: text.encode()}
+    if report is not None:
+        files[report] = _page(fitted, each, text, judged).encode()
+    write_all("--out and --report", files)
     if json:
-        print_json(_json(fitted, each, scores))
-        return
-    if found.others:
-        warn(f"{found.others} runs of other robots in these folders are passed over")
-    _warn(fitted)
-    _tell(fitted, each, scores)
-    for made in _files(out, report):
-        print_rich(f"wrote {made}")
+        print_json(_json(fitted, each, judged, scores))
+    else:
+        if found.others:
+            warn(f"{found.others} runs of other robots in these folders are passed over")
+        _warn(fitted)
+        _tell(fitted, each, scores)
+        _tell_judged(judged)
+        for made in files:
+            print_rich(f"wrote {made}")
+    if kept and out is not None and judged is not None:
+        raise InputError(
+            f"--out {out}: not written, as what was fitted predicts worse than the model that the "
+            f"fit began with: {judged.told}. {_help_of(judged)}; --force writes it"
+        )
 
 
 def _files(*files: Path | None) -> list[Path]:
@@ -181,6 +190,13 @@ def _select(fitted: Fit, trait: str, workers: int, say: Any) -> list[Score]:
     )
 
 
+def _judge(fitted: Fit, workers: int, say: Any) -> Judgement | None:
+    from ..identification.fit import judge
+
+    say("fitting with runs held back")
+    return judge(fitted, workers, lambda text: say(f"fitting with runs held back: {text}"))
+
+
 def _command(
     logs: list[Path], robot: Robot, parameters: list[str] | None, files: dict[str, Path | None]
 ) -> str:
@@ -203,19 +219,10 @@ def _motion_file(fitted: Fit, command: str, logs: list[Path], vendor: Vendor) ->
     return motion_file(fitted, command, heading, stated, logs[0].resolve().stem)
 
 
-def _page(fitted: Fit, each: list[Outcome], text: str) -> str:
+def _page(fitted: Fit, each: list[Outcome], text: str, judged: Judgement | None) -> str:
     from ..identification.report.page import page
 
-    return page(fitted, each, text)
-
-
-def _write(option: str, file: Path | None, text: Callable[[], str]) -> None:
-    from ..core.motion.trajectory import write_whole
-
-    if file is None:
-        return
-    with writing(option, file):
-        write_whole(file, text().encode("utf-8"))
+    return page(fitted, each, text, judged)
 
 
 def _warn(fitted: Fit) -> None:
@@ -226,6 +233,18 @@ def _warn(fitted: Fit) -> None:
             warn(f"{run.name}: its speeds were not recorded; it is compared by place, not by time")
         if not run.run.zones_known:
             warn(f"{run.name}: its zones were not recorded; one factor on them is fitted")
+    for names, what in fitted.scales:
+        warn(f"{names}: {what}. Figures are fitted beside it")
+    others = [
+        run.name for run in fitted.runs if run.turn is not None and run.turn is not fitted.turn
+    ]
+    if others and fitted.turn is not None:
+        warn(
+            f"the tool turns along arcs otherwise in {', '.join(others)} than in the other logs "
+            f'(arc.turn = "{fitted.turn}"): no one model drives both; fit them apart'
+        )
+    for one in fitted.rough:
+        warn(f"{one.name} is known roughly ({one.reason}), but the logs ask for it")
     for one in fitted.unseen:
         warn(f"{one.name} is not identifiable: {one.reason}; it stays as it was")
     if not fitted.converged:
@@ -250,7 +269,11 @@ def _tell(fitted: Fit, each: list[Outcome], scores: list[Score]) -> None:
         f"fitted to {len(each)} runs: loss {fitted.before:.4g} → {fitted.after:.4g}",
     )
     print_table(RUN_COLUMNS, [_row(one) for one in each], "log less emulation, before → after")
-    clocks = {one.run.clock: one.nuisance.clock for one in each if one.run.clock is not None}
+    clocks = {
+        one.run.clock: one.nuisance.clock
+        for one in each
+        if one.run.clock is not None and one.run.own_clock is None
+    }
     for name, clock in clocks.items():
         print_rich(f"the clock of {name}: {clock:.5f} s pass while its logs count one")
     for one in each:
@@ -273,6 +296,23 @@ def _tell(fitted: Fit, each: list[Outcome], scores: list[Score]) -> None:
         )
 
 
+def _tell_judged(judged: Judgement | None) -> None:
+    if judged is None:
+        warn("there is nothing to hold back that would judge the fit: log more than one move")
+        return
+    print_rich(judged.told)
+    if judged.worse:
+        worse = ", ".join(judged.worse)
+        helped = "" if judged.by_corners else f". {_help_of(judged)}"
+        warn(f"predicted worse than before the fit when held back: {worse}{helped}")
+    if judged.by_corners:
+        warn(f"corners of the same runs judged the fit. {_help_of(judged)}")
+
+
+def _help_of(judged: Judgement) -> str:
+    return f"These would help: {'; '.join(judged.helpful)} (flyby experiment designs them)"
+
+
 def _row(one: Outcome) -> tuple[str, ...]:
     import numpy as np
 
@@ -292,13 +332,19 @@ def _row(one: Outcome) -> tuple[str, ...]:
     )
 
 
-def _json(fitted: Fit, each: list[Outcome], scores: list[Score]) -> dict[str, Any]:
+def _json(
+    fitted: Fit, each: list[Outcome], judged: Judgement | None, scores: list[Score]
+) -> dict[str, Any]:
     """SI units, in the keys."""
     from dataclasses import asdict
 
     return {
         "parameters": [asdict(one) for one in fitted.intervals],
         "not_identifiable": [asdict(one) for one in fitted.unseen],
+        "known_roughly": [asdict(one) for one in fitted.rough],
+        "arc_turn": fitted.turn,
+        "time_scales": [{"runs": names, "says": says} for names, says in fitted.scales],
+        "held_back": None if judged is None else {**asdict(judged), "better": judged.better},
         "loss_before": fitted.before,
         "loss_after": fitted.after,
         "iterations": fitted.iterations,
@@ -310,6 +356,7 @@ def _json(fitted: Fit, each: list[Outcome], scores: list[Score]) -> dict[str, An
                 "offset_s": one.nuisance.offset,
                 "clock": one.nuisance.clock,
                 "zone_size": one.nuisance.size,
+                "override": one.nuisance.override,
                 "before": asdict(one.before.figures),
                 "after": asdict(one.after.figures),
                 "notes": list(one.run.log.notes),

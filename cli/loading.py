@@ -11,8 +11,12 @@ from . import values
 from .installed import check_language, registry, vendor_of
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ..core.cell.cell import Cell
     from ..core.program.program import Program
     from ..core.program.target import JointTarget
+    from ..core.program.tool import Tool
     from ..core.robot.model import Robot
     from ..core.source.answers import Answers
     from ..core.vendor import Vendor
@@ -27,19 +31,26 @@ class Source:
         entry: the routine to run; None for the vendor's own.
         answers: file of answers; None for none.
         others: further files of the program.
+        start: where the robot stands before the first move, as ``--start`` says it.
     """
 
     file: Path
     entry: str | None = None
     answers: Path | None = None
     others: tuple[Path, ...] = ()
+    start: str | None = None
 
     @classmethod
     def of(
-        cls, file: Path, entry: str | None, answers: Path | None, others: list[Path] | None
+        cls,
+        file: Path,
+        entry: str | None,
+        answers: Path | None,
+        others: list[Path] | None,
+        start: str | None = None,
     ) -> Source:
         """From the options as they were given."""
-        return cls(file, entry, answers, tuple(others or ()))
+        return cls(file, entry, answers, tuple(others or ()), start)
 
     def inputs(self, *more: Path | None) -> list[Path]:
         """All files that are read: none of them is ever written to."""
@@ -53,7 +64,8 @@ class Source:
             FlybyError: it is another vendor's, or cannot be read.
         """
         check_language(vendor, self.file)
-        return vendor.read_file(self.file, self.entry, robot, self._answers(), self.others)
+        stand = start_of(self.start, robot)
+        return vendor.read_file(self.file, self.entry, robot, self._answers(), self.others, stand)
 
     def _answers(self) -> Answers | None:
         if self.answers is None:
@@ -78,6 +90,36 @@ def robot_of(
     """
     vendor, robot = _stated(name, cell)
     return (vendor if motion is None else vendor.driven_by(motion, robot)), robot
+
+
+def cell_of(
+    robot: tuple[Vendor, Robot],
+    file: Path | None,
+    tools: Iterable[Tool] = (),
+    *,
+    no_floor: bool,
+) -> Cell:
+    """What stands around a robot: what the cell file says, or nothing but a floor.
+
+    Args:
+        robot: as `robot_of` gives it.
+        file: the cell; None where there is none.
+        tools: that are mounted, where no file says so.
+        no_floor: whether ``--no-floor`` was given.
+
+    Raises:
+        InputError: the file is unusable, or ``--no-floor`` is given with one.
+    """
+    vendor, arm = robot
+    if file is None:
+        from ..core.cell.floor import bare_cell
+
+        return bare_cell(arm, vendor.name, tools, floor=not no_floor)
+    if no_floor:
+        raise InputError(f"--no-floor: what stands around is what the cell {file} says; change it")
+    from ..core.cell.file import load_cell
+
+    return load_cell(file, registry())
 
 
 def _stated(name: str | None, cell: Path | None) -> tuple[Vendor, Robot]:

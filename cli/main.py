@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from typing import Annotated, Any
 
 import typer
@@ -11,7 +12,7 @@ from ..core.errors import FlybyError
 from .catalogue import robots, vendors
 from .check import check
 from .compare import compare
-from .console import fail
+from .console import fail, warn
 from .emulate import emulate
 from .experiment import experiment
 from .identify import identify
@@ -23,6 +24,8 @@ from .record import record
 from .translate import translate
 from .zones import zones
 
+LONGEST_NAME = 300
+"""Characters of a file's name that are shown."""
 NUMBERS_MAY_BE_NEGATIVE = {"ignore_unknown_options": True}
 
 
@@ -35,6 +38,11 @@ class Commands(TyperGroup):
             return super().invoke(ctx)
         except FlybyError as error:
             fail(str(error))
+            raise typer.Exit(1) from None
+        except OSError as error:  # a name that the system does not take, a disk that fails
+            if error.filename is None:
+                raise
+            fail(f"{str(error.filename)[:LONGEST_NAME]}: {error.strerror or error}")
             raise typer.Exit(1) from None
 
 
@@ -79,6 +87,14 @@ def _root(
     pass
 
 
+class _Warnings(logging.Handler):
+    """Tells what the library logs as the command line tells its own warnings."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        warn(record.getMessage())
+
+
 def main() -> None:
     """Run the command line."""
+    logging.getLogger("flyby").addHandler(_Warnings())
     app(prog_name="flyby")

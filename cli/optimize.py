@@ -12,8 +12,7 @@ from ..core.errors import InputError
 from .console import print_json, print_table, progress
 from .delivery import deliver
 from .emission import Emission
-from .installed import registry
-from .loading import Source, start_of
+from .loading import Source, cell_of, robot_of, start_of
 from .options import (
     AnswersFile,
     AsJson,
@@ -25,16 +24,20 @@ from .options import (
     InPlace,
     Kept,
     Limits,
+    MotionFile,
+    NoFloor,
     OtherFiles,
     Out,
     Predefined,
     ProgramFile,
+    RobotName,
     Seed,
     Start,
+    Tilt,
     WholeCell,
 )
 from .other_vendor import OtherVendor
-from .outputs import check_outputs, check_plot_name, writing
+from .outputs import check_outputs, check_plot_name, write_all
 from .patching import Places
 from .places import place_json, short_place
 from .solution_report import solution_json, tell_solution
@@ -49,16 +52,25 @@ if TYPE_CHECKING:
     from ..core.program.move import Move
     from ..core.program.program import Program
     from ..core.program.zone import Zone
-    from ..problems.solution import Solution
+    from ..problems.solution import Moved, Solution
     from ..problems.waypoints import Effort, Progress, Task
 
-COLUMNS = (("move", "right"), ("line", "left"), ("target", "left"), ("zone", "left"))
+COLUMNS = (
+    ("move", "right"),
+    ("line", "left"),
+    ("target", "left"),
+    ("height, mm", "right"),
+    ("turn, °", "right"),
+    ("zone", "left"),
+)
 CHANGE = "change"
 
 
 def optimize(
     program: ProgramFile,
-    cell: WholeCell,
+    cell: WholeCell = None,
+    robot: RobotName = None,
+    motion: MotionFile = None,
     entry: Entry = None,
     io: AnswersFile = None,
     others: OtherFiles = None,
@@ -77,7 +89,9 @@ def optimize(
     free: Freed = None,
     limit: Limits = None,
     axes: Axes = None,
+    tilt: Tilt = 0.0,
     clearance: Clearance = None,
+    no_floor: NoFloor = False,
     predefined: Predefined = False,
     vias: Annotated[
         str,
@@ -120,23 +134,25 @@ def optimize(
 
     Only a program that is proven to keep its clearance, as read from the new text, is written.
     """
-    source = Source.of(program, entry, io, others)
-    places = Places(out, in_place, source.inputs(cell), force)
+    source = Source.of(program, entry, io, others, start)
+    places = Places(out, in_place, source.inputs(cell, motion), force)
     places.check()
     check_plot_name(plot)
     check_outputs({"--plot": plot}, places.inputs, force)
-    _check_options(zones_only, bool(limit), vias == CHANGE, in_place)
+    _check_options(zones_only, bool(limit) or tilt != 0.0, vias == CHANGE, in_place)
     if other is not None and out is None:
         raise InputError(
             f"--vendor {other}: its code goes beside the program's own: name a folder by --out"
         )
     with progress("reading the program") as say:
-        from ..core.cell.file import load_cell
         from ..core.motion.controller import Controller
 
-        where = load_cell(cell, registry())
-        vendor = where.find_vendor(registry())
-        parsed = source.read(vendor, where.robot)
+        vendor, arm = robot_of(robot, cell, motion)
+        parsed = source.read(vendor, arm)
+        tools = dict.fromkeys(move.tool for move in parsed.moves)
+        where = cell_of((vendor, arm), cell, tools, no_floor=no_floor)
+        if vias == CHANGE:  # a search takes long: what cannot be written anew is refused before it
+            vendor.write(parsed, where.robot)
         beside = None
         if other is not None and out is not None:
             beside = OtherVendor((vendor, where.robot), party_for(other, "--vendor"), out, places)
@@ -150,6 +166,7 @@ def optimize(
             free=free or [],
             limits=limit or [],
             axes=axes,
+            tilt=tilt,
             clearance=clearance,
             vias=vias,
             predefined=predefined,
@@ -176,7 +193,8 @@ def optimize(
 def _check_options(zones_only: bool, limited: bool, other_vias: bool, in_place: bool) -> None:
     if zones_only and (limited or other_vias):
         raise InputError(
-            "--zones-only leaves every point as it is: --limit and --vias change do not go with it"
+            "--zones-only leaves every point as it is: --limit, --tilt and --vias change do not go "
+            "with it"
         )
     if in_place and other_vias:
         raise InputError(
@@ -206,15 +224,13 @@ def _optimized(
 
 
 def _draw(plot: Path, cell: Cell, controller: Controller, made: Solution, task: Task) -> list[Path]:
-    from ..core.motion.trajectory import write_whole
     from ..drawing.cell import draw_cell
 
     runs = [("before", controller.run(made.original, task.start))]
     if made.changed:
         runs.append(("after", controller.run(made.program, task.start)))
     data = draw_cell(cell, runs, plot.suffix.lower()[1:])
-    with writing("--plot", plot):
-        write_whole(plot, data)
+    write_all("--plot", {plot: data})
     return [plot]
 
 
@@ -226,6 +242,7 @@ def _tell(program: Path, made: Solution, cell: Cell, written: Sequence[Path]) ->
 def _rows(program: Path, made: Solution) -> list[tuple[str, ...]]:
     """What has changed, move by move; all moves where their number has."""
     old, new = made.original.moves, made.program.moves
+    moved = {point.move: point for point in made.moved}
     rows: list[tuple[str, ...]] = []
     for index, move in enumerate(new):
         before = old[index] if len(old) == len(new) else None
@@ -233,7 +250,13 @@ def _rows(program: Path, made: Solution) -> list[tuple[str, ...]]:
             continue
         span = None if before is None or before.origin is None else before.origin.statement
         rows.append(
-            (str(index + 1), short_place(program, span), _moved(before, move), _zone(before, move))
+            (
+                str(index + 1),
+                short_place(program, span),
+                _moved(before, move),
+                *_rise_and_turn(moved.get(index)),
+                _zone(before, move),
+            )
         )
     return rows
 
@@ -252,11 +275,27 @@ def _moved(before: Move | None, move: Move) -> str:
         return "stays"
     if isinstance(new, JointTarget) and isinstance(old, JointTarget):
         steps = [math.degrees(b - a) for a, b in zip(old.joints, new.joints, strict=True)]
-        return "moved by " + ", ".join(f"{step:.2f}" for step in steps) + " °"
+        return "moved by " + ", ".join(map(_hundredths, steps)) + " °"
     if isinstance(new, JointTarget) or isinstance(old, JointTarget):
         return "another kind of target"
     shift = [1e3 * (b - a) for a, b in zip(old.pose.position, new.pose.position, strict=True)]
-    return "moved by " + ", ".join(f"{step:.2f}" for step in shift) + " mm"
+    return "moved by " + ", ".join(map(_hundredths, shift)) + " mm"
+
+
+def _hundredths(value: float) -> str:
+    # No minus in front of nothing.
+    return f"{round(value, 2) + 0.0:.2f}"
+
+
+def _rise_and_turn(point: Moved | None) -> tuple[str, str]:
+    """How far what the tool holds is raised and turned."""
+    import math
+
+    if point is None:
+        return "", ""
+    # Rounding of joints turns it by less than this.
+    turn = math.degrees(point.turn)
+    return f"{1e3 * point.rise:+.1f}", f"{turn:.2f}" if turn >= 0.005 else "0"
 
 
 def _zone(before: Move | None, move: Move) -> str:
@@ -273,11 +312,14 @@ def _zone(before: Move | None, move: Move) -> str:
 
 
 def _json(made: Solution, cell: Cell, written: Sequence[Path]) -> dict[str, Any]:
-    moves = [_move_json(index, move) for index, move in enumerate(made.program.moves)]
+    moved = {point.move: point for point in made.moved}
+    moves = [
+        _move_json(index, move, moved.get(index)) for index, move in enumerate(made.program.moves)
+    ]
     return {**solution_json(made, cell, written), "moves": moves}
 
 
-def _move_json(index: int, move: Move) -> dict[str, Any]:
+def _move_json(index: int, move: Move, moved: Moved | None) -> dict[str, Any]:
     from ..core.program.target import JointTarget
     from ..core.program.zone import Radius
 
@@ -289,6 +331,9 @@ def _move_json(index: int, move: Move) -> dict[str, Any]:
         "move": index + 1,
         "joints_rad": joints,
         "position_m": position,
+        "moved_m": None if moved is None else moved.distance,
+        "rise_m": None if moved is None else moved.rise,
+        "turn_rad": None if moved is None else moved.turn,
         "zone_radius_m": move.zone.tcp if isinstance(move.zone, Radius) else None,
         **place_json(span),
     }

@@ -42,7 +42,15 @@ Out = Annotated[Path | None, typer.Option("--out", help="Folder to write the fil
 
 # What an optimisation may change.
 WholeCell = Annotated[
-    Path, typer.Option("--cell", help="Cell file: robot, tools, obstacles, clearance.")
+    Path | None,
+    typer.Option("--cell", help="Cell file: robot, tools, obstacles, clearance."),
+]
+NoFloor = Annotated[
+    bool,
+    typer.Option(
+        "--no-floor",
+        help="Without --cell the plane under the robot's base is an obstacle; this lifts it.",
+    ),
 ]
 Kept = Annotated[
     list[str] | None,
@@ -71,6 +79,14 @@ Limits = Annotated[
 Axes = Annotated[
     str | None,
     typer.Option(help="Joints that joint targets may change, such as 2,3; all if unset."),
+]
+Tilt = Annotated[
+    float,
+    typer.Option(
+        "--tilt",
+        help="Degrees by which the tool may be turned at via points; 180 for as it likes. Without "
+        "it, what the tool holds stays as it is turned.",
+    ),
 ]
 Clearance = Annotated[
     float | None,

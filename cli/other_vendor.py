@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..core.errors import FlybyError, Note
 from .delivery import Delivery
-from .outputs import check_outputs, write_sources
+from .outputs import check_outputs, encoded, write_in
 from .patching import Places
 from .translation import carried
 
@@ -61,7 +61,7 @@ class OtherVendor:
             paths, notes = [], [Note(f"nothing was written for {robot}: {error}")]
         else:
             given = self.places.inputs, self.places.replace_existing
-            paths = write_sources("--vendor", self.folder, sources, *given)
+            paths = write_in("--vendor", self.folder, encoded(sources), *given)
             notes = [replace(note, message=f"for {robot}: {note.message}") for note in losses]
             notes.append(
                 Note(

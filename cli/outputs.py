@@ -8,12 +8,16 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..core.errors import InputError
+from .console import warn
 
 PLOT_FORMATS = (".png", ".pdf", ".svg")
 
 
 def check_outputs(
-    outputs: Mapping[str, Path | None], inputs: Iterable[Path], replace_existing: bool
+    outputs: Mapping[str, Path | None],
+    inputs: Iterable[Path],
+    replace_existing: bool,
+    made: Path | None = None,
 ) -> None:
     """Refuse output paths that cannot or must not be written.
 
@@ -21,6 +25,7 @@ def check_outputs(
         outputs: by the option that names each; None where the option was not given.
         inputs: files that are read; they are never written to.
         replace_existing: whether files that exist may be replaced (``--force``).
+        made: folder that is made, with those in it, if it is missing.
 
     Raises:
         InputError: naming option and path.
@@ -33,11 +38,13 @@ def check_outputs(
         if real in taken:
             raise InputError(f"{option} {path}: would overwrite {taken[real]}; choose another name")
         taken[real] = f"the file of {option}"
-        if path.exists() and not path.is_file():
-            raise InputError(f"{option} {path}: is no regular file; name another")
-        if not path.parent.is_dir():
-            raise InputError(f"{option} {path}: there is no folder {path.parent}")
-        if path.exists() and not replace_existing:
+        with _asked(option, path):
+            there = path.exists()
+            if there and not path.is_file():
+                raise InputError(f"{option} {path}: is no regular file; name another")
+            if not path.parent.is_dir() and (made is None or not path.is_relative_to(made)):
+                raise InputError(f"{option} {path}: there is no folder {path.parent}")
+        if there and not replace_existing:
             raise InputError(f"{option} {path}: exists already; --force replaces it")
 
 
@@ -59,49 +66,66 @@ def check_folder(option: str, folder: Path | None) -> None:
     """
     if folder is None:
         return
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"{option} {folder}: is no folder; name another")
-    if not folder.absolute().parent.is_dir():
-        raise InputError(f"{option} {folder}: there is no folder {folder.parent}")
+    with _asked(option, folder):
+        if folder.exists() and not folder.is_dir():
+            raise InputError(f"{option} {folder}: is no folder; name another")
+        if not folder.absolute().parent.is_dir():
+            raise InputError(f"{option} {folder}: there is no folder {folder.parent}")
 
 
-def write_sources(
+def write_in(
     option: str,
     folder: Path,
-    sources: Mapping[str, str],
+    files: Mapping[Path, bytes],
     inputs: Iterable[Path],
     replace_existing: bool,
 ) -> list[Path]:
-    """Write source files into a folder, which is made if it is missing.
+    """Write files into a folder, all or none; it is made if it is missing.
 
     Args:
         option: that names the folder.
         folder: where.
-        sources: texts by file name.
+        files: contents by path in the folder.
         inputs, replace_existing: see `check_outputs`.
 
     Returns:
         The files.
 
     Raises:
-        InputError: one of them must not be written; then none is.
+        InputError: one of them must not or cannot be written; then none is.
     """
-    from ..core.motion.trajectory import write_whole
-
     check_folder(option, folder)
-    paths = [folder / name for name in sources]
-    with writing(option, folder):
-        folder.mkdir(exist_ok=True)
-    check_outputs({f"{option}: {path.name}": path for path in paths}, inputs, replace_existing)
-    for path, text in zip(paths, sources.values(), strict=True):
-        with writing(option, path):
-            write_whole(path, text.encode())
-    return paths
+    planned = {folder / name: data for name, data in files.items()}
+    named = {f"{option}: {name}": folder / name for name in files}
+    check_outputs(named, inputs, replace_existing, folder)
+    write_all(option, planned, folder)
+    return list(planned)
+
+
+def encoded(sources: Mapping[str, str]) -> dict[Path, bytes]:
+    """Source files as `write_in` takes them."""
+    return {Path(name): text.encode() for name, text in sources.items()}
+
+
+def write_all(option: str, files: Mapping[Path, bytes], made: Path | None = None) -> None:
+    """`write_files`, with what the user should know told.
+
+    Raises:
+        InputError: naming the option.
+    """
+    from ..core.output_files import WriteError, write_files
+
+    try:
+        notes = write_files(files, made)
+    except WriteError as error:
+        raise InputError(f"{option} {error}") from None
+    for note in notes:
+        warn(str(note))
 
 
 @contextmanager
-def writing(option: str, path: Path) -> Iterator[None]:
-    """Say which option's file it is that cannot be written.
+def _asked(option: str, path: Path) -> Iterator[None]:
+    """Say which option's file it is that the system does not take.
 
     Raises:
         InputError: instead of the system's own error.
@@ -111,8 +135,13 @@ def writing(option: str, path: Path) -> Iterator[None]:
     except OSError as error:
         reason = error.strerror or error
         raise InputError(f"{option} {path}: cannot be written: {reason}") from None
+    except ValueError as error:  # a NUL in the name
+        raise InputError(f"{option} {str(path)!r}: cannot be written: {error}") from None
 
 
 def _real(path: Path) -> str:
     """One name for one file, links resolved."""
-    return os.path.normcase(os.path.realpath(path))
+    try:
+        return os.path.normcase(os.path.realpath(path))
+    except ValueError as error:
+        raise InputError(f"{str(path)!r}: is no name of a file: {error}") from None

@@ -10,8 +10,8 @@ import typer
 
 from ..core.errors import InputError
 from .console import print_json, progress, warn
-from .options import AsJson, Force, MotionFile, RobotName
-from .outputs import check_folder, check_outputs, writing
+from .options import AsJson, Force, MotionFile, NoFloor, RobotName
+from .outputs import check_folder, check_outputs, write_in
 from .paint_options import (
     check_signals,
     direction_of,
@@ -101,6 +101,7 @@ def paint(
     frame: Annotated[
         str | None, typer.Option(help="Instead: a frame of the cell that the part stands in.")
     ] = None,
+    no_floor: NoFloor = False,
     zone: Annotated[float, typer.Option(help="Zone at the waypoints, mm.")] = 20.0,
     run: Annotated[float, typer.Option(help="Run-in and run-out with the gun off, mm.")] = 50.0,
     signal: Annotated[str | None, typer.Option(help="Output that switches the gun.")] = None,
@@ -125,7 +126,7 @@ def paint(
         check_outputs({f"--out: {n}": out / n for n in PICTURES if out.is_dir()}, inputs, force)
     wanted = target_of(target)
     drive = drive_of(zone, run, signal, flow, delay)
-    station = station_of(robot, cell, motion, tool, frame, place)
+    station = station_of(robot, cell, motion, tool, frame, place, no_floor)
     if station is not None:
         check_signals(drive, station)
     with progress("reading the part") as say:
@@ -168,7 +169,8 @@ def paint(
             files = pictures_of(source, painting, made)
             if proven or unproven:
                 files = {name: text.encode() for name, text in texts.items()} | files
-            written = _write(out, files, inputs, force)
+            named = {Path(name): data for name, data in files.items()}
+            written = write_in("--out", out, named, inputs, force)
     if json:
         print_json(report_json(source, painting, made, written))
     else:
@@ -228,18 +230,3 @@ def _executed(
 
     made = execute(painting, station, drive, speed, read_back=read_back, progress=tell_round)
     return made, texts
-
-
-def _write(
-    out: Path, files: dict[str, bytes], inputs: list[Path], replace_existing: bool
-) -> list[Path]:
-    from ..core.motion.trajectory import write_whole
-
-    planned = {out / name: data for name, data in files.items()}
-    with writing("--out", out):
-        out.mkdir(exist_ok=True)
-    check_outputs({f"--out: {p.name}": p for p in planned}, inputs, replace_existing)
-    for path, data in planned.items():
-        with writing("--out", path):
-            write_whole(path, data)
-    return list(planned)

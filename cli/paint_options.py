@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING, TypeVar
 
 from ..core.errors import InputError
 from . import values
-from .loading import robot_of
+from .loading import cell_of, robot_of
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ..core.cell.cell import Cell
     from ..core.program.tool import Tool, WorkObject
-    from ..core.vendor import Vendor
     from ..problems.paint.executable.station import Station
     from ..problems.paint.executable.writing import DriveOptions
     from ..problems.paint.footprint import Footprint
@@ -215,6 +214,7 @@ def station_of(
     tool: str | None,
     frame: str | None,
     place: str | None,
+    no_floor: bool,
 ) -> Station | None:
     """Robot, gun and place that the options name; None without a robot.
 
@@ -228,20 +228,9 @@ def station_of(
         return None
     from ..problems.paint.executable.station import Station
 
-    vendor, _ = robot_of(robot, cell, motion)
-    where = _cell(robot, cell, vendor, motion)
+    vendor, arm = robot_of(robot, cell, motion)
+    where = cell_of((vendor, arm), cell, no_floor=no_floor)
     return Station(vendor, where, _gun(where, tool), _part_frame(where, frame, place))
-
-
-def _cell(robot: str | None, cell: Path | None, vendor: Vendor, motion: Path | None) -> Cell:
-    from ..core.cell.cell import Cell
-    from ..core.cell.file import load_cell
-    from .installed import registry
-
-    if cell is not None:
-        return load_cell(cell, registry())
-    assert robot is not None
-    return Cell(registry().find_robot(robot), vendor.name)
 
 
 def _gun(cell: Cell, name: str | None) -> Tool:

@@ -138,6 +138,10 @@ def tell(
         if made.certificate is not None:
             say = print_rich if made.certificate.proven else warn
             say(str(made.certificate))
+            from ..core.cell.floor import FLOOR, LIFT
+
+            if not made.certificate.proven and FLOOR in made.certificate.message:
+                warn(LIFT)
     for path in written:
         print_rich(f"wrote {path}")
 

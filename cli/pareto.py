@@ -30,8 +30,9 @@ from .options import (
     RobotName,
     Seed,
     Start,
+    Tilt,
 )
-from .outputs import check_folder, check_outputs, check_plot_name, writing
+from .outputs import check_folder, check_outputs, check_plot_name, write_all
 from .places import note_json
 from .task_options import effort_of, task_of
 
@@ -75,6 +76,7 @@ def pareto(
     free: Freed = None,
     limit: Limits = None,
     axes: Axes = None,
+    tilt: Tilt = 0.0,
     clearance: Clearance = None,
     starts: Annotated[
         int, typer.Option(help="Paths to start from; with 1, the program's own alone.")
@@ -90,7 +92,7 @@ def pareto(
     With --out each gets a folder: point-1 is the fastest. In a cell each is proven to keep its
     clearance, as read from its text.
     """
-    source = Source.of(program, entry, io, others)
+    source = Source.of(program, entry, io, others, start)
     inputs = [*source.inputs(cell, motion), *([motors] if motors else [])]
     check_folder("--out", out)
     check_plot_name(plot)
@@ -105,7 +107,9 @@ def pareto(
         vendor, arm = robot_of(robot, cell, motion)
         where = _cell(cell)
         parsed = source.read(vendor, arm)
-        wishes = _wishes(parsed, where, vendor, arm, keep, free, limit, axes, clearance, start)
+        wishes = _wishes(
+            parsed, where, vendor, arm, keep, free, limit, axes, tilt, clearance, start
+        )
         task = EnergyTask(scope, _consumption(motors, arm), wishes)
         files = FrontFiles(vendor, arm, parsed)
         made = find(
@@ -160,12 +164,19 @@ def _wishes(
     free: list[str] | None,
     limit: list[str] | None,
     axes: str | None,
+    tilt: float,
     clearance: float | None,
     start: str | None,
 ) -> Wishes:
     from ..core.cell.cell import Cell
 
-    shapes = {"--free": free, "--limit": limit, "--axes": axes, "--clearance": clearance}
+    shapes = {
+        "--free": free,
+        "--limit": limit,
+        "--axes": axes,
+        "--tilt": tilt,
+        "--clearance": clearance,
+    }
     for option, value in shapes.items():
         if cell is None and value:
             raise InputError(f"{option} needs a cell (--cell): without one, only speeds change")
@@ -178,6 +189,7 @@ def _wishes(
         free=free or [],
         limits=limit or [],
         axes=axes,
+        tilt=tilt,
         clearance=clearance,
         vias="keep",
         predefined=False,
@@ -208,12 +220,10 @@ def _teller(say: Callable[[str], None]) -> Callable[[Progress], None]:
 
 
 def _draw(plot: Path, made: Front, robot: Robot) -> None:
-    from ..core.motion.trajectory import write_whole
     from .plot_front import draw_front
 
     data = draw_front(made, robot.axis_names, plot.suffix.lower()[1:])
-    with writing("--plot", plot):
-        write_whole(plot, data)
+    write_all("--plot", {plot: data})
 
 
 # ------------------------------------------------------------------------- telling

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.errors import InputError
-from .outputs import check_folder, check_outputs, writing
+from .outputs import check_folder, check_outputs, write_all
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
@@ -80,12 +80,12 @@ class Places:
             path = self.out / self.inputs[0].name
             check_outputs({f"--out: {path.name}": path}, self.inputs, self.replace_existing)
 
-    def write(self, files: Files, read: Files) -> list[Path]:
-        """Write patched files.
+    def write(self, files: Files, original: Program) -> list[Path]:
+        """Write changed files; into a folder with all that they run with, changed or not.
 
         Args:
-            files: by the names they were read by.
-            read: the files as they were read.
+            files: as a patch or a writer hands them out.
+            original: the program as it was read.
 
         Returns:
             The files that were written; none if there is no place for them.
@@ -94,51 +94,37 @@ class Places:
             InputError: one of them must not be written, cannot be encoded, or has changed since
                 it was read; then none is.
         """
-        from ..core.motion.trajectory import write_whole
+        from ..core.source.patching import reading_of, runnable_set
+        from ..core.source.reading import named_apart
 
         if not self.anywhere:
             return []
-        option = "--in-place" if self.out is None else "--out"
-        paths = self._paths(files)
         if self.out is None:
-            _check_unchanged(paths, read)
-        else:
-            _check_apart(paths)
-            with writing(option, self.out):
-                self.out.mkdir(exist_ok=True)
-            named = {f"{option}: {path.name}": path for path in paths.values()}
-            check_outputs(named, self.inputs, self.replace_existing)
-        encoded = {path: files[name].data for name, path in paths.items()}
-        for path, data in encoded.items():
-            with writing(option, path):
-                write_whole(path, data)
-        return list(paths.values())
-
-    def _paths(self, files: Files) -> dict[str, Path]:
-        if self.out is None:
-            return {name: Path(name) for name in files}
-        return {name: self.out / Path(name).name for name in files}
+            paths = {Path(file.name): file.data for file in files.values()}
+            _check_unchanged(paths, reading_of(original).files)
+            write_all("--in-place", paths)
+            return list(paths)
+        if all(file.name in reading_of(original).files for file in files.values()):
+            files = named_apart(runnable_set(original, files))
+        paths = {self.out / name: file.data for name, file in files.items()}
+        named = {f"--out: {path.name}": path for path in paths}
+        check_outputs(named, self.inputs, self.replace_existing, self.out)
+        write_all("--out", paths, self.out)
+        return list(paths)
 
 
-def _check_unchanged(paths: Mapping[str, Path], read: Files) -> None:
+def _check_unchanged(paths: Iterable[Path], read: Files) -> None:
     """Refuse to write over what somebody has saved since the files were read."""
-    for name, path in paths.items():
+    from ..core.input_files import read_bytes
+    from ..core.source.text import LARGEST_FILE
+
+    for path in paths:
         try:
-            now = path.read_bytes()
-        except OSError as error:
-            raise InputError(f"--in-place: {path} cannot be read any more: {error}") from error
-        if name in read and now != read[name].data:
+            now = read_bytes(path, LARGEST_FILE)
+        except InputError as error:
+            raise InputError(f"--in-place: {error}") from error
+        if str(path) in read and now != read[str(path)].data:
             raise InputError(
                 f"--in-place: {path} has changed since it was read, and stays as it is: run again, "
                 "or name a folder by --out"
             )
-
-
-def _check_apart(paths: Mapping[str, Path]) -> None:
-    taken: dict[Path, str] = {}
-    for name, path in paths.items():
-        if path in taken:
-            raise InputError(
-                f"--out: {taken[path]} and {name} are called alike; use --in-place for these files"
-            )
-        taken[path] = name

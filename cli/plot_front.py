@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..drawing.style import DPI, STYLE
+from ..drawing.style import STYLE, figure_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,9 +30,7 @@ def draw_front(front: Front, names: Sequence[str], kind: str) -> bytes:
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
-        buffer = io.BytesIO()
-        make_figure(front, names).savefig(buffer, format=kind, dpi=DPI)
-    return buffer.getvalue()
+        return figure_file(make_figure(front, names), kind)
 
 
 def make_figure(front: Front, names: Sequence[str]) -> Figure:

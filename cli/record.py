@@ -11,7 +11,7 @@ from ..core.errors import InputError
 from .console import print_rich, progress
 from .loading import Source, robot_of
 from .options import AnswersFile, CellFile, Entry, Force, OtherFiles, ProgramFile, RobotName
-from .outputs import check_folder, write_sources
+from .outputs import check_folder, encoded, write_in
 
 LEAST_PERIOD = 1e-3
 """s. No controller logs its own joints faster."""
@@ -37,6 +37,6 @@ def record(
         vendor, arm = robot_of(robot, cell)
         parsed = source.read(vendor, arm)
         sources = vendor.record(parsed, arm, period)
-        written = write_sources("--out", out, sources, source.inputs(cell), force)
+        written = write_in("--out", out, encoded(sources), source.inputs(cell), force)
     for path in written:
         print_rich(f"wrote {path}")

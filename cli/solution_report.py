@@ -11,7 +11,7 @@ from .places import note_json
 
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell
-    from ..problems.solution import Solution
+    from ..problems.solution import Row, Solution
 
 _FIGURES = (("", "left"), ("unit", "left"), ("before", "right"), ("after", "right"), ("%", "right"))
 
@@ -19,7 +19,7 @@ _FIGURES = (("", "left"), ("unit", "left"), ("before", "right"), ("after", "righ
 def tell_solution(program: Path, made: Solution, cell: Cell, written: Sequence[Path]) -> None:
     """Print figures before and after, notes, the proof and what was written."""
     rows = [
-        (row.what, row.unit, _figure(row.before), _figure(row.after), _figure(row.change, 1))
+        (row.what, row.unit, _figure(row.before), _figure(row.after), percent(row))
         for row in made.table(cell.robot.axis_names)
     ]
     print_table(_FIGURES, rows)
@@ -28,7 +28,7 @@ def tell_solution(program: Path, made: Solution, cell: Cell, written: Sequence[P
     if made.certificate is not None:
         say = print_rich if made.proven else warn
         say(f"{program}: {made.certificate}")
-    for pair in cell.allowed:
+    for pair in _allowed(cell):
         print_rich(f"allowed to touch by the cell: {pair[0]} and {pair[1]}")
     for path in written:
         print_rich(f"wrote {path}")
@@ -42,7 +42,7 @@ def solution_json(made: Solution, cell: Cell, written: Sequence[Path]) -> dict[s
         "changed": made.changed,
         "proven": made.proven,
         "certificate": None if proof is None else proof.message,
-        "allowed": [list(pair) for pair in cell.allowed],
+        "allowed": [list(pair) for pair in _allowed(cell)],
         "figures": [
             {"what": row.what, "unit": row.unit, "before": row.before, "after": row.after}
             for row in made.table(cell.robot.axis_names)
@@ -52,5 +52,18 @@ def solution_json(made: Solution, cell: Cell, written: Sequence[Path]) -> dict[s
     }
 
 
+def _allowed(cell: Cell) -> Sequence[tuple[str, str]]:
+    """What a user allows to touch; where there is no file it is a matter of the floor alone."""
+    return () if cell.file is None else cell.allowed
+
+
 def _figure(value: float | None, digits: int = 4) -> str:
     return "" if value is None else f"{value:.{digits}f}"
+
+
+def percent(row: Row) -> str:
+    """The change in percent; empty where there is none, or the value before is shown as zero."""
+    if row.before is None or float(_figure(row.before)) == 0.0:
+        return ""
+    shown = _figure(row.change, 1)
+    return "0.0" if shown == "-0.0" else shown

@@ -30,6 +30,7 @@ def task_of(
     free: Sequence[str],
     limits: Sequence[str],
     axes: str | None,
+    tilt: float,
     clearance: float | None,
     vias: str,
     predefined: bool,
@@ -54,6 +55,7 @@ def task_of(
         limits=by_move,
         limit=for_all or Free(),
         axes=None if axes is None else _axes(axes, cell.robot.arm_size),
+        tilt=_tilt(tilt),
         clearance=clearance_of(clearance),
         freed=freed_stops(program, free, {*held, *(i - 1 for i in held)}),
         pattern=pattern_for(vendor.speaks),
@@ -140,6 +142,12 @@ def _weight(text: str) -> float:
     if not 0.0 <= weight <= 1.0:
         raise InputError(f"--objective {text}: time, energy or a weight between 0 and 1")
     return weight
+
+
+def _tilt(degrees: float) -> float:
+    if not 0.0 <= degrees <= 180.0:
+        raise InputError(f"--tilt {degrees:g}: degrees from 0 to 180")
+    return math.radians(degrees)
 
 
 def _vias(text: str) -> ViaCount:

@@ -14,7 +14,7 @@ from .console import print_json, print_rich, print_table, progress
 from .installed import registry
 from .loading import Source, robot_of
 from .options import AnswersFile, AsJson, CellFile, Entry, Force, OtherFiles, Out, ProgramFile
-from .outputs import check_folder, write_sources
+from .outputs import check_folder, encoded, write_in
 from .places import note_json, short_place
 from .translation import carried, party_of
 
@@ -68,7 +68,7 @@ def translate(
         sources = after[0].write(made.program, after[1])
         written: list[Path] = []
         if out is not None:
-            written = write_sources("--out", out, sources, source.inputs(cell), force)
+            written = write_in("--out", out, encoded(sources), source.inputs(cell), force)
     if json:
         print_json(_json(made, before[1], after[1], written))
     else:

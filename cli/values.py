@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from ..core.errors import InputError
+from ..core.tables import LARGEST
 
 if TYPE_CHECKING:
     from ..core.robot.model import Robot
@@ -26,9 +27,11 @@ def numbers(text: str, name: str) -> tuple[float, ...]:
         try:
             value = float(word)
         except ValueError:
-            raise InputError(f"{name}: {word!r} is no number") from None
+            raise InputError(f"{name}: {word[:40]!r} is no number") from None
         if not math.isfinite(value):
-            raise InputError(f"{name}: {word} is not finite")
+            raise InputError(f"{name}: {word[:40]} is not finite")
+        if abs(value) > LARGEST:
+            raise InputError(f"{name}: must lie within ±{LARGEST:g}, not {value:g}")
         values.append(value)
     return tuple(values)
 

@@ -10,8 +10,7 @@ import typer
 
 from .console import print_json, print_table, progress
 from .delivery import deliver
-from .installed import registry
-from .loading import Source, start_of
+from .loading import Source, cell_of, robot_of, start_of
 from .options import (
     AnswersFile,
     AsJson,
@@ -20,10 +19,13 @@ from .options import (
     Force,
     Freed,
     InPlace,
+    MotionFile,
+    NoFloor,
     OtherFiles,
     Out,
     Predefined,
     ProgramFile,
+    RobotName,
     Start,
     WholeCell,
 )
@@ -54,12 +56,15 @@ COLUMNS = (
 
 def zones(
     program: ProgramFile,
-    cell: WholeCell,
+    cell: WholeCell = None,
+    robot: RobotName = None,
+    motion: MotionFile = None,
     entry: Entry = None,
     io: AnswersFile = None,
     others: OtherFiles = None,
     start: Start = None,
     clearance: Clearance = None,
+    no_floor: NoFloor = False,
     predefined: Predefined = False,
     free: Freed = None,
     keep: Annotated[
@@ -85,17 +90,17 @@ def zones(
 
     The exit status is 1 if the new program is not proven to keep its clearance.
     """
-    source = Source.of(program, entry, io, others)
-    places = Places(out, in_place, source.inputs(cell), force)
+    source = Source.of(program, entry, io, others, start)
+    places = Places(out, in_place, source.inputs(cell, motion), force)
     places.check()
     with progress("reading the program") as say:
-        from ..core.cell.file import load_cell
         from ..core.motion.controller import Controller
         from ..problems.zones.maximize import maximize_zones
 
-        where = load_cell(cell, registry())
-        vendor = where.find_vendor(registry())
-        parsed = source.read(vendor, where.robot)
+        vendor, arm = robot_of(robot, cell, motion)
+        parsed = source.read(vendor, arm)
+        tools = dict.fromkeys(move.tool for move in parsed.moves)
+        where = cell_of((vendor, arm), cell, tools, no_floor=no_floor)
         options = _options(parsed, vendor, where, clearance, predefined, free, keep, own, start)
         patching = Patching(vendor, where.robot, own)
         controller = Controller(vendor, where.robot)

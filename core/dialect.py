@@ -6,9 +6,10 @@ language's own terms, and lists what has no counterpart. A check searches texts 
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from .program.move import Move
 
 _VISIBLE = re.compile(r"[^\r\n]")
+_LISTED = re.compile(r"(?:\[[^\]]*\]|\{[^}]*\}|[^,\[{])+")
+"""One of several names: the commas of its indices part none."""
 PACES = ("tcp", "joint_fraction", "joint")
 _SPEED_FIELDS = frozenset(field.name for field in fields(Speed)) - {"name"}
 
@@ -65,6 +68,23 @@ class MoveWords:
 
 
 @dataclass(frozen=True)
+class ArcRules:
+    """Arcs that the language's controllers drive.
+
+    Args:
+        longest: rad of an arc.
+        least_chord: m from the start to the auxiliary point, and to the end.
+        least_angle: rad between the two, seen from the start, below which it is no arc.
+        name: of the instruction, for messages.
+    """
+
+    longest: float = 2 * math.pi
+    least_chord: float = 0.0
+    least_angle: float = 0.0
+    name: str = "the arc"
+
+
+@dataclass(frozen=True)
 class OutputWords:
     """How an event on the way of a move (`core.program.event.Event`) sets an output.
 
@@ -98,6 +118,65 @@ class Pitfall:
     without: re.Pattern[str] | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class RoutineText:
+    """A routine in a text.
+
+    Args:
+        name: its name.
+        parameters: what stands between the brackets behind it.
+        start, body, end: offsets of the whole of it, and of what follows its heading.
+    """
+
+    name: str
+    parameters: str
+    start: int
+    body: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
+class Unsaid:
+    """A datum that an instruction depends on, or sets, without naming it.
+
+    Args:
+        datum: its name.
+        start, end: offsets of the instruction.
+        given: whether the instruction sets it.
+        source: name of the datum that it is set from; None for the instruction's own operands.
+        certain: whether it is set in any case.
+    """
+
+    datum: str
+    start: int
+    end: int
+    given: bool = False
+    source: str | None = None
+    certain: bool = True
+
+
+class Mention(StrEnum):
+    """What a text does with a name."""
+
+    USED = "used"
+    DECLARED = "declared"
+    """It is given to a datum, routine, parameter or type."""
+    ASSIGNED = "assigned"
+    """The datum is given a value."""
+
+
+def _no_routines(_: str) -> Iterator[RoutineText]:
+    return iter(())
+
+
+def _nothing_unsaid(_: str) -> Iterator[Unsaid]:
+    return iter(())
+
+
+def _file_alone(file: str) -> str:
+    return file
+
+
 @dataclass(frozen=True)
 class Wording:
     """How a language's text is searched without being read.
@@ -109,6 +188,18 @@ class Wording:
         name: any name.
         same_case: whether upper and lower case are the same.
         pitfalls: words that do not do what they seem to.
+        heads: of a statement that holds others, what is executed of it itself; it is matched where
+            the statement begins. None if such statements stand on lines of their own.
+        routines: finds the routines of a text: what is declared in one is seen in it alone.
+        module: names the module of a file: what is declared outside of routines is seen in all
+            files of one module, before what others declare.
+        named: tells of a text without comments and strings what it does with names, in order; names
+            of components and arguments are left out. None where only targets are declared.
+        unsaid: finds the data that instructions depend on and set without naming them, in a text
+            without comments and strings: speeds and zones that hold until they are set again.
+        blocks: words that ``open``, ``part`` and ``close`` a block, any ``label``, and what is
+            executed on a condition, or for itself alone, but is no block (``once``): groups of
+            these names. None if a datum's last setting is not looked for.
     """
 
     silent: re.Pattern[str]
@@ -116,6 +207,12 @@ class Wording:
     name: re.Pattern[str]
     same_case: bool = True
     pitfalls: tuple[Pitfall, ...] = ()
+    heads: re.Pattern[str] | None = None
+    routines: Callable[[str], Iterator[RoutineText]] = _no_routines
+    module: Callable[[str], str] = _file_alone
+    named: Callable[[str], Iterator[tuple[str, Mention]]] | None = None
+    unsaid: Callable[[str], Iterator[Unsaid]] = _nothing_unsaid
+    blocks: re.Pattern[str] | None = None
 
     def __post_init__(self) -> None:
         if "names" not in self.targets.groupindex:
@@ -128,18 +225,23 @@ class Wording:
     def declared(self, text: str) -> Iterator[tuple[str, int]]:
         """Name and offset of every target that a text declares."""
         for found in self.targets.finditer(text):
-            for one in re.finditer(r"[^,]+", _without_indices(found["names"])):
+            for one in _LISTED.finditer(found["names"]):
                 name = self.name.search(one[0])
                 if name is not None:
                     yield name[0], found.start("names") + one.start() + name.start()
 
+    def mentions(self, text: str) -> Iterator[tuple[str, Mention]]:
+        """What a text, as `quiet` leaves it, does with names, in order."""
+        if self.named is not None:
+            yield from self.named(text)
+            return
+        declared = {at for _, at in self.declared(text)}
+        for found in self.name.finditer(text):
+            yield found[0], Mention.DECLARED if found.start() in declared else Mention.USED
+
     def folded(self, name: str) -> str:
         """A name as it is compared with others."""
         return name.lower() if self.same_case else name
-
-
-def _without_indices(names: str) -> str:
-    return re.sub(r"\[[^\]]*\]", lambda found: " " * len(found[0]), names)
 
 
 @dataclass(frozen=True)
@@ -167,8 +269,14 @@ class Dialect:
         share_step: by what step shares of joint speed and acceleration are said.
         least_acceleration_share: the least share of acceleration that is taken.
         fastest: greatest speed of the TCP that is taken, m/s.
+        most: greatest numbers of `Speed` that the maker takes, or lets its robots be driven with,
+            by name, in SI units. Lines and arcs that must state an acceleration get no more than
+            keeps the joints within that of joint moves.
+        path_acceleration: m/s² of lines and arcs that may always be stated, the language's own
+            default.
         zones: gives the zones that are known without a declaration, beside stops; called when
             they are needed.
+        arcs: which arcs there are.
         wording: how its texts are searched; None if they are not.
         outputs: how outputs are set on the way of a move; None where there is nothing of the kind.
     """
@@ -189,7 +297,10 @@ class Dialect:
     share_step: float = 0.01
     least_acceleration_share: float = 0.01
     fastest: float = 7.0
+    most: Mapping[str, float] = field(default_factory=dict)
+    path_acceleration: float = 1.2
     zones: Callable[[], tuple[Radius, ...]] = tuple
+    arcs: ArcRules = ArcRules()
     wording: Wording | None = None
     outputs: OutputWords | None = None
 
@@ -199,6 +310,9 @@ class Dialect:
                 f"Dialect.pace is one of {', '.join(PACES)} and among the speeds of joint moves, "
                 f"not {self.pace!r}"
             )
+        unknown = sorted(self.most.keys() - _SPEED_FIELDS)
+        if unknown:
+            raise InputError(f"Dialect.most: Speed has no {unknown[0]!r}")
 
     def words(self, move: Move) -> MoveWords:
         """What can be said of moves of this kind."""

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import difflib
 import math
-import tomllib
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
 from .errors import InputError
+from .input_files import read_toml
 
 MILLI = 1e-3
 LENGTH = {"mm": MILLI, "m": 1.0}
+LARGEST = 1e12
+"""Beyond any quantity of robots and cells, in whatever unit; products of larger ones overflow."""
 ANGLE = {"deg": math.pi / 180, "rad": 1.0}
 
 
@@ -43,15 +45,7 @@ class Table:
         Raises:
             InputError: the file is missing or unreadable, or is not TOML.
         """
-        path = Path(path)
-        try:
-            text = path.read_text("utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise InputError(f"{path}: cannot be read: {error}") from None
-        try:
-            return cls(tomllib.loads(text), path)
-        except tomllib.TOMLDecodeError as error:
-            raise InputError(f"{path}: is not TOML: {error}") from None
+        return cls(read_toml(path), Path(path))
 
     def error(self, key: str, message: str) -> InputError:
         """An error about ``key`` of this table, for the caller to raise."""
@@ -185,8 +179,15 @@ class Table:
         Raises:
             InputError: there is no such file.
         """
-        path = self.file.parent / self.text(key)
-        if not path.is_file():
+        name = self.text(key)
+        path = self.file.parent / name
+        try:
+            there = path.is_file()
+            if not there and path.exists() and not path.is_dir():
+                raise self.error(key, f"{path} is no regular file")
+        except OSError as error:  # a name longer than names are
+            raise self.error(key, f"{name[:60]!r}…: {error.strerror or error}") from None
+        if not there:
             siblings = [p.name for p in path.parent.glob("*")] if path.parent.is_dir() else []
             raise self.error(key, f"there is no file {path}; {_nearest(path.name, siblings)}")
         return path
@@ -196,6 +197,8 @@ class Table:
             raise self.error(key, f"must be a number, not {value!r}")
         if not math.isfinite(value):
             raise self.error(key, f"must be finite, not {value}")
+        if abs(value) > LARGEST:
+            raise self.error(key, f"must lie within ±{LARGEST:g}, not {value:g}")
         return float(value)
 
     def _full(self, key: str) -> str:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .dialect import Dialect
     from .motion.model import MotionModel
     from .program.program import Program
-    from .program.target import Configuration
+    from .program.target import Configuration, JointTarget
     from .robot.model import Robot
     from .source.answers import Answers
     from .source.reading import Files, ReadOptions
@@ -184,6 +184,7 @@ class Vendor:
         entry: str | None = None,
         robot: Robot | None = None,
         answers: Answers | None = None,
+        start: JointTarget | None = None,
     ) -> Program:
         """The program in a source text; see `Reader.read` and `ReadOptions`.
 
@@ -191,7 +192,7 @@ class Vendor:
             InputError: the vendor has no reader.
         """
         reader = self._part(self.reader, "reader")
-        return reader.read(text, file, _read_options(entry, robot, answers))
+        return reader.read(text, file, _read_options(entry, robot, answers, start=start))
 
     def read_file(
         self,
@@ -200,35 +201,63 @@ class Vendor:
         robot: Robot | None = None,
         answers: Answers | None = None,
         others: Iterable[str | Path] = (),
+        start: JointTarget | None = None,
     ) -> Program:
         """The program in a source file; see `Reader.read_file` and `ReadOptions`.
 
         Raises:
             InputError: the vendor has no reader.
         """
+        from .input_files import settle
+
         reader = self._part(self.reader, "reader")
-        return reader.read_file(Path(path), _read_options(entry, robot, answers, others))
+        others = tuple(others)
+        for file in (path, *others):  # before anything looks for what else there is
+            settle(file)
+        return reader.read_file(Path(path), _read_options(entry, robot, answers, others, start))
 
     def write(
         self, program: Program, robot: Robot, options: Mapping[str, str] | None = None
     ) -> Sources:
         """The program as source files for ``robot``; see `Writer.write`.
 
+        A start that the program states and does not drive to is its first move
+        (`core.approach`). The texts are read again without any other file (`core.written`).
+
         Raises:
-            InputError: the vendor has no writer, or its language does not drive the robot.
+            InputError: the vendor has no writer, its language does not drive the robot, or the
+                texts cannot be read.
+            SourceError: a kept statement names what only the program's own files have.
+            MotionError: the texts drive something else; the move is named.
         """
         self.check_written(robot)
-        return self._part(self.writer, "writer").write(program, robot, options or {})
+        writer = self._part(self.writer, "writer")
+        said = self._approached(program, robot)
+        sources = writer.write(said, robot, options or {})
+        wording = None if self.speaks is None else self.speaks.wording
+        if wording is not None and (options or {}).get("opaque") != "comment":
+            from .source.kept import check_kept
+
+            check_kept(said, sources, wording)
+        self._check_alone(said, robot, sources)
+        return sources
 
     def patch(
         self, program: Program, robot: Robot, options: Mapping[str, str] | None = None
     ) -> Files:
         """The program's own source files with its numbers; see `Patcher.patch`.
 
+        Returns:
+            The files that changed, by names that stay inside the folder that they are written to,
+            wherever the user's own files are (`core.source.reading.named_apart`); their own
+            ``name`` is the one that they were read by.
+
         Raises:
             InputError: the vendor has no patcher.
         """
-        return self._part(self.patcher, "patcher").patch(program, robot, options or {})
+        from .source.reading import named_apart
+
+        return named_apart(self._part(self.patcher, "patcher").patch(program, robot, options or {}))
 
     def record(self, program: Program, robot: Robot, period: float) -> Sources:
         """Source that drives ``robot`` and logs itself; see `Recorder.record`.
@@ -237,7 +266,24 @@ class Vendor:
             InputError: the vendor has no recorder, or its language does not drive the robot.
         """
         self.check_written(robot)
-        return self._part(self.recorder, "recorder").record(program, robot, period)
+        recorder = self._part(self.recorder, "recorder")
+        said = self._approached(program, robot)
+        sources = recorder.record(said, robot, period)
+        self._check_alone(said, robot, sources, waits=False)
+        return sources
+
+    def _check_alone(
+        self, program: Program, robot: Robot, sources: Sources, waits: bool = True
+    ) -> None:
+        if self.reader is not None:
+            from .written import check_alone
+
+            check_alone(program, robot, sources, self.reader, self.suffixes, waits)
+
+    def _approached(self, program: Program, robot: Robot) -> Program:
+        from .approach import with_approach
+
+        return with_approach(program, self.speaks, robot)
 
     def check_written(self, robot: Robot) -> None:
         """Refuse robots that the vendor's language does not drive.
@@ -267,11 +313,14 @@ def _read_options(
     robot: Robot | None,
     answers: Answers | None,
     others: Iterable[str | Path] = (),
+    start: JointTarget | None = None,
 ) -> ReadOptions:
     from .source.answers import Answers
     from .source.reading import ReadOptions
 
-    return ReadOptions(entry, robot, answers or Answers(), others=tuple(map(Path, others)))
+    return ReadOptions(
+        entry, robot, answers or Answers(), others=tuple(map(Path, others)), start=start
+    )
 
 
 def lazy_robots(files: Iterable[Path]) -> dict[str, Callable[[], Robot]]:

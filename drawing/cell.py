@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
@@ -14,7 +13,7 @@ from ..core.cell.cell import Cell
 from ..core.motion.controller import Run
 from .geometry import path_geometry
 from .solids import obstacle_triangles, robot_triangles, skeleton
-from .style import DPI, STYLE
+from .style import STYLE, figure_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,10 +46,7 @@ def draw_cell(cell: Cell, runs: Sequence[tuple[str, Run]], kind: str) -> bytes:
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
-        figure = make_cell_figure(cell, runs)
-        buffer = io.BytesIO()
-        figure.savefig(buffer, format=kind, dpi=DPI)
-    return buffer.getvalue()
+        return figure_file(make_cell_figure(cell, runs), kind)
 
 
 def make_cell_figure(cell: Cell, runs: Sequence[tuple[str, Run]]) -> Figure:

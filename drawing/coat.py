@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -10,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .style import DPI, LIMIT, NOMINAL, SPEED, STYLE
+from .style import LIMIT, NOMINAL, SPEED, STYLE, figure_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 FloatArray = NDArray[np.float64]
 
@@ -82,7 +80,7 @@ def draw_map(surface: Painted, title: str, kind: str) -> bytes:
             f"thickness µm (target {surface.target / MICRON:g} ± {100 * surface.tolerance:g} %)"
         )
         axes.set_title(title)
-        return _file(figure, kind)
+        return figure_file(figure, kind)
 
 
 def draw_curve(surface: Painted, curve: Curve, title: str, kind: str) -> bytes:
@@ -111,7 +109,7 @@ def draw_curve(surface: Painted, curve: Curve, title: str, kind: str) -> bytes:
         _frame(axes, points)
         figure.colorbar(lines, ax=axes, shrink=0.7, pad=0.09).set_label("programmed speed mm/s")
         axes.set_title(title)
-        return _file(figure, kind)
+        return figure_file(figure, kind)
 
 
 def draw_spread(
@@ -144,7 +142,7 @@ def draw_spread(
         right.set(xlabel="time s", ylabel="speed mm/s", title="speed of the TCP")
         right.set_ylim(bottom=0.0)
         right.legend()
-        return _file(figure, kind)
+        return figure_file(figure, kind)
 
 
 def draw_strokes(
@@ -169,7 +167,7 @@ def draw_strokes(
             axes.plot(1e3 * across, fitted / MICRON, color=colour, label="by the footprint")
         axes.set(xlabel="across the stroke mm", ylabel="thickness µm", title="strokes")
         axes.legend()
-        return _file(figure, kind)
+        return figure_file(figure, kind)
 
 
 _COLOURS = (NOMINAL, "#7f5fa8", SPEED, "#e08a1e")
@@ -181,6 +179,8 @@ def _histogram(
     target: float,
     tolerance: float,
 ) -> None:
+    from matplotlib.ticker import NullFormatter, StrMethodFormatter
+
     values = np.concatenate([thickness for thickness, _ in coats.values()]) / MICRON
     low, high = float(values.min()), float(values.max())
     edges = np.linspace(low, max(high, low + 1e-6), 121)
@@ -199,6 +199,8 @@ def _histogram(
     axes.axvspan(wanted * (1 - tolerance), wanted * (1 + tolerance), color="#e8efe4", zorder=0)
     axes.axvline(wanted, color=LIMIT, linewidth=0.8)
     axes.set_yscale("log")
+    axes.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
     axes.set_ylim(bottom=0.01)
     axes.set(
         xlabel="thickness µm",
@@ -267,9 +269,3 @@ def _frame(axes: Any, points: FloatArray) -> None:
         )
     axes.set_box_aspect(span)
     axes.view_init(elev=38, azim=-62)
-
-
-def _file(figure: Figure, kind: str) -> bytes:
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format=kind, dpi=DPI)
-    return buffer.getvalue()

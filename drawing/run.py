@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 from ..core.motion.controller import Run
 from ..core.robot.model import Robot
 from .geometry import PathGeometry, path_geometry, tcp_speed
-from .style import DPI, LIMIT, NOMINAL, SPEED, STOP, STYLE, ZONE
+from .style import LIMIT, NOMINAL, SPEED, STOP, STYLE, ZONE, figure_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,10 +29,7 @@ def draw(run: Run, robot: Robot, kind: str) -> bytes:
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
-        figure = make_figure(run, robot)
-        buffer = io.BytesIO()
-        figure.savefig(buffer, format=kind, dpi=DPI)
-    return buffer.getvalue()
+        return figure_file(make_figure(run, robot), kind)
 
 
 def make_figure(run: Run, robot: Robot) -> Figure:

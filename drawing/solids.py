@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.cell.cell import Cell
+from ..core.cell.floor import FLOOR
 from ..core.cell.geometry import Geometry, Mesh
 from ..core.robot.assembly import Stage, assemble
 from ..core.robot.chain_kernels import poses
@@ -36,6 +37,8 @@ def obstacle_triangles(cell: Cell, q: FloatArray) -> dict[str, FloatArray]:
     """
     found = {}
     for obstacle in cell.obstacles:
+        if obstacle.name == FLOOR:
+            continue  # It would hide all else.
         stages: list[Stage] = [*cell.robot.frame_stages(obstacle.carried_by)]
         found[obstacle.name] = _placed(obstacle.geometry, stages, q[None])[0]
     return found

@@ -65,7 +65,7 @@ class Alignment:
 
 
 def align(robot: Robot, trajectory: Trajectory, log: CleanLog) -> Alignment:
-    """Align a log with the emulated motion of its program.
+    """Align a log with the emulated motion of its program's motors, which is what logs show.
 
     What the log holds before the motion leaves its start and after it reaches its end plays no
     part.
@@ -82,7 +82,7 @@ def align(robot: Robot, trajectory: Trajectory, log: CleanLog) -> Alignment:
     valid = np.flatnonzero(log.valid)
     q = log.q[valid]
     still = max(STILL, 6.0 * float(np.linalg.norm(log.noise)))
-    found = match(trajectory.t, trajectory.q, q, still)
+    found = match(trajectory.t, trajectory.q_motor, q, still)
     begin, end = _ends(found, still)
     inside = slice(begin, end + 1)
     check_path(robot, trajectory, q, found, inside)
@@ -94,7 +94,7 @@ def align(robot: Robot, trajectory: Trajectory, log: CleanLog) -> Alignment:
     drift, origin, spread = _drift(time, lag, weight, offset)
     motion = slice(int(rows[0]), _rest(log, int(rows[-1]), still))
     logged = moving_time(log.t[motion], log.q[motion])
-    moving = moving_time(trajectory.t, trajectory.q)
+    moving = moving_time(trajectory.t, trajectory.q_motor)
     check_time(moving, logged)
     return Alignment(rows, time, off, offset, drift, origin, spread, moving, logged)
 
@@ -133,7 +133,7 @@ def _rest(log: CleanLog, last: int, still: float) -> int:
 
 def _speed(trajectory: Trajectory, time: FloatArray) -> FloatArray:
     """Speed of joints (K,) at times, zero where it is slow."""
-    speed = np.linalg.norm(trajectory.dq, axis=1)
+    speed = np.linalg.norm(trajectory.dq_motor, axis=1)
     at = np.interp(time, trajectory.t, speed)
     return np.where(at > FAST * speed.max(), at, 0.0)
 

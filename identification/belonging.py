@@ -44,7 +44,7 @@ def check_axes(robot: Robot, trajectory: Trajectory, log: CleanLog) -> None:
         InputError: with the reason.
     """
     count = log.q.shape[1]
-    if count != trajectory.q.shape[1] or count != robot.size:
+    if count != trajectory.q_motor.shape[1] or count != robot.size:
         raise InputError(
             f"the log has {count} joints, {robot.name} has {robot.size} axes: wrong robot, or "
             "columns are missing"
@@ -105,16 +105,17 @@ def check_path(
 
 def _reason(robot: Robot, trajectory: Trajectory, q: FloatArray) -> str:
     """What would make the log fit, or where it is worst."""
-    tree = cKDTree(trajectory.q)
+    path = trajectory.q_motor
+    tree = cKDTree(path)
     near = _typical(tree, q)
     # A log that is scaled down hardly moves, and may do so near the path.
-    moves = _reach(np.radians(q)) > 0.5 * _reach(trajectory.q)
+    moves = _reach(np.radians(q)) > 0.5 * _reach(path)
     if moves and _typical(tree, np.radians(q)) < min(near / _BETTER, NEAR):
         return 'it fits if its joints are in degrees: say unit = "deg" in a file of columns'
     if _typical(tree, np.degrees(q)) < min(near / _BETTER, NEAR):
         return _RADIANS
     for axis, name in enumerate(robot.axis_names):
-        shift = _shift(trajectory.q, q, axis)
+        shift = _shift(path, q, axis)
         moved, flipped = q.copy(), q.copy()
         moved[:, axis] += shift
         flipped[:, axis] *= -1
@@ -129,14 +130,12 @@ def _reason(robot: Robot, trajectory: Trajectory, q: FloatArray) -> str:
             return f"it fits if the columns of {robot.axis_names[one]} and " + (
                 f"{robot.axis_names[other]} are exchanged"
             )
-    below = np.maximum(
-        trajectory.q.min(axis=0) - q.max(axis=0), q.min(axis=0) - trajectory.q.max(axis=0)
-    )
+    below = np.maximum(path.min(axis=0) - q.max(axis=0), q.min(axis=0) - path.max(axis=0))
     worst = int(np.argmax(below))
     if below[worst] > 0:
         return (
             f"{robot.axis_names[worst]} runs from {_span(q[:, worst])} in the log and from "
-            f"{_span(trajectory.q[:, worst])} in the program: another robot, program, start or tool"
+            f"{_span(path[:, worst])} in the program: another robot, program, start or tool"
         )
     return "another robot, program, start or tool, or a log of several runs"
 
@@ -184,7 +183,7 @@ def check_coverage(
             f"the log begins when {100 * first / found.length:.0f} % of the program's path lie "
             "behind: it is shorter than the program, or began late"
         )
-    if last < found.length - slack and _typical(cKDTree(trajectory.q), np.degrees(q)) < NEAR:
+    if last < found.length - slack and _typical(cKDTree(trajectory.q_motor), np.degrees(q)) < NEAR:
         # Where the emulation begins as the log does, all of the log is near its beginning.
         raise InputError(f"the log hardly moves; {_RADIANS}")
     if last < found.length - slack:

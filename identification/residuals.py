@@ -25,7 +25,9 @@ class Residuals:
     Args:
         t: (K,) s, of the log.
         arc: (K,) m along the emulated path of the TCP, of the place nearest to each sample.
-        tcp: (K, 3) m, the log's TCP in the world.
+        tcp: (K, 3) m, the log's TCP in the world: where it would be with the motors that are
+            logged, if gears were stiff.
+        line: (T, 3) m, likewise of the emulated motors, at the samples of the emulation.
         path: (K,) m, its distance from the emulated path of the TCP.
         joint_path: (K, N) rad (m), from the emulated path of joints, time aside.
         joint_time: (K, N) rad (m), from where the emulated motion is at that time, after one
@@ -37,6 +39,7 @@ class Residuals:
     t: FloatArray
     arc: FloatArray
     tcp: FloatArray
+    line: FloatArray
     path: FloatArray
     joint_path: FloatArray
     joint_time: FloatArray
@@ -48,6 +51,8 @@ def residuals(
 ) -> Residuals:
     """The residuals of a log's valid samples between start and end of the motion.
 
+    Controllers log the motors, so it is the emulated motors that logs are held against.
+
     Args:
         robot: that moved.
         tool: whose TCP is looked at; of a tool that stands still, the flange is.
@@ -56,7 +61,7 @@ def residuals(
         alignment: of both.
     """
     held = tool if tool.robot_held else FLANGE
-    line = tcp_positions(robot, held, trajectory.q)
+    line = tcp_positions(robot, held, trajectory.q_motor)
     q, t = log.q[alignment.rows], log.t[alignment.rows]
     tcp = tcp_positions(robot, held, q)
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
@@ -66,6 +71,7 @@ def residuals(
         t,
         np.interp(alignment.time, trajectory.t, length),
         tcp,
+        line,
         distance_to_polyline(tcp, line),
         alignment.off,
         q - expected,
@@ -74,8 +80,8 @@ def residuals(
 
 
 def joints_at(trajectory: Trajectory, time: FloatArray) -> FloatArray:
-    """Joints (K, N) of a motion at times; it rests before and after."""
-    columns = [np.interp(time, trajectory.t, column) for column in trajectory.q.T]
+    """Motors (K, N) of a motion at times; they rest before and after."""
+    columns = [np.interp(time, trajectory.t, column) for column in trajectory.q_motor.T]
     return np.stack(columns, axis=-1)
 
 

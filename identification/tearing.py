@@ -148,4 +148,5 @@ def _across(vectors: FloatArray, direction: FloatArray) -> FloatArray:
 
 def _speeds(trajectory: Trajectory, alignment: Alignment) -> FloatArray:
     """(K, N), emulated speeds of the joints at the places of the samples."""
-    return np.stack([np.interp(alignment.time, trajectory.t, dq) for dq in trajectory.dq.T], -1)
+    speeds = trajectory.dq_motor.T
+    return np.stack([np.interp(alignment.time, trajectory.t, dq) for dq in speeds], -1)

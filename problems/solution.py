@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.cell.floor import FLOOR
 from ..core.errors import InputError, Note
 from ..core.motion.controller import Controller, Run
 from ..core.motion.limits import interval_samples
 from ..core.motion.timing import Timing
 from ..core.program.program import Program
+from ..core.robot.model import Robot
+from ..core.spatial.rotation import rotation_vector
 
 if TYPE_CHECKING:
     from ..core.collision.certificate import SceneOf
@@ -21,6 +24,8 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
+_STILL = 1e-9
+"""m and rad below which a point has not been moved."""
 RESOLUTION = 1e-5
 """m to which the clearance that there is is proven, for the table before and after."""
 
@@ -33,6 +38,7 @@ class Measures:
         time: cycle time, s.
         path_length: of the TCP, m.
         peak_acceleration: largest acceleration of the TCP, m/s², before any smoothing in time.
+        lowest: height of the TCP at its lowest, m in the world; None where a tool stands still.
         energy: (N,) ∫ τⱼ² dt of each joint in N² m² s, before any smoothing in time; None where
             the robot's inertias are not known.
         clearance: proven to be kept, m; None where nothing is proven.
@@ -41,6 +47,7 @@ class Measures:
     time: float
     path_length: float
     peak_acceleration: float
+    lowest: float | None = None
     energy: FloatArray | None = None
     clearance: float | None = None
 
@@ -68,6 +75,24 @@ class Row:
         return 100.0 * (self.after - self.before) / self.before
 
 
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """How far a via point was moved: the tool's TCP there, or what the robot carries to a tool that
+    stands still.
+
+    Args:
+        move: index of the move to it.
+        distance: m.
+        rise: m, upward in the world.
+        turn: rad.
+    """
+
+    move: int
+    distance: float
+    rise: float
+    turn: float
+
+
 @dataclass(frozen=True)
 class Solution:
     """What an optimisation made of a program.
@@ -78,6 +103,8 @@ class Solution:
         before, after: their figures.
         certificate: of the new program; None where no proof was asked for.
         notes: what was found on the way.
+        moved: the via points that are elsewhere than before, or turned; empty where the number of
+            moves has changed.
     """
 
     original: Program
@@ -86,6 +113,7 @@ class Solution:
     after: Measures
     certificate: Certificate | None = None
     notes: tuple[Note, ...] = ()
+    moved: tuple[Moved, ...] = ()
 
     @property
     def changed(self) -> bool:
@@ -109,6 +137,9 @@ class Solution:
             Row("TCP path length", "m", before.path_length, after.path_length),
             Row("peak TCP acceleration", "m/s²", before.peak_acceleration, after.peak_acceleration),
         ]
+        lowest = [None if m.lowest is None else 1e3 * m.lowest for m in (before, after)]
+        if lowest[0] is not None:
+            rows.append(Row("lowest point of the TCP", "mm", *lowest))
         if before.energy is not None and after.energy is not None:
             names = joints or [str(j + 1) for j in range(len(before.energy))]
             rows += [
@@ -128,7 +159,20 @@ def scene_notes(scenes: SceneOf, program: Program) -> tuple[Note, ...]:
         program: whose tools count.
     """
     tools = dict.fromkeys(move.tool for move in program.moves)
-    return tuple(dict.fromkeys(note for tool in tools for note in scenes(tool).notes))
+    around = [obstacle.name for tool in tools for obstacle in scenes(tool).cell.obstacles]
+    notes = [note for tool in tools for note in scenes(tool).notes]
+    if FLOOR in around:
+        notes.append(
+            Note(
+                "nothing is known of tools and surroundings: it is proven that the arm touches "
+                f"neither itself nor {FLOOR}, and that TCPs stay above it"
+            )
+        )
+    elif not around:
+        notes.append(
+            Note("nothing stands around the robot: it is proven that it does not touch itself")
+        )
+    return tuple(dict.fromkeys(notes))
 
 
 def measure(controller: Controller, run: Run, certificate: Certificate | None = None) -> Measures:
@@ -140,13 +184,51 @@ def measure(controller: Controller, run: Run, certificate: Certificate | None = 
         certificate: of the run, if there is one.
     """
     steps = np.diff(run.trajectory.position, axis=0)
+    held = all(move.tool.robot_held for move in run.program.moves)
     return Measures(
         run.duration,
         float(np.linalg.norm(steps, axis=1).sum()),
         _peak_acceleration(run.timing),
+        float(run.trajectory.position[:, 2].min()) if held else None,
         _energy(controller, run),
         certificate.clearance if certificate is not None and certificate.proven else None,
     )
+
+
+def moved_points(robot: Robot, before: Run, after: Run) -> tuple[Moved, ...]:
+    """The waypoints of a program that are elsewhere than in another, or turned.
+
+    Args:
+        robot: that drives both.
+        before, after: the programs, driven; with other numbers of moves nothing is told.
+    """
+    if len(before.program.moves) != len(after.program.moves):
+        return ()
+    old, new = _waypoints(robot, before), _waypoints(robot, after)
+    return tuple(
+        moved
+        for index in sorted(old.keys() & new.keys())
+        if (moved := _between(index, old[index], new[index])) is not None
+    )
+
+
+def _waypoints(robot: Robot, run: Run) -> dict[int, FloatArray]:
+    """Poses (4, 4) in the world of what each move brings to its waypoint."""
+    found = {}
+    for k, index in enumerate(run.path.route.moves):
+        flange = robot.flange_pose(run.path.segments.ends.q[k, 1]).matrix()
+        tool = run.program.moves[index].tool
+        found[index] = flange @ tool.tcp.matrix() if tool.robot_held else flange
+    return found
+
+
+def _between(index: int, before: FloatArray, after: FloatArray) -> Moved | None:
+    shift = after[:3, 3] - before[:3, 3]
+    turn = float(np.linalg.norm(rotation_vector(after[:3, :3] @ before[:3, :3].T)))
+    distance = float(np.linalg.norm(shift))
+    if distance < _STILL and turn < _STILL:
+        return None
+    return Moved(index, distance, float(shift[2]), turn)
 
 
 def _peak_acceleration(timing: Timing) -> float:

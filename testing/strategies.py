@@ -215,6 +215,42 @@ def programs(
     return Program(tuple(statements), start=start)
 
 
+@st.composite
+def lines_near_singularities(draw: st.DrawFn, robot: Robot) -> Program:
+    """A line, stopped at or flown through, whose ends lie near a singular posture of an arm.
+
+    One joint stands near where the Jacobian's determinant changes its sign, on either side of it.
+    """
+    gap = 0.01
+    lower = robot.limits.lower + gap
+    upper = robot.limits.upper - gap
+    q = draw(configurations(robot))
+    axis = draw(st.sampled_from([j for j in (2, 4) if j < robot.arm_size]))
+    values = np.linspace(lower[axis], upper[axis], 200)
+    grid = np.tile(q, (len(values), 1))
+    grid[:, axis] = values
+    signs = np.sign(np.linalg.det(robot.jacobian(grid)[:, :, : robot.arm_size]))
+    changes = np.flatnonzero(np.diff(signs))
+    assume(len(changes))
+    middle = values[draw(st.sampled_from(list(map(int, changes))))]
+
+    def near(base: FloatArray) -> FloatArray:
+        moved = base + np.array([draw(st.floats(-0.3, 0.3)) for _ in base])
+        moved[axis] = middle + draw(st.floats(0.02, 0.4)) * draw(st.sampled_from([-1, 1]))
+        return np.asarray(np.clip(moved, lower, upper))
+
+    start = near(q)
+    end, last = near(start), near(start)
+    stop: Zone = FINE
+    zone = draw(st.sampled_from([stop, Radius(0.01, 0.01, 0.01, 0.1)]))
+    speed = Speed(tcp=0.25)
+    moves = (
+        MoveL(PoseTarget(robot.flange_pose(end)), speed, zone),
+        MoveJ(joint_target(robot, last), speed, FINE),
+    )
+    return Program(moves, start=joint_target(robot, start))
+
+
 def _few(
     values: st.SearchStrategy[Value], name: Callable[[Value], str | None]
 ) -> st.SearchStrategy[list[Value]]:
@@ -345,3 +381,71 @@ def _pose(position: tuple[float, float, float], turn: tuple[float, float, float]
     matrix[:3, :3] = matrix_from_rotation_vector(np.array(turn))
     matrix[:3, 3] = position
     return Pose.from_matrix(matrix)
+
+
+@st.composite
+def crowded_programs(
+    draw: st.DrawFn, robot: Robot, q: FloatArray, joint: Speed, path: Speed, turning: ArcOrientation
+) -> Program:
+    """Programs whose zones are large for their legs: lines, arcs and joint moves of millimetres to
+    decimetres, all turned alike, whose zones are few, so that many of them are one datum.
+
+    Args:
+        robot: the robot.
+        q: (N,), a regular configuration that they stay near.
+        joint, path: speeds of joint moves, and of lines and arcs.
+        turning: of the tool along arcs.
+    """
+    statements: list[Statement] = [MoveJ(joint_target(robot, q), joint, FINE)]
+    home = robot.flange_pose(q)
+    shared = draw(st.lists(st.integers(2, 60), min_size=1, max_size=2))
+    radii = st.sampled_from([0.0, 0.001, *(1e-3 * radius for radius in shared)])
+    place = np.array(home.position)
+    count = draw(st.integers(3, 6))
+    for number in range(count):
+        zone: Zone = FINE
+        if number < count - 1:
+            radius = draw(radii)
+            zone = Radius(radius) if radius else FINE
+        step = draw(st.sampled_from([0.004, 0.01, 0.03, 0.1]))
+        way = np.array([draw(st.floats(-1.0, 1.0, allow_subnormal=False)) for _ in range(3)])
+        assume(np.linalg.norm(way) > 0.3)
+        place = np.clip(place + step * way, np.array(home.position) - 0.12, None)
+        place = np.minimum(place, np.array(home.position) + 0.12)
+        x, y, z = (round(float(v), 5) for v in place)
+        end = replace(home, position=(x, y, z))
+        kind = draw(st.sampled_from([MoveL, MoveL, MoveC, MoveJ]))
+        if kind is MoveC:
+            begin = replace(home, position=_end_of(statements[-1], robot))
+            last = np.array(begin.position)
+            side = np.array([draw(st.floats(-1.0, 1.0, allow_subnormal=False)) for _ in range(3)])
+            via = 0.5 * (last + place) + 0.4 * step * side
+            a, b, c = (round(float(v), 5) for v in via)
+            middle = replace(home, position=(a, b, c))
+            if _make_an_arc(begin, middle, end):
+                arc = MoveC(
+                    PoseTarget(end),
+                    path,
+                    zone,
+                    via=PoseTarget(middle),
+                    orientation=turning,
+                )
+                statements.append(arc)
+                continue
+            kind = MoveL
+        if kind is MoveJ:
+            rows = [s.q for s in robot.inverse(end)]
+            nearest = min(rows, key=lambda row: float(np.abs(row - q).max()))
+            statements.append(MoveJ(joint_target(robot, np.round(nearest, 6)), joint, zone))
+        else:
+            statements.append(MoveL(PoseTarget(end), path, zone))
+    return Program(tuple(statements))
+
+
+def _end_of(statement: Statement, robot: Robot) -> tuple[float, float, float]:
+    """Where the flange is at the end of a move."""
+    assert isinstance(statement, MoveJ | MoveL | MoveC)
+    target = statement.target
+    if isinstance(target, PoseTarget):
+        return target.pose.position
+    return robot.flange_pose(target.joints).position

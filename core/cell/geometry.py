@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ..errors import InputError, Note
 from ..robot.shape import Shape
 from ..spatial.pose import IDENTITY, Pose
+from .mesh_file import check_extent, read_scene
 
 FloatArray = NDArray[np.float64]
 
@@ -25,6 +26,8 @@ PLAUSIBLE_EXTENT = (5e-3, 20.0)
 _USUAL_EXTENT = 0.5
 """m, of what stands in a cell."""
 _NOTHING = 1e-12
+_FLAT = 1e-9
+"""Area of a triangle over the square of a side below which it is none."""
 
 
 @dataclass(frozen=True)
@@ -98,8 +101,12 @@ class Mesh:
         faces = np.array(mesh.faces, dtype=np.int64).reshape(-1, 3)
         if len(faces) == 0:
             raise InputError(f"{self.file}: the mesh has no triangles")
-        if not np.isfinite(vertices).all():
-            raise InputError(f"{self.file}: the mesh has corner points that are not finite numbers")
+        check_extent(self.file, vertices)
+        if not _has_surface(vertices, faces):
+            raise InputError(
+                f"{self.file}: the mesh has no surface: the corners of each of its triangles lie "
+                "on a line"
+            )
         vertices.flags.writeable = False
         faces.flags.writeable = False
         return vertices, faces, tuple(self._oddities(bool(mesh.is_watertight), vertices))
@@ -151,19 +158,27 @@ def _made(triangles: Triangles) -> Any:
     return trimesh.Trimesh(triangles.vertices, triangles.faces, process=False)
 
 
+def _has_surface(vertices: FloatArray, faces: NDArray[np.int64]) -> bool:
+    """Whether any triangle is more than a line or a point."""
+    a, b, c = np.moveaxis(vertices[faces], 1, 0)
+    doubled = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    longest = np.maximum(np.linalg.norm(b - a, axis=1), np.linalg.norm(c - a, axis=1))
+    return bool((doubled > _FLAT * longest**2).any())
+
+
 def _load(file: Path) -> Any:
     """The file's triangles as one `trimesh.Trimesh`, equal corner points merged.
 
     trimesh drops points that are not finite when it cleans up, so it does not clean up here
     before they are looked for.
     """
-    import trimesh
-
+    scene = read_scene(file)
     try:
         with np.errstate(all="ignore"):
-            mesh = trimesh.load_mesh(file, process=False)
-    except Exception as error:  # each format's parser raises its own kinds
+            mesh = scene.to_mesh()
+    except Exception as error:  # whatever is odd about how its meshes stand
         raise InputError(f"{file}: cannot be read as a mesh: {error!r}") from error
     if np.isfinite(mesh.vertices).all():
-        mesh.merge_vertices()
+        with np.errstate(all="ignore"):  # of lengths that are refused next
+            mesh.merge_vertices()
     return mesh

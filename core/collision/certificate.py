@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 from ..cell.cell import Cell
 from ..errors import InputError
 from ..motion.controller import Controller, Run
+from ..motion.tcp_walk import JOINED
 from ..program.tool import Tool
 from .enclosure import Enclosure, Span
 from .findings import Budget, Cause, Finding
 from .scene import CollisionScene
-from .strays import strays_of
+from .strays import Straying, parts_of
 from .subdivision import Prover
-from .verdict import CONTACT, MM, Certificate, Reader, nearest_of
+from .verdict import CONTACT, MM, Certificate, Met, Reader, nearest_of
 
 FloatArray = NDArray[np.float64]
 SceneOf = Callable[[Tool], CollisionScene]
@@ -103,25 +104,39 @@ def certify_stretch(
             raise InputError(f"a stretch runs from a first to a last σ, not from {first} to {last}")
     enclosure = Enclosure.of(run.path)
     left = Budget(budget)
-    owned, bands = _owners(run, scenes, spans), strays_of(controller, run)
-    owners = [owner for _ in bands for owner in owned]
-    provers = [
-        Prover(enclosure, scene, strays, residual, left) for strays in bands for scene, _ in owned
-    ]
-    reader = Reader(run)
+    straying, reader = Straying.of(controller, run), Reader(run)
     wanted = max(clearance - TOLERANCE, CONTACT)
-    findings = [
-        (prover, finding)
-        for prover, (_, pieces) in zip(provers, owners, strict=True)
-        if (finding := prover.prove(spans, pieces, wanted)) is not None
-    ]
+    torn = _first_tear(run, spans)
+    if torn is not None:
+        segment = int(run.path.pieces.segment[torn.piece])
+        scene = scenes(run.program.moves[run.path.route.moves[segment]].tool)
+        return reader.refused(scene, torn, None, wanted, left.used)
+    met: list[Met] = []
+    findings: list[tuple[CollisionScene, Finding]] = []
+    for part in parts_of(run.path):
+        owned = _owners(run, scenes, spans, part)
+        if not owned:
+            continue
+        intervals = run.path.pieces.first_interval[list(part)]
+        provers = [
+            (Prover(enclosure, scene, strays, residual, left), pieces)
+            for strays in straying.over(int(intervals[0]), int(intervals[1]))
+            for scene, pieces in owned
+        ]
+        for prover, pieces in provers:
+            finding = prover.prove(spans, pieces, wanted)
+            if finding is not None:
+                findings.append((prover.scene, finding))
+        if resolution is not None and not findings:
+            for prover, pieces in provers:
+                prover.tighten(spans, pieces, resolution)
+        met += [Met(prover.scene, prover.nearest, prover.proven) for prover, _ in provers]
+        if any(finding.cause is Cause.NEAR for _, finding in findings):
+            break
     if findings:
-        prover, finding = min(findings, key=lambda found: _rank(found[1]))
-        return reader.refused(prover, finding, nearest_of(provers), wanted, left.used)
-    if resolution is not None:
-        for prover, (_, pieces) in zip(provers, owners, strict=True):
-            prover.tighten(spans, pieces, resolution)
-    return reader.proven(provers, resolution or 0.0, left.used)
+        scene, finding = min(findings, key=lambda found: _rank(found[1]))
+        return reader.refused(scene, finding, nearest_of(met), wanted, left.used)
+    return reader.proven(met, resolution or 0.0, left.used)
 
 
 def _check(clearance: float, residual: float, resolution: float | None) -> None:
@@ -135,9 +150,9 @@ def _check(clearance: float, residual: float, resolution: float | None) -> None:
 
 
 def _owners(
-    run: Run, scenes: SceneOf, spans: Sequence[Span]
+    run: Run, scenes: SceneOf, spans: Sequence[Span], part: tuple[int, int]
 ) -> list[tuple[CollisionScene, list[int]]]:
-    """The scenes in the order of their first use, and the pieces of the path in each.
+    """The scenes in the order of their first use, and the pieces of a part of the path in each.
 
     Only pieces that the spans touch.
     """
@@ -147,11 +162,28 @@ def _owners(
     for first, last in spans:
         touched |= (edge[1:] >= first) & (edge[:-1] <= last)
     owned: dict[int, tuple[CollisionScene, list[int]]] = {}
-    for piece in np.flatnonzero(touched):
+    for piece in part[0] + np.flatnonzero(touched[slice(*part)]):
         move = run.program.moves[path.route.moves[int(path.pieces.segment[piece])]]
         scene = scenes(move.tool)
         owned.setdefault(id(scene), (scene, []))[1].append(int(piece))
     return list(owned.values())
+
+
+def _first_tear(run: Run, spans: Sequence[Span]) -> Finding | None:
+    """Where joints first jump from one piece of the path to the next, on a stretch's inside.
+
+    Within pieces, enclosures hold the joints together.
+    """
+    path = run.path
+    right = path.pieces.first_sample[1:-1]
+    # A comparison that holds for what is not a number, too.
+    torn = ~(np.abs(path.q[right] - path.q[right - 1]).max(axis=1) <= JOINED)
+    for piece in np.flatnonzero(torn):
+        sigma = float(path.pieces.edge[piece + 1])
+        if any(first < sigma < last for first, last in spans):
+            q = path.q[right[piece]]
+            return Finding(Cause.TORN, int(piece), sigma, sigma, sigma, q, None, None, 1.0)
+    return None
 
 
 def _rank(finding: Finding) -> tuple[bool, float]:

@@ -16,13 +16,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..motion.curve_bounds import expand
 from ..motion.curves import Curves, parameter_jet
 from ..motion.path import Path
 from ..motion.tcp_samples import Samples
 from ..motion.zones import POSITION
 from ..robot.chain import Chain
 from .boxes import Boxes
-from .curve_bounds import expand
 from .tcp_enclosure import enclose
 
 FloatArray = NDArray[np.float64]

@@ -25,6 +25,8 @@ class Cause(Enum):
     """Within rounding of the distance wanted."""
     EXHAUSTED = auto()
     """The budget was used up."""
+    TORN = auto()
+    """The path's joints jump there."""
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,9 @@
-"""How far smoothing in time and elastic joints take a motion off its path, place by place.
+"""How far smoothing in time takes the links off their path, place by place.
 
-See `motion.averaging` for the first and `motion.lead_bound` for the second. The bounds hold for all
-motions within the path's limits that rest no shorter than reckoned with, so at every override that
-stays as it is where rests are always as long.
+See `motion.averaging`. What motors lead by is what elastic joints give way by, so that links are
+where smoothing leaves them; servos that lag take their links with them (`motion.elasticity`). The
+bounds hold for all motions within the path's limits that rest no shorter than reckoned with, so at
+every override that stays as it is where rests are always as long.
 
 Where rests end by an in-position window (`motion.rests`), slow motions rest less, and fast ones
 without rests would stray far. So motions are told apart by how much slower they are: an override
@@ -13,24 +14,31 @@ accelerations, are low.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ..motion.allowed import Allowed
+from ..motion.allowed import Allowed, greatest
 from ..motion.averaging import Averages
 from ..motion.controller import Controller, Run
 from ..motion.course import Course
-from ..motion.elasticity import RIGID
-from ..motion.lead_bound import most_leads
+from ..motion.path import Path
+from ..motion.point_masses import filled
 from ..motion.smoothing import Smoothing
 from ..motion.timing import Timing
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+_TOGETHER = 10_000
+"""Intervals of a path that are looked at together."""
+_ASIDE = 3.0
+"""Reaches of the averages within which what is beside a stretch counts: the middle of a kernel may
+be one half from its mean place, reaches another half, and its ramp's means as much again."""
 _CELLS = 40
 """Cells within what averages reach."""
 _STEP = 2e-3
@@ -39,14 +47,12 @@ _SPEEDS, _TIME = 0.1, 0.7
 """Shares of speeds and of the rate of time below which motions are slow."""
 _COARSER = 3.0
 """How much longer cells are of motions that are slow."""
-_FEWEST = 2
-"""Averages after a ramp that bound the joints' accelerations."""
 
 
 class Strays(NamedTuple):
     """How far joints may be from a path, in C stretches of it.
 
-    The commanded joints are those of a place in the stretch and beside it a sum of ways, each times
+    The links are those of a place in the stretch and beside it a sum of ways, each times
     a factor of its own, and of what is left.
 
     Args:
@@ -109,71 +115,97 @@ class _Band(NamedTuple):
     """Motions on a path.
 
     Args:
-        timing: of the path.
-        allowed: what they keep to.
+        most: (K + 1,), greatest ℓ̇² at each of its samples.
         rests: (S,) s, how long they rest at stops on the way at least.
         coarser: how much longer cells may be.
     """
 
-    timing: Timing
-    allowed: Allowed
+    most: FloatArray
     rests: FloatArray
     coarser: float = 1.0
 
 
-def strays_of(controller: Controller, run: Run) -> tuple[Strays, ...]:
-    """How far the commanded joints of a run may be from its path, at every steady override.
+@dataclass(frozen=True)
+class Straying:
+    """How far the links of a run may be from its path, at every steady override.
 
-    A motion keeps to one of them from beginning to end.
+    Told stretch by stretch: of a long path all of it would take much memory.
     """
-    smoothing = controller.smoothing(run.program, run.path)
-    if not smoothing.widths and controller.model.elasticity == RIGID:
-        return (Strays.within(np.zeros(run.path.q.shape[1])),)
-    return tuple(_within(controller, smoothing, band) for band in _bands(controller, run))
+
+    controller: Controller
+    run: Run
+    smoothing: Smoothing
+    bands: tuple[_Band, ...]
+
+    @classmethod
+    def of(cls, controller: Controller, run: Run) -> Straying:
+        """Of a run."""
+        smoothing = controller.smoothing(run.program, run.path)
+        nowhere = not smoothing.widths and not any(controller.model.elasticity.lag)
+        return cls(controller, run, smoothing, () if nowhere else _bands(controller, run))
+
+    def over(self, first: int, last: int) -> tuple[Strays, ...]:
+        """On the intervals from one to before another; a motion keeps to one from end to end."""
+        if not self.bands:
+            return (Strays.within(np.zeros(self.run.path.q.shape[1])),)
+        return tuple(_within(self, band, first, last) for band in self.bands)
 
 
-def _bands(controller: Controller, run: Run) -> list[_Band]:
+def strays_of(controller: Controller, run: Run) -> tuple[Strays, ...]:
+    """How far the links of a run may be from its path, on all of it."""
+    return Straying.of(controller, run).over(0, len(run.timing.along.spacing))
+
+
+def parts_of(path: Path) -> Iterator[tuple[int, int]]:
+    """Stretches of a path that are looked at together: first piece, and the one behind the last."""
+    first_interval, first = path.pieces.first_interval, 0
+    while first + 1 < len(first_interval):
+        last = int(np.searchsorted(first_interval, first_interval[first] + _TOGETHER, "right")) - 1
+        last = max(last, first + 1)
+        yield first, last
+        first = last
+
+
+def _bands(controller: Controller, run: Run) -> tuple[_Band, ...]:
     """Bands in one of which a run is at any override."""
-    timing, allowed, rests = run.timing, Allowed.of(run.timing), run.timing.rests
+    most, rests = greatest(run.timing), run.timing.rests
     if not rests.length.any() or rests.in_position is None:
-        return [_Band(timing, allowed, rests.length)]
-    slow = controller.stamp_slower(run.program, timing, _SPEEDS)
+        return (_Band(most, rests.length),)
+    slow = controller.stamp_slower(run.program, run.timing, _SPEEDS)
     least = np.minimum(slow.rests.where_time_runs(_TIME), rests.length)
     none = np.zeros_like(least)
-    return [
-        _Band(timing, allowed, least),
-        _Band(timing, allowed.where_time_runs(_TIME), none, _COARSER),
-        _Band(slow, Allowed.of(slow), none, _COARSER),
-    ]
+    return (
+        _Band(most, least),
+        # Where time runs at a rate, ℓ̇² goes with its square.
+        _Band(_TIME**2 * most, none, _COARSER),
+        _Band(greatest(slow), none, _COARSER),
+    )
 
 
-def _within(controller: Controller, smoothing: Smoothing, band: _Band) -> Strays:
-    """How far the commanded joints of motions in a band may be from their path."""
-    timing, allowed, elasticity = band.timing, band.allowed, controller.model.elasticity
+def _within(known: Straying, band: _Band, first: int, last: int) -> Strays:
+    """How far the links of motions in a band may be from their path."""
+    timing, smoothing = known.run.timing, known.smoothing
+    lag = known.controller.model.elasticity.lag
     size = timing.path.q.shape[1]
     reach = smoothing.window + timing.ramp
     step = band.coarser * (reach / _CELLS if reach > 0.0 else _STEP)
-    course = Course.of(timing, allowed, band.rests, step, max(reach, step))
-    few = elasticity != RIGID and len(smoothing.widths) < _FEWEST
-    if timing.ramp > 0.0 and (few or (course.way[:, 0] <= 0.0).any()):
+    away = max(reach, step)
+    first, last = _with_what_counts(timing, band.most, first, last, _ASIDE * away)
+    allowed = Allowed.of(timing, band.most, first, last)
+    course = Course.of(timing, allowed, band.rests, step, away)
+    if timing.ramp > 0.0 and (course.way[:, 0] <= 0.0).any():
         # No bound is known: where what a ramp averages may stand still, it tells no place.
         return Strays.within(np.full(size, np.inf))
     averages = Averages(course, smoothing, timing.ramp)
     offsets = averages.offsets()
     ways, share, rest = offsets.axis[:, None], offsets.along[:, None], offsets.aside
-    if elasticity != RIGID:
-        leads = most_leads(
-            elasticity,
-            controller.robot,
-            allowed,
-            course,
-            averages,
-            offsets,
-            timing.start,
-        )
-        ways = np.concatenate([ways, leads.ways], axis=1)
-        share = np.concatenate([share, leads.share], axis=1)
-        rest = rest + leads.rest
+    if any(lag):
+        rates, late = averages.rates(), filled(lag, size)
+        speed = np.stack([np.zeros_like(rates.speed), rates.speed], -1)
+        ways = np.concatenate([ways, (late * course.tangent)[:, None]], axis=1)
+        share = np.concatenate([share, speed[:, None]], axis=1)
+        late_ones = late != 0.0
+        rest[:, late_ones] += np.abs(late[late_ones]) * rates.veer[:, late_ones]
     most = rest + np.einsum("cwn,cw->cn", np.abs(ways), np.abs(share).max(axis=2))
     # What cannot be told is not small.
     unknown = ~np.isfinite(most).all(axis=1)
@@ -181,3 +213,15 @@ def _within(controller: Controller, smoothing: Smoothing, band: _Band) -> Strays
     moves = course.moves
     edge = np.append(course.sigma[:-1][moves], course.sigma[-1])
     return Strays(edge, ways[moves], share[moves], rest[moves], most[moves])
+
+
+def _with_what_counts(
+    timing: Timing, most: FloatArray, first: int, last: int, away: float
+) -> tuple[int, int]:
+    """The same intervals with those that the fastest motion passes within ``away`` s of them."""
+    speed = np.sqrt(most)
+    theta = np.cumsum(2.0 * timing.along.spacing / (speed[:-1] + speed[1:]))
+    begin = 0.0 if first == 0 else theta[first - 1]
+    before = int(np.searchsorted(theta, begin - away))
+    behind = int(np.searchsorted(theta, theta[last - 1] + away)) + 1
+    return min(before, first), max(min(behind, len(theta)), last)

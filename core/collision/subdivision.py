@@ -220,6 +220,8 @@ class _Search:
         # On a wide interval the levers of the strays are not known well.
         located = (travel < _LOCATED) | ~np.isfinite(found.stray)
         strayed = near & located & ~(distance - found.stray >= self._wanted)
+        # Where the path alone is clear it is the strays beside that leave it open.
+        strayed |= stalled & (distance - travel >= self._wanted + 2.0 * ROUNDING)
         self._note(intervals, items, too_near, Cause.NEAR)
         self._note(intervals, items, strayed & ~too_near, Cause.STRAY)
         self._note(intervals, items, stalled & ~strayed, Cause.STALLED)

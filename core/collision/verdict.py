@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ..motion.limits import interval_samples
 from ..motion.path import NEAR_SINGULAR
 from .enclosure import Span
 from .findings import Cause, Finding, Nearest
-from .subdivision import Prover
+from .scene import CollisionScene
 
 CONTACT = 2e-6
 """m that bodies keep at least, even where no clearance is asked for: measured distances may be
@@ -70,6 +71,20 @@ class Certificate:
         return self.message
 
 
+class Met(NamedTuple):
+    """What came of a stretch of the path.
+
+    Args:
+        scene: the bodies.
+        nearest: where the least was met.
+        proven: m, what is proven.
+    """
+
+    scene: CollisionScene
+    nearest: Nearest
+    proven: float
+
+
 @dataclass(frozen=True)
 class Reader:
     """Puts what provers found into words and places of the program.
@@ -82,17 +97,17 @@ class Reader:
 
     def refused(
         self,
-        prover: Prover,
+        scene: CollisionScene,
         finding: Finding,
-        nearest: tuple[Prover, Nearest] | None,
+        nearest: Met | None,
         wanted: float,
         measured: int,
     ) -> Certificate:
         """The certificate of a stretch that is not proven."""
-        pair = None if finding.pair is None else prover.scene.pair_names(finding.pair)
+        pair = None if finding.pair is None else scene.pair_names(finding.pair)
         move, time = self._move(finding.piece), self._time(finding.sigma)
         violated = finding.cause is Cause.NEAR
-        least = math.inf if nearest is None else nearest[1].distance
+        least = math.inf if nearest is None else nearest.nearest.distance
         if finding.distance is not None:
             least = min(least, finding.distance)
         return Certificate(
@@ -108,19 +123,19 @@ class Reader:
             measured,
         )
 
-    def proven(self, provers: Sequence[Prover], resolution: float, measured: int) -> Certificate:
+    def proven(self, known: Sequence[Met], resolution: float, measured: int) -> Certificate:
         """The certificate of a proof to within ``resolution`` m."""
-        clearance = min((prover.proven for prover in provers), default=math.inf)
+        clearance = min((part.proven for part in known), default=math.inf)
         if clearance == math.inf:
             message = "nothing is near that it could touch"
             return Certificate(Verdict.PROVEN, clearance, message, measured=measured)
         message = in_words(clearance)
-        nearest = nearest_of(provers)
-        if nearest is None or nearest[1].kept > clearance + resolution:
+        nearest = nearest_of(known)
+        if nearest is None or nearest.nearest.kept > clearance + resolution:
             # Nothing was measured where it matters: what was met is not what is nearest.
             return Certificate(Verdict.PROVEN, clearance, message, measured=measured)
-        prover, met = nearest
-        pair = prover.scene.pair_names(met.pair)
+        met = nearest.nearest
+        pair = nearest.scene.pair_names(met.pair)
         move, time = self._move(met.piece), self._time(met.sigma)
         message += (
             f"; the least distance met is {met.distance * MM:.3f} mm, between {pair[0]} and "
@@ -174,6 +189,11 @@ class Reader:
                     f"not proven: {bodies} are {distance * MM:.4f} mm apart, within rounding of "
                     f"the {_shown(wanted)} to be kept"
                 )
+            case Cause.TORN:
+                return (
+                    "not proven: the joints jump from one piece of the path to the next; go round "
+                    "singular configurations with a joint move, or use a stop point"
+                )
         return "not proven: the budget of measured distances is used up; raise it"
 
     def _move(self, piece: int) -> int:
@@ -202,6 +222,7 @@ def in_words(clearance: float) -> str:
     return f"a clearance of at least {_shown(clearance)} is proven"
 
 
-def nearest_of(provers: Sequence[Prover]) -> tuple[Prover, Nearest] | None:
-    met = [(prover, prover.nearest) for prover in provers if prover.nearest.q is not None]
-    return min(met, key=lambda found: found[1].kept, default=None)
+def nearest_of(known: Sequence[Met]) -> Met | None:
+    """Where the least was met."""
+    found = [part for part in known if part.nearest.q is not None]
+    return min(found, key=lambda part: part.nearest.kept, default=None)

@@ -11,7 +11,7 @@ from ..motion.path import NEAR_SINGULAR
 from ..motion.reached import lengths_and_speeds, zone_reaches
 from ..motion.segments import JOINT_SEGMENT, LINE_SEGMENT
 from ..motion.zones import STOP
-from ..program.move import MoveJ
+from ..program.move import MoveC, MoveJ
 from ..program.zone import Fine, Radius
 from ..robot.joint import JointKind
 from .finding import Hit, Rule, RunSubject, Severity
@@ -180,6 +180,19 @@ def _time_not_met(subject: RunSubject) -> Iterator[Hit]:
             )
 
 
+def _straight_arcs(subject: RunSubject) -> Iterator[Hit]:
+    route = subject.run.path.route
+    for k, move in enumerate(route.moves):
+        arc = isinstance(subject.program.moves[move], MoveC)
+        if arc and route.ends.kind[k] == LINE_SEGMENT:
+            yield Hit(
+                "the three points of the arc lie on a line: it is driven as the line where the "
+                "controller does not stop at it",
+                "use a linear move, or move the auxiliary point",
+                move,
+            )
+
+
 def _margin(subject: RunSubject) -> Iterator[Hit]:
     path, robot = subject.run.path, subject.robot
     joints = [*robot.joints, *(axis.joint for axis in robot.external_axes)]
@@ -227,6 +240,7 @@ RUN_RULES = (
         _flips,
     ),
     Rule("half-turn", Severity.WARNING, "lines that turn the tool by half a turn", _half_turns),
+    Rule("straight-arc", Severity.WARNING, "arcs whose points lie on a line", _straight_arcs),
     Rule("singular", Severity.WARNING, "stretches near a singular configuration", _singular),
     Rule(
         "speed-not-reached",

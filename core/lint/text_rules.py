@@ -14,7 +14,7 @@ from pathlib import PurePath
 from ..dialect import Pitfall, Wording
 from ..program.program import Program
 from ..source.reading import Reading
-from ..source.text import SourceText
+from ..source.text import SourceText, unbroken
 from .finding import Hit, ProgramSubject
 
 
@@ -76,8 +76,8 @@ def _searched(subject: ProgramSubject) -> tuple[Wording | None, dict[str, str]]:
     reading = subject.program.reading
     if subject.wording is None or not isinstance(reading, Reading):
         return None, {}
-    quiet = subject.wording.quiet
-    return subject.wording, {name: quiet(file.text) for name, file in reading.files.items()}
+    quiet, files = subject.wording.quiet, reading.files.items()
+    return subject.wording, {name: quiet(unbroken(file.text)) for name, file in files}
 
 
 def _own(texts: Mapping[str, str], program: Program) -> dict[str, str]:

@@ -279,7 +279,6 @@ def bound_means(
     theta: FloatArray,
     widths: FloatArray,
     half: float,
-    start: float,
     earliest: IntArray,
     latest: IntArray,
     values: FloatArray,
@@ -288,7 +287,7 @@ def bound_means(
     """Write the greatest means (C, D) of values (C, D) with E Λ in each cell."""
     for g in range(values.shape[0]):
         if latest[g] >= 0:
-            _mean_at(theta, widths, half, start, earliest[g], latest[g], values, out[g])
+            _mean_at(theta, widths, half, earliest[g], latest[g], values, out[g])
 
 
 @njit(cache=True, error_model="numpy")
@@ -296,7 +295,6 @@ def _mean_at(
     theta: FloatArray,
     widths: FloatArray,
     half: float,
-    start: float,
     earliest: int,
     latest: int,
     values: FloatArray,
@@ -307,7 +305,7 @@ def _mean_at(
     for c in range(earliest, latest + 1):
         most = np.maximum(most, values[c])
     for side in (-1, 1):
-        _add_mean(theta, widths, half, start, earliest, latest, side, values, most, out)
+        _add_mean(theta, widths, half, earliest, latest, side, values, most, out)
 
 
 @njit(cache=True, error_model="numpy")
@@ -336,7 +334,7 @@ def bound_veer(
                 off = abs(cells.tangent[c, j] - cells.tangent[g, j])
                 off += abs(cells.turn[c, j]) + cells.uneven[c, j]
                 values[c, j] = off * speed[c]
-        _mean_at(theta, widths, half, 0.0, earliest[g], latest[g], values, out[g])
+        _mean_at(theta, widths, half, earliest[g], latest[g], values, out[g])
 
 
 @njit(cache=True, error_model="numpy")
@@ -344,7 +342,6 @@ def _add_mean(
     theta: FloatArray,
     widths: FloatArray,
     half: float,
-    start: float,
     earliest: int,
     latest: int,
     side: int,
@@ -356,12 +353,6 @@ def _add_mean(
     most = most.copy()
     middle, c = (theta[latest + 1], latest + 1) if side > 0 else (theta[earliest], earliest - 1)
     before = 0.5
-    if start > 0.0:
-        # All that came since the start counts.
-        k = earliest
-        while k >= 0 and theta[k + 1] >= theta[earliest] - half - start:
-            most = np.maximum(most, values[k])
-            k -= 1
     while 0 <= c < values.shape[0]:
         edge = theta[c] if side > 0 else theta[c + 1]
         away = side * (edge - middle)
@@ -375,78 +366,3 @@ def _add_mean(
         c += side
     for j in range(most.size):
         out[j] += before * most[j]
-
-
-@njit(cache=True, error_model="numpy")
-def bound_accelerations(
-    cells: Cells,
-    interval: IntArray,
-    widths: FloatArray,
-    half: float,
-    start: float,
-    earliest: IntArray,
-    latest: IntArray,
-    push: FloatArray,
-    left: FloatArray,
-    right: FloatArray,
-    corners: FloatArray,
-    counts: IntArray,
-    matrix: FloatArray,
-    about: FloatArray,
-    out: FloatArray,
-) -> None:
-    """Write bounds (C, N) of means of |A (q̈ − d ℓ̈)|; see `Averages.accelerations`."""
-    count, size = about.shape
-    theta, values = cells.theta, np.zeros((count, size))
-    for g in range(count):
-        if latest[g] < 0 or not cells.moves[g]:
-            continue
-        low, high = earliest[g], latest[g]
-        while low > 0 and theta[low] > theta[earliest[g]] - half - start:
-            low -= 1
-        while high + 1 < count and theta[high + 1] < theta[latest[g] + 1] + half:
-            high += 1
-        before = -1
-        for c in range(low, high + 1):
-            k = interval[c]
-            if k < 0:
-                values[c] = 0.0
-            elif k == before:
-                values[c] = values[c - 1]
-            else:
-                _greatest_of(
-                    push[:, k],
-                    left[:, k],
-                    right[:, k],
-                    corners[k, : counts[k]],
-                    matrix[g],
-                    about[g],
-                    values[c],
-                )
-            before = k
-        _mean_at(theta, widths, half, start, earliest[g], latest[g], values, out[g])
-
-
-@njit(cache=True, error_model="numpy")
-def _greatest_of(
-    push: FloatArray,
-    left: FloatArray,
-    right: FloatArray,
-    corners: FloatArray,
-    matrix: FloatArray,
-    about: FloatArray,
-    out: FloatArray,
-) -> None:
-    """Write the greatest |A (q̈ − d u)| (N,) of one interval."""
-    size = about.size
-    out[:] = 0.0
-    for c in range(push.shape[0]):
-        for i in range(size):
-            by_u = by_before = by_after = 0.0
-            for j in range(size):
-                by_u += matrix[i, j] * (push[c, j] - about[j])
-                by_before += matrix[i, j] * left[c, j]
-                by_after += matrix[i, j] * right[c, j]
-            for v in range(corners.shape[0]):
-                u, before, after = corners[v, 0], corners[v, 1], corners[v, 2]
-                out[i] = max(out[i], abs(by_u * u + by_before * before + by_after * after))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from .between import BETWEEN, row_between
 from .controller import Run
 from .limits import CENTRIPETAL, PathLimits
 from .stamping import CEILING, NEXT
@@ -59,7 +60,8 @@ def interval_limits(run: Run, axis_names: Sequence[str]) -> list[str]:
 
 def row_names(limits: PathLimits, axis_names: Sequence[str]) -> tuple[str, ...]:
     """Names of the rows that a path is stamped by: accelerations, then torques from both sides."""
-    names = [f"{name} acceleration" for name in (*axis_names, "TCP", "reorientation")]
+    accelerations = [f"{name} acceleration" for name in (*axis_names, "TCP", "reorientation")]
+    names = [accelerations[j] for j in limits.limited]
     if limits.shares is not None:
         torques = [f"{axis_names[j]} torque" for j in range(limits.shares.h.shape[1])]
         names += 2 * torques
@@ -75,6 +77,8 @@ def _velocity(run: Run, knot: int, axis_names: Sequence[str]) -> str:
         return "centripetal acceleration"
     if row < 0:
         return STOP
+    if row >= BETWEEN:
+        row = row_between(row)
     if run.program.moves[run.path.route.moves[owner]].speed.duration is not None:
         return "programmed time"
     source = run.timing.limits.velocity_source[owner][row]

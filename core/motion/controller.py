@@ -20,18 +20,17 @@ from ..spatial.rotation import quaternion_from_matrix
 from ..vendor import Vendor
 from .arc_length import ArcLength
 from .consumption import SQUARED_TORQUE, Consumption
+from .driven import driven, stretches
 from .durations import hold_durations, stamp_in_thirds, stamp_path
-from .elasticity import LEAD_STEP, RIGID, derivatives_of
 from .energy import Energy, energy
-from .excesses import excesses
+from .excesses import excesses, torque_excesses
 from .limits import SegmentLimits
 from .model import DurationRule, MotionModel
-from .path import Path, build_path
+from .path import OverlapError, Path, build_path
 from .pieces import Sampling
-from .ramped import stamped_motion
 from .rests import InPosition
 from .route import RouteFinder
-from .smoothing import Motion, Smoothing, States
+from .smoothing import Smoothing
 from .start_ramp import SUDDEN, StartRamp
 from .timing import Settling, Timing
 from .torque import WITHOUT_LIMIT, Shares
@@ -43,6 +42,7 @@ IntArray = NDArray[np.int64]
 _SKIPS = 10_000
 _LIMIT_SLACK = 1e-6
 """rad or m by which a path may pass a joint limit: rounding of programmed values."""
+_OTHER_TARGET = "choose another configuration or move the target"
 _DEGREES = 180 / np.pi
 
 
@@ -54,7 +54,7 @@ class Run:
         program: what was driven.
         path: its geometry.
         timing: its stamp, before any smoothing in time.
-        trajectory: what the joints are commanded, sampled at the controller's period.
+        trajectory: what the links do, and the motors, sampled at the controller's period.
         notes: the program's own and all that was found on the way.
     """
 
@@ -87,13 +87,24 @@ class Controller:
         model: MotionModel | None = None,
         sampling: Sampling | None = None,
     ) -> None:
+        self._vendor = vendor
         self.robot = robot
         self.model = vendor.motion_of(robot) if model is None else model
         self.sampling = _sampling(self.model) if sampling is None else sampling
-        self._routes = RouteFinder(robot, vendor.label, self.model.line_turn)
+        arcs = None if vendor.speaks is None else vendor.speaks.arcs
+        turns = self.model.line_turn, self.model.arc_turn
+        self._routes = RouteFinder(robot, vendor.label, *turns, arcs)
+
+    def with_model(self, model: MotionModel) -> Controller:
+        """The same controller, driving otherwise."""
+        return Controller(self._vendor, self.robot, model, self.sampling)
 
     def run(
-        self, program: Program, start: JointTarget | None = None, period: float | None = None
+        self,
+        program: Program,
+        start: JointTarget | None = None,
+        period: float | None = None,
+        override: float = 1.0,
     ) -> Run:
         """Plan, stamp and sample a program.
 
@@ -101,19 +112,22 @@ class Controller:
             program: what to drive.
             start: where the robot stands; None for the program's own start, else its first target.
             period: s between samples; None for the controller's own.
+            override: share of all speeds, as an operator sets it; see `stamp_slower`.
 
         Raises:
             MotionError: the program cannot be driven; the message names the move.
         """
         path = self.plan(program, start)
         timing = self.stamp(program, path)
+        if override != 1.0:
+            timing = self.stamp_slower(program, timing, override)
         trajectory = self.sample(program, timing, period)
         notes = (
             *program.notes,
             *path.notes,
             *self._duration_notes(program, timing),
             *self._jerk_notes(program),
-            *self._excess_notes(timing, trajectory),
+            *self._excess_notes(program, timing, trajectory),
         )
         return Run(program, path, timing, trajectory, notes)
 
@@ -131,17 +145,21 @@ class Controller:
                 raise _located(_goes_nowhere(skipped), program)
             try:
                 path = build_path(route, self.model, self.sampling)
+            except OverlapError as overlap:
+                for corner in overlap.corners:
+                    move = route.moves[corner]
+                    skipped.append(move)
+                    notes.append(
+                        Note(
+                            "its blend overlaps a neighbouring one: this waypoint is left out",
+                            move,
+                        )
+                    )
+                continue
             except MotionError as error:
                 raise _located(error, program) from error
-            if not path.corners.overlapping:
-                self._check_limits(program, path)
-                return replace(path, notes=(*notes, *path.notes))
-            for corner in path.corners.overlapping:
-                move = route.moves[corner]
-                skipped.append(move)
-                notes.append(
-                    Note("its blend overlaps a neighbouring one: this waypoint is left out", move)
-                )
+            self._check_limits(program, path, start)
+            return replace(path, notes=(*notes, *path.notes))
         raise MotionError("the blends of this program overlap beyond remedy")
 
     def stamp(self, program: Program, path: Path) -> Timing:
@@ -181,7 +199,8 @@ class Controller:
         segments = range(len(timing.path.route.moves))
         limits = timing.limits.with_velocities_scaled(segments, share)
         settling = self._settling(program, timing.path)
-        return stamp_path(timing.path, timing.along, limits, timing.path_limits.shares, settling)
+        known = timing.path_limits
+        return stamp_path(timing.path, timing.along, limits, known.shares, settling, known)
 
     def _shares(self, along: ArcLength) -> Shares | None:
         """What shares of the torques' limits the path takes, if the model has any."""
@@ -190,21 +209,17 @@ class Controller:
         return self.model.torque.along(self.robot, *along.states[:3])
 
     def sample(self, program: Program, timing: Timing, period: float | None = None) -> Trajectory:
-        """The commanded motion, smoothed in time where the vendor does, every ``period`` s."""
+        """The motion of links and motors, smoothed in time where the vendor does, each period."""
         period = self.model.period if period is None else period
         smoothing = self.smoothing(program, timing.path)
         t = sample_times(0.0, timing.duration, period)
-        if smoothing.window == 0.0 and timing.ramp == 0.0 and self.model.elasticity == RIGID:
-            q, dq, ddq, sigma = timing.driven_at(t)
-        else:
-            q, dq, ddq = self._commanded(smoothing, stamped_motion(timing), t)
-            sigma = timing.driven_at(np.clip(t - timing.lag, 0.0, timing.duration))[3]
-        path = timing.path
+        path, found = timing.path, driven(self.robot, self.model.elasticity, smoothing, timing, t)
         last = len(path.route.moves) - 1
-        segment = np.clip(np.searchsorted(path.layout.waypoint, sigma, "right") - 1, 0, last)
-        position, quaternion = self._tcp(self._moves(program, path), segment, q)
-        moves = np.array(path.route.moves, dtype=np.int64)
-        return Trajectory(t, q, dq, ddq, position, quaternion, sigma, moves[segment])
+        segment = np.searchsorted(path.layout.waypoint, found.sigma, "right") - 1
+        segment = np.clip(segment, 0, last)
+        tcp = self._tcp(self._moves(program, path), segment, t, found.links[0])
+        moves = np.array(path.route.moves, dtype=np.int64)[segment]
+        return Trajectory(t, *found.links, *tcp, found.sigma, moves, found.lead)
 
     def energy(
         self, program: Program, timing: Timing, consumption: Consumption = SQUARED_TORQUE
@@ -250,36 +265,30 @@ class Controller:
         near, time = self.model.in_position, self.model.in_position_time
         return None if near == 0.0 else InPosition(near, averaged if time is None else time)
 
-    def _commanded(self, smoothing: Smoothing, stamped: Motion, t: FloatArray) -> States:
-        """The smoothed joints and what they lead their links by."""
-        q, dq, ddq = smoothing.command(stamped, t)
-        if self.model.elasticity == RIGID:
-            return q, dq, ddq
-        even = sample_times(0.0, float(stamped.t[-1]), LEAD_STEP)
-        lead = self.model.elasticity.leads(self.robot, *smoothing.command(stamped, even))
-        more = derivatives_of(even, lead, t)
-        return q + more[0], dq + more[1], ddq + more[2]
-
     def _tcp(
-        self, moves: Sequence[Move], segment: IntArray, q: FloatArray
+        self, moves: Sequence[Move], segment: IntArray, t: FloatArray, q: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """TCP in the world; of a stationary tool, in the work object."""
-        position, rotation = np.empty((len(q), 3)), np.empty((len(q), 3, 3))
+        position, quaternion = np.empty((len(q), 3)), np.empty((len(q), 4))
         chains = [self._routes.world_chain(move.tool, move.work_object) for move in moves]
         index = {id(chain): chain for chain in chains}
         owner = np.array([id(chain) for chain in chains])[segment]
-        for key, chain in index.items():
-            rows = np.flatnonzero(owner == key)
-            rotation[rows], position[rows] = poses(chain, np.ascontiguousarray(q[rows]))
-        return position, quaternion_from_matrix(rotation)
+        for part in stretches(t):
+            for key in np.unique(owner[part]):
+                rows = part.start + np.flatnonzero(owner[part] == key)
+                rotation, position[rows] = poses(index[key], np.ascontiguousarray(q[rows]))
+                quaternion[rows] = quaternion_from_matrix(rotation)
+        return position, quaternion
 
-    def _check_limits(self, program: Program, path: Path) -> None:
+    def _check_limits(self, program: Program, path: Path, stated: JointTarget | None) -> None:
         """Refuse a path that passes a joint limit, at the first place where it does."""
         limits = self.robot.limits
         start = path.route.ends.q[0, 0]
         beyond = np.maximum(limits.lower - start, start - limits.upper)
         if beyond.max() > _LIMIT_SLACK:
-            raise MotionError("the start: " + self._excess(int(np.argmax(beyond)), start))
+            told = stated or program.start
+            remedy = _OTHER_TARGET if told is None else "start within the limits"
+            raise MotionError("the start: " + self._excess(int(np.argmax(beyond)), start, remedy))
         beyond = np.maximum(limits.lower - path.q, path.q - limits.upper)
         samples = np.flatnonzero(beyond.max(axis=1) > _LIMIT_SLACK)
         if not len(samples):
@@ -290,38 +299,43 @@ class Controller:
         row, axis = np.unravel_index(np.argmax(beyond[samples]), beyond[samples].shape)
         raise _located(MotionError(self._excess(int(axis), path.q[samples[row]]), move), program)
 
-    def _excess(self, axis: int, q: FloatArray) -> str:
+    def _excess(self, axis: int, q: FloatArray, remedy: str = _OTHER_TARGET) -> str:
         limits = self.robot.limits
         joints = [*self.robot.joints, *(external.joint for external in self.robot.external_axes)]
         unit, factor = ("mm", 1e3) if joints[axis].kind is JointKind.PRISMATIC else ("°", _DEGREES)
         bound = limits.lower[axis] if q[axis] < limits.lower[axis] else limits.upper[axis]
         return (
             f"joint {self.robot.axis_names[axis]} would stand at {factor * q[axis]:.2f} {unit}, "
-            f"beyond its limit of {factor * bound:.2f} {unit}; choose another configuration or "
-            "move the target"
+            f"beyond its limit of {factor * bound:.2f} {unit}; {remedy}"
         )
 
-    def _excess_notes(self, timing: Timing, trajectory: Trajectory) -> list[Note]:
-        """Moves on which the samples of the commanded motion exceed the robot's own limits.
+    def _excess_notes(self, program: Program, timing: Timing, trajectory: Trajectory) -> list[Note]:
+        """Moves on which the motion as stamped passes what is programmed or the robot's limits."""
+        path, names = timing.path, self.robot.axis_names
+        speeds = [move.speed for move in self._moves(program, path)]
+        limits = timing.limits
+        if any(speed.duration is not None for speed in speeds):
+            # What holds a time is no limit that would matter.
+            limits = SegmentLimits.of(self.robot, self.model, speeds, path.segments)
+        notes = excesses(timing, limits, names)
+        if self.model.torque == WITHOUT_LIMIT:
+            return notes
+        return notes + torque_excesses(self._torques_taken(timing, trajectory), names)
 
-        Where joints are elastic, limits are those of the links, which are driven as stamped. So
-        are those of a motion whose time comes up to speed.
+    def _torques_taken(self, timing: Timing, trajectory: Trajectory) -> FloatArray:
+        """(M, L), the greatest shares of limits of torque on each move.
+
+        Where servos lag or time comes up to speed, those of the motion as stamped.
         """
-        q, dq, ddq = trajectory.q, trajectory.dq, trajectory.ddq
-        if self.model.elasticity != RIGID or timing.ramp > 0.0 or timing.start != SUDDEN:
-            q, dq, ddq, _ = timing.states_at(trajectory.t)
-        limits, torque = self.robot.limits, self.model.torque
-        names = self.robot.axis_names
-        scale = [self.model.acceleration_scale(j) for j in range(self.robot.arm_size)]
-        most = limits.acceleration.copy()
-        most[: len(scale)] *= scale
-        most[: len(torque.own)] = np.inf
-        notes = excesses("velocity", np.abs(dq) / limits.velocity, names, trajectory.move)
-        notes += excesses("acceleration", np.abs(ddq) / most, names, trajectory.move)
-        if torque != WITHOUT_LIMIT:
-            taken = torque.taken(self.robot, q, dq, ddq)
-            notes += excesses("torque", taken, names, trajectory.move)
-        return notes
+        stamped = any(self.model.elasticity.lag) or timing.ramp > 0.0 or timing.start != SUDDEN
+        torque = self.model.torque
+        taken = np.zeros((int(trajectory.move.max()) + 1, len(torque.own)))
+        for part in stretches(trajectory.t):
+            states = trajectory.q[part], trajectory.dq[part], trajectory.ddq[part]
+            if stamped:
+                states = timing.states_at(trajectory.t[part])[:3]
+            np.maximum.at(taken, trajectory.move[part], torque.taken(self.robot, *states))
+        return taken
 
     def _jerk_notes(self, program: Program) -> list[Note]:
         if self.model.jerk is not None or self.model.ramp > 0.0:

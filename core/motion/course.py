@@ -33,34 +33,27 @@ class Course:
         theta: (C + 1,) s, Θ of their edges.
         place: (C + 1,), ℓ of their edges.
         sigma: (C + 1,), σ of their edges.
-        interval: (C,), the path's interval that each is part of; -1 at rests.
+        moves: (C,) bool, which cells are no rests.
         speed: (C,), greatest ℓ̇.
         way: (C, 2), least and greatest dλ/dℓ, λ being what ramps are means over; at rests those
             of the cells beside.
-        push: (C,), greatest |ℓ̈|.
         bent: (C,), greatest |d²λ/dℓ²|.
-        middle, half: (C, N), joints at the middle, and how far they get from there at most.
         tangent: (C, N), dq/dℓ at the middle.
         turn: (C, N), by how much dq/dℓ changes.
         uneven: (C, N), bound of ∫ |q'' − its mean| dℓ.
-        bend: (C, N), greatest |d²q/dℓ²|.
         parts: (C,) bool, the middles of rests, in which joints turn.
     """
 
     theta: FloatArray
     place: FloatArray
     sigma: FloatArray
-    interval: IntArray
+    moves: NDArray[np.bool_]
     speed: FloatArray
     way: FloatArray
-    push: FloatArray
     bent: FloatArray
-    middle: FloatArray
-    half: FloatArray
     tangent: FloatArray
     turn: FloatArray
     uneven: FloatArray
-    bend: FloatArray
     parts: NDArray[np.bool_]
 
     @classmethod
@@ -76,7 +69,7 @@ class Course:
             step: s, the longest cell.
             reach: s, the longest rest that makes a difference.
         """
-        most = _fastest(allowed)
+        most = np.sqrt(allowed.most)
         span = 2.0 * allowed.spacing / (most[:-1] + most[1:])
         count = np.maximum(np.ceil(span / step), 1.0).astype(np.int64)
         k = np.repeat(np.arange(len(span)), count)
@@ -88,19 +81,6 @@ class Course:
         moving = _moving(timing, allowed, k, z, pace.max(axis=1), span[k] / count[k])
         return _with_rests(moving, *_rests(timing, allowed, rests, reach), count, step, reach)
 
-    @property
-    def moves(self) -> NDArray[np.bool_]:
-        """(C,), which cells are no rests."""
-        return np.asarray(self.interval >= 0)
-
-
-def _fastest(allowed: Allowed) -> FloatArray:
-    """(K + 1,), greatest ℓ̇ at each knot."""
-    most = np.full(len(allowed.spacing) + 1, np.inf)
-    most[:-1] = allowed.corners[:, :, 1].max(axis=1)
-    most[1:] = np.minimum(most[1:], allowed.corners[:, :, 2].max(axis=1))
-    return np.asarray(np.sqrt(np.maximum(most, 0.0)))
-
 
 def _moving(
     timing: Timing,
@@ -111,10 +91,10 @@ def _moving(
     span: FloatArray,
 ) -> Course:
     """The cells of the path from shares z (C, 2) to z of its intervals k (C,)."""
-    way, bent = _ways(timing)
-    push = np.abs(allowed.corners[:, :, 0]).max(axis=1)
+    part = slice(allowed.first, allowed.first + len(allowed.spacing))
+    way, bent = _ways(timing, part)
     step = (z[:, 1] - z[:, 0]) * allowed.spacing[k]
-    left = interval_samples(timing.path.pieces)
+    end = interval_samples(timing.path.pieces)[part.stop - 1] + 1
     middle = z.mean(axis=1)
     at = [_values(allowed.slope, k, share) for share in (z[:, 0], middle, z[:, 1])]
     spread = np.ptp(allowed.bend, axis=0)[k]
@@ -122,18 +102,14 @@ def _moving(
     return Course(
         np.concatenate([[0.0], np.cumsum(span)]),
         np.append(whole[:, 0] + z[:, 0] * allowed.spacing[k], allowed.spacing.sum()),
-        np.append(_sigma(timing, k, z[:, 0]), timing.path.sigma[left[-1] + 1]),
-        k,
+        np.append(_sigma(timing, part.start + k, z[:, 0]), timing.path.sigma[end]),
+        np.ones(len(k), dtype=np.bool_),
         speed,
         way[k],
-        push[k],
         bent[k],
-        _values(allowed.points, k, middle),
-        0.5 * step[:, None] * np.abs(allowed.slope).max(axis=0)[k],
         at[1],
         at[2] - at[0],
         spread * step[:, None],
-        np.abs(allowed.bend).max(axis=0)[k],
         np.zeros(len(k), dtype=np.bool_),
     )
 
@@ -156,12 +132,12 @@ def _sigma(timing: Timing, k: IntArray, z: FloatArray) -> FloatArray:
     return np.asarray(sigma[left] + z * (rise + (1 - z) * ((1 - z) * lead + z * tail)))
 
 
-def _ways(timing: Timing) -> tuple[FloatArray, FloatArray]:
+def _ways(timing: Timing, part: slice) -> tuple[FloatArray, FloatArray]:
     """(K, 2), least and greatest dλ/dℓ in each interval, and (K,) greatest |d²λ/dℓ²|.
 
     Without ramp ℓ itself will do for λ.
     """
-    left, spacing = interval_samples(timing.path.pieces), timing.along.spacing
+    left, spacing = interval_samples(timing.path.pieces)[part], timing.along.spacing[part]
     if timing.ramp == 0.0:
         return np.ones((len(left), 2)), np.zeros(len(left))
     slope, rate = way_slopes(timing), timing.along.rate
@@ -180,7 +156,8 @@ def _rests(
     timing: Timing, allowed: Allowed, rests: FloatArray, reach: float
 ) -> tuple[IntArray, FloatArray, FloatArray]:
     """Knots (R,) where the path rests or turns, for how long (R,) s, and how it turns (R, N)."""
-    wait = np.minimum(timing.waits(rests), reach)
+    inside = slice(allowed.first, allowed.first + len(allowed.spacing) - 1)
+    wait = np.minimum(timing.waits(rests)[inside], reach)
     turn = allowed.slope[0, 1:] - allowed.slope[4, :-1]
     steep = np.abs(allowed.slope).max(axis=(0, 2))
     turned = np.abs(turn).max(axis=1) > _ROUNDING * np.maximum(steep[1:], steep[:-1])
@@ -217,23 +194,19 @@ def _with_rests(
     theta = np.concatenate([[0.0], np.cumsum(merged(np.diff(own), length))])
     place = np.append(merged(moving.place[:-1], moving.place[at]), moving.place[-1])
     sigma = np.append(merged(moving.sigma[:-1], moving.sigma[at]), moving.sigma[-1])
-    near = np.minimum(at, len(moving.interval) - 1)
+    near = np.minimum(at, len(moving.moves) - 1)
     beside = np.stack([moving.way[np.maximum(at - 1, 0)], moving.way[near]])
     way = np.stack([beside[..., 0].min(axis=0), beside[..., 1].max(axis=0)], -1)
     return Course(
         theta,
         place,
         sigma,
-        np.insert(moving.interval, at, -1),
+        np.insert(moving.moves, at, False),
         merged(moving.speed, none),
         merged(moving.way, way),
-        merged(moving.push, none),
         merged(moving.bent, none),
-        merged(moving.middle, moving.middle[near]),
-        merged(moving.half, still),
         merged(moving.tangent, still),
         merged(moving.turn, turns),
         merged(moving.uneven, still),
-        merged(moving.bend, still),
         np.insert(moving.parts, at, parts_there),
     )

@@ -21,9 +21,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..robot.lean import lean
 from .blend import BASIS
 
 FloatArray = NDArray[np.float64]
@@ -64,7 +64,7 @@ class Curves(NamedTuple):
         return Curves(self.kind, *(np.zeros_like(a) for a in self[1:]))
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _map_jet(s: float, d0: float, d1: float) -> tuple[float, float, float, float]:
     """The rational map at s and its first three derivatives."""
     across, rate = s * (1 - s), 1 - 2 * s
@@ -78,7 +78,7 @@ def _map_jet(s: float, d0: float, d1: float) -> tuple[float, float, float, float
     return f0, f1, f2, f3
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _parameter(window: FloatArray, sigma: float) -> float:
     """s at σ."""
     y = (sigma - window[0]) / window[1]
@@ -86,7 +86,7 @@ def _parameter(window: FloatArray, sigma: float) -> float:
     return float(2 * y / (b + math.sqrt(b * b + 4 * (1 - b) * y)))
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def parameter_jet(window: FloatArray, sigma: float) -> tuple[float, float, float, float]:
     """s and its first three derivatives with respect to σ."""
     length = window[1]
@@ -103,13 +103,13 @@ def parameter_slopes(window: FloatArray, sigma: FloatArray) -> FloatArray:
     return slopes
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _fill_slopes(window: FloatArray, sigma: FloatArray, slopes: FloatArray) -> None:
     for k in range(sigma.size):
         slopes[k] = parameter_jet(window[k], sigma[k])[1]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _slope_jet(window: FloatArray, sigma: float, end: int) -> tuple[float, float, float]:
     """Derivative of s, s', s'' (with respect to σ) with respect to the slope d₀ or d₁.
 
@@ -132,7 +132,7 @@ def _slope_jet(window: FloatArray, sigma: float, end: int) -> tuple[float, float
     return g0, g1 * s1 / length, (g2 * s1 * s1 + g1 * s2) / length**2
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _basis(curves: Curves, piece: int, s: float, basis: FloatArray) -> int:
     """Write bᵢ and three derivatives with respect to s, (6, 4); how many are in use."""
     basis[0, 0] = 1.0
@@ -161,7 +161,7 @@ def _basis(curves: Curves, piece: int, s: float, basis: FloatArray) -> int:
     return BASIS
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def evaluate(
     curves: Curves, piece: int, sigma: float, basis: FloatArray, value: FloatArray
 ) -> None:
@@ -188,7 +188,7 @@ def evaluate(
             value[2, d] += control * b2
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def pull(
     curves: Curves,
     piece: int,
@@ -254,7 +254,7 @@ def pull(
     return sigma_bar
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _pull_coefficients(
     row: FloatArray, s0: float, s1: float, s2: float, w0: float, w1: float, w2: float
 ) -> None:

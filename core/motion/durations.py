@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import MotionError
 from .arc_length import ArcLength
-from .limits import SegmentLimits, path_limits
+from .limits import PathLimits, SegmentLimits, path_limits
 from .path import Path
 from .segments import JOINT_SEGMENT, TURN_LENGTH, Segments
 from .stamping import StampingError, stamp
@@ -32,14 +32,15 @@ def stamp_path(
     limits: SegmentLimits,
     shares: Shares | None,
     settling: Settling,
+    known: PathLimits | None = None,
 ) -> Timing:
-    """The fastest timing of a path within its limits.
+    """The fastest timing of a path within its limits; ``known`` ones but for velocities, if any.
 
     Raises:
         MotionError: the limits leave a move no speed.
     """
     zones = superposed_zones(path)
-    made = path_limits(along.states, along.spacing, path.pieces, limits, zones, shares)
+    made = path_limits(along.states, along.spacing, path.pieces, limits, zones, shares, known)
     try:
         found = stamp(made.rows)
     except StampingError as error:

@@ -21,7 +21,8 @@ the compliance K⁻¹ is then no diagonal matrix. A joint leads by a share of wh
 another joint makes that one's gear give way by, l + B l with B zero on the diagonal.
 
 The servos of a measured arm may follow, each by its own lag. What all have in
-common is an offset in time; the differences bend the path, and so are leads as well: lag q̇.
+common is an offset in time; the differences bend the path by lag q̇, of the motors as of the links
+that they drive.
 """
 
 from __future__ import annotations
@@ -38,6 +39,7 @@ from ..errors import InputError
 from ..robot.chain_kernels import jacobians, motions
 from ..robot.model import Robot
 from .point_masses import chain_to_axis, filled, row_of
+from .smoothing import States
 
 FloatArray = NDArray[np.float64]
 
@@ -158,7 +160,11 @@ class Elasticity:
         return tuple(f"elasticity.{name}" for name, value in stated if value)
 
     def leads(self, robot: Robot, q: FloatArray, dq: FloatArray, ddq: FloatArray) -> FloatArray:
-        """Lead (T, N) in rad or m at configurations, velocities and accelerations (T, N)."""
+        """By how much motors are ahead of the smoothed motion, (T, N) in rad or m.
+
+        What gears give way by, and the servos' lags, at configurations, velocities and
+        accelerations (T, N).
+        """
         out = filled(self.own, q.shape[1]) * ddq
         q, dq, ddq = (np.ascontiguousarray(array) for array in (q, dq, ddq))
         for mass in self.carried:
@@ -172,6 +178,12 @@ class Elasticity:
             held, span = self.held(robot, q), np.where(slack > 0.0, slack, 1.0)
             lead += slack * (np.tanh((out + held) / span) - np.tanh(held / span))
         return np.asarray(lead + filled(self.lag, q.shape[1]) * dq)
+
+    def links(self, states: States, jerk: FloatArray) -> States:
+        """What links do where the smoothed motion has states and a third derivative (T, N)."""
+        q, dq, ddq = states
+        lag = filled(self.lag, q.shape[1])
+        return q + lag * dq, dq + lag * ddq, ddq + lag * jerk
 
     def mixture(self, robot: Robot, size: int) -> FloatArray:
         """(size, size), I + B: leads by what the stiffness of each joint alone asks for.

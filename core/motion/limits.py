@@ -4,7 +4,8 @@ Velocities bound x = σ̇² at the knots: joints |q'| √x ≤ v, TCP |p'| √x 
 Accelerations are rows on u = σ̈ and x: joints q' u + q'' x, and along the path the change of the
 TCP's speed |p'| u + (p' · p'' / |p'|) x and of the tool's rate of turn likewise. Joints that torque
 limits (`torque.Torque`) have rows of their own behind these. Centripetal acceleration |p''⊥| x is a
-ceiling again, and so is how fast legs that overlap drive zones (`superposed`).
+ceiling again, and so are what velocities between samples allow (`between`) and how fast legs that
+overlap drive zones (`superposed`).
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from ..program.speed import Speed
 from ..robot.joint import JointKind
 from ..robot.model import Robot
 from . import stamping, stamping_adjoint
+from .between import lower_between, pull_between
 from .model import MotionModel
 from .pieces import Pieces
 from .rates import pull_rates, pull_sideways, rates, sideways
@@ -34,6 +36,8 @@ from .torque_rows import pull_torque_rows, torque_rows
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+_TOGETHER = 20_000
+"""Intervals whose rows of torque are made in one go."""
 CENTRIPETAL = -3
 """Stands for a row in `PathLimits.binding` where centripetal acceleration is the ceiling."""
 
@@ -205,13 +209,17 @@ def _fill(
     acceleration: FloatArray,
     centripetal: float,
     room: FloatArray,
+    place: IntArray,
     a: FloatArray,
     b: FloatArray,
     bound: FloatArray,
     ceiling: FloatArray,
     binding: IntArray,
 ) -> None:
-    """Write rows (K, 2, N + 2), bounds and ceilings (K + 1,) with what binds them."""
+    """Write rows (K, 2, …), bounds and ceilings (K + 1,) with what binds them.
+
+    ``place`` (N + 2,) says which row is whose; −1 of what is limited nowhere.
+    """
     axes = states.q.shape[1]
     rate, bend = np.empty(axes + 2), np.empty(axes + 2)
     for p in range(segment.size):
@@ -236,10 +244,13 @@ def _fill(
                 if interval < first_interval[p] or interval >= first_interval[p + 1]:
                     continue
                 for j in range(axes + 2):
+                    row = place[j]
+                    if row < 0:
+                        continue
                     limited = acceleration[s, j] < np.inf
-                    a[interval, end, j] = rate[j] if limited else 0.0
-                    b[interval, end, j] = bend[j] if limited else 0.0
-                    bound[interval, end, j] = acceleration[s, j] * (room[p] if j >= axes else 1.0)
+                    a[interval, end, row] = rate[j] if limited else 0.0
+                    b[interval, end, row] = bend[j] if limited else 0.0
+                    bound[interval, end, row] = acceleration[s, j] * (room[p] if j >= axes else 1.0)
 
 
 @dataclass(frozen=True)
@@ -248,14 +259,18 @@ class PathLimits:
 
     Args:
         rows: for `stamping.stamp`; those of torque, 2 L of them, are the last.
+        limited: (R − 2 L,), which of the N + 2 accelerations the others are of, rising: those that
+            are limited somewhere.
         shares: (S, L), what the rows of torque are made of; None where torque limits nothing.
         zones: (Z, 4), zones that legs drive superposed; see `superposed`.
         binding: (K + 1, 3), at each knot the sample, the row and the segment whose velocity
             limit is the ceiling; `CENTRIPETAL` in the place of the row where that is; `ZONE` with
-            the zone in the place of the segment where a zone is; -1 at stops.
+            the zone in the place of the segment where a zone is; a code from `BETWEEN` on where
+            limits between samples are; -1 at stops.
     """
 
     rows: stamping.Limits
+    limited: IntArray
     shares: Shares | None
     zones: IntArray
     binding: IntArray
@@ -268,6 +283,7 @@ def path_limits(
     limits: SegmentLimits,
     zones: IntArray,
     shares: Shares | None = None,
+    known: PathLimits | None = None,
 ) -> PathLimits:
     """Rows and ceilings for stamping a path.
 
@@ -278,10 +294,19 @@ def path_limits(
         limits: of the segments.
         zones: (Z, 4), zones that legs drive superposed.
         shares: (S, L), what share of its torque's limit each joint takes; None if none is limited.
+        known: of the same path with the same limits but of velocities; its rows are taken.
     """
     first_sample, first_interval = pieces.first_sample, pieces.first_interval
-    count, rows = int(first_interval[-1]), states.q.shape[1] + 2
-    a, b, bound = (np.zeros((count, 2, rows)) for _ in range(3))
+    limited = np.flatnonzero((limits.acceleration < np.inf).any(axis=0))
+    place = np.full(limits.acceleration.shape[1], -1)
+    place[limited] = np.arange(len(limited))
+    count, rows = int(first_interval[-1]), len(limited)
+    torques = 0 if shares is None else 2 * shares.h.shape[1]
+    if known is None:
+        a, b, lower, upper = (np.zeros((count, 2, rows + torques)) for _ in range(4))
+    else:
+        place[:] = -1
+        a, b, lower, upper = known.rows.rows[:4]
     ceiling = np.full(count + 1, np.inf)
     binding = np.full((count + 1, 3), -1, dtype=np.int64)
     _fill(
@@ -293,23 +318,29 @@ def path_limits(
         limits.acceleration,
         limits.centripetal,
         room_along(zones, pieces),
+        place,
         a,
         b,
-        bound,
+        upper,
         ceiling,
         binding,
     )
-    lower_ceilings(states, spacing, pieces, limits.acceleration, zones, ceiling, binding)
     stops = first_interval[pieces.stop]
     ceiling[stops] = 0.0
     binding[stops] = -1
-    lower, upper = -bound, bound
-    if shares is not None:
-        part = torque_rows(shares, interval_ends(pieces), _torque_left(pieces, limits))
-        a, b, lower, upper = (
-            np.concatenate(pair, axis=2) for pair in zip((a, b, lower, upper), part, strict=True)
-        )
-    return PathLimits(stamping.Limits(spacing, a, b, lower, upper, ceiling), shares, zones, binding)
+    lower_between(states, spacing, pieces, limits.velocity, ceiling, binding)
+    lower_ceilings(states, spacing, pieces, limits.acceleration, zones, ceiling, binding)
+    if known is None:
+        np.negative(upper, out=lower)
+    if known is None and shares is not None:
+        ends, left = interval_ends(pieces), _torque_left(pieces, limits)
+        for first in range(0, count, _TOGETHER):
+            part = slice(first, first + _TOGETHER)
+            made = torque_rows(shares, ends[part], left[part])
+            for whole, own in zip((a, b, lower, upper), made, strict=True):
+                whole[part, :, rows:] = own
+    found = stamping.Limits(spacing, a, b, lower, upper, ceiling)
+    return PathLimits(found, limited, shares, zones, binding)
 
 
 def _torque_left(pieces: Pieces, limits: SegmentLimits) -> FloatArray:
@@ -366,7 +397,7 @@ def _pull_fill(
                 x = centripetal * acceleration[s, axes] / sideways(states, k)
                 pull_sideways(states, k, -x / sideways(states, k) * ceiling_bar[knot], states_bar)
                 acceleration_bar[s, axes] += x / acceleration[s, axes] * ceiling_bar[knot]
-            if live and j >= 0:
+            if live and 0 <= j < axes + 2:
                 rates(states, k, axes, rate, bend)
                 x = (velocity[s, j] / rate[j]) ** 2
                 rate_bar[j] -= 2 * x / rate[j] * ceiling_bar[knot]
@@ -401,7 +432,24 @@ def pull_path_limits(
     velocity_bar = np.zeros_like(limits.velocity)
     acceleration_bar = np.zeros_like(limits.acceleration)
     torque_bar = np.zeros_like(limits.torque)
-    plain = states.q.shape[1] + 2
+    shape = (len(made.rows.spacing), 2, limits.acceleration.shape[1])
+    a_bar, b_bar, bound_bar = (np.zeros(shape) for _ in range(3))
+    plain = len(made.limited)
+    a_bar[:, :, made.limited] = bar.a[:, :, :plain]
+    b_bar[:, :, made.limited] = bar.b[:, :, :plain]
+    bound_bar[:, :, made.limited] = (bar.upper - bar.lower)[:, :, :plain]
+    pull_between(
+        states,
+        made.rows.spacing,
+        pieces,
+        limits.velocity,
+        made.rows.ceiling,
+        made.binding,
+        bar.ceiling,
+        states_bar,
+        bar.spacing,
+        velocity_bar,
+    )
     pull_ceilings(
         states,
         made.rows.spacing,
@@ -424,9 +472,9 @@ def pull_path_limits(
         limits.centripetal,
         room_along(made.zones, pieces),
         made.binding,
-        np.ascontiguousarray(bar.a[:, :, :plain]),
-        np.ascontiguousarray(bar.b[:, :, :plain]),
-        np.ascontiguousarray((bar.upper - bar.lower)[:, :, :plain]),
+        a_bar,
+        b_bar,
+        bound_bar,
         bar.ceiling,
         states_bar,
         velocity_bar,

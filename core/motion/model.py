@@ -6,7 +6,6 @@ Read from a TOML file in which every figure states where it comes from.
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
@@ -15,6 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError, UnknownNameError
+from ..input_files import read_toml
+from ..program.move import ArcOrientation
 from .blend import PARABOLA, Blend
 from .elasticity import RIGID, Elasticity, elasticity
 from .provenance import Provenance, read_provenance
@@ -58,6 +59,14 @@ class DurationRule(StrEnum):
     """Accelerating over the first third of the time, braking over the last (UR)."""
 
 
+LARGEST = 1e12
+LONGEST = 10.0
+"""s, or rad or m: far beyond any average, ramp or wait of a controller."""
+MOST_SCALE = 1e4
+MOST_NUMBERS = 20
+"""Averages one after the other, or joints."""
+
+
 class LineTurn(StrEnum):
     """How the tool turns along lines, and what limits of turning hold for there."""
 
@@ -65,6 +74,23 @@ class LineTurn(StrEnum):
     """About one axis; for the whole turn."""
     SWIVEL = "swivel"
     """By the swivel of its x axis and the rotation about that; for each of both (KUKA)."""
+
+
+class ArcTurn(StrEnum):
+    """How the tool turns along arcs, whatever their programs say."""
+
+    PROGRAMMED = "programmed"
+    """As the program says."""
+    AXIS = "axis"
+    """About one axis, from the orientation at the start to that at the end."""
+    PATH = "path"
+    """With the arc, and evenly by the rest of its turn."""
+
+    def follows(self, programmed: ArcOrientation) -> bool:
+        """Whether the tool turns with an arc for which a program says how."""
+        if self is ArcTurn.PROGRAMMED:
+            return programmed is ArcOrientation.FOLLOWS_ARC
+        return self is ArcTurn.PATH
 
 
 class Pace(StrEnum):
@@ -92,6 +118,7 @@ class MotionModel:
         tcp_acceleration: m/s² along the path where the program states none; None for no limit.
         reorientation_acceleration: rad/s², likewise.
         line_turn: see `LineTurn`.
+        arc_turn: see `ArcTurn`.
         centripetal: greatest centripetal acceleration of the TCP, as a multiple of the
             acceleration along the path; None for no limit.
         joint_acceleration_scale: what the robot's own acceleration limits are multiplied by, from
@@ -111,7 +138,7 @@ class MotionModel:
             for the wait to end earlier; 0 for waits of one length; see `rests`.
         in_position_time: s, for how long they are to be; None for as long as the whole window of
             ramp and smoothing.
-        elasticity: how far the commanded joints lead their links; see `Elasticity`.
+        elasticity: how far motors lead their links; see `Elasticity`.
         jerk: joint jerk limit as a multiple of each joint's acceleration limit per second, held
             by lengthening the longest moving average; None for no limit.
         provenance: of every figure, by its dotted key.
@@ -130,6 +157,7 @@ class MotionModel:
     tcp_acceleration: float | None = None
     reorientation_acceleration: float | None = None
     line_turn: LineTurn = LineTurn.AXIS
+    arc_turn: ArcTurn = ArcTurn.PROGRAMMED
     centripetal: float | None = None
     joint_acceleration_scale: tuple[float, ...] = ()
     torque: Torque = WITHOUT_LIMIT
@@ -163,18 +191,26 @@ class MotionModel:
             ("time.in_position_time_s", _stated(self.in_position_time)),
         ):
             for value in durations:
-                if not 0 <= value < math.inf:
-                    raise InputError(f"{key} must be finite and zero or more, not {value}")
+                if not 0 <= value <= LONGEST:
+                    raise InputError(f"{key} must be from zero to {LONGEST:g}, not {value}")
+        for key, row in (
+            ("time.smoothing_s", self.smoothing),
+            ("limit.joint_acceleration_scale", self.joint_acceleration_scale),
+        ):
+            if len(row) > MOST_NUMBERS:
+                raise InputError(f"{key} has {len(row)} numbers; at most {MOST_NUMBERS} are taken")
         for key, value in (
             ("time.jerk", self.jerk),
             *((f"limit.{name}", getattr(self, name)) for name in _LIMITS),
         ):
             if value is not None and not 0 < value < math.inf:
                 raise InputError(f"{key} must be finite and above zero, not {value}")
-        if not all(0 < value < math.inf for value in self.joint_acceleration_scale):
+        if not all(
+            1 / MOST_SCALE <= value <= MOST_SCALE for value in self.joint_acceleration_scale
+        ):
             raise InputError(
-                "limit.joint_acceleration_scale must be finite and above zero, not "
-                f"{list(self.joint_acceleration_scale)}"
+                f"limit.joint_acceleration_scale must be from {1 / MOST_SCALE:g} to "
+                f"{MOST_SCALE:g}, not {list(self.joint_acceleration_scale)}"
             )
         if not isinstance(self.stops_at_pure_reorientation, bool):
             raise InputError(
@@ -209,12 +245,24 @@ class MotionModel:
         return frozenset((*_SINGLE_FIGURES, *blends, *limits, *scale, *optional, *parts))
 
 
-_TABLES = ("blend", "line", "zone", "time", "limit", "torque", "elasticity", "fits", "provenance")
+_TABLES = (
+    "blend",
+    "line",
+    "arc",
+    "zone",
+    "time",
+    "limit",
+    "torque",
+    "elasticity",
+    "fits",
+    "provenance",
+)
 _BLENDS = ("tcp", "joint", "orientation")
 _LIMITS = ("tcp_acceleration", "reorientation_acceleration", "centripetal")
 _OPTIONAL = (
     ("zone.pace", "pace", Pace.LIMITS),
     ("line.turn", "line_turn", LineTurn.AXIS),
+    ("arc.turn", "arc_turn", ArcTurn.PROGRAMMED),
     ("time.duration", "duration", DurationRule.SCALED),
     ("time.start_ramp_s", "start_ramp", 0.0),
     ("time.ramp_s", "ramp", 0.0),
@@ -249,10 +297,7 @@ def load_motion_model(
         InputError: the file is missing or no TOML, is another robot's, a key is unknown, a value
             has the wrong type or range; the message names file and key.
     """
-    try:
-        data = tomllib.loads(path.read_text("utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError(f"{path}: not a readable motion model: {error}") from error
+    data = read_toml(path, LARGEST)
     own = data.pop("robot", robot)
     if robot is not None and own != robot:
         raise InputError(f"{path}: it says how {own} is driven, not {robot}")
@@ -264,7 +309,7 @@ def load_motion_model(
 
 def _model(data: dict[str, Any], base: MotionModel) -> MotionModel:
     tables = (_table(key, data.pop(key, {})) for key in _TABLES)
-    blend, line, zone, time, limit, most, lead, fits, origins = tables
+    blend, line, arc, zone, time, limit, most, lead, fits, origins = tables
     values: dict[str, Any] = {
         "provenance": {**base.provenance, **read_provenance(fits, origins)},
         "torque": torque(most, base.torque),
@@ -274,6 +319,7 @@ def _model(data: dict[str, Any], base: MotionModel) -> MotionModel:
     blends = {name: (name, partial(_blend, getattr(base, name))) for name in _BLENDS}
     _take(blend, values, "blend.", blends)
     _take(line, values, "line.", {"turn": ("line_turn", LineTurn)})
+    _take(arc, values, "arc.", {"turn": ("arc_turn", ArcTurn)})
     _take(
         zone,
         values,
@@ -344,10 +390,9 @@ def _table(key: str, entry: Any) -> dict[str, Any]:
 def _blend(base: Blend, entry: Any) -> Blend:
     if not isinstance(entry, dict):
         raise InputError(f"a table is expected, not {entry!r}")
-    values: dict[str, Any] = {
-        key: tuple(map(_number, value)) if isinstance(value, list) else value
-        for key, value in entry.items()
-    }
+    values: dict[str, Any] = {}
+    keys = {"kind": ("kind", str), "alpha": ("alpha", _row), "beta": ("beta", _row)}
+    _take(entry, values, "", keys)
     return replace(base, **values)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import numpy as np
@@ -115,6 +115,11 @@ class Pieces:
         """(S,), σ of every sample."""
         piece, share = self.sample_pieces, self.sample_shares
         return (1.0 - share) * self.edge[piece] + share * self.edge[piece + 1]
+
+    def refined(self, coarse: NDArray[np.bool_], times: int) -> Pieces:
+        """The same with so many times as many even intervals in pieces that are (P,) bool."""
+        even = np.where(coarse, times * self.even, self.even)
+        return replace(self, even=even, intervals=self.intervals + even - self.even)
 
     def pull_sigma(self, sigma_bar: FloatArray, bar: LayoutGradient) -> None:
         """Reverse of `sigma`: add to the layout's gradient."""

@@ -34,3 +34,9 @@ def slopes(z: FloatArray | float) -> FloatArray:
     """(..., 6), derivative of `basis` by z."""
     rates = _POWERS[1:] * np.power.outer(np.asarray(z), _POWERS[:-1])
     return np.asarray(rates @ _TABLE[:, 1:].T)
+
+
+def bends(z: FloatArray | float) -> FloatArray:
+    """(..., 6), second derivative of `basis` by z."""
+    rates = _POWERS[2:] * _POWERS[1:-1] * np.power.outer(np.asarray(z), _POWERS[:-2])
+    return np.asarray(rates @ _TABLE[:, 2:].T)

@@ -30,32 +30,39 @@ _TURNING, _SWAYING = 0.1, 0.01
 """m that a turn of the tool, and one of the joints, by one rad counts."""
 
 
-def stamped_motion(timing: Timing) -> Motion:
+def stamped_motion(timing: Timing, begin: float = -np.inf, end: float = np.inf) -> Motion:
     """The stamped motion, ramped where the model says so.
 
     Knots are fine enough that cubics in time between them stand for it.
+
+    Args:
+        timing: of the path.
+        begin, end: s, what is wanted of it.
     """
     if timing.ramp > 0.0:
-        return ramped(timing)
-    even = sample_times(0.0, timing.duration, _STAMPED_STEP)
+        return ramped(timing, begin, end)
+    even = sample_times(0.0, timing.duration, _STAMPED_STEP, (begin, end))
     edges = timing.start.driven(np.concatenate([timing.begin, timing.end]))
+    edges = edges[(even[0] <= edges) & (edges <= even[-1])]
     t = np.unique(np.concatenate([even, edges]))
     q, dq, _, _ = timing.driven_at(t)
     return Motion(t, q, dq)
 
 
-def ramped(timing: Timing) -> Motion:
+def ramped(timing: Timing, begin: float = -np.inf, end: float = np.inf) -> Motion:
     """The motion that is at time t where the stamped one is on average over the last T seconds."""
-    fine = sample_times(0.0, timing.duration, _FINE)
+    # Velocities are differences: of knots at the ends, to one side.
+    begin, end = begin - 2.0 * _STEP, end + 2.0 * _STEP
+    t = sample_times(0.0, timing.duration, _STEP, (begin, end))
+    fine = sample_times(0.0, timing.duration, _FINE, (t[0] - timing.ramp, t[-1]))
     place = _way(timing, np.maximum.accumulate(timing.driven_at(fine)[3]))
-    t = sample_times(0.0, timing.duration, _STEP)
     average = _averaged(fine, place, timing.ramp, t)
     # Where the path rests, any time at that place will do.
     moving = np.concatenate([[True], np.diff(place) > 0.0])
     at = np.interp(average, place[moving], fine[moving])
     q = timing.driven_at(at)[0]
     dq = np.gradient(q, t, axis=0)
-    dq[[0, -1]] = 0.0
+    dq[(t <= 0.0) | (t >= timing.duration)] = 0.0
     return Motion(t, q, dq)
 
 
@@ -83,6 +90,6 @@ def _averaged(fine: FloatArray, place: FloatArray, window: float, t: FloatArray)
     """Mean of a place over the last ``window`` s, at times t; it rests before and after."""
     steps = 0.5 * np.diff(fine) * (place[1:] + place[:-1])
     area = np.concatenate([[0.0], np.cumsum(steps)])
-    before = np.where(t < window, place[0] * (t - window), 0.0)
+    before = place[0] * np.minimum(t - window - fine[0], 0.0)
     whole = np.interp(t, fine, area) - np.interp(t - window, fine, area) - before
     return np.asarray(np.clip(whole / window, place[0], place[-1]))

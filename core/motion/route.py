@@ -9,12 +9,13 @@ import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError, MotionError, Note, Span
-from ..program.move import ArcOrientation, Move, MoveC, MoveJ, Opaque, Wait
+from ..program.move import Move, MoveC, MoveJ, Opaque, Wait
 from ..program.program import Program
 from ..program.target import JointTarget
 from ..program.tool import WORLD, Tool, WorkObject
@@ -23,9 +24,10 @@ from ..robot.chain import Chain
 from ..robot.chain_kernels import pose
 from ..robot.model import Robot
 from ..robot.work_chain import work_chain
+from ..spatial.rotation import arc_angle, cross_length
 from .configurations import ConfigurationFinder, Label, located
 from .layout import Layout
-from .model import LineTurn, MotionModel
+from .model import ArcTurn, LineTurn, MotionModel
 from .path import Route
 from .segments import (
     ARC_SEGMENT,
@@ -35,9 +37,14 @@ from .segments import (
     Segments,
     make_segments,
 )
+from .stranded import why_stranded
 from .tcp_curves import make_tcp_curves
-from .tcp_samples import SINGULAR, Samples, States, TcpCurves, sample_tcp
+from .tcp_samples import CONVERGED, Samples, States, TcpCurves
+from .tcp_walk import sample_tcp
 from .zones import Corners
+
+if TYPE_CHECKING:
+    from ..dialect import ArcRules
 
 FloatArray = NDArray[np.float64]
 _START = -1
@@ -46,6 +53,12 @@ _FURTHEST = 1e3
 _HALF_TURN = np.radians(179.9)
 """A turn about one axis from which on rounding decides the way round."""
 _COLLINEAR = 1e-4
+_ROUNDING = 1e-6
+"""rad by which an arc may be longer than controllers drive it: programs round their points."""
+_STRAIGHT = (
+    "the three points of the arc lie on a line: it is driven as the line. Some controllers stop "
+    "there: use a linear move"
+)
 _NOWHERE = 1e-6
 """Scale (m or rad) below which a move goes nowhere: targets are written with about that precision,
 and a move of nothing would be a stop more."""
@@ -75,12 +88,14 @@ class _Legs:
 
     Args:
         at_start: index of the move whose target is taken for the start; None if that is known.
+        straight: indices of arcs whose points lie on a line.
     """
 
     at_start: int | None = None
     ends: list[Ends] = field(default_factory=list)
     chains: list[Chain] = field(default_factory=list)
     moves: list[int] = field(default_factory=list)
+    straight: list[int] = field(default_factory=list)
 
 
 class RouteFinder:
@@ -89,12 +104,22 @@ class RouteFinder:
     Args:
         robot: the robot.
         label: the vendor's label of a configuration; None where vendors have none.
-        line_turn: how the tool turns along lines.
+        line_turn, arc_turn: how the tool turns along lines and arcs.
+        arcs: which arcs the vendor's controllers drive; None for all.
     """
 
-    def __init__(self, robot: Robot, label: Label, line_turn: LineTurn) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        label: Label,
+        line_turn: LineTurn,
+        arc_turn: ArcTurn,
+        arcs: ArcRules | None = None,
+    ) -> None:
         self._robot = robot
+        self._arcs = arcs
         self._line_turn = line_turn
+        self._arc_turn = arc_turn
         self._targets = ConfigurationFinder(robot, label)
         self._chains: dict[tuple[Tool, WorkObject], Chain] = {}
 
@@ -169,7 +194,7 @@ class RouteFinder:
 
     def _drive(self, moves: Sequence[Move], stage: Stage, q: FloatArray, legs: _Legs) -> FloatArray:
         """Resolve the moves of a stage from configuration q; returns where it ends."""
-        ends = self._ends(moves, stage, q)
+        ends = self._ends(moves, stage, q, legs)
         curves: TcpCurves | None = None
         segments: Segments | None = None
         for k, i in enumerate(stage.moves):
@@ -188,7 +213,7 @@ class RouteFinder:
         legs.moves += stage.moves
         return q
 
-    def _ends(self, moves: Sequence[Move], stage: Stage, q: FloatArray) -> Ends:
+    def _ends(self, moves: Sequence[Move], stage: Stage, q: FloatArray, legs: _Legs) -> Ends:
         """Poses and prescribed axes at the ends of the stage's moves; configurations to come."""
         count, size = len(stage.moves), self._robot.size
         known = np.empty((count + 1, size))
@@ -212,11 +237,14 @@ class RouteFinder:
             except InputError as error:
                 raise located(move, i, str(error)) from error
             if isinstance(move, MoveC):
-                kind[k] = ARC_SEGMENT
                 auxiliary = move.via.pose.matrix()
                 via[k], via_rotation[k] = auxiliary[:3, 3], auxiliary[:3, :3]
-                follows[k] = move.orientation is ArcOrientation.FOLLOWS_ARC
-                _check_arc(move, i, position[k], via[k], position[k + 1])
+                follows[k] = self._arc_turn.follows(move.orientation)
+                arc = _is_arc(move, i, (position[k], via[k], position[k + 1]), self._arcs)
+                if arc:
+                    kind[k] = ARC_SEGMENT
+                else:
+                    legs.straight.append(i)
         pairs = np.stack([np.arange(count), np.arange(count) + 1], -1)
         prescribed = known[:, self._targets.prescribed]
         speeds = [moves[i].speed for i in stage.moves]
@@ -264,7 +292,7 @@ class RouteFinder:
         index = np.full(steps + 1, k, dtype=np.int64)
         states = States.zeros(steps + 1, self._robot.size)
         pivots = np.ones(steps + 1)
-        failed, error = sample_tcp(
+        failed, short, reached = sample_tcp(
             chain,
             self._targets.solved,
             self._targets.prescribed,
@@ -275,23 +303,15 @@ class RouteFinder:
             pivots,
         )
         if failed >= 0:
-            raise self._lost(move, i, failed / steps, error, float(pivots[failed]), q)
+            reason = self._targets.why_unreachable(move, q) if short > CONVERGED else None
+            if reason is not None:
+                raise located(move, i, f"target cannot be reached: {reason}")
+            share, length = reached - k, float(segments.length[k])
+            message = why_stranded(self._robot, states.q[failed], share, length, short)
+            raise located(move, i, message)
         arrived: FloatArray = states.q[-1].copy()
         self._targets.check_arrival(move, i, arrived)
         return arrived
-
-    def _lost(
-        self, move: Move, i: int, share: float, error: float, pivots: float, near: FloatArray
-    ) -> MotionError:
-        where = f"{100 * share:.0f} % of the way along"
-        if pivots < SINGULAR:
-            return located(move, i, f"the path runs into a singular configuration {where}")
-        reason = self._targets.why_unreachable(move, near)
-        if reason is not None:
-            return located(move, i, f"target cannot be reached: {reason}")
-        return located(
-            move, i, f"the arm leaves its reach {where}, {1e3 * error:.3g} mm short of the path"
-        )
 
     def _route(
         self,
@@ -322,10 +342,12 @@ class RouteFinder:
             if move != legs.at_start:
                 notes.append(Note("goes nowhere: it is at its target already", move))
         notes += _half_turns(segments, keep, legs.moves)
+        notes += [Note(_STRAIGHT, move) for move in legs.straight]
         which = np.flatnonzero(keep)
         speeds = [program.moves[legs.moves[k]].speed for k in which]
         changes = [a != b for a, b in pairwise(speeds)]
         return Route(
+            self._robot,
             _rows(ends, which),
             tuple(legs.chains[k] for k in which),
             tuple(legs.moves[k] for k in which),
@@ -375,9 +397,17 @@ def _half_turns(segments: Segments, keep: NDArray[np.bool_], moves: Sequence[int
     ]
 
 
-def _check_arc(move: Move, i: int, start: FloatArray, via: FloatArray, end: FloatArray) -> None:
+def _is_arc(
+    move: Move, i: int, points: tuple[FloatArray, FloatArray, FloatArray], rules: ArcRules | None
+) -> bool:
+    """Whether start, auxiliary point and end (3,) make an arc, and no line.
+
+    Raises:
+        MotionError: they make neither, or an arc that the vendor's controllers do not drive.
+    """
+    start, via, end = points
     a, b = via - start, end - start
-    sizes = np.linalg.norm(a), np.linalg.norm(b), np.linalg.norm(end - via)
+    sizes = float(np.linalg.norm(a)), float(np.linalg.norm(b)), float(np.linalg.norm(end - via))
     if min(sizes) < 1e-6:
         raise located(
             move,
@@ -385,13 +415,31 @@ def _check_arc(move: Move, i: int, start: FloatArray, via: FloatArray, end: Floa
             "two of the three points of the arc are the same (nearer than 0.001 mm): an arc needs "
             "three different points",
         )
-    if np.linalg.norm(np.cross(a, b)) < _COLLINEAR * sizes[0] * sizes[1]:
+    if rules is not None and min(sizes[:2]) < rules.least_chord:
         raise located(
             move,
             i,
-            "the three points of the arc lie on a line: move the auxiliary point, or use a "
-            "linear move",
+            f"the controller stops at {rules.name}: a point of the arc is less than "
+            f"{1e3 * rules.least_chord:g} mm from its start; move the point, or take the arc out",
         )
+    if cross_length(a, b) < _COLLINEAR * sizes[0] * sizes[1]:
+        if 0.0 < float(a @ b) < sizes[1] ** 2:
+            return False
+        raise located(
+            move,
+            i,
+            "the three points of the arc lie on a line, and the auxiliary point not between the "
+            "others: move it, or use a linear move",
+        )
+    swept = arc_angle(start, via, end)
+    if rules is not None and swept > rules.longest + _ROUNDING:
+        raise located(
+            move,
+            i,
+            f"the controller stops at {rules.name}: an arc of {math.degrees(swept):.0f}° is above "
+            f"the {math.degrees(rules.longest):.0f}° that it drives; split it in two",
+        )
+    return True
 
 
 def _waypoints(program: Program) -> dict[int, _Waypoint]:

@@ -37,11 +37,6 @@ class StartRamp:
         """By how much later all is in the end, s."""
         return 0.5 * self.length
 
-    @property
-    def most_acceleration(self) -> float:
-        """What bounds of accelerations are multiplied by."""
-        return 1.0 if self.length == 0.0 else 1.5
-
     def begun_at(self, begin: float) -> StartRamp:
         """The same, beginning at another time."""
         return self if self.length == 0.0 else replace(self, begin=begin)

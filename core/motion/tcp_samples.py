@@ -2,7 +2,7 @@
 
 At a sample the curves give the TCP's pose X, velocity V and acceleration A with respect to σ and
 the prescribed axes (external ones, and the redundant joint of a seven-axis arm). The six other
-joints follow from T(q) = X by Newton's method from the sample before, and
+joints follow from T(q) = X by Newton's method from a guess (see `tcp_walk`), and
 
     J q' = V,    J q'' + J̇ q' = A.
 
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from ..robot.chain import Chain
 from ..robot.chain_kernels import acceleration_gradient, jacobian, motion, velocity_gradient
+from ..robot.lean import lean
 from ..robot.linear import factor, solve, solve_transposed
 from ..robot.tracking import pose_error
 from .curves import Curves, evaluate, pull
@@ -29,12 +30,9 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 _ITERATIONS = 30
-_CONVERGED = 1e-9
+CONVERGED = 1e-9
+"""m and rad of pose error below which Newton's method has converged."""
 _LONGEST_STEP = 0.3
-_CORRECTION = 0.1
-"""rad or m by which Newton's method may correct a guess that still counts as the same branch."""
-_FINEST = 4096
-"""Into how many parts the way between two samples may be cut."""
 SINGULAR = 1e-8
 """Ratio of pivots of the Jacobian below which a sample counts as singular."""
 
@@ -94,47 +92,6 @@ class States(NamedTuple):
         return States(*(array[start:stop] for array in self))
 
 
-@njit(cache=True, error_model="numpy")
-def approach(
-    chain: Chain,
-    solved: IntArray,
-    goal_R: FloatArray,
-    goal_p: FloatArray,
-    q: FloatArray,
-    J: FloatArray,
-    square: FloatArray,
-    order: IntArray,
-) -> tuple[float, float]:
-    """Newton's method from q (N,) to the pose; only the axes ``solved`` (6,) move.
-
-    Returns:
-        The last error (m and rad) before the final correction, and the conditioning (smallest
-        over largest pivot) of the Jacobian, whose factors stand in ``square`` and ``order``.
-    """
-    R, p, error = np.empty((3, 3)), np.empty(3), np.empty(6)
-    best = np.inf
-    for _ in range(_ITERATIONS):
-        jacobian(chain, q, R, p, J)
-        best = pose_error(goal_R, goal_p, R, p, error)
-        for i in range(6):
-            for j in range(6):
-                square[i, j] = J[i, solved[j]]
-        smallest, largest = factor(square, order)
-        conditioning = smallest / largest
-        if conditioning < SINGULAR:
-            return best, conditioning
-        solve(square, order, error)
-        longest = 0.0
-        for j in range(6):
-            longest = max(longest, abs(error[j]))
-        scale = min(1.0, _LONGEST_STEP / longest) if longest > 0.0 else 1.0
-        for j in range(6):
-            q[solved[j]] += scale * error[j]
-        if best < _CONVERGED:
-            return best, conditioning
-    return best, conditioning
-
-
 class Scratch(NamedTuple):
     """Arrays that the kernels reuse from sample to sample."""
 
@@ -144,6 +101,9 @@ class Scratch(NamedTuple):
     carried: FloatArray
     turning: FloatArray
     goal_R: FloatArray
+    R: FloatArray
+    p: FloatArray
+    error: FloatArray
     J: FloatArray
     square: FloatArray
     order: IntArray
@@ -163,6 +123,9 @@ def make_scratch(size: int, prescribed: int) -> Scratch:
         np.empty((3, prescribed)),
         np.empty((3, 3, 3)),
         np.empty((3, 3)),
+        np.empty((3, 3)),
+        np.empty(3),
+        np.empty(6),
         np.empty((6, size)),
         np.empty((6, 6)),
         np.empty(6, dtype=np.int64),
@@ -173,7 +136,46 @@ def make_scratch(size: int, prescribed: int) -> Scratch:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@lean
+def approach(
+    chain: Chain,
+    solved: IntArray,
+    goal_R: FloatArray,
+    goal_p: FloatArray,
+    q: FloatArray,
+    work: Scratch,
+) -> tuple[float, float]:
+    """Newton's method from q (N,) to the pose; only the axes ``solved`` (6,) move.
+
+    Returns:
+        The last error (m and rad) before the final correction, and the conditioning (smallest
+        over largest pivot) of the Jacobian, whose factors stand in ``work``.
+    """
+    J, square, order, error = work.J, work.square, work.order, work.error
+    best = np.inf
+    for _ in range(_ITERATIONS):
+        jacobian(chain, q, work.R, work.p, J)
+        best = pose_error(goal_R, goal_p, work.R, work.p, error)
+        for i in range(6):
+            for j in range(6):
+                square[i, j] = J[i, solved[j]]
+        smallest, largest = factor(square, order)
+        conditioning = smallest / largest
+        if conditioning < SINGULAR:
+            return best, conditioning
+        solve(square, order, error)
+        longest = 0.0
+        for j in range(6):
+            longest = max(longest, abs(error[j]))
+        scale = min(1.0, _LONGEST_STEP / longest) if longest > 0.0 else 1.0
+        for j in range(6):
+            q[solved[j]] += scale * error[j]
+        if best < CONVERGED:
+            return best, conditioning
+    return best, conditioning
+
+
+@lean
 def state_at(
     chain: Chain,
     solved: IntArray,
@@ -193,16 +195,15 @@ def state_at(
     """
     evaluate(curves.position, samples.position[k], sigma, work.basis, work.value)
     evaluate(curves.turning, samples.turning[k], sigma, work.basis, work.turns)
-    evaluate(curves.prescribed, samples.prescribed[k], sigma, work.basis, work.carried)
+    if prescribed.size > 0:
+        evaluate(curves.prescribed, samples.prescribed[k], sigma, work.basis, work.carried)
     reference = curves.reference[samples.turning[k]]
     omega, alpha = orientation(reference, work.turns, work.turning, work.goal_R)
     q, dq, ddq = states.q[row], states.dq[row], states.ddq[row]
     for j in range(prescribed.size):
         q[prescribed[j]] = work.carried[0, j]
-    error, pivots = approach(
-        chain, solved, work.goal_R, work.value[0], q, work.J, work.square, work.order
-    )
-    if not (error < _CONVERGED and pivots >= SINGULAR):
+    error, pivots = approach(chain, solved, work.goal_R, work.value[0], q, work)
+    if not (error < CONVERGED and pivots >= SINGULAR):
         return error, pivots
     v, a = states.v[row], states.a[row]
     for i in range(3):
@@ -226,101 +227,7 @@ def state_at(
     return error, pivots
 
 
-@njit(cache=True, error_model="numpy")
-def _predict(states: States, row: int, step: float, guess: FloatArray) -> None:
-    """Write the Taylor guess of second order, ``step`` beyond a row."""
-    for j in range(guess.size):
-        rate = states.dq[row, j] + 0.5 * step * states.ddq[row, j]
-        guess[j] = states.q[row, j] + step * rate
-
-
-@njit(cache=True, error_model="numpy")
-def _copy_row(source: States, i: int, target: States, j: int) -> None:
-    target.q[j], target.dq[j], target.ddq[j] = source.q[i], source.dq[i], source.ddq[i]
-    target.v[j], target.a[j] = source.v[i], source.a[i]
-
-
-@njit(cache=True, error_model="numpy")
-def sample_tcp(
-    chain: Chain,
-    solved: IntArray,
-    prescribed: IntArray,
-    curves: TcpCurves,
-    samples: Samples,
-    seed: FloatArray,
-    states: States,
-    conditioning: FloatArray,
-) -> tuple[int, float]:
-    """Write the states of samples that follow each other along σ.
-
-    Between two samples the step is halved until Newton's method only corrects the guess, so
-    that no other branch of inverse kinematics is taken for the same one.
-
-    Args:
-        chain: the kinematics.
-        solved, prescribed: indices of the axes (6,) and (m,).
-        curves: the geometry.
-        samples: where.
-        seed: (N,), configuration near the first sample.
-        states: written.
-        conditioning: (S,), written: smallest over largest pivot of the Jacobian.
-
-    Returns:
-        (-1, 0), or the index of the sample that cannot be reached and the pose error left there.
-    """
-    size = seed.size
-    work = make_scratch(size, prescribed.size)
-    # Row 0 is where the walk stands, row 1 its next step.
-    walk = States(
-        np.empty((2, size)),
-        np.empty((2, size)),
-        np.empty((2, size)),
-        np.empty((2, 6)),
-        np.empty((2, 6)),
-    )
-    guess = np.empty(size)
-    for k in range(samples.sigma.size):
-        goal = samples.sigma[k]
-        if k == 0:
-            states.q[0] = seed
-            error, pivots = state_at(
-                chain, solved, prescribed, curves, samples, k, goal, states, 0, work
-            )
-            conditioning[0] = pivots
-            if not (error < _CONVERGED and pivots >= SINGULAR):
-                return 0, error
-            continue
-        _copy_row(states, k - 1, walk, 0)
-        at, whole = samples.sigma[k - 1], goal - samples.sigma[k - 1]
-        step = whole
-        while True:
-            last = abs(goal - at - step) <= 1e-12 * abs(whole)
-            aim = goal if last else at + step
-            _predict(walk, 0, aim - at, guess)
-            walk.q[1] = guess
-            error, pivots = state_at(
-                chain, solved, prescribed, curves, samples, k, aim, walk, 1, work
-            )
-            correction = 0.0
-            for j in range(6):
-                correction = max(correction, abs(walk.q[1, solved[j]] - guess[solved[j]]))
-            if error < _CONVERGED and pivots >= SINGULAR and correction <= _CORRECTION:
-                if last:
-                    break
-                _copy_row(walk, 1, walk, 0)
-                at = aim
-                step = goal - at if abs(2 * step) >= abs(goal - at) else 2 * step
-                continue
-            step *= 0.5
-            if abs(step) <= abs(whole) / _FINEST:
-                conditioning[k] = pivots
-                return k, error
-        conditioning[k] = pivots
-        _copy_row(walk, 1, states, k)
-    return -1, 0.0
-
-
-@njit(cache=True, error_model="numpy")
+@lean
 def _rates(
     J: FloatArray,
     square: FloatArray,
@@ -378,10 +285,11 @@ def pull_tcp(
     gradient: TcpCurves,
     sigma_bar: FloatArray,
 ) -> None:
-    """Reverse of `sample_tcp`.
+    """Reverse of `state_at` at each of the samples.
 
     Args:
-        chain, solved, prescribed, curves, samples, states: as there.
+        chain, solved, prescribed, curves: as there.
+        samples, states: the samples, and what stands there.
         states_bar: gradient with respect to the states; used as scratch.
         gradient: added to; its ``reference`` (P, 3, 3) gets in its first row the gradient of a
             left turn of each R_ref.

@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,6 +33,9 @@ from ..robot.model import Robot
 from .point_masses import chain_to_axis, filled, row_of
 
 FloatArray = NDArray[np.float64]
+
+_TOGETHER = 20_000
+"""Samples whose Jacobians are made in one go."""
 
 
 @dataclass(frozen=True)
@@ -130,13 +134,14 @@ class Torque:
         own, weight = np.array(self.own), filled(self.weight, count)
         a, b, h = own * dq[:, :count], own * ddq[:, :count], np.zeros((len(q), count))
         gravity = np.array(robot.gravity)
-        for mass in self.carried:
+        parts = [slice(first, first + _TOGETHER) for first in range(0, len(q), _TOGETHER)]
+        for mass, part in product(self.carried, parts):
             chain, share = self._at(robot, mass)
-            J = jacobians(chain, q)[:, :3, :count]
-            v, pull = motions(chain, q, dq, ddq)
-            a += share * np.einsum("sij,si->sj", J, v[:, :3])
-            b += share * np.einsum("sij,si->sj", J, pull[:, :3])
-            h -= share * weight * np.einsum("sij,i->sj", J, gravity)
+            J = jacobians(chain, q[part])[:, :3, :count]
+            v, pull = motions(chain, q[part], dq[part], ddq[part])
+            a[part] += share * np.einsum("sij,si->sj", J, v[:, :3])
+            b[part] += share * np.einsum("sij,si->sj", J, pull[:, :3])
+            h[part] -= share * weight * np.einsum("sij,i->sj", J, gravity)
         fade = filled(self.fade, count) * dq[:, :count] ** 2
         return Shares(a, b, h, fade)
 

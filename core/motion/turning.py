@@ -11,9 +11,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ..robot.lean import lean
 from ..robot.vectors import Vector, add, cross, dot, load, scale, turn
 
 FloatArray = NDArray[np.float64]
@@ -24,7 +24,7 @@ _SERIES = np.array(
 )
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _half_sine(n: float) -> tuple[float, float, float, float]:
     """k(n) = sin(√n/2)/√n and its first three derivatives."""
     k0 = k1 = k2 = k3 = 0.0
@@ -36,7 +36,7 @@ def _half_sine(n: float) -> tuple[float, float, float, float]:
     return k0, k1, k2, k3
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _quaternion_jet(
     phi: FloatArray,
 ) -> tuple[float, float, float, Vector, Vector, Vector]:
@@ -54,14 +54,14 @@ def _quaternion_jet(
     return c0, c1, c2, v0, v1, v2
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _rate(c0: float, v0: Vector, c1: float, v1: Vector) -> Vector:
     """2 vec(h₁ h₀*)."""
     rate: Vector = scale(2.0, add(add(scale(c0, v1), scale(-c1, v0)), cross(v0, v1)))
     return rate
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def exponential(phi: FloatArray, R: FloatArray) -> tuple[Vector, Vector]:
     """Write R = exp(φ) (3, 3) and return ω and ω' for φ, φ', φ'' given as (3, 3)."""
     c0, c1, c2, v0, v1, v2 = _quaternion_jet(phi)
@@ -72,7 +72,7 @@ def exponential(phi: FloatArray, R: FloatArray) -> tuple[Vector, Vector]:
     return _rate(c0, v0, c1, v1), _rate(c0, v0, c2, v2)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _pull_rate(
     c0: float, v0: Vector, c1: float, v1: Vector, bar: Vector
 ) -> tuple[float, Vector, float, Vector]:
@@ -83,7 +83,7 @@ def _pull_rate(
     return dot(v1, twice), v0_bar, -dot(v0, twice), v1_bar
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def pull_exponential(
     phi: FloatArray, theta_bar: Vector, omega_bar: Vector, alpha_bar: Vector, phi_bar: FloatArray
 ) -> None:
@@ -125,7 +125,7 @@ def pull_exponential(
         phi_bar[2, i] += g2[i]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _matrix(R: FloatArray, v: Vector) -> Vector:
     turned: Vector = turn(
         (R[0, 0], R[0, 1], R[0, 2], R[1, 0], R[1, 1], R[1, 2], R[2, 0], R[2, 1], R[2, 2]), v
@@ -133,7 +133,7 @@ def _matrix(R: FloatArray, v: Vector) -> Vector:
     return turned
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _transposed(R: FloatArray, v: Vector) -> Vector:
     turned: Vector = turn(
         (R[0, 0], R[1, 0], R[2, 0], R[0, 1], R[1, 1], R[2, 1], R[0, 2], R[1, 2], R[2, 2]), v
@@ -141,7 +141,7 @@ def _transposed(R: FloatArray, v: Vector) -> Vector:
     return turned
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _still(vectors: FloatArray) -> bool:
     """Whether A and its derivatives are zero, as on all segments but arcs."""
     for i in range(3):
@@ -151,7 +151,7 @@ def _still(vectors: FloatArray) -> bool:
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def orientation(
     reference: FloatArray, vectors: FloatArray, scratch: FloatArray, R: FloatArray
 ) -> tuple[Vector, Vector]:
@@ -192,7 +192,7 @@ def orientation(
     return _matrix(reference, omega), _matrix(reference, alpha)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def pull_orientation(
     reference: FloatArray,
     vectors: FloatArray,

@@ -31,12 +31,19 @@ class Origin:
         numbers: spans of the literal numbers that make up the value, in the order of the
             vendor's own literal form, None for one that is not written out; empty if the value is
             derived or predefined.
+        data: of numbers that come from several literals, name of the datum that each belongs to;
+            empty where ``datum`` is the only one, or all stand in one literal.
     """
 
     ownership: Ownership
     span: Span
     datum: str | None = None
     numbers: tuple[Span | None, ...] = ()
+    data: tuple[str | None, ...] = ()
+
+    def datum_of(self, index: int) -> str | None:
+        """Name of the datum that a number belongs to; None for a literal where it is used."""
+        return self.data[index] if self.data else self.datum
 
 
 @dataclass(frozen=True, slots=True)

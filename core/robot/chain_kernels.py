@@ -18,6 +18,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from .chain import Chain
+from .lean import lean
 from .vectors import (
     UNTURNED,
     ZERO,
@@ -39,7 +40,7 @@ from .vectors import (
 FloatArray = NDArray[np.float64]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _place(chain: Chain, k: int, turned: Rotation) -> tuple[Rotation, Vector, Vector]:
     """The frame before joint k: rotation, step to its origin, and the joint's signed axis."""
     step = turn(turned, load_row(chain.translation, k))
@@ -48,7 +49,7 @@ def _place(chain: Chain, k: int, turned: Rotation) -> tuple[Rotation, Vector, Ve
     return placed, step, axis
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _move(chain: Chain, k: int, value: float, placed: Rotation) -> Rotation:
     """The rotation behind a revolute joint k."""
     moved: Rotation = compose(
@@ -57,7 +58,7 @@ def _move(chain: Chain, k: int, value: float, placed: Rotation) -> Rotation:
     return moved
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _finish(chain: Chain, turned: Rotation, at: Vector, R: FloatArray, p: FloatArray) -> None:
     """Write the TCP's pose, given the frame behind the last joint."""
     for i in range(3):
@@ -70,7 +71,7 @@ def _finish(chain: Chain, turned: Rotation, at: Vector, R: FloatArray, p: FloatA
     p[0], p[1], p[2] = add(at, turn(turned, load(chain.end_translation)))
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def pose(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray) -> None:
     """The TCP in the work object's frame.
 
@@ -92,7 +93,7 @@ def pose(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray) -> None:
     _finish(chain, turned, at, R, p)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def jacobian(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray, J: FloatArray) -> None:
     """The TCP's pose and Jacobian.
 
@@ -130,14 +131,14 @@ def jacobian(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray, J: Float
         J[2, j] += linear[2]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _carry(omega: Vector, alpha: Vector, step: Vector) -> tuple[Vector, Vector]:
     """What a step fixed in a turning frame adds to velocity and acceleration."""
     velocity = cross(omega, step)
     return velocity, add(cross(alpha, step), cross(omega, velocity))
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def motion(
     chain: Chain, q: FloatArray, dq: FloatArray, ddq: FloatArray, v: FloatArray, a: FloatArray
 ) -> None:
@@ -334,19 +335,30 @@ def acceleration_gradient(
 def poses(chain: Chain, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Rotations (M, 3, 3) and positions (M, 3) m of configurations (M, N)."""
     R, p = np.empty((q.shape[0], 3, 3)), np.empty((q.shape[0], 3))
+    _fill_poses(chain, q, R, p)
+    return R, p
+
+
+@lean
+def _fill_poses(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray) -> None:
     for m in range(q.shape[0]):
         pose(chain, q[m], R[m], p[m])
-    return R, p
 
 
 @njit(cache=True, error_model="numpy")
 def jacobians(chain: Chain, q: FloatArray) -> FloatArray:
     """Jacobians (M, 6, N) of configurations (M, N)."""
     J = np.empty((q.shape[0], 6, q.shape[1]))
-    R, p = np.empty((3, 3)), np.empty(3)
+    _fill_jacobians(chain, q, np.empty((3, 3)), np.empty(3), J)
+    return J
+
+
+@lean
+def _fill_jacobians(
+    chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray, J: FloatArray
+) -> None:
     for m in range(q.shape[0]):
         jacobian(chain, q[m], R, p, J[m])
-    return J
 
 
 @njit(cache=True, error_model="numpy")
@@ -355,6 +367,13 @@ def motions(
 ) -> tuple[FloatArray, FloatArray]:
     """Velocities (M, 6) and accelerations (M, 6) of motions given by (M, N) arrays."""
     v, a = np.empty((q.shape[0], 6)), np.empty((q.shape[0], 6))
+    _fill_motions(chain, q, dq, ddq, v, a)
+    return v, a
+
+
+@lean
+def _fill_motions(
+    chain: Chain, q: FloatArray, dq: FloatArray, ddq: FloatArray, v: FloatArray, a: FloatArray
+) -> None:
     for m in range(q.shape[0]):
         motion(chain, q[m], dq[m], ddq[m], v[m], a[m])
-    return v, a

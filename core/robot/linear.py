@@ -6,11 +6,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from .lean import lean
+
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def factor(matrix: FloatArray, order: IntArray) -> tuple[float, float]:
     """Replace a matrix (n, n) by its LU factors, rows exchanged for the largest pivot.
 
@@ -43,7 +45,7 @@ def factor(matrix: FloatArray, order: IntArray) -> tuple[float, float]:
     return smallest, largest
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def solve(factors: FloatArray, order: IntArray, x: FloatArray) -> None:
     """Solve A y = x for the factored A; y replaces x (n,)."""
     n = factors.shape[0]
@@ -57,7 +59,30 @@ def solve(factors: FloatArray, order: IntArray, x: FloatArray) -> None:
         x[k] /= factors[k, k]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
+def invert_factors(factors: FloatArray, order: IntArray, inverse: FloatArray) -> None:
+    """Write A⁻¹ (n, n) for the factored A."""
+    n = factors.shape[0]
+    for i in range(n):
+        for c in range(n):
+            inverse[i, c] = 1.0 if i == c else 0.0
+    for k in range(n):
+        if order[k] != k:
+            for c in range(n):
+                inverse[k, c], inverse[order[k], c] = inverse[order[k], c], inverse[k, c]
+    for k in range(n):
+        for j in range(k):
+            for c in range(n):
+                inverse[k, c] -= factors[k, j] * inverse[j, c]
+    for k in range(n - 1, -1, -1):
+        for j in range(k + 1, n):
+            for c in range(n):
+                inverse[k, c] -= factors[k, j] * inverse[j, c]
+        for c in range(n):
+            inverse[k, c] /= factors[k, k]
+
+
+@lean
 def solve_transposed(factors: FloatArray, order: IntArray, x: FloatArray) -> None:
     """Solve Aᵀ y = x for the factored A; y replaces x (n,)."""
     n = factors.shape[0]

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from .chain import Chain
 from .chain_kernels import jacobian
+from .lean import lean
 from .linear import solve_in_place
-from .vectors import Vector
+from .vectors import Vector, dot, load_row
 
 FloatArray = NDArray[np.float64]
 
@@ -24,21 +25,16 @@ SMALLEST_PIVOT = 1e-7
 """Below, the Newton step is damped instead."""
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def rotation_error(target: FloatArray, current: FloatArray) -> Vector:
     """The rotation vector (rad, in base axes) that takes ``current`` to ``target``, both (3, 3)."""
-    E = np.empty((3, 3))
-    for i in range(3):
-        for j in range(3):
-            E[i, j] = (
-                target[i, 0] * current[j, 0]
-                + target[i, 1] * current[j, 1]
-                + target[i, 2] * current[j, 2]
-            )
-    x = 0.5 * (E[2, 1] - E[1, 2])
-    y = 0.5 * (E[0, 2] - E[2, 0])
-    z = 0.5 * (E[1, 0] - E[0, 1])
-    cosine = 0.5 * (E[0, 0] + E[1, 1] + E[2, 2] - 1.0)
+    # E = target currentᵀ. No array: this is called for every sample of every path.
+    a, b, c = load_row(target, 0), load_row(target, 1), load_row(target, 2)
+    u, v, w = load_row(current, 0), load_row(current, 1), load_row(current, 2)
+    x = 0.5 * (dot(c, v) - dot(b, w))
+    y = 0.5 * (dot(a, w) - dot(c, u))
+    z = 0.5 * (dot(b, u) - dot(a, v))
+    cosine = 0.5 * (dot(a, u) + dot(b, v) + dot(c, w) - 1.0)
     sine = math.sqrt(x * x + y * y + z * z)
     if sine > 1e-6:
         factor = math.atan2(sine, cosine) / sine
@@ -46,15 +42,15 @@ def rotation_error(target: FloatArray, current: FloatArray) -> Vector:
     if cosine > 0.0:
         return x, y, z
     # A half turn: E + 1 = 2 u uᵀ, of which the longest column is the best known.
-    best = 0
-    for i in range(1, 3):
-        if E[i, i] > E[best, best]:
-            best = i
-    norm = math.sqrt(max(2.0 * (E[best, best] + 1.0), 1e-300))
-    u = E[:, best] / norm
-    u[best] += 1.0 / norm
-    factor = math.pi / math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
-    return factor * u[0], factor * u[1], factor * u[2]
+    first, second, third = dot(a, u) + 1.0, dot(b, v) + 1.0, dot(c, w) + 1.0
+    if first >= second and first >= third:
+        axis = (first, dot(b, u), dot(c, u))
+    elif second >= third:
+        axis = (dot(a, v), second, dot(c, v))
+    else:
+        axis = (dot(a, w), dot(b, w), third)
+    factor = math.pi / math.sqrt(max(dot(axis, axis), 1e-300))
+    return factor * axis[0], factor * axis[1], factor * axis[2]
 
 
 @njit(cache=True, error_model="numpy")
@@ -109,7 +105,7 @@ def least_step(
     return math.sqrt(solve_in_place(A, step))
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def pose_error(
     target_R: FloatArray, target_p: FloatArray, R: FloatArray, p: FloatArray, error: FloatArray
 ) -> float:

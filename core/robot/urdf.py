@@ -6,6 +6,7 @@ continuous joints; velocities and efforts that are missing or zero.
 
 from __future__ import annotations
 
+import io
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError, UnknownNameError
+from ..input_files import read_bytes
 from ..spatial.pose import IDENTITY, Pose
 from .inertia import Inertia
 from .joint import Joint, JointKind
@@ -23,6 +25,9 @@ ACCELERATION_TIME = 0.25
 """s in which a joint is assumed to reach its top speed."""
 CONTINUOUS_RANGE = 2 * math.pi
 """rad either way that a continuous joint is assumed to turn."""
+MOST_BYTES = 20_000_000
+LONGEST_RANGE = 1e4
+"""rad or m."""
 KINDS = {
     "revolute": JointKind.REVOLUTE,
     "continuous": JointKind.REVOLUTE,
@@ -46,19 +51,35 @@ def load_urdf(path: str | Path, base: str | None = None, tip: str | None = None)
             kind or velocity cannot be used.
         UnknownNameError: there is no link of that name.
     """
-    reader = _Reader(Path(path), _parse(Path(path)))
-    return reader.robot(base or reader.root(), tip)
+    path = Path(path)
+    reader = _Reader(path, _parse(path))
+    try:
+        reader.check()
+        return reader.robot(base or reader.root(), tip)
+    except UnknownNameError:
+        raise
+    except InputError as error:
+        told = str(error)
+        raise InputError(told if told.startswith(f"{path}:") else f"{path}: {told}") from None
 
 
 def _parse(path: Path) -> Any:
     import yourdfpy
+    from lxml import etree
 
-    if not path.is_file():
-        raise InputError(f"{path}: there is no such file")
+    data = read_bytes(path, MOST_BYTES)
+    if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
+        raise InputError(f"{path}: is not a URDF file: it declares a document type; remove that")
     try:
-        urdf = yourdfpy.URDF.load(
-            str(path), build_scene_graph=False, load_meshes=False, mesh_dir=str(path.parent)
-        )
+        # What is no XML would be mended by guessing.
+        etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True))
+        with np.errstate(all="ignore"):
+            urdf = yourdfpy.URDF.load(
+                io.BytesIO(data),
+                build_scene_graph=False,
+                load_meshes=False,
+                mesh_dir=str(path.parent),
+            )
     except Exception as error:  # the parser raises whatever its XML library does
         raise InputError(f"{path}: is not a URDF file: {error}") from error
     return urdf.robot
@@ -77,6 +98,15 @@ class _Reader:
     @property
     def links(self) -> dict[str, Any]:
         return {link.name: link for link in self.model.links}
+
+    def check(self) -> None:
+        """Refuse joints between links that there are not, or names that stand for two."""
+        if len(self.links) != len(self.model.links):
+            raise self.error("two links have one name")
+        for joint in self.model.joints:
+            for name in (joint.parent, joint.child):
+                if name not in self.links:
+                    raise self.error(f"joint {joint.name!r} names {name!r}, which is no link")
 
     def root(self) -> str:
         children = {joint.child for joint in self.model.joints}
@@ -154,8 +184,8 @@ class _Reader:
             raise self.error(f"joint {name!r} is {element.type}; known: {', '.join(KINDS)}, fixed")
         kind, limit = KINDS[element.type], element.limit
         axis = np.array([1.0, 0.0, 0.0] if element.axis is None else element.axis, dtype=float)
-        if not np.linalg.norm(axis) > 0.0:
-            raise self.error(f"joint {name!r} has no axis")
+        if axis.shape != (3,) or not 1e-9 < np.abs(axis).max() < 1e9:
+            raise self.error(f"joint {name!r} has no axis: {axis.tolist()}")
         x, y, z = (float(v) for v in axis / np.linalg.norm(axis))
         lower, upper = -CONTINUOUS_RANGE, CONTINUOUS_RANGE
         if element.type == "continuous":
@@ -164,6 +194,11 @@ class _Reader:
             raise self.error(f"joint {name!r} needs <limit lower= upper= velocity=>")
         else:
             lower, upper = float(limit.lower), float(limit.upper)
+            if not max(abs(lower), abs(upper)) <= LONGEST_RANGE:
+                raise self.error(
+                    f"joint {name!r} ranges from {lower:g} to {upper:g}; at most "
+                    f"{LONGEST_RANGE:g} either way is taken"
+                )
         velocity = limit.velocity if limit is not None else None
         if not velocity:
             if kind is JointKind.PRISMATIC:

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
 from numpy import float64
 from numpy.typing import NDArray
+
+from .lean import lean
 
 FloatArray = NDArray[float64]
 Vector = tuple[float, float, float]
@@ -19,43 +20,43 @@ ZERO: Vector = (0.0, 0.0, 0.0)
 UNTURNED: Rotation = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def load(array: FloatArray) -> Vector:
     """The vector of an array (3,)."""
     return array[0], array[1], array[2]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def load_row(array: FloatArray, row: int) -> Vector:
     """The vector in a row of an array (..., 3)."""
     return array[row, 0], array[row, 1], array[row, 2]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def add(a: Vector, b: Vector) -> Vector:
     """a + b."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def subtract(a: Vector, b: Vector) -> Vector:
     """a - b."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def scale(factor: float, a: Vector) -> Vector:
     """factor · a."""
     return factor * a[0], factor * a[1], factor * a[2]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def dot(a: Vector, b: Vector) -> float:
     """a · b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def cross(a: Vector, b: Vector) -> Vector:
     """a × b."""
     return (
@@ -65,7 +66,7 @@ def cross(a: Vector, b: Vector) -> Vector:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def turn(rotation: Rotation, a: Vector) -> Vector:
     """The vector turned by the rotation."""
     return (
@@ -75,7 +76,7 @@ def turn(rotation: Rotation, a: Vector) -> Vector:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def compose(a: Rotation, b: Rotation) -> Rotation:
     """The rotation ``a`` followed, in its own frame, by ``b``: the matrix product."""
     return (
@@ -91,7 +92,7 @@ def compose(a: Rotation, b: Rotation) -> Rotation:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def load_rotation(matrices: FloatArray, k: int) -> Rotation:
     """The rotation of matrix ``k`` of an array (K, 3, 3)."""
     return (
@@ -107,7 +108,7 @@ def load_rotation(matrices: FloatArray, k: int) -> Rotation:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def rotation_about(axis: Vector, angle: float) -> Rotation:
     """The rotation by ``angle`` (rad) about a unit axis (Rodrigues' formula)."""
     x, y, z = axis

@@ -27,12 +27,12 @@ once if it moves the robot, else not at all. What was decided so is noted with i
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..errors import InputError, Note, Span, UnknownNameError
+from ..input_files import read_toml
 
 Answer = bool | float | str | tuple["Answer", ...]
 """A value in the language's own units; arrays and records are tuples."""
@@ -70,12 +70,7 @@ def load_answers(path: str | Path) -> Answers:
         InputError: the file cannot be read, or a table or value is of no known kind; the message
             names the file and the key.
     """
-    try:
-        data = tomllib.loads(Path(path).read_text("utf-8"))
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: no TOML file: {error}") from None
+    data = read_toml(path)
     tables: dict[str, dict[str, object]] = {}
     for name, table in data.items():
         if name not in _TABLES:

@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from itertools import pairwise
+from pathlib import PurePath
 
 from ..errors import InputError, Span
 from ..program.move import Move
@@ -24,6 +25,9 @@ give every double; a nanometre is a thousand times below what controllers resolv
 
 _SHOWN = 6
 """Moves that a message names."""
+
+PARTS = ("target", "via", "speed", "zone")
+"""The parts of a move whose numbers have a place in the text."""
 
 _LABELS = ("name", "origin", "span", "notes", "reading")
 """Fields that say where a value stands or what it is called, and not what it is."""
@@ -120,6 +124,37 @@ def patched(after: Program, reading: Reading, edits: Iterable[Edit]) -> Files:
             else f"the patched text does not give the changed program: {part}; nothing was changed"
         )
     return files
+
+
+def runnable_set(program: Program, changed: Files) -> Files:
+    """Changed files with those that the program cannot run without, as they were read.
+
+    These are the file with the entry, those whose motions are driven and whose numbers they read,
+    and all that are called like one of them: a ``.dat`` belongs to its ``.src``.
+
+    Args:
+        program: as its reader made it.
+        changed: some of its files; none give none.
+
+    Raises:
+        InputError: it was not read from source files.
+    """
+    if not changed:
+        return {}
+    reading = reading_of(program)
+    needed = {reading.main, *(file.name for file in changed.values())}
+    for move in program.moves:
+        if move.origin is not None:
+            parts = (getattr(move.origin, kind) for kind in PARTS)
+            spans = [span for part in parts if part is not None for span in part.numbers]
+            needed |= {span.file for span in (move.origin.statement, *spans) if span is not None}
+    stems = set(map(_stem, needed))
+    together = {name: file for name, file in reading.files.items() if _stem(name) in stems}
+    return {**together, **{file.name: file for file in changed.values()}}
+
+
+def _stem(file: str) -> str:
+    return str(PurePath(file).with_suffix("")).casefold()
 
 
 def difference(

@@ -94,13 +94,17 @@ class Reads:
             return Origin(Ownership.DERIVED, part.span)
         alone = all(self._alone(source, move) for source in sources)
         numbers: list[Span | None] = []
+        data: list[str | None] = []
         for source in part.sources:
-            numbers += [None] if source is None else source.numbers
+            found = [None] if source is None else source.numbers
+            numbers += found
+            data += [None if source is None else source.datum] * len(found)
         return Origin(
             Ownership.OWNED if alone else Ownership.SHARED,
             part.span,
             sources[0].datum if len(part.sources) == 1 else None,
             tuple(numbers),
+            tuple(data) if len(part.sources) > 1 and any(data) else (),
         )
 
     def _alone(self, source: Source, move: int) -> bool:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from .answers import Answers
 from .limits import Executed, Limits
-from .text import SourceFile
+from .text import SourceFile, stray_return
 
 if TYPE_CHECKING:
     from ..program.program import Program
+    from ..program.target import JointTarget
     from ..robot.model import Robot
 
 Files = Mapping[str, SourceFile]
@@ -33,6 +35,8 @@ class ReadOptions:
             Files that stand beside the program and belong to it by their vendor's rules are found
             without being named.
         executed: is told of every statement that is executed.
+        start: where the robot stands before the first move; None if nobody knows. What the program
+            asks of its own position begins there.
     """
 
     entry: str | None = None
@@ -41,6 +45,7 @@ class ReadOptions:
     limits: Limits = field(default_factory=Limits)
     others: tuple[Path, ...] = ()
     executed: Executed | None = field(default=None, repr=False, compare=False)
+    start: JointTarget | None = None
 
 
 @dataclass(frozen=True)
@@ -62,10 +67,30 @@ class Reading:
     def again(self, changed: Files) -> Program:
         """The program in the same files, of which some have another text.
 
+        Args:
+            changed: files of the names that they were read by, under whatever keys.
+
         Raises:
             FlybyError: it cannot be read any more.
         """
-        return self.read({**self.files, **changed}, self.main, self.options)
+        others = {file.name: file for file in changed.values()}
+        reading = replace(self, files={**self.files, **others})
+        program = reading.read(reading.files, reading.main, reading.options)
+        return replace(program, reading=reading)
+
+
+def named_apart(files: Files) -> Files:
+    """Files under names that lead nowhere but into the folder they are written to.
+
+    A file is called as it is without its folders; where two would be called alike, with the
+    folders below those that all files have in common.
+    """
+    plain = {PurePath(file.name).name: file for file in files.values()}
+    if len(plain) == len(files):
+        return plain
+    paths = {os.path.abspath(file.name): file for file in files.values()}
+    common = os.path.commonpath([os.path.dirname(path) for path in paths])
+    return {PurePath(os.path.relpath(path, common)).as_posix(): f for path, f in paths.items()}
 
 
 def read_with(
@@ -83,4 +108,6 @@ def read_with(
         read: a vendor's function from files to a program.
     """
     program = read(files, main, options)
-    return replace(program, reading=Reading(dict(files), main, options, read))
+    stray = filter(None, map(stray_return, files.values()))
+    reading = Reading(dict(files), main, options, read)
+    return replace(program, notes=(*program.notes, *stray), reading=reading)

@@ -8,11 +8,14 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import InputError, SourceError, Span
+from ..errors import InputError, Note, SourceError, Span
+from ..input_files import read_bytes
 
 UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 LARGEST_FILE = 20_000_000
 """Bytes. The largest programs seen have two million; what is larger is no program."""
+MOST_LINES = 500_000
+"""The longest programs seen have some 40 000."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,14 +55,9 @@ def read_source(path: Path) -> SourceFile:
         InputError: the file cannot be read, or is too large for a program.
         SourceError: its bytes are no text.
     """
-    try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError(f"{path} is larger than {LARGEST_FILE} bytes: no robot program")
-        data = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
-    except ValueError as error:  # a NUL in the name
-        raise InputError(f"{str(path)!r} cannot be read: {error}") from None
+    data = read_bytes(path, LARGEST_FILE)
+    if max(data.count(b"\n"), data.count(b"\r")) > MOST_LINES:
+        raise InputError(f"{path}: has more than {MOST_LINES:,} lines: no robot program")
     return SourceFile(str(path), *decode(data, str(path)))
 
 
@@ -93,7 +91,8 @@ def decode(source: str | bytes, file: str) -> tuple[str, str]:
 
 
 class SourceText:
-    """A text that knows the line and column of every offset; ends of line are LF, CR LF or CR.
+    """A text that knows the line and column of every offset, as editors count them: ends of line
+    are LF, CR LF or CR.
 
     Args:
         text: the whole file.
@@ -118,7 +117,38 @@ class SourceText:
         return SourceError(message, self.span(start, start if end is None else end))
 
 
+def unbroken(text: str) -> str:
+    """A text with blanks for the carriage returns that end no line; offsets stay as they are.
+
+    LF and CR LF end a statement or a comment; CR does in a text without LF. Nothing else does: no
+    form feed, no NEL, no line separator of Unicode.
+    """
+    return _STRAY.sub(" ", text) if "\r" in text and "\n" in text else text
+
+
+def stray_return(file: SourceFile) -> Note | None:
+    """A note on the first carriage return that ends no line, where editors show one."""
+    text = file.text
+    found = _TELLING.search(text) if "\r" in text and "\n" in text else None
+    if found is None:
+        return None
+    return Note(
+        "a carriage return without a line feed ends no line here: what follows it in a comment is "
+        "comment, where an editor may show a line of its own; save the file with one kind of line "
+        "end",
+        span=SourceText(text, file.name).span(found.start(), found.start()),
+    )
+
+
+def lines_of(text: str) -> list[str]:
+    """The lines of a text, without their ends."""
+    return _END_OF_LINE.split(unbroken(text))
+
+
 _END_OF_LINE = re.compile(r"\r\n?|\n")
+_STRAY = re.compile(r"\r(?!\n)")
+_TELLING = re.compile(r"\r(?!\r*\n)")
+"""CR CR LF, which file transfers make of CR LF, looks like an empty line at most."""
 
 
 def _line_starts(text: str) -> list[int]:

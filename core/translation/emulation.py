@@ -12,7 +12,7 @@ from ..errors import MotionError
 from ..motion.controller import Controller
 from ..motion.limits import interval_samples
 from ..motion.model import MotionModel
-from ..motion.path import Path, Route, build_path
+from ..motion.path import OverlapError, Path, Route, build_path
 from ..motion.pieces import Sampling
 from ..motion.route import RouteFinder
 from ..motion.timing import Timing
@@ -44,7 +44,9 @@ class Party:
     @cached_property
     def routes(self) -> RouteFinder:
         """Resolves waypoints."""
-        return RouteFinder(self.robot, self.vendor.label, self.model.line_turn)
+        arcs = None if self.vendor.speaks is None else self.vendor.speaks.arcs
+        turns = self.model.line_turn, self.model.arc_turn
+        return RouteFinder(self.robot, self.vendor.label, *turns, arcs)
 
     def route(self, program: Program, start: JointTarget | None = None) -> Route:
         """The route, on which the speed may change at every waypoint.
@@ -64,10 +66,13 @@ class Party:
         """The path along a route of at least one segment.
 
         Raises:
+            OverlapError: blends overlap.
             MotionError: a stretch that the arm cannot follow, with the move's place.
         """
         try:
             return build_path(route, model or self.model, Sampling())
+        except OverlapError:
+            raise
         except MotionError as error:
             raise placed(error, program) from error
 

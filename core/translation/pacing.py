@@ -39,6 +39,13 @@ _STILL = 1e-6
 """m of TCP path below which a move merely turns the tool."""
 _BINDS = 0.99
 """Share of a programmed limit from which on it counts as having held the move."""
+_SHOWN = {
+    "tcp_acceleration": ("acceleration", "m/s²", 1.0),
+    "joint_acceleration": ("joints' acceleration", "rad/s²", 1.0),
+    "reorientation": ("speed of reorientation", "°/s", 180.0 / math.pi),
+    "reorientation_acceleration": ("acceleration of reorientation", "°/s²", 180.0 / math.pi),
+}
+"""What bounded numbers are called, their unit, and how many of it an SI unit is."""
 _SLOWEST = 1e-4
 """m/s, rad/s or share; no move is made slower."""
 _SIGNIFICANT = 4
@@ -96,7 +103,9 @@ class Pacer:
         self._losses = losses
         spoken = old.party.vendor.speaks
         self._same_pace = spoken is not None and spoken.pace == dialect.pace
+        self._own = spoken is not None and spoken is dialect
         self._sought: dict[int, str] = {}
+        self._held: dict[int, str] = {}
 
     def pace(self, program: Program, path: Path) -> Program:
         """The program with its speeds in the language's terms.
@@ -110,7 +119,10 @@ class Pacer:
         moves = list(program.moves)
         for i, move in enumerate(moves):
             turned = change[segment[i]] if i in segment else np.zeros(self._target.robot.size)
-            stated = self._joint(i, turned) if isinstance(move, MoveJ) else self._line(i)
+            if isinstance(move, MoveJ):
+                stated = self._joint(i, turned)
+            else:
+                stated = self._line(i, self._path_acceleration(path, segment.get(i)))
             moves[i] = replace(move, speed=stated)
         paced = self._in_time(program.with_moves(tuple(moves)), path, segment)
         self._tell_slower(paced, path)
@@ -118,8 +130,8 @@ class Pacer:
 
     # ------------------------------------------------------------------- lines and arcs
 
-    def _line(self, i: int) -> Speed:
-        """The speed of a line or arc."""
+    def _line(self, i: int, most: float) -> Speed:
+        """The speed of a line or arc that may be accelerated by ``most`` m/s²."""
         speed, words, peaks = self._old.moves[i].speed, self._words(i), self._old.peaks
         k = self._old.segment.get(i)
         stated = _said(speed, words)
@@ -131,10 +143,48 @@ class Pacer:
         acceleration = self._line_acceleration(i)
         if acceleration is not None:
             stated["tcp_acceleration"] = acceleration
+        self._bound(i, stated, {**self._dialect.most, "tcp_acceleration": most})
         if k is not None:
             self._keep_time(i, k, speed, words, stated)
             self._tell_line(i, k, speed, words)
         return Speed(**stated)
+
+    def _bound(self, i: int, stated: dict[str, Any], most: Mapping[str, float]) -> None:
+        """Numbers no greater than the maker takes; a program of the same language has its own."""
+        if self._own:
+            return
+        k = self._old.segment.get(i)
+        for name in sorted(most.keys() & stated.keys()):
+            wanted, taken = stated[name], most[name]
+            if wanted <= taken:
+                continue
+            stated[name] = taken
+            idle = k is None or (name == "reorientation" and self._old.peaks.turn[k] <= taken)
+            if not idle:
+                what, unit, per = _SHOWN[name]
+                self._held[i] = (
+                    f"; its {what} is {per * taken:.4g} {unit} instead of {per * wanted:.4g}: its "
+                    "maker allows, or drives it with, no more"
+                )
+
+    def _path_acceleration(self, path: Path, k: int | None) -> float:
+        """m/s² along segment k of the new path that the maker takes, or that joints have by it."""
+        most = self._dialect.most
+        if "tcp_acceleration" in most:
+            return most["tcp_acceleration"]
+        usual = self._dialect.path_acceleration
+        if k is None or "joint_acceleration" not in most:
+            return usual if k is None and "joint_acceleration" in most else math.inf
+        first, last = path.layout.waypoint[k : k + 2]
+        inside = (path.sigma >= first) & (path.sigma <= last)
+        arm = self._target.robot.arm_size
+        ways = np.abs(path.states.dq[inside][:, :arm]).max(axis=1)
+        lengths = np.linalg.norm(path.states.v[inside][:, :3], axis=1)
+        moved = lengths > _STILL * ways
+        if not moved.any():
+            return usual
+        reached = float((most["joint_acceleration"] * lengths[moved] / ways[moved]).min())
+        return usual if reached <= usual else _rounded_down(reached)
 
     def _words(self, i: int) -> MoveWords:
         return self._dialect.words(self._old.moves[i])
@@ -161,7 +211,7 @@ class Pacer:
             and self._old.moves[i].speed.joint_acceleration_fraction == share
         ]
         reached = max(alike, default=0.0)
-        return _rounded(reached) if reached > _SLOWEST else _REST_ACCELERATION
+        return _rounded(reached) if reached > _SLOWEST else self._dialect.path_acceleration
 
     def _keep_time(
         self, i: int, k: int, speed: Speed, words: MoveWords, stated: dict[str, Any]
@@ -210,6 +260,7 @@ class Pacer:
         if "joint_acceleration" in words.needs and not self._keeps(speed, "joint_acceleration"):
             limit = float(robot.limits.acceleration[leading])
             stated["joint_acceleration"] = _rounded(share * limit)
+        self._bound(i, stated, self._dialect.most)
         pace = self._dialect.pace
         if self._same_pace and getattr(speed, pace) is not None:
             return Speed(**stated)
@@ -301,8 +352,14 @@ class Pacer:
             return False
         if self._accelerates_by == "joint_acceleration_fraction":
             return speed.joint_acceleration_fraction < 1.0
-        most = float(self._target.robot.limits.acceleration.max())
+        most = self._most_acceleration
         return speed.joint_acceleration is not None and speed.joint_acceleration < most
+
+    @property
+    def _most_acceleration(self) -> float:
+        """rad/s² that a joint move may state."""
+        own = float(self._target.robot.limits.acceleration.max())
+        return min(own, self._dialect.most.get("joint_acceleration", math.inf))
 
     @property
     def _accelerates_by(self) -> str:
@@ -314,7 +371,7 @@ class Pacer:
         moves, name = list(program.moves), self._accelerates_by
         for i, factor in late.items():
             value = getattr(moves[i].speed, name) * 1.05 * factor**2
-            most = float(self._target.robot.limits.acceleration.max())
+            most = self._most_acceleration
             share = name == "joint_acceleration_fraction"
             number = self._stepped(min(1.0, value)) if share else _rounded(min(most, value))
             moves[i] = replace(moves[i], speed=_with(moves[i].speed, name, number))
@@ -351,14 +408,10 @@ class Pacer:
                 self._losses.at(
                     i,
                     f"takes {spent[k]:.3f} s instead of {wanted:.3f} s: the limits of "
-                    f"{self._target.robot.name} hold it",
+                    f"{self._target.robot.name} hold it{self._held.get(i, '')}",
                     "time",
                     float(spent[k]) - wanted,
                 )
-
-
-_REST_ACCELERATION = 1.2
-"""m/s² for lines that are not driven; URScript's own default."""
 
 
 def _said(speed: Speed, words: MoveWords) -> dict[str, Any]:

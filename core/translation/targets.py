@@ -33,6 +33,8 @@ FloatArray = NDArray[np.float64]
 _MOST_TRIED = 12
 """Configurations of one target that are tried before the moves that follow are given up."""
 _LIMIT_SLACK = 1e-6
+_SAME = 1e-6
+"""rad and m within which two configurations are one: rounding of inverse kinematics."""
 _DIGITS = 10
 """Decimals of rad and m of joint values: those behind are rounding of inverse kinematics."""
 
@@ -58,13 +60,15 @@ class _Anchor:
         index: of the joint move; None for the start.
         goal: the move on the new robot; its target is a pose.
         by_joints: whether the program gives it as joint values.
-        stance: how the old robot stands there.
+        old: the old robot's configuration there.
+        stance: how it stands in it.
         tail: indices of the moves that follow.
     """
 
     index: int | None
     goal: Move
     by_joints: bool
+    old: FloatArray
     stance: Signs
     tail: range
 
@@ -107,8 +111,12 @@ class Placer:
         moves = [self._carried(move, i, reached[i], losses) for i, move in enumerate(program.moves)]
         q = np.empty((len(moves), self._target.robot.size))
         before, start = self._finder.rest(), None
+        stood: list[tuple[FloatArray, FloatArray]] = []
         for anchor in self._anchors(program, moves, reached, route.ends.q[0, 0]):
-            stand, ends = self._settle(anchor, moves, before, losses)
+            again = next((new for old, new in stood if _same(old, anchor.old)), None)
+            stand, ends = self._settle(anchor, moves, before, again, losses)
+            if again is None:
+                stood.append((anchor.old, stand))
             if anchor.index is not None:
                 q[anchor.index] = stand
             q[anchor.tail.start : anchor.tail.stop] = ends
@@ -181,11 +189,11 @@ class Placer:
         leading = joints[0] if joints else len(moves)
         if program.start is not None or leading > 0:
             goal = self._start(program, moves, first)
-            yield _Anchor(None, goal, True, self._stance(first), range(leading))
+            yield _Anchor(None, goal, True, first, self._stance(first), range(leading))
         for i, end in zip(joints, ends, strict=True):
             by_joints = isinstance(program.moves[i].target, JointTarget)
             tail = range(i + 1, end)
-            yield _Anchor(i, moves[i], by_joints, self._stance(reached[i]), tail)
+            yield _Anchor(i, moves[i], by_joints, reached[i], self._stance(reached[i]), tail)
 
     def _start(self, program: Program, moves: Sequence[Move], q: FloatArray) -> Move:
         """A joint move to where the robot stands at first."""
@@ -200,12 +208,21 @@ class Placer:
         return self._likeness.signs(self._source.robot, q)
 
     def _settle(
-        self, anchor: _Anchor, moves: Sequence[Move], before: FloatArray, losses: LossesOfPart
+        self,
+        anchor: _Anchor,
+        moves: Sequence[Move],
+        before: FloatArray,
+        again: FloatArray | None,
+        losses: LossesOfPart,
     ) -> tuple[FloatArray, FloatArray]:
-        """Configurations (N,) at an anchor and (T, N) after the moves that follow it."""
+        """Configurations (N,) at an anchor and (T, N) after the moves that follow it.
+
+        Where the old robot comes back to a configuration, the new one does: to its own there,
+        ``again``. A program that ends where it began can be run once more.
+        """
         index = anchor.index or 0
         failure: MotionError | None = None
-        for otherwise, q in self._options(anchor, index, before)[:_MOST_TRIED]:
+        for otherwise, q in self._options(anchor, index, before, again)[:_MOST_TRIED]:
             try:
                 ends = self._follow(moves, anchor.tail, q)
             except MotionError as error:
@@ -217,16 +234,22 @@ class Placer:
                     f"{self._target.robot.name} has its {' and '.join(otherwise)} on the other "
                     "side here: it does not reach this, or what follows, as the old robot does",
                 )
+            if again is not None and not _same(q, again):
+                losses.at(
+                    index,
+                    "the old robot stands here as it has stood before, the new one otherwise: from "
+                    "there it could not follow what comes next",
+                )
             return q, ends
         assert failure is not None
         raise failure
 
     def _options(
-        self, anchor: _Anchor, index: int, before: FloatArray
+        self, anchor: _Anchor, index: int, before: FloatArray, again: FloatArray | None
     ) -> list[tuple[tuple[str, ...], FloatArray]]:
         """Configurations (N,) at an anchor and in what they stand otherwise than the old robot.
 
-        Those that are alike come first, then those near ``before``.
+        ``again`` comes first, then those that are alike, of these those near ``before``.
 
         Raises:
             MotionError: there is none.
@@ -246,7 +269,13 @@ class Placer:
             stance = self._likeness.signs(robot, _with(q, solution.q))
             otherwise = differing(anchor.stance, stance)
             options += [(otherwise, _with(q, turned)) for turned in robot.turns(solution.q)]
-        options.sort(key=lambda option: (len(option[0]), float(np.abs(option[1] - before).sum())))
+
+        def rank(option: tuple[tuple[str, ...], FloatArray]) -> tuple[bool, int, float]:
+            otherwise, stand = option
+            other = again is not None and not _same(stand, again)
+            return other, len(otherwise), float(np.abs(stand - before).sum())
+
+        options.sort(key=rank)
         if anchor.by_joints:
             return [(otherwise, np.round(option, _DIGITS)) for otherwise, option in options]
         return options
@@ -317,6 +346,10 @@ class Placer:
 
 def _pairs(old: Sequence[Move], new: Sequence[Move]) -> Iterator[tuple[int, tuple[Move, Move]]]:
     return enumerate(zip(old, new, strict=True))
+
+
+def _same(one: FloatArray, other: FloatArray) -> bool:
+    return bool(np.abs(one - other).max() < _SAME)
 
 
 def _with(q: FloatArray, arm: FloatArray) -> FloatArray:

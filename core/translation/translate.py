@@ -131,7 +131,11 @@ class _Translator:
                 made, new_path = self._zoned(made, self.target.route(made, placed.start), wanted)
         self._tell_zones(new_path, wanted, losses)
         return Translation(
-            replace(made, statements=tuple(self._worded(made))),
+            replace(
+                made,
+                statements=tuple(self._worded(made)),
+                start=None if self.source_program.start is None else placed.start,
+            ),
             self.losses.sorted(),
             placed.start,
         )

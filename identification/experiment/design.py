@@ -11,15 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.cell.cell import Cell
+from ...core.cell.floor import FLOOR, LIFT
 from ...core.collision.certificate import certify, scenes_of
 from ...core.collision.scene import CollisionScene
 from ...core.collision.verdict import Certificate
 from ...core.errors import FlybyError, InputError
 from ...core.motion.controller import Controller, Run
-from ...core.program.move import Move, MoveC, MoveJ
+from ...core.program.move import Move, MoveC
 from ...core.program.program import Program
-from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget
+from ...core.program.zone import FINE
 from ...core.source.patching import difference
 from ...core.vendor import Sources, Vendor
 from .candidates import Family
@@ -101,7 +102,8 @@ class _Designer:
         runs = self._chosen(choice, period)
         if not runs:
             reasons = "; ".join(f"{s.what}: {s.reason}" for s in self.skipped[:3])
-            raise InputError(f"no run of this experiment is possible: {reasons}")
+            lift = f"; {LIFT}" if FLOOR in reasons else ""
+            raise InputError(f"no run of this experiment is possible: {reasons}{lift}")
         return Experiment(
             self.cell.robot,
             self.plan,
@@ -243,13 +245,12 @@ class _Designer:
 
     def _way(self, before: Designed, then: Designed) -> bool | None:
         """Whether the joint line from the end of a run to the start of another keeps clear."""
-        if self.bare or not self.cell.robot.shapes:
+        if not self.cell.robot.shapes:
             return None
         stand = JointTarget(tuple(map(float, before.run.trajectory.q[-1])))
-        first = then.program.moves[0]
-        move = MoveJ(first.target, Speed(joint_fraction=0.1), tool=self.plan.tool)
+        first = replace(then.program.moves[0], zone=FINE)
         try:
-            run = self.controller.run(Program((move,)), stand)
+            run = self.controller.run(Program((first,)), stand)
         except FlybyError:
             return False
         proof = self.clearance.proof(run)
@@ -261,9 +262,11 @@ class _Designer:
         if not self.cell.robot.shapes:
             yield "nothing is known of the robot's shape: no collision is excluded"
         elif self.bare:
+            floor = [o.name for o in self.cell.obstacles if o.name == FLOOR]
+            proven = f"neither itself nor {FLOOR}" if floor else "not itself"
             yield (
-                "no cell was given: it is proven that the arm does not touch itself, and nothing "
-                "of tools, floor and surroundings"
+                f"no cell was given: it is proven that the arm touches {proven}, and nothing of "
+                "tools and surroundings"
             )
         for level in choice.missing():
             yield f"{level} has no place in the time there is"

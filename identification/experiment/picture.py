@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...core.cell.cell import Cell
 from ...drawing.solids import obstacle_triangles, robot_triangles
-from ...drawing.style import DPI, STYLE
+from ...drawing.style import STYLE, figure_file
 from .plan import Designed, Experiment
 from .postures import Site
 
@@ -37,9 +36,7 @@ def draw_experiment(cell: Cell, experiment: Experiment) -> bytes:
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
-        buffer = io.BytesIO()
-        _figure(cell, experiment).savefig(buffer, format="png", dpi=DPI)
-    return buffer.getvalue()
+        return figure_file(_figure(cell, experiment), "png")
 
 
 def _figure(cell: Cell, experiment: Experiment) -> Figure:

@@ -140,6 +140,8 @@ class Words:
         limits = self.robot.limits
         rate = round(min(rate, float(limits.velocity.min())), 4)
         most = JOINT_SHARE * float(limits.acceleration.min())
+        if self.vendor.speaks is not None:
+            most = min(most, self.vendor.speaks.most.get("joint_acceleration", most))
         acceleration = min(_ramp(rate, LEAST_JOINT_ACCELERATION), most)
         return Speed(joint=rate, joint_acceleration=acceleration)
 

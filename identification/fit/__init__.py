@@ -3,6 +3,7 @@
 from .file import motion_file
 from .fitting import Fit, fit
 from .intervals import Interval, Unseen
+from .judgement import Judgement, judge
 from .outcome import Outcome, outcomes
 from .parameters import Parameter, ParameterSet, usual_parameters
 from .runs import PreparedRun, prepare
@@ -10,12 +11,14 @@ from .runs import PreparedRun, prepare
 __all__ = [
     "Fit",
     "Interval",
+    "Judgement",
     "Outcome",
     "Parameter",
     "ParameterSet",
     "PreparedRun",
     "Unseen",
     "fit",
+    "judge",
     "motion_file",
     "outcomes",
     "prepare",

@@ -8,7 +8,7 @@ to one side.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,6 +48,8 @@ _MOMENT = 1e-4
 """s, the same of time."""
 _SIZE = 1e-3
 """Share of the zones' size, likewise."""
+_SPEED = 1e-3
+"""Share of the speeds, likewise."""
 
 
 @dataclass(frozen=True)
@@ -59,11 +61,13 @@ class Nuisance:
             the middle of what smoothing looks at, so that more smoothing is no delay.
         clock: s that pass while the log counts one.
         size: of the zones, as a factor on what the program says.
+        override: share of all speeds that the run was driven at.
     """
 
     offset: float = 0.0
     clock: float = 1.0
     size: float = 1.0
+    override: float = 1.0
 
     def emulated(self, t: FloatArray, window: float) -> FloatArray:
         """The emulation's time at stamps, where smoothing looks at a window in s."""
@@ -76,6 +80,7 @@ class _Stages:
 
     model: MotionModel
     size: float
+    override: float
     path: Path
     stamped: Motion
     smoothing: Smoothing
@@ -101,7 +106,7 @@ class Rows:
     Args:
         values: (K, M).
         by_parameter: (K, M, P).
-        by_offset, by_clock, by_size: (K, M).
+        by_offset, by_clock, by_size, by_override: (K, M).
     """
 
     values: FloatArray
@@ -109,6 +114,7 @@ class Rows:
     by_offset: FloatArray
     by_clock: FloatArray
     by_size: FloatArray
+    by_override: FloatArray
 
 
 class RunEmulator:
@@ -127,7 +133,7 @@ class RunEmulator:
         Raises:
             FlybyError: the program cannot be driven so.
         """
-        stages = self._stages(model, nuisance.size, None)
+        stages = self._stages(model, nuisance, None)
         return self._weighted(self._off(stages, model, nuisance))
 
     def rows(self, parameters: ParameterSet, values: FloatArray, nuisance: Nuisance) -> Rows:
@@ -142,7 +148,7 @@ class RunEmulator:
             FlybyError: the program cannot be driven so.
         """
         model = parameters.model(values)
-        stages = self._stages(model, nuisance.size, None)
+        stages = self._stages(model, nuisance, None)
         off = self._off(stages, model, nuisance)
         base = _Base(model, stages, nuisance, off, self._moments(stages, nuisance))
         columns = [self._by_parameter(parameters, values, k, base) for k in range(parameters.size)]
@@ -156,6 +162,7 @@ class RunEmulator:
             self._weighted(-nuisance.clock * by_time),
             self._weighted(stamps[:, None] * by_time),
             self._weighted(self._by_size(model, nuisance)),
+            self._weighted(self._by_override(base)),
         )
 
     def _weighted(self, off: FloatArray) -> FloatArray:
@@ -172,7 +179,7 @@ class RunEmulator:
         model = base.model
         for key in one.keys:
             model = with_value(model, key, float(values[k] + step))
-        made = self._stages(model, base.nuisance.size, base.stages)
+        made = self._stages(model, base.nuisance, base.stages)
         if made is base.stages and base.moments is not None:
             off = self.prepared.q - self._led(model, base.moments)
         else:
@@ -205,25 +212,40 @@ class RunEmulator:
         sizes = nuisance.size * (1 + _SIZE), nuisance.size * (1 - _SIZE)
         ends = []
         for size in sizes:
-            changed = Nuisance(nuisance.offset, nuisance.clock, size)
-            ends.append(self._off(self._stages(model, size, None), model, changed))
+            changed = replace(nuisance, size=size)
+            ends.append(self._off(self._stages(model, changed, None), model, changed))
         return np.asarray((ends[0] - ends[1]) / (sizes[0] - sizes[1]))
 
-    def _stages(self, model: MotionModel, size: float, known: _Stages | None) -> _Stages:
+    def _by_override(self, base: _Base) -> FloatArray:
+        """(K, N), by a step down: nothing is driven faster than at full speed."""
+        if self.prepared.override is None:
+            return np.zeros_like(self.prepared.q)
+        step = _SPEED * base.nuisance.override
+        changed = replace(base.nuisance, override=base.nuisance.override - step)
+        made = self._stages(base.model, changed, base.stages)
+        return np.asarray((base.off - self._off(made, base.model, changed)) / step)
+
+    def _stages(self, model: MotionModel, own: Nuisance, known: _Stages | None) -> _Stages:
         """What a command needs, taken from what is known as far as the models agree."""
-        if known is not None and known.size == size and _agree(model, known.model, _AFTER_STAMP):
+        if known is not None and known.size != own.size:
+            known = None
+        stamped_alike = known is not None and known.override == own.override
+        if known is not None and stamped_alike and _agree(model, known.model, _AFTER_STAMP):
             return known
         controller = self.prepared.controller(model)
-        program = self.prepared.program(size)
-        if known is not None and known.size == size and _agree(model, known.model, _AFTER_PATH):
+        program = self.prepared.program(own.size)
+        if known is not None and _agree(model, known.model, _AFTER_PATH):
             path = known.path
         else:
             path = controller.plan(program, start_of(program, self.prepared.log, controller.robot))
         timing = controller.stamp(program, path)
+        if own.override != 1.0:
+            timing = controller.stamp_slower(program, timing, own.override)
         smoothing = controller.smoothing(program, path)
         stamped = stamped_motion(timing)
         window = smoothing.window + timing.ramp
-        return _Stages(model, size, path, stamped, smoothing, window, timing.duration)
+        duration = timing.duration
+        return _Stages(model, own.size, own.override, path, stamped, smoothing, window, duration)
 
     def _joints(self, stages: _Stages, model: MotionModel, t: FloatArray) -> FloatArray:
         """(K, N), commanded at times."""

@@ -29,6 +29,8 @@ from .keys import field_of, figure_of, steps_of
 from .parameters import Parameter
 
 ASSUMED = Provenance("assumed", "stated where the fit began")
+ARC_TURN = "arc.turn"
+"""A figure that is no number: logs show which of some it is."""
 
 
 def motion_file(
@@ -51,6 +53,8 @@ def motion_file(
     members = _members(fitted)
     if reference is not None:
         members = members | {figure: [] for figure in _others(fitted.model, reference, members)}
+    elif fitted.turn is not None:
+        members.setdefault(ARC_TURN, [])
     tables: dict[str, list[str]] = {}
     for figure in members:
         table, _, key = figure.rpartition(".")
@@ -96,6 +100,9 @@ def _record(fitted: Fit, name: str, command: str) -> FitRecord:
 
 def _origin(fitted: Fit, figure: str, record: FitRecord, members: list[int]) -> Provenance:
     """The provenance of a figure, fitted or not."""
+    if figure == ARC_TURN and fitted.turn is not None:
+        shown = [run.name for run in fitted.runs if run.turn is fitted.turn]
+        return Provenance("fitted", fit=record, details={"shown_by": shown})
     if not members:
         return fitted.model.provenance.get(figure, ASSUMED)
     intervals = [fitted.intervals[k] for k in members]

@@ -1,30 +1,33 @@
-"""Fits a motion model to logged runs."""
+"""Fits a motion model to logged runs.
+
+A parameter that the logs do not show stays as it was before the fit, and all others are fitted with
+it there: what is handed out is what was fitted. Whether a figure may be left alone the loss without
+it says, not its interval.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.errors import InputError
-from ...core.motion.model import MotionModel
-from ...core.sqp import Iteration, Result, Status, solve
+from ...core.errors import FlybyError, InputError
+from ...core.motion.model import ArcTurn, MotionModel
+from .clocks import timed, told
 from .crew import Crew
-from .emulation import Nuisance
-from .intervals import Interval, Unseen, clusters_of, intervals, loose, unseen
+from .emulation import Nuisance, Rows
+from .intervals import SEEN, Interval, Unseen, clusters_of, intervals, loose, unseen
+from .minimum import Minimum, Watch, minimise
 from .parameters import ParameterSet
 from .problem import Problem, Variables, first_nuisances
-from .runs import PreparedRun
+from .runs import PreparedRun, shown_turn
 
 FloatArray = NDArray[np.float64]
-Watch = Callable[[Iteration], bool | None]
-
-LEAST_GAIN = 1e-4
-"""Share of the robust sum that an iteration must gain, or the next one, for the fit to go on."""
-MOST_ITERATIONS = 40
-TOLERANCE = 1e-6
+HALVINGS = 12
+WORTH = 0.01
+"""Share of the loss that a figure must be worth for the fit not to do without it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,15 +35,17 @@ class Fit:
     """What came of a fit.
 
     Args:
-        parameters: that were fitted, with their starts.
+        parameters: that were fitted, with their starts, on top of the model before the fit.
         values: (P,) of them.
         runs: all that took part.
         nuisances: of each run.
         intervals: of each parameter.
-        unseen: what was to be fitted and is not shown by the logs; it stays at its start.
-        before, after: mean robust loss per residual.
+        unseen: what was to be fitted and is not shown by the logs; it stays as it was.
+        before, after: mean robust loss per residual, of the model before the fit and of the
+            fitted one; each with the runs' own that fits it best.
         iterations: of all solutions.
         converged: whether the last one went as far as it could.
+        rough: parameters whose intervals say nothing, and that the logs are not explained without.
     """
 
     parameters: ParameterSet
@@ -53,41 +58,23 @@ class Fit:
     after: float
     iterations: int
     converged: bool
+    rough: tuple[Unseen, ...] = ()
 
     @property
     def model(self) -> MotionModel:
-        """The fitted one."""
-        return self.parameters.model(self.values)
-
-
-@dataclass(frozen=True, eq=False)
-class Minimum:
-    """Where a minimisation ended.
-
-    Args:
-        variables: of the problem.
-        x: (n,) of them.
-        first, last: the robust sum at start and end, per residual.
-        iterations: that it took.
-        converged: whether it went as far as it could.
-    """
-
-    variables: Variables
-    x: FloatArray
-    first: float
-    last: float
-    iterations: int
-    converged: bool
+        """The fitted one; along arcs the tool turns as most logs show."""
+        made = self.parameters.model(self.values)
+        return replace(made, arc_turn=self.turn or made.arc_turn)
 
     @property
-    def values(self) -> FloatArray:
-        """(P,), of the parameters."""
-        return self.variables.values(self.x)
+    def scales(self) -> list[tuple[str, str]]:
+        """Names of runs whose clock or speed override was fitted too, and what it is, in words."""
+        return told(self.runs, self.nuisances)
 
     @property
-    def nuisances(self) -> tuple[Nuisance, ...]:
-        """Of each run."""
-        return self.variables.nuisances(self.x)
+    def turn(self) -> ArcTurn | None:
+        """How the logs show that the tool turns along arcs; None if they do not."""
+        return shown_turn(self.runs)
 
 
 def fit(
@@ -98,7 +85,7 @@ def fit(
 ) -> Fit:
     """Fit parameters to runs, all in one problem.
 
-    Parameters that the logs do not show are left at their start, and named.
+    Parameters that the logs do not show are left as they were, and named.
 
     Args:
         parameters: to be fitted.
@@ -114,115 +101,133 @@ def fit(
         raise InputError("there is no run to fit to")
     if not parameters.size:
         raise InputError("there is nothing to fit: name parameters")
-    with Crew(runs, workers) as crew:
-        return fit_with(crew, parameters, watch)
+    try:
+        with Crew(runs, workers) as crew:
+            found = fit_with(crew, parameters, watch)
+        made = timed(parameters, runs, found.after, workers)
+        if made is None:
+            return found
+        with Crew(made, workers) as crew:
+            return fit_with(crew, parameters, watch)
+    except NothingShown as error:
+        scales = [
+            f"{run.name}: {run.scale.told}; "
+            for run in runs
+            if run.scale is not None and run.scale.alone
+        ]
+        raise InputError("".join([*scales, str(error)])) from error
+
+
+class NothingShown(InputError):
+    """The logs show none of the parameters."""
 
 
 def fit_with(crew: Crew, parameters: ParameterSet, watch: Watch | None = None) -> Fit:
     """See `fit`; the crew knows the runs."""
-    kept, nuisances = parameters, first_nuisances(crew.runs)
     lost: list[Unseen] = []
-    iterations, first = 0, None
+    rough: set[str] = set()
+    kept = parameters
+    first = minimise(crew, ParameterSet(parameters.base, ()), first_nuisances(crew.runs))
+    while found := _seen_at(crew, kept, first.nuisances):
+        kept = _without(kept, found, lost)
+    end = minimise(crew, kept, first.nuisances, watch)
+    iterations = end.iterations
+    if end.last > first.last:
+        # A start that leads astray: what was before is better, and a start as well.
+        other = minimise(crew, kept.starting_at(kept.before), first.nuisances, watch)
+        iterations += other.iterations
+        end = min(end, other, key=lambda one: one.last)
     while True:
-        found = _seen_at(crew, kept, nuisances)
-        if found:
-            kept = _left(kept, found, lost)
-            continue
-        end = minimise(crew, kept, nuisances, watch)
-        iterations += end.iterations
-        first = end.first if first is None else first
         linearised = Problem(crew, end.variables).linearised(end.x)
         known = intervals(kept, end.values, clusters_of(crew.runs, linearised))
         found = unseen(kept, crew.runs, linearised) or loose(kept, known)
-        if not found or not end.converged:
+        doubted = [one for one in found if one.name not in rough]
+        if not doubted or not end.converged:
             break
-        kept = _left(kept.starting_at(end.values), found, lost)
-        nuisances = end.nuisances
+        made = _spared(crew, kept, end, doubted, watch)
+        if made is None and len(doubted) > 1:
+            doubted = doubted[:1]
+            made = _spared(crew, kept, end, doubted, watch)
+        if made is None:
+            rough.add(doubted[0].name)
+            end = _drawn_back(crew, kept, end, doubted[0].name, linearised)
+            continue
+        kept, end = _without(kept, doubted, lost), made
+        iterations += made.iterations
     return Fit(
-        parameters.holding(one.name for one in lost),
+        kept,
         end.values,
         crew.runs,
         end.nuisances,
         tuple(known),
         tuple(lost),
-        first,
+        first.last,
         end.last,
         iterations,
         end.converged,
+        tuple(one for one in found if one.name in rough),
     )
 
 
-def _left(parameters: ParameterSet, found: Sequence[Unseen], lost: list[Unseen]) -> ParameterSet:
+def _drawn_back(
+    crew: Crew,
+    parameters: ParameterSet,
+    end: Minimum,
+    name: str,
+    linearised: Sequence[tuple[Rows, FloatArray]],
+) -> Minimum:
+    """A fit with a parameter that nothing changes with any more, such as a limit that is reached
+    nowhere, as near to what it was before as the logs allow."""
+    k = [one.name for one in parameters.parameters].index(name)
+    if max(float(np.abs(J[..., k]).max()) for _, J in linearised) >= SEEN:
+        return end
+    problem, near = Problem(crew, end.variables), end.variables.parameters
+    before = (parameters.before[k] - near.start[k]) / near.scale[k]
+    allowed, refused = end.x.copy(), before
+    for _ in range(HALVINGS):
+        x = allowed.copy()
+        x[k] = 0.5 * (allowed[k] + refused)
+        rest = problem.residuals(x)
+        if 0.5 * float(rest @ rest) <= (1.0 + 0.1 * WORTH) * end.last:
+            allowed = x
+        else:
+            refused = x[k]
+    rest = problem.residuals(allowed)
+    return replace(end, x=allowed, last=0.5 * float(rest @ rest))
+
+
+def _without(parameters: ParameterSet, found: Sequence[Unseen], lost: list[Unseen]) -> ParameterSet:
     """The parameters without those found to be unseen, which are added to the lost ones.
 
     Raises:
         InputError: none is left.
     """
     lost += found
-    kept = parameters.holding(one.name for one in found)
+    kept = parameters.without(one.name for one in found)
     if not kept.size:
         reasons = "; ".join(f"{one.name}: {one.reason}" for one in lost)
-        raise InputError(f"the logs show none of the parameters: {reasons}")
+        raise NothingShown(f"the logs show none of the parameters: {reasons}")
     return kept
 
 
-def minimise(
+def _spared(
     crew: Crew,
     parameters: ParameterSet,
-    nuisances: Sequence[Nuisance],
-    watch: Watch | None = None,
-) -> Minimum:
-    """Find the parameters and nuisances with the least robust sum.
-
-    Raises:
-        InputError: a program cannot be driven at the start.
-    """
-    variables = Variables.of(parameters, crew.runs, nuisances)
-    if variables.size == 0:
-        rest = Problem(crew, variables).residuals(np.zeros(0))
-        whole = 0.5 * float(rest @ rest)
-        return Minimum(variables, np.zeros(0), whole, whole, 0, True)
-    gains = _Gains(watch)
-    result: Result = solve(
-        Problem(crew, variables).nlp(),
-        np.zeros(variables.size),
-        tolerance=TOLERANCE,
-        max_iterations=MOST_ITERATIONS,
-        callback=gains,
-    )
-    if result.status is Status.CALLABLE_ERROR:
-        raise InputError(f"the fit cannot begin: {result.message}")
-    converged = gains.exhausted or result.success
-    return Minimum(variables, result.x, gains.first, result.objective, result.iterations, converged)
-
-
-class _Gains:
-    """Ends a solution that gains nothing any more."""
-
-    def __init__(self, watch: Watch | None) -> None:
-        self.first = np.inf
-        self.exhausted = False
-        self._watch = watch
-        self._last = np.inf
-        self._small = 0
-
-    def __call__(self, iteration: Iteration) -> bool:
-        if iteration.number == 0:
-            self.first = iteration.objective
-        elif self._last - iteration.objective < LEAST_GAIN * iteration.objective:
-            self._small += 1
-        else:
-            self._small = 0
-        self._last = iteration.objective
-        self.exhausted = self._small >= 2
-        wanted = self._watch(iteration) if self._watch is not None else False
-        return self.exhausted or bool(wanted)
+    end: Minimum,
+    doubted: Sequence[Unseen],
+    watch: Watch | None,
+) -> Minimum | None:
+    """The fit without some parameters, which stay as they were before; None where the logs are
+    explained worse without them."""
+    near = parameters.starting_at(end.values).without(one.name for one in doubted)
+    try:
+        made = minimise(crew, near, end.nuisances, watch)
+    except FlybyError:
+        return None
+    return made if made.last <= (1.0 + WORTH) * end.last else None
 
 
 def _seen_at(crew: Crew, parameters: ParameterSet, nuisances: Sequence[Nuisance]) -> list[Unseen]:
     variables = Variables.of(parameters, crew.runs, nuisances)
     linearised = Problem(crew, variables).linearised(np.zeros(variables.size))
     return unseen(parameters, crew.runs, linearised)
-
-
-__all__ = ["Fit", "Minimum", "fit", "fit_with", "minimise"]

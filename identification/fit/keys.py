@@ -71,8 +71,14 @@ def value_of(model: MotionModel, key: str) -> float | None:
     return None if not found else sum(found) / len(found)
 
 
+def nothing(key: str) -> float:
+    """What an entry of a list stands for that is not stated: of lists that scale something, one."""
+    return 1.0 if "_scale" in key else 0.0
+
+
 def with_value(model: MotionModel, key: str, value: float) -> MotionModel:
-    """The model with another value at a key; an index one beyond a list of numbers appends to it.
+    """The model with another value at a key; a list of numbers grows to an index beyond its end,
+    by what stands for nothing.
 
     Raises:
         InputError: there is no such key, or the model refuses the value.
@@ -120,8 +126,8 @@ def _updated(owner: Any, steps: Sequence[Step], value: float, key: str) -> Any:
     step, rest = steps[0], steps[1:]
     if isinstance(step, slice):
         entries = list(_entries(owner, key))
-        if not rest and step.start == len(entries) and step.stop == step.start + 1:
-            return (*entries, value)
+        if not rest and step.stop is not None and step.stop == (step.start or 0) + 1:
+            entries += [nothing(key)] * (step.stop - len(entries))
         chosen = range(len(entries))[step]
         if not chosen:
             raise InputError(f"{key!r}: the motion model has {len(entries)} entries there")

@@ -19,7 +19,7 @@ class Outcome:
     Args:
         run: as the fit saw it.
         nuisance: of the run, fitted; its clock has been taken off the logs below.
-        before, after: the log beside the emulation with the models of start and end.
+        before, after: the log beside the emulation with the models before and after the fit.
     """
 
     run: PreparedRun
@@ -33,13 +33,12 @@ def outcomes(fitted: Fit, start: MotionModel | None = None) -> list[Outcome]:
 
     Args:
         fitted: the fit.
-        start: the model to compare with; None for the one that the fit began with.
+        start: the model to compare with; None for the one before the fit.
 
     Raises:
         FlybyError: a run cannot be emulated with one of the models.
     """
-    p = fitted.parameters
-    first = p.model(p.start) if start is None else start
+    first = fitted.parameters.base if start is None else start
     return [
         Outcome(run, own, predicted(run, first, own), predicted(run, fitted.model, own))
         for run, own in zip(fitted.runs, fitted.nuisances, strict=True)
@@ -48,8 +47,13 @@ def outcomes(fitted: Fit, start: MotionModel | None = None) -> list[Outcome]:
 
 def predicted(run: PreparedRun, model: MotionModel, nuisance: Nuisance) -> Prediction:
     """A run's log, its clock put right, beside what a model makes of its program."""
-    program = run.program(nuisance.size)
-    return predict(run.controller(model), run.name, program, run.corrected(nuisance.clock))
+    return predict(
+        run.controller(model),
+        run.name,
+        run.program(nuisance.size),
+        run.corrected(nuisance.clock),
+        override=nuisance.override,
+    )
 
 
 def worst(outcomes: Sequence[Outcome]) -> Outcome:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...core.errors import InputError
 from ...core.motion.model import MotionModel
 from ...core.robot.model import Robot
-from .keys import value_of, with_value
+from .keys import nothing, value_of, with_value
 
 FloatArray = NDArray[np.float64]
 
@@ -67,7 +67,7 @@ _KNOWN = tuple(
     for pattern, lower, upper, scale in (
         (r"blend\..*\.beta\[", -8.0, 8.0, 0.5),
         (r"blend\..*\.alpha\[", -20.0, 20.0, 0.5),
-        (r"time\.smoothing_s", 1e-3, 0.5, 0.01),
+        (r"time\.smoothing_s", 0.0, 0.5, 0.01),
         (r"time\.settling_s", 0.0, 1.0, 0.1),
         (r"time\.in_position_rad", 0.0, 0.1, 2e-3),
         (r"time\.in_position_time_s", 0.0, 1.0, 0.05),
@@ -201,6 +201,18 @@ class ParameterSet:
         return np.array([p.start for p in self.parameters])
 
     @property
+    def before(self) -> FloatArray:
+        """(P,), what the base has, as far as that may be fitted; the starts where it has nothing
+        that a list would grow by."""
+        stated = []
+        for one in self.parameters:
+            value = value_of(self.base, one.keys[0])
+            if value is None:
+                value = nothing(one.keys[0]) if one.keys[0].endswith("]") else one.start
+            stated.append(min(max(value, one.lower), one.upper))
+        return np.array(stated)
+
+    @property
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """(P,) each, of values."""
         lower = np.array([p.lower for p in self.parameters])
@@ -226,17 +238,7 @@ class ParameterSet:
         )
         return ParameterSet(self.base, tuple(made))
 
-    def holding(self, names: Iterable[str]) -> ParameterSet:
-        """The same without some parameters, which stay at their start."""
-        gone, base = set(names), self.base
-        for one in self.parameters:
-            if one.name in gone:
-                for key in one.keys:
-                    base = with_value(base, key, one.start)
-        return self.without(gone, base)
-
-    def without(self, names: Iterable[str], at: MotionModel | None = None) -> ParameterSet:
-        """The same without some parameters, which stay where a model (the base) has them."""
+    def without(self, names: Iterable[str]) -> ParameterSet:
+        """The same without some parameters, which stay as the base has them."""
         gone = set(names)
-        kept = tuple(p for p in self.parameters if p.name not in gone)
-        return ParameterSet(self.base if at is None else at, kept)
+        return ParameterSet(self.base, tuple(p for p in self.parameters if p.name not in gone))

@@ -19,28 +19,31 @@ from .runs import PreparedRun
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-OFFSET_SCALE, CLOCK_SCALE, SIZE_SCALE = 0.01, 0.01, 0.5
-"""s, 1 and 1: the units of nuisances in the problem's variables."""
+OFFSET_SCALE, CLOCK_SCALE, SIZE_SCALE, OVERRIDE_SCALE = 0.01, 0.01, 0.5, 0.01
+"""s, 1, 1 and 1: the units of nuisances in the problem's variables."""
 MOST_OFFSET, MOST_CLOCK = 0.5, 0.05
 """s and 1, by which they may leave their starts."""
 SMALLEST, LARGEST = 0.02, 50.0
 """Factors on zones that were not recorded."""
+SLOWEST = 0.02
+"""Least speed override."""
 
 
 @dataclass(frozen=True)
 class Variables:
-    """What the problem's variables stand for: parameters, then offsets, clocks and sizes.
+    """What the problem's variables stand for: parameters, then offsets, clocks, overrides, sizes.
 
     Args:
         parameters: of the motion model.
         runs: whose nuisances are variables.
-        clocks: names of the clocks that runs share.
+        clocks, overrides: names of the clocks and overrides that runs share.
         start: nuisances of each run at the start.
     """
 
     parameters: ParameterSet
     runs: tuple[PreparedRun, ...]
     clocks: tuple[str, ...]
+    overrides: tuple[str, ...]
     start: tuple[Nuisance, ...]
 
     @classmethod
@@ -58,13 +61,15 @@ class Variables:
             nuisances: where the runs' own begin; None for what their alignment says.
         """
         clocks = tuple(sorted({run.clock for run in runs if run.clock is not None}))
+        overrides = tuple(sorted({run.override for run in runs if run.override is not None}))
         start = first_nuisances(runs) if nuisances is None else tuple(nuisances)
-        return cls(parameters, tuple(runs), clocks, start)
+        return cls(parameters, tuple(runs), clocks, overrides, start)
 
     @property
     def size(self) -> int:
         """How many variables there are."""
-        return self.parameters.size + len(self.timed) + len(self.clocks) + len(self.sized)
+        shared = self.parameters.size + len(self.clocks) + len(self.overrides)
+        return shared + len(self.timed) + len(self.sized)
 
     @property
     def timed(self) -> tuple[int, ...]:
@@ -87,6 +92,7 @@ class Variables:
         offset = self.parameters.size + np.arange(len(self.timed))
         offsets = dict(zip(self.timed, OFFSET_SCALE * x[offset], strict=True))
         clocks = dict(zip(self.clocks, CLOCK_SCALE * x[self._clock()], strict=True))
+        overrides = dict(zip(self.overrides, OVERRIDE_SCALE * x[self._override()], strict=True))
         sizes = dict(zip(self.sized, SIZE_SCALE * x[self._size()], strict=True))
         made = []
         for k, (run, start) in enumerate(zip(self.runs, self.start, strict=True)):
@@ -95,6 +101,7 @@ class Variables:
                     start.offset + offsets.get(k, 0.0),
                     start.clock + (0.0 if run.clock is None else clocks[run.clock]),
                     start.size * float(np.exp(sizes.get(k, 0.0))),
+                    start.override + (0.0 if run.override is None else overrides[run.override]),
                 )
             )
         return tuple(made)
@@ -110,6 +117,9 @@ class Variables:
         ):
             low.append(np.full(count, -most))
             high.append(np.full(count, most))
+        overrides = np.array([self._first_override(name) for name in self.overrides])
+        low.append((SLOWEST - overrides) / OVERRIDE_SCALE)
+        high.append((1.0 - overrides) / OVERRIDE_SCALE)
         sizes = np.array([self.start[k].size for k in self.sized])
         low.append(np.log(SMALLEST / sizes) / SIZE_SCALE)
         high.append(np.log(LARGEST / sizes) / SIZE_SCALE)
@@ -126,6 +136,9 @@ class Variables:
         if run.clock is not None:
             place = self._clock()[self.clocks.index(run.clock)]
             out[..., place] = CLOCK_SCALE * rows.by_clock
+        if run.override is not None:
+            place = self._override()[self.overrides.index(run.override)]
+            out[..., place] = OVERRIDE_SCALE * rows.by_override
         if k in self.sized:
             place = self._size()[self.sized.index(k)]
             out[..., place] = SIZE_SCALE * nuisance.size * rows.by_size
@@ -134,18 +147,36 @@ class Variables:
     def _clock(self) -> IntArray:
         return self.parameters.size + len(self.timed) + np.arange(len(self.clocks))
 
+    def _override(self) -> IntArray:
+        behind = self.parameters.size + len(self.timed) + len(self.clocks)
+        return behind + np.arange(len(self.overrides))
+
+    def _first_override(self, name: str) -> float:
+        runs = zip(self.runs, self.start, strict=True)
+        return next(own.override for run, own in runs if run.override == name)
+
     def _size(self) -> IntArray:
         return self.size - len(self.sized) + np.arange(len(self.sized))
 
 
 def first_nuisances(runs: Sequence[PreparedRun]) -> tuple[Nuisance, ...]:
-    """The runs' own as their alignment says: a clock is the median of its runs'."""
+    """The runs' own as their alignment says: a clock is the median of its runs', an override that
+    of those that show one."""
     clocks = {
         name: float(np.median([1 / (1 + run.drift) for run in runs if run.clock == name]))
         for name in {run.clock for run in runs if run.clock is not None}
     }
+    overrides = {}
+    for name in {run.override for run in runs if run.override is not None}:
+        shown = [r.scale.ratio for r in runs if r.override == name and r.scale is not None]
+        overrides[name] = min(float(np.median(shown)), 1.0) if shown else 1.0
     return tuple(
-        Nuisance(run.offset, 1.0 if run.clock is None else clocks[run.clock], run.size)
+        Nuisance(
+            run.offset,
+            1.0 if run.clock is None else clocks[run.clock],
+            run.size,
+            1.0 if run.override is None else overrides[run.override],
+        )
         for run in runs
     )
 

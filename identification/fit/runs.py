@@ -17,6 +17,8 @@ They make rows about one where a model is good, at 50 mm/s as at 1 m/s.
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,7 +27,7 @@ from scipy.ndimage import maximum_filter1d
 
 from ...core.errors import InputError
 from ...core.motion.controller import Controller
-from ...core.motion.model import MotionModel
+from ...core.motion.model import ArcTurn, MotionModel
 from ...core.program.program import Program
 from ...core.program.tool import FLANGE, Tool
 from ...core.program.zone import Radius
@@ -35,6 +37,7 @@ from ..logs.cleaning import CleanLog, clean
 from ..logs.run import LoggedRun
 from ..prediction import Prediction, predict
 from ..tcp_path import tcp_positions
+from ..time_scale import Cause, TimeScale, time_scale
 from .zone_sizes import COARSE, guess, resized
 
 FloatArray = NDArray[np.float64]
@@ -70,6 +73,10 @@ class PreparedRun:
             with where it is at their time.
         in_zones: for each waypoint with a zone, how many samples of the log are nearer to it than
             the zone's radius.
+        turn: how its log shows that the tool turns along arcs; None if it does not.
+        scale: the clock or override that explains most of the log's times; None if none does.
+        own_clock, override: of a clock and of a speed override that are to be found beside the
+            parameters; runs share those of one name. None if they count as right, and as 100 %.
     """
 
     run: LoggedRun
@@ -85,6 +92,10 @@ class PreparedRun:
     size: float
     by_place: bool
     in_zones: tuple[int, ...]
+    turn: ArcTurn | None = None
+    scale: TimeScale | None = None
+    own_clock: str | None = None
+    override: str | None = None
 
     @property
     def name(self) -> str:
@@ -93,20 +104,35 @@ class PreparedRun:
 
     @property
     def clock(self) -> str | None:
-        """The clock that the run shares with others of its source; None if it counts as right.
+        """The clock that the run shares with others of its source, or has of its own; None if it
+        counts as right.
 
         Stamps of a virtual controller come from a simulated clock. A real one's count as right, or
-        the fit would take for a clock what is the motion's.
+        the fit would take for a clock what is the motion's; but see `clocks`.
         """
+        if self.own_clock is not None:
+            return self.own_clock
         virtual = self.run.real is False and self.run.source and not self.by_place
         return self.run.source if virtual else None
+
+    def only(self, rows: NDArray[np.bool_]) -> PreparedRun:
+        """The same with some of its samples (K,)."""
+        return replace(
+            self,
+            t=self.t[rows],
+            q=self.q[rows],
+            weight=self.weight[rows],
+            cluster=self.cluster[rows],
+        )
 
     def program(self, size: float = 1.0) -> Program:
         """What was driven, all zones resized by a factor."""
         return resized(self.run.program, size)
 
     def controller(self, model: MotionModel) -> Controller:
-        """What emulates it."""
+        """What emulates it, along arcs as the log shows."""
+        if self.turn is not None:
+            model = replace(model, arc_turn=self.turn)
         return Controller(self.vendor, self.robot, model)
 
     def corrected(self, clock: float) -> CleanLog:
@@ -135,6 +161,11 @@ def prepare(run: LoggedRun, vendor: Vendor, robot: Robot, model: MotionModel) ->
     else:
         program, size, found = guess(controller, run.name, run.program, log)
         run = replace(run, program=program)
+    scale = None
+    if run.timed and run.zones_known and not (run.real is False and run.source):
+        scale = time_scale(controller, found, COARSE)
+    if scale is not None and scale.cause is Cause.OVERRIDE:
+        found = predict(controller, run.name, run.program, log, COARSE, scale.value)
     rows = found.alignment.rows
     at = found.alignment.time
     chosen = _chosen(found)
@@ -157,7 +188,18 @@ def prepare(run: LoggedRun, vendor: Vendor, robot: Robot, model: MotionModel) ->
         size,
         not run.timed,
         _in_zones(found),
+        found.turn,
+        scale,
     )
+
+
+def shown_turn(runs: Sequence[PreparedRun]) -> ArcTurn | None:
+    """How most logs show that the tool turns along arcs, those of a robot first; None if none
+    does."""
+    shown = [run for run in runs if run.turn is not None]
+    robots = [run for run in shown if run.run.real is not False]
+    counted = Counter(run.turn for run in robots or shown)
+    return counted.most_common(1)[0][0] if counted else None
 
 
 def _chosen(found: Prediction) -> IntArray:
@@ -166,7 +208,7 @@ def _chosen(found: Prediction) -> IntArray:
     if count <= SAMPLES:
         return np.arange(count)
     trajectory = found.driven.trajectory
-    pull = np.linalg.norm(trajectory.ddq, axis=1)
+    pull = np.linalg.norm(trajectory.ddq_motor, axis=1)
     reach = max(1, round(0.02 / COARSE))
     at = np.interp(
         found.alignment.time, trajectory.t, maximum_filter1d(pull, reach, mode="nearest")
@@ -181,8 +223,8 @@ def _chosen(found: Prediction) -> IntArray:
 def _weights(found: Prediction, q: FloatArray, at: FloatArray) -> FloatArray:
     """(K, N + 3, N), see the module."""
     trajectory = found.driven.trajectory
-    w, joint_speed = _directions(trajectory.t, trajectory.dq, at)
-    step = np.gradient(trajectory.position, trajectory.t, axis=0)
+    w, joint_speed = _directions(trajectory.t, trajectory.dq_motor, at)
+    step = np.gradient(found.residuals.line, trajectory.t, axis=0)
     u, speed = _directions(trajectory.t, step, at)
     J = tcp_jacobian(found.robot, found.driven.program.moves[0].tool, q)
     across = J - u[:, :, None] * np.einsum("ki,kij->kj", u, J)[:, None, :]

@@ -19,9 +19,9 @@ from ...core.motion.model import MotionModel
 from ...core.program.zone import Radius
 from .crew import Crew
 from .emulation import Nuisance
-from .fitting import Minimum, minimise
 from .keys import figure_of
 from .loss import loss
+from .minimum import Minimum, minimise
 from .parameters import ParameterSet
 from .runs import PreparedRun
 
@@ -109,6 +109,7 @@ class LeftOut:
         nuisances: of them; offsets are fitted to them, clocks are those of the fit.
         model: that was fitted to the others.
         loss: mean robust loss per residual of each.
+        path: the same over what shows the TCP's path.
         fitted: the same over the others.
     """
 
@@ -116,6 +117,7 @@ class LeftOut:
     nuisances: tuple[Nuisance, ...]
     model: MotionModel
     loss: tuple[float, ...]
+    path: tuple[float, ...]
     fitted: float
 
     @classmethod
@@ -140,26 +142,50 @@ class LeftOut:
             InputError: a program cannot be driven by the fitted model.
         """
         model = parameters.model(end.values)
-        clocks = {
-            run.clock: one.clock
-            for run, one in zip(end.variables.runs, end.nuisances, strict=True)
-            if run.clock is not None
-        }
+        fitted = list(zip(end.variables.runs, end.nuisances, strict=True))
+        clocks = {run.clock: own.clock for run, own in fitted if run.clock is not None}
+        overrides = {run.override: own.override for run, own in fitted if run.override is not None}
         start = [
-            replace(one, clock=clocks.get(run.clock or "", one.clock))
+            replace(
+                one,
+                clock=clocks.get(run.clock or "", one.clock),
+                override=overrides.get(run.override or "", one.override),
+            )
             for run, one in zip(runs, nuisances, strict=True)
         ]
-        # The clock is known: the run may shift its offset, and the sizes of zones nobody recorded.
-        still = [replace(run, run=replace(run.run, real=None)) for run in runs]
+        # Clock and override are known, unless they are its own alone: the run may shift its offset,
+        # and the sizes of zones nobody recorded.
+        still = [
+            replace(
+                run,
+                run=replace(run.run, real=None),
+                own_clock=None if run.own_clock in clocks else run.own_clock,
+                override=None if run.override in overrides else run.override,
+            )
+            for run in runs
+        ]
         with Crew(still, 1) as crew:
             alone = minimise(crew, ParameterSet(model, ()), start)
             found = crew.residuals(model, alone.nuisances)
-        each = []
-        for run, one in zip(runs, found, strict=True):
-            if isinstance(one, FlybyError):
-                raise InputError(f"{run.name}: {one}") from one
-            each.append(float(loss(one).mean()))
-        return cls(indices, alone.nuisances, model, tuple(each), end.last)
+        return cls(indices, alone.nuisances, model, *losses_of(runs, found), end.last)
+
+
+def losses_of(
+    runs: Sequence[PreparedRun], found: Sequence[FloatArray | FlybyError]
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Mean robust losses of runs from their weighted residuals, and of the TCP's path alone.
+
+    Raises:
+        InputError: a program cannot be driven.
+    """
+    whole, path = [], []
+    for run, one in zip(runs, found, strict=True):
+        if isinstance(one, FlybyError):
+            raise InputError(f"{run.name}: {one}") from one
+        each = loss(one)
+        whole.append(float(each.mean()))
+        path.append(float(each[:, run.q.shape[1] :].mean()))
+    return tuple(whole), tuple(path)
 
 
 def leave_out(

@@ -11,7 +11,6 @@ A column is its name or, as in a file without a header, its number from 1.
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError
+from ...core.input_files import read_toml
 from .samples import Samples, in_order
 from .table import Table
 
@@ -86,10 +86,7 @@ def load_columns(path: Path) -> Columns:
     Raises:
         InputError: naming file and key.
     """
-    try:
-        data = tomllib.loads(path.read_text("utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
-        raise InputError(f"{path}: not a readable file of columns: {error}") from error
+    data = read_toml(path)
     try:
         return _columns(data)
     except InputError as error:

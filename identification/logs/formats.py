@@ -2,7 +2,7 @@
 
 | name | columns | written by |
 |---|---|---|
-| plain | ``t``, ``q1`` … in s, rad and m | ``flyby record``, ``flyby emulate --csv`` |
+| plain | ``t``, ``q1_motor`` … (else ``q1`` …) in s, rad and m | ``flyby record``, ``flyby emulate --csv`` |
 | rtde | ``timestamp``, ``actual_q_0`` … (else ``target_q_0`` …) in s and rad | ``record.py`` of Universal Robots' RTDE client, ``ur_rtde`` |
 | cjointt | ``timestamp``, ``J1`` … in s and degrees | loggers in RAPID that write ``CJointT`` |
 | egm | ``TIMESTAMP``, ``R_FB_POS_RJ1`` …, ``R_FB_POS_EJ1`` … in ms, degrees and mm | ``abb_libegm`` |
@@ -50,8 +50,11 @@ def recognise(names: Sequence[str], robot: Robot, file: str) -> Columns:
 def _plain(names: Sequence[str], robot: Robot) -> Columns | None:
     if "t" not in names or "q1" not in names:
         return None
-    count = _counted(names, r"q(\d+)")
-    return Columns(tuple(f"q{k}" for k in range(1, count + 1)), (1.0,) * count, "t")
+    # Of an emulation that tells motors from links the motors are what a controller would log.
+    motor = "_motor" if "q1_motor" in names else ""
+    count = _counted(names, rf"q(\d+){motor}")
+    axes = tuple(f"q{k}{motor}" for k in range(1, count + 1))
+    return Columns(axes, (1.0,) * count, "t")
 
 
 def _rtde(names: Sequence[str], robot: Robot) -> Columns | None:

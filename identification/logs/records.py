@@ -9,7 +9,6 @@ writes them.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import InputError
+from ...core.input_files import read_json
 from ...core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from ...core.program.program import Program
 from ...core.program.speed import Speed
@@ -60,9 +60,8 @@ _MOVED_MM = 1.0
 _JOINT_MOVES = {"MoveJ", "MoveAbsJ", "PTP"}
 _LINEAR_MOVES = {"MoveL", "LIN"}
 _ARC_MOVES = {"MoveC", "CIRC"}
-_ARC_ORIENTATION = ArcOrientation.FIXED_FRAME
-"""Where a record does not say: the arcs of all logs that were seen turn the tool evenly from start
-to end, to 0.01°, and leave the auxiliary point's orientation aside."""
+_FOLLOWING = "abb/"
+"""Whose arcs turn the tool with them unless they are told otherwise; those of others do not."""
 
 
 def load_run(path: Path, robots: Callable[[str], Robot]) -> LoggedRun:
@@ -79,10 +78,9 @@ def load_run(path: Path, robots: Callable[[str], Robot]) -> LoggedRun:
     Raises:
         InputError: naming file and, where there is one, the line or move.
     """
-    try:
-        data = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not a readable run: {error}") from error
+    data = read_json(path)
+    if not isinstance(data, dict):
+        raise InputError(f"{path}: not a run: an object with robot, log and moves is expected")
     try:
         log = path.parent / data["log"]["file"]
         robot = _robot(str(data["robot"]))
@@ -91,8 +89,10 @@ def load_run(path: Path, robots: Callable[[str], Robot]) -> LoggedRun:
         data = _completed(data, robots(robot), samples.q)
         moves = tuple(_move(entry, data) for entry in data["moves"])
         start = JointTarget(tuple(map(float, _start(data, samples.q))))
-    except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as error:
-        raise InputError(f"{path}: not a run: missing or misshapen {error}") from error
+    except KeyError as error:
+        raise InputError(f"{path}: not a run: {error} is missing") from error
+    except (AttributeError, OverflowError, TypeError, ValueError) as error:
+        raise InputError(f"{path}: not a run: a value of the wrong kind ({error})") from error
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     program = Program(moves, path.stem, start)
@@ -166,17 +166,17 @@ def _blended(zone: Mapping[str, Any]) -> float:
 def robot_of_record(path: Path) -> str | None:
     """Catalogue name of the robot of a record of a run; None of other files."""
     try:
-        data = json.loads(path.read_text("utf-8"))
+        data = read_json(path)
         return _robot(str(data["robot"])) if {"moves", "log"} <= set(data) else None
-    except (OSError, ValueError, RecursionError, TypeError, KeyError, InputError):
+    except (TypeError, KeyError, InputError):
         return None
 
 
 def log_of_record(path: Path) -> Path | None:
     """The log that a record of a run names; None of other files."""
     try:
-        return path.parent / str(json.loads(path.read_text("utf-8"))["log"]["file"])
-    except (OSError, ValueError, RecursionError, TypeError, KeyError):
+        return path.parent / str(read_json(path)["log"]["file"])
+    except (TypeError, KeyError, InputError):
         return None
 
 
@@ -251,6 +251,8 @@ def _move(entry: Mapping[str, Any], data: Mapping[str, Any]) -> Move:
         return MoveL(goal, speed, zone, tool)
     if kind in _ARC_MOVES:
         via = PoseTarget(_pose(entry["via_pose"]))
-        turn = ArcOrientation(entry.get("arc_orientation", _ARC_ORIENTATION))
+        follows = _robot(str(data["robot"])).startswith(_FOLLOWING)
+        usual = ArcOrientation.FOLLOWS_ARC if follows else ArcOrientation.FIXED_FRAME
+        turn = ArcOrientation(entry.get("arc_orientation", usual))
         return MoveC(goal, speed, zone, tool, via=via, orientation=turn)
     raise InputError(f"move {entry.get('i', '?')} is of an unknown type {kind!r}")

@@ -74,7 +74,7 @@ def synthetic_run(
     trajectory = controller.run(program, period=_FINE).trajectory
 
     def joints(t: FloatArray) -> FloatArray:
-        return np.stack([np.interp(t, trajectory.t, column) for column in trajectory.q.T], -1)
+        return np.stack([np.interp(t, trajectory.t, column) for column in trajectory.q_motor.T], -1)
 
     count = int((trajectory.duration + 2 * faults.rest) / faults.period)
     most = 0.4 * faults.period

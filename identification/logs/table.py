@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import csv
-import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,6 +19,8 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 DELIMITERS = (";", "\t", ",")
 """Looked for in this order, since a semicolon or a tab leaves the comma to the decimals."""
+_LARGEST = 1e30
+"""Nanoseconds since 1970 are fewer; squares of larger numbers overflow."""
 _EXCEL = re.compile(r"sep=(.)")
 """A first line that spreadsheets write and hide."""
 
@@ -89,10 +90,10 @@ class Table:
             value = float(cell.replace(",", ".") if self.decimal_comma else cell)
         except ValueError:
             raise InputError(f"{where}: column {column!r}: {cell[:40]!r} is no number") from None
-        if not math.isfinite(value):
+        if not abs(value) <= _LARGEST:
             raise InputError(
-                f"{where}: column {column!r}: {cell[:40]!r} is not finite; delete the line, if "
-                "the others are sound"
+                f"{where}: column {column!r}: {cell[:40]!r} is not finite, or beyond any quantity; "
+                "delete the line, if the others are sound"
             )
         return value
 

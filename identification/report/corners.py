@@ -58,7 +58,7 @@ def cut_corners(prediction: Prediction, geometry: PathGeometry | None = None) ->
                 move,
                 radius,
                 least_distance(found.tcp[inside] - centre),
-                least_distance(run.trajectory.position - centre),
+                least_distance(found.line - centre),
                 float(found.path[inside].max()),
             )
         )

@@ -1,20 +1,35 @@
-"""The page of a fit: parameters, what is left run by run, pictures, the motion file."""
+"""The page of a fit: parameters, what is left run by run, pictures, the motion file.
+
+The template alone holds marks; see `identification.pages`.
+"""
 
 from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Iterable, Sequence
-from html import escape
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from ..fit import Fit, Outcome
+from ..fit import Fit, Judgement, Outcome
+from ..pages import render_html
 from ..residuals import Figures
 from .corners import CutCorner, cut_corners
 from .picture import draw_prediction
 
-_STYLE = """
+_TEMPLATE = """\
+{% macro table(heading, rows) %}
+<table><thead><tr>
+{%- for cell in heading %}<th>{{ cell }}</th>{% endfor -%}
+</tr></thead><tbody>
+{% for row in rows %}
+<tr>{% for cell in row %}<td>{{ cell }}</td>{% endfor %}</tr>
+{% endfor %}
+</tbody></table>
+{% endmacro %}
+<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><title>{{ title }}</title><style>
 body { font: 14px/1.5 system-ui, sans-serif; max-width: 75rem; margin: 2rem auto; padding: 0 1rem;
        color: #222 }
 h1, h2, h3 { line-height: 1.2 }
@@ -25,61 +40,95 @@ th:first-child, td:first-child { text-align: left }
 img { width: 100%; height: auto }
 pre { background: #f6f6f6; padding: 1rem; overflow-x: auto }
 p.note { color: #555 }
+</style></head><body>
+<h1>{{ title }}</h1>
+{% for line in summary %}
+<p>{{ line }}</p>
+{% endfor %}
+{% if worse %}
+<p><b>What was fitted predicts worse than the model before it.</b></p>
+{% endif %}
+{% if not converged %}
+<p><b>The fit was ended before it could go no further.</b></p>
+{% endif %}
+<h2>Parameters</h2>
+{{ table(parameters[0], parameters[1]) }}
+{% for one in unseen %}
+<p class="note">{{ one.name }} is not identifiable: {{ one.reason }}; it stays as it was.</p>
+{% endfor %}
+<h2>What is left, run by run</h2>
+{{ table(residuals[0], residuals[1]) }}
+<p class="note">Log less emulation, before → after the fit. <i>Path</i>: time aside. <i>At their
+time</i>: after one constant offset for each run.</p>
+<h2>Cycle times</h2>
+{{ table(times[0], times[1]) }}
+<p class="note"><i>Drift</i>: how far the log falls behind from start to end. <i>Clock</i>: seconds
+that pass while the log counts one, fitted; it is taken off the logs. <i>Zones</i>: as a factor of
+what the record says, where that was not recorded.</p>
+<h2>Runs</h2>
+{% for run in runs %}
+<h3>{{ run.name }}</h3>
+{% for note in run.notes %}
+<p class="note">{{ note }}</p>
+{% endfor %}
+{% if run.corners[1] %}
+{{ table(run.corners[0], run.corners[1]) }}
+{% endif %}
+<img alt="log and emulation of {{ run.name }}" src="data:image/png;base64,{{ run.picture }}">
+{% endfor %}
+<h2>The motion file</h2>
+<pre>{{ motion_file }}</pre>
+</body></html>
 """
 _WIDTH, _COLOURS = 1600, 128
 """Pixels and colours of a picture."""
 _BEFORE_AFTER = " → "
+_Rows = tuple[Sequence[str], Sequence[Sequence[str]]]
+"""Heading and rows of a table."""
 _CORNERS = 12
 """Corners of a run that are listed; those where the log strays most."""
 
 
-def page(fitted: Fit, outcomes: Sequence[Outcome], motion_file: str) -> str:
+def page(
+    fitted: Fit, outcomes: Sequence[Outcome], motion_file: str, judged: Judgement | None = None
+) -> str:
     """The page, whole in one file.
 
     Args:
         fitted: the fit.
         outcomes: its runs (`fit.outcomes`).
         motion_file: the text of the motion file that it gave (`fit.motion_file`).
+        judged: by what was held back; None if nothing was.
     """
-    robot = fitted.runs[0].robot.name
-    title = f"How {robot} is driven"
-    body = "\n".join(
-        [
-            f"<h1>{escape(title)}</h1>",
-            _summary(fitted, outcomes),
-            "<h2>Parameters</h2>",
-            _parameters(fitted),
-            "<h2>What is left, run by run</h2>",
-            _residuals(outcomes),
-            "<h2>Cycle times</h2>",
-            _times(outcomes),
-            "<h2>Runs</h2>",
-            *(_run(one) for one in outcomes),
-            "<h2>The motion file</h2>",
-            f"<pre>{escape(motion_file)}</pre>",
-        ]
-    )
-    return (
-        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}'
-        f"</title><style>{_STYLE}</style></head><body>\n{body}\n</body></html>\n"
+    return render_html(
+        _TEMPLATE,
+        title=f"How {fitted.runs[0].robot.name} is driven",
+        summary=_summary(fitted, outcomes, judged),
+        worse=judged is not None and not judged.better,
+        converged=fitted.converged,
+        parameters=_parameters(fitted),
+        unseen=fitted.unseen,
+        residuals=_residuals(outcomes),
+        times=_times(outcomes),
+        runs=[_run(one) for one in outcomes],
+        motion_file=motion_file,
     )
 
 
-def _summary(fitted: Fit, outcomes: Sequence[Outcome]) -> str:
+def _summary(fitted: Fit, outcomes: Sequence[Outcome], judged: Judgement | None) -> list[str]:
     worst = max(outcomes, key=lambda one: one.after.figures.path_max)
-    lines = [
+    return [
         f"{fitted.parameters.size} parameters, fitted to {len(outcomes)} logged runs in "
         f"{fitted.iterations} iterations: mean robust loss {fitted.before:.4g} before, "
         f"{fitted.after:.4g} after.",
         f"The log that strays most from its emulation is {worst.run.name}: "
         f"{1e3 * worst.after.figures.path_max:.3f} mm.",
+        *(f"{names}: {what}." for names, what in fitted.scales),
+        *(() if judged is None else (f"To judge the fit: {judged.told}.",)),
     ]
-    if not fitted.converged:
-        lines.append("<b>The fit was ended before it could go no further.</b>")
-    return "".join(f"<p>{line}</p>" for line in lines)
 
 
-def _parameters(fitted: Fit) -> str:
+def _parameters(fitted: Fit) -> _Rows:
     starts = {p.name: p.start for p in fitted.parameters.parameters}
     known = [
         (
@@ -91,15 +140,10 @@ def _parameters(fitted: Fit) -> str:
         )
         for one in fitted.intervals
     ]
-    unseen = [
-        f'<p class="note">{escape(one.name)} is not identifiable: {escape(one.reason)}; it stays '
-        "as it was.</p>"
-        for one in fitted.unseen
-    ]
-    return _table(("parameter", "start", "fitted", "deviation", "95 %"), known) + "".join(unseen)
+    return ("parameter", "start", "fitted", "deviation", "95 %"), known
 
 
-def _residuals(outcomes: Sequence[Outcome]) -> str:
+def _residuals(outcomes: Sequence[Outcome]) -> _Rows:
     heading = (
         "run",
         "path of the TCP, mm: greatest",
@@ -116,10 +160,7 @@ def _residuals(outcomes: Sequence[Outcome]) -> str:
         (one.run.name, *(_both(*pair) for pair in zip(*map(_numbers, _pair(one)), strict=True)))
         for one in outcomes
     ]
-    return _table(heading, rows) + (
-        '<p class="note">Log less emulation, before → after the fit. <i>Path</i>: time aside. '
-        "<i>At their time</i>: after one constant offset for each run.</p>"
-    )
+    return heading, rows
 
 
 def _pair(one: Outcome) -> tuple[Figures, Figures]:
@@ -137,7 +178,7 @@ def _both(before: float, after: float) -> str:
     return f"{before:.3f}{_BEFORE_AFTER}{after:.3f}"
 
 
-def _times(outcomes: Sequence[Outcome]) -> str:
+def _times(outcomes: Sequence[Outcome]) -> _Rows:
     rows = []
     for one in outcomes:
         before, after = one.before.alignment, one.after.alignment
@@ -155,21 +196,17 @@ def _times(outcomes: Sequence[Outcome]) -> str:
     heading = (
         "run", "logged, s", "emulated, s", "emulated / logged", "drift, ms", "clock", "zones",
     )  # fmt: skip
-    return _table(heading, rows) + (
-        '<p class="note"><i>Drift</i>: how far the log falls behind from start to end. '
-        "<i>Clock</i>: seconds that pass while the log counts one, fitted; it is taken off the "
-        "logs. <i>Zones</i>: as a factor of what the record says, where that was not recorded.</p>"
-    )
+    return heading, rows
 
 
-def _run(one: Outcome) -> str:
+def _run(one: Outcome) -> dict[str, Any]:
     picture = base64.b64encode(_small(draw_prediction(one.after, "png"))).decode("ascii")
-    notes = "".join(f'<p class="note">{escape(note)}</p>' for note in _notes(one))
-    name = escape(one.run.name)
-    return (
-        f"<h3>{name}</h3>{notes}{_corners(cut_corners(one.after))}"
-        f'<img alt="log and emulation of {name}" src="data:image/png;base64,{picture}">'
-    )
+    return {
+        "name": one.run.name,
+        "notes": _notes(one),
+        "corners": _corners(cut_corners(one.after)),
+        "picture": picture,
+    }
 
 
 def _notes(one: Outcome) -> list[str]:
@@ -196,9 +233,7 @@ def _small(picture: bytes) -> bytes:
     return buffer.getvalue()
 
 
-def _corners(corners: Sequence[CutCorner]) -> str:
-    if not corners:
-        return ""
+def _corners(corners: Sequence[CutCorner]) -> _Rows:
     worst = sorted(sorted(corners, key=lambda corner: -corner.off)[:_CORNERS], key=lambda c: c.move)
     rows = [
         (
@@ -214,12 +249,4 @@ def _corners(corners: Sequence[CutCorner]) -> str:
         "corner of move", "zone, mm", "least distance from the waypoint, mm: logged", "emulated",
         "path off nearby, mm",
     )  # fmt: skip
-    return _table(heading, rows)
-
-
-def _table(heading: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    top = "".join(f"<th>{escape(cell)}</th>" for cell in heading)
-    body = "\n".join(
-        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
-    )
-    return f"<table><thead><tr>{top}</tr></thead><tbody>\n{body}\n</tbody></table>"
+    return heading, rows

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...core.robot.model import Robot
 from ...drawing.geometry import PathGeometry, path_geometry
-from ...drawing.style import DPI, NOMINAL, STOP, STYLE, ZONE
+from ...drawing.style import NOMINAL, STOP, STYLE, ZONE, figure_file
 from ..prediction import Prediction
 from ..residuals import Residuals
 from .corners import AROUND, CutCorner, cut_corners
@@ -59,9 +58,7 @@ def draw_prediction(prediction: Prediction, kind: str) -> bytes:
             ha="left",
             fontweight="bold",
         )
-        buffer = io.BytesIO()
-        figure.savefig(buffer, format=kind, dpi=DPI)
-    return buffer.getvalue()
+        return figure_file(figure, kind)
 
 
 def _draw_corners(
@@ -87,7 +84,7 @@ def _draw_corners(
 
 
 def _draw_whole_path(axes: Axes, prediction: Prediction, geometry: PathGeometry) -> None:
-    made = prediction.driven.trajectory.position
+    made = prediction.residuals.line
     across = np.argsort(-np.ptp(made, axis=0))[:2]
     _draw_paths(axes, np.zeros(3), np.eye(3)[across], made, prediction.residuals.tcp)
     stops = 1e3 * geometry.waypoints[:, across]
@@ -105,7 +102,7 @@ def _draw_corner(
 
     centre, radius = geometry.waypoints[corner.waypoint], corner.radius
     reach = AROUND * radius
-    driven = prediction.driven.trajectory.position
+    driven = prediction.residuals.line
     near, further = (_near(driven, centre, far) for far in (reach, 1.1 * reach))
     logged = _near(prediction.residuals.tcp, centre, reach)
     view = _plane(near, centre)
@@ -212,7 +209,7 @@ def _draw_profiles(speed: Axes, acceleration: Axes, prediction: Prediction) -> N
     made = prediction.driven.trajectory
     # Seen as the log is: over as many samples, as far apart.
     at = np.arange(0.0, made.t[-1], np.median(np.diff(found.t)))
-    tcp = np.stack([np.interp(at, made.t, column) for column in made.position.T], axis=-1)
+    tcp = np.stack([np.interp(at, made.t, column) for column in found.line.T], axis=-1)
     at, emulated_speed, emulated = tcp_profiles(at, tcp)
     for axes, log, ours, unit, scale in (
         (speed, logged_speed, emulated_speed, "speed of the TCP, mm/s", 1e3),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -82,15 +83,25 @@ class Front:
         return bool(self.points) and all(point.proven for point in self.points)
 
 
-def without_dominated(points: Iterable[Point], worth: float = 0.0) -> tuple[Point, ...]:
+def without_dominated(
+    points: Iterable[Point], worth: float = 0.0, near: float = 0.0
+) -> tuple[Point, ...]:
     """Those that no other is both as fast and as frugal as, fastest first.
 
     Args:
         points: to choose from.
         worth: share of the energy that a slower program must save to count.
+        near: share of the time within which programs take equally long: of these the most frugal
+            one is kept.
     """
     kept: list[Point] = []
+    fastest = -math.inf
     for point in sorted(points, key=lambda p: (p.duration, p.energy)):
-        if not kept or kept[-1].energy - point.energy > worth * abs(kept[-1].energy):
+        if kept and kept[-1].energy - point.energy <= worth * abs(kept[-1].energy):
+            continue
+        if point.duration <= fastest * (1.0 + near):
+            kept[-1] = point
+        else:
             kept.append(point)
+            fastest = point.duration
     return tuple(kept)

@@ -20,18 +20,17 @@ from ...core.motion.controller import Controller, Run
 from ...core.program.program import Program
 from ..solution import RESOLUTION
 from ..waypoints import optimize_waypoints, optimize_zones
+from ..waypoints.freeing import with_freed_stops
 from ..waypoints.options import Freedom
+from ..waypoints.options import Task as Wishes
 from ..waypoints.selection import select
 from ..waypoints.variables import Variables, make_variables
-from ..zones.points import passable_stops
 from ..zones.refusal import check_start
 from .bench import LATE, Bench, Candidate, Finished, ReadBack
 from .front import Front, Point, without_dominated
 from .options import Effort, Goal, Progress, Report, Scope, Task
 from .pacing import make_pacing
 
-_FREED = 0.01
-"""m, radius that a freed stop begins with."""
 _FASTEST = 1e-3
 """Share of the shortest time that the fastest program may take longer, to be frugal in it."""
 _WORTH = 5e-4
@@ -149,7 +148,8 @@ class _Work:
                     break
         return Front(
             given,
-            without_dominated([*points, *([given] if given.proven else [])], _WORTH),
+            # How late programs may end is how well their times are known.
+            without_dominated([*points, *([given] if given.proven else [])], _WORTH, LATE),
             self.task.consumption.unit,
             tuple(notes),
         )
@@ -222,7 +222,7 @@ class _Work:
             )
             check_start(self.controller, run, scenes, proof, wishes.residual)
         given = Point.of(self.controller, run, self.task.consumption, proof)
-        base = self._routed(program)
+        base, wishes = self._routed(program, notes)
         driven = self.controller.run(base)
         robot, slowest = self.controller.robot, self.task.slowest
         pacing = make_pacing(base, driven.timing, robot, self.dialect, wishes, slowest)
@@ -230,7 +230,7 @@ class _Work:
             self.controller,
             base,
             pacing,
-            self._variables(base, driven, notes),
+            self._variables(base, driven, wishes, notes),
             scenes,
             self._clearance,
             self.task,
@@ -256,41 +256,34 @@ class _Work:
         """Whether points or zones may change: only where it is known what stands around."""
         return self.cell is not None and self.task.scope is not Scope.SPEEDS
 
-    def _routed(self, program: Program) -> Program:
-        """The program to begin with: the fastest one that a search from many starts finds."""
+    def _routed(self, program: Program, notes: list[Note]) -> tuple[Program, Wishes]:
+        """The program to begin with, the fastest one that a search from many starts finds, and
+        what may still change in it."""
         if not self._shapes:
-            return program
+            return program, self.task.wishes
         if self.cell is not None and self.effort.starts > 1:
             points = self.task.scope is Scope.WAYPOINTS
             solve = optimize_waypoints if points else optimize_zones
             wishes = replace(self.task.wishes, time_weight=1.0)
             found = solve(self.controller, program, self.cell, wishes, self.effort)
             if found.changed:
-                return replace(found.program, start=program.start)
-        return self._freed(program)
+                return replace(found.program, start=program.start), self.task.wishes.spent()
+        wishes = self.task.wishes
+        return with_freed_stops(self.controller, program, wishes, notes), wishes
 
-    def _freed(self, program: Program) -> Program:
-        """The program with small zones at stops that may be passed."""
-        passable, moves = passable_stops(program), list(program.moves)
-        for i in self.task.wishes.freed:
-            if not 0 <= i < len(moves) or i not in passable:
-                raise InputError(
-                    f"move {i + 1} cannot be passed: it is no stop, or one for a reason (the "
-                    "last move, a wait, something that is switched there)"
-                )
-            moves[i] = replace(moves[i], zone=self.task.wishes.pattern.resized(_FREED))
-        return program.with_moves(tuple(moves))
-
-    def _variables(self, program: Program, driven: Run, notes: list[Note]) -> Variables | None:
+    def _variables(
+        self, program: Program, driven: Run, wishes: Wishes, notes: list[Note]
+    ) -> Variables | None:
         """Points and zones that may change; None where all stay."""
         if not self._shapes:
             return None
-        wishes = replace(self.task.wishes, freed=())
+        wishes = replace(wishes, freed=())
         points = self.task.scope is Scope.WAYPOINTS
         freedom = Freedom.WAYPOINTS_AND_ZONES if points else Freedom.ZONES
-        selection = select(program, driven.path, wishes, freedom)
+        robot = self.controller.robot
+        selection = select(program, driven.path, robot, wishes, freedom)
         notes += [Note(f"stays as it is: {why}", i) for i, why in selection.reasons.items()]
-        made = make_variables(program, self.controller.robot, selection, wishes)
+        made = make_variables(program, robot, selection, wishes)
         return made if made.size else None
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.collision.certificate import BUDGET, TOLERANCE
+from ...core.collision.certificate import BUDGET
 from ...core.collision.enclosure import Enclosure
 from ...core.collision.findings import Budget, Cause, Finding
 from ...core.collision.scene import CollisionScene
@@ -55,14 +55,14 @@ def prove(
         task: whose joints move.
         motion: of them.
         scene: the cell with its tool.
-        clearance: m; what is proven may stay `TOLERANCE` below.
+        clearance: m; all of it is proven.
         resolution: m to which the clearance that there is is proven; None for just the one asked
             for.
     """
     enclosure = enclosure_of(task, motion)
     left = Budget(BUDGET)
     prover = Prover(enclosure, scene, Strays.within(np.zeros(task.robot.size)), 0.0, left)
-    wanted = max(clearance - TOLERANCE, CONTACT)
+    wanted = max(clearance, CONTACT)
     spans, pieces = [(0.0, motion.duration)], range(len(motion))
     finding = prover.prove(spans, pieces, wanted)
     if finding is not None:

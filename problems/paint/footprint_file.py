@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError, Note
+from ...core.input_files import read_toml
 from .footprint import Footprint
 from .footprint_fit import FootprintFit, fit_footprint
 from .strokes import Stroke
@@ -55,12 +55,7 @@ def load_footprint(file: Path) -> FootprintSource:
     Raises:
         InputError: the file cannot be read, or a key or value is wrong; it names file and key.
     """
-    try:
-        table = tomllib.loads(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"{file}: cannot be read: {error.strerror}") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError(f"{file}: cannot be read as TOML: {error}") from error
+    table = read_toml(file)
     try:
         return _fitted(table) if "stroke" in table else _given(table)
     except InputError as error:
@@ -101,7 +96,7 @@ def _fitted(table: dict[str, Any]) -> FootprintSource:
         _MM * _value(table, "far_radius_mm"),
         _MM * _value(table, "near_radius_mm"),
         _MM * _value(table, "near_distance_mm", 0.0),
-        pieces=int(_value(table, "pieces", 10)),
+        pieces=int(_value(table, "pieces")) if "pieces" in table else None,
     )
     return FootprintSource(fit.footprint, strokes, fit)
 

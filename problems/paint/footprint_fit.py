@@ -3,6 +3,9 @@
 A section is linear in the values of the spline at its knots (see `strokes`), so the inverse is a
 least-squares problem. The profile is kept from falling below zero by the coefficients of its pieces
 in Bernstein's basis; what is measured is made symmetric by taking its centre of gravity as centre.
+
+How smooth it is follows from the strokes, by robust generalised cross-validation: any fixed weight
+flattens the peaks of clean strokes, or lets noise through.
 """
 
 from __future__ import annotations
@@ -22,6 +25,13 @@ from .strokes import Stroke, chord_nodes, section, spread
 FloatArray = NDArray[np.float64]
 
 _LEAST_PIECES = 3
+_PIECES = 10, 20
+"""Fewest and most that are taken by themselves, one for three places of a stroke."""
+_WEIGHTS = np.logspace(-7.0, 0.0, 29)
+_ROBUST = 0.05
+"""γ of robust cross-validation: with 1, the plain one, one fit in some follows the noise (M. A.
+Lukas, "Robust generalized cross-validation for choosing the regularization parameter", Inverse
+Problems 22, 2006)."""
 _NOTABLE = {"asymmetry": 0.05, "misfit": 0.05, "outside": 0.05, "rate": 0.1}
 
 
@@ -57,8 +67,8 @@ def fit_footprint(
     near_radius: float,
     near_distance: float = 0.0,
     *,
-    pieces: int = 10,
-    smoothing: float = 1e-3,
+    pieces: int | None = None,
+    smoothing: float | None = None,
 ) -> FootprintFit:
     """The footprint whose strokes are nearest to the measured ones.
 
@@ -66,9 +76,10 @@ def fit_footprint(
         strokes: at least one; several distances also test the cone.
         reference_distance, far_radius: the footprint's rim, m.
         near_radius, near_distance: a second circle of the cone, m.
-        pieces: of the spline; its knots are even.
+        pieces: of the spline; its knots are even. None for 10 to 20, by the places of a stroke.
         smoothing: weight of second differences of the profile beside residuals, both as shares
-            of their peak; larger values give a flatter profile.
+            of their peak; larger values give a flatter profile. None for the one by which the
+            strokes predict each other best.
 
     Raises:
         InputError: no strokes, too few pieces, a negative weight, a cone that does not widen.
@@ -76,7 +87,10 @@ def fit_footprint(
     """
     if not strokes:
         raise InputError("strokes: at least one is needed")
-    if pieces < _LEAST_PIECES or not smoothing >= 0.0:
+    if pieces is None:
+        places = max(len(stroke.across) for stroke in strokes)
+        pieces = min(max(places // 3, _PIECES[0]), _PIECES[1])
+    if pieces < _LEAST_PIECES or not (smoothing is None or smoothing >= 0.0):
         raise InputError(f"at least {_LEAST_PIECES} pieces and a smoothing >= 0 are needed")
     knots = np.linspace(0.0, far_radius, pieces + 1)
     flat = np.append(np.ones(pieces), 0.0)
@@ -110,7 +124,7 @@ def _fitted(
     matrices: Sequence[FloatArray],
     strokes: Sequence[Stroke],
     spline: CubicSpline,
-    smoothing: float,
+    smoothing: float | None,
 ) -> FloatArray:
     """Values at the knots (k,), the last one zero, as multiples of the unit of the matrices."""
     rows = [
@@ -120,9 +134,12 @@ def _fitted(
     ]
     knots = spline.x
     count = len(knots) - 1
-    bends = np.diff(np.eye(count + 1), 2, axis=0) * np.sqrt(smoothing)
-    system = np.concatenate((*rows, np.concatenate((bends, np.zeros((len(bends), 1))), axis=1)))
-    matrix, wanted = system[:, :count], system[:, -1]
+    measured = np.concatenate(rows)
+    bends = np.diff(np.eye(count + 1), 2, axis=0)[:, :count]
+    if smoothing is None:
+        smoothing = _cross_validated(measured[:, :count], measured[:, -1], bends)
+    matrix = np.concatenate((measured[:, :count], np.sqrt(smoothing) * bends))
+    wanted = np.append(measured[:, -1], np.zeros(len(bends)))
     third = np.diff(knots)[:, None] / 3.0
     slopes = np.asarray(spline(knots, 1))
     inner = np.concatenate(
@@ -145,6 +162,32 @@ def _fitted(
     if not result.success:
         raise FlybyError(f"no footprint could be fitted to the strokes: {result.message}")
     return np.append(np.maximum(result.x, 0.0), 0.0)
+
+
+def _cross_validated(matrix: FloatArray, wanted: FloatArray, bends: FloatArray) -> float:
+    """The weight of the bends with which measurements predict each other best.
+
+    Args:
+        matrix: (n, k), of the measurements by the values.
+        wanted: (n,) measurements.
+        bends: (b, k), of the bends by the values.
+    """
+    square, penalty, right = matrix.T @ matrix, bends.T @ bends, matrix.T @ wanted
+    best, least = float(_WEIGHTS[-1]), np.inf
+    for weight in _WEIGHTS:
+        fitted, shares = np.hsplit(
+            np.linalg.solve(
+                square + weight * penalty, np.concatenate((right[:, None], square), axis=1)
+            ),
+            [1],
+        )
+        left = len(wanted) - np.trace(shares)
+        followed = np.trace(shares @ shares) / len(wanted)
+        error = np.sum((matrix @ fitted[:, 0] - wanted) ** 2) / left**2 if left > 0.0 else np.inf
+        score = error * (_ROBUST + (1.0 - _ROBUST) * followed)
+        if score < least:
+            best, least = float(weight), score
+    return best
 
 
 def _warnings(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...core.cell.geometry import MESH_UNITS
+from ...core.cell.mesh_file import check_extent, read_scene
 from ...core.errors import InputError, Note
 from .mesh_repair import find_edges, repair
 from .part import Part
@@ -55,6 +56,7 @@ def load_part(
     scale, notes = _scale(file, mesh, units)
     vertices = np.array(mesh.vertices, dtype=float) * scale
     faces = np.array(mesh.faces, dtype=np.int64).reshape(-1, 3)
+    check_extent(file, vertices)
     return make_part(vertices, faces, file.name, view, longest_edge, _file_normals(mesh), notes)
 
 
@@ -95,15 +97,7 @@ def _read(file: Path) -> Any:
     """The file's triangles as one `trimesh.Trimesh`, as they stand there."""
     import trimesh
 
-    if not file.is_file():
-        raise InputError(f"{file}: there is no such file")
-    try:
-        with np.errstate(all="ignore"):
-            scene = trimesh.load_scene(file, process=False)
-    except Exception as error:  # each format's parser raises its own kinds
-        raise InputError(
-            f"{file}: cannot be read as a mesh: {error!r}; export the part as STL or PLY"
-        ) from error
+    scene = read_scene(file)
     meshes = [one for one in scene.geometry.values() if isinstance(one, trimesh.Trimesh)]
     # One mesh where it stands keeps the normals that its file gives it.
     single = len(meshes) == 1 and np.allclose(scene.graph[scene.graph.nodes_geometry[0]][0], _STILL)

@@ -72,6 +72,6 @@ MAZE = Scene(
 WALL = Scene(
     start=(1.0, 3.0),
     goal=(9.0, 3.0),
-    circles=_row((5.0, 0.25), (5.0, 9.63), 15, 0.35),
+    circles=_row((5.0, 0.25), (5.0, 9.75), 15, 0.35),
 )
 """The same wall right across the square: no way at all, as on the right of figure 3.4."""

@@ -22,10 +22,10 @@ FloatArray = NDArray[np.float64]
 
 NEAR = 0.25
 """m; pairs farther apart than this all along the motion get no rows."""
-ENOUGH = 1e-4
-"""m by which the clearance may be missed between nodes."""
 TOO_MUCH = 5e-4
-"""m by which it may be exceeded."""
+"""m by which the clearance may be exceeded."""
+AIM = 1e-4
+"""m beyond it that is aimed at between nodes, where it may not be missed."""
 
 
 class Answer(Protocol):
@@ -123,9 +123,9 @@ def optimize(
         x, iterations = found.x, iterations + found.iterations
         last = Optimum(problem, x, found.success, iterations, number, check(problem, x))
         best = last if best is None else _better(best, last)
-        if -TOO_MUCH <= last.missing <= ENOUGH:
+        if -TOO_MUCH <= last.missing <= 0.0:
             break
-        margin = max(0.0, margin + last.missing)
+        margin = max(0.0, margin + last.missing + AIM)
         pairs = tuple(sorted({*pairs, *_near(problem, x)}))
     assert best is not None
     return replace(best, iterations=iterations, rounds=number)
@@ -133,7 +133,7 @@ def optimize(
 
 def _better(one: Optimum, other: Optimum) -> Optimum:
     """The faster of two that are free, else the freer."""
-    free = [o for o in (one, other) if o.missing <= ENOUGH and o.success]
+    free = [o for o in (one, other) if o.missing <= 0.0 and o.success]
     if free:
         return min(free, key=lambda o: o.time)
     return min((one, other), key=lambda o: o.missing)

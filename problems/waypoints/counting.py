@@ -18,7 +18,7 @@ from ...core.program.move import Opaque, Wait
 from ...core.program.program import Program
 from .blocks import stretches
 from .doubling import doubled, without
-from .limits import Fixed, Free, PointLimit
+from .limits import Free
 from .options import Effort, Task
 from .selection import Selection
 
@@ -160,20 +160,11 @@ class _Turn:
         return None if found is None else replace(found, task=best.task.renumbered(new))
 
     def _confined(self, best: Counted) -> Task:
-        """The task of a search that leaves all other stretches alone.
-
-        Limits are about where a point was in the program as it was given; those points have had
-        their way, and stay.
-        """
+        """The task of a search that leaves all other stretches alone."""
         task = best.task
         here = self._here(best, range(len(best.run.program.moves)))
         others = set(range(len(best.run.program.moves))) - set(here)
-        return replace(
-            task,
-            keep={*task.keep, *others},
-            limits={i: _spent(limit) for i, limit in task.limits.items()},
-            limit=_spent(task.limit),
-        )
+        return replace(task.spent(), keep={*task.keep, *others})
 
     @property
     def _brief(self) -> Effort:
@@ -215,10 +206,6 @@ def _busy(program: Program) -> set[int]:
         else:
             index += 1
     return found
-
-
-def _spent(limit: PointLimit) -> PointLimit:
-    return limit if isinstance(limit, Free) else Fixed()
 
 
 def _gone(index: int) -> Renumbering:

@@ -34,7 +34,7 @@ _ALONG = 0.5
 _ROOM = 0.45
 """Radius of both zones, as a share of the way between the points: less than half leaves room."""
 _SMALLEST = 2e-3
-"""m, radius that they have at least."""
+"""m, radius that they have at least: a corner that has no room for them is left as it is."""
 
 
 def doubled(program: Program, path: Path, index: int, arm_size: int) -> Program | None:
@@ -47,8 +47,8 @@ def doubled(program: Program, path: Path, index: int, arm_size: int) -> Program 
         arm_size: number of the arm's own joints.
 
     Returns:
-        None where no corner is rounded, where an arc begins or ends, or where external axes move
-        on their own.
+        None where no corner is rounded or its zone is too small for two, where an arc begins or
+        ends, or where external axes move on their own.
     """
     corner = path.route.zone_moves.index(index)
     before, after = _ALONG * path.corners.reach[corner, POSITION]
@@ -65,7 +65,10 @@ def doubled(program: Program, path: Path, index: int, arm_size: int) -> Program 
         way = way - after * (position[corner + 1, 1] - position[corner + 1, 0])
     else:
         second = move.target
-    zone = _resized(move.zone, max(_SMALLEST, _ROOM * float(np.linalg.norm(way))))
+    radius = _ROOM * float(np.linalg.norm(way))
+    if radius < _SMALLEST:
+        return None
+    zone = _resized(move.zone, radius)
     # Both get data of their own: what other moves read stays as it is.
     plain = replace(move, zone=zone, origin=None)
     return _with(program, index, replace(plain, target=first), replace(plain, target=second))

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.errors import MotionError
+from ...core.errors import MotionError, Note
 from ...core.motion.controller import Controller
 from ...core.motion.path import Path
 from ...core.motion.segments import left_jacobian
@@ -26,7 +27,8 @@ from ...core.motion.zones import Room, ZonePlanner
 from ...core.program.program import Program
 from ...core.robot.chain_kernels import jacobians
 from .blocks import Block
-from .variables import JointPoint, PosePoint
+from .oriented import OrientedPoint
+from .variables import JointPoint, PosePoint, ViaPoint
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -92,6 +94,31 @@ class _Shifted:
         self.q = configurations(path, places)
 
 
+def drivable(
+    controller: Controller, path: Path, blocks: Sequence[Block], notes: list[Note]
+) -> tuple[Block, ...]:
+    """The blocks that are driven alone as they are in their program; notes tell of the others.
+
+    Args:
+        controller: that drives them.
+        path: of the whole program.
+        blocks: of it.
+        notes: why a block stays as it is goes here.
+    """
+    found: list[Block] = []
+    for block in blocks:
+        moves = [i - block.first for i in path.route.moves if block.first <= i <= block.last]
+        why = "other waypoints are left out"
+        try:
+            if list(Driver(controller, block).moves) == moves:
+                found.append(block)
+                continue
+        except MotionError as error:
+            why = error.message
+        notes.append(Note(f"all stays as it is until the robot stops, as alone {why}", block.first))
+    return tuple(found)
+
+
 class Driver:
     """Drives one block.
 
@@ -116,25 +143,31 @@ class Driver:
         if more is not None:
             self.places = self.places.with_more(more)
 
+    @property
+    def moves(self) -> tuple[int, ...]:
+        """Indices of the moves that are driven."""
+        return self._first.route.moves
+
     def drive(self, x: FloatArray) -> Drive | None:
         """The program at x; None where it cannot be driven."""
-        program = self.variables.applied(x)
-        path = self._planned(program)
-        if path is None:
+        planned = self._planned(x)
+        if planned is None:
             return None
+        program, path = planned
         try:
             timing = self.controller.stamp(program, path)
         except MotionError:
             return None
         return Drive(x, program, path, timing, rooms_of(path), configurations(path, self.places))
 
-    def _planned(self, program: Program) -> Path | None:
-        """The path, if the same moves are driven as of the program that was given."""
+    def _planned(self, x: FloatArray) -> tuple[Program, Path] | None:
+        """The program at x and its path, if the same moves are driven as of the one given."""
         try:
+            program = self.variables.applied(x)
             path = self.controller.plan(program)
         except MotionError:
             return None
-        return path if path.route.moves == self._first.route.moves else None
+        return (program, path) if path.route.moves == self._first.route.moves else None
 
     def change(self, drive: Drive, which: IntArray) -> Change:
         """Derivatives at a drive, for some of the places."""
@@ -169,8 +202,10 @@ class Driver:
         for index, part in enumerate(variables.parts):
             columns = np.arange(variables.offsets[index], variables.offsets[index + 1])
             for move in part.moves:
-                if isinstance(part, JointPoint):
-                    made.waypoints[waypoint[move], list(part.axes), columns] = 1.0
+                if isinstance(part, JointPoint | OrientedPoint):
+                    slope = part.slope(variables.of(index, drive.x))
+                    rows = np.array(part.axes)[:, None]
+                    made.waypoints[waypoint[move], rows, columns] = slope
                 elif isinstance(part, PosePoint):
                     turned = variables.of(index, drive.x)
                     k = waypoint[move]
@@ -196,12 +231,12 @@ class Driver:
             moved = drive.x.copy()
             moved[together] += step[together]
             sign = 1.0
-            path = self._planned(self.variables.applied(moved))
-            if path is None:
+            planned = self._planned(moved)
+            if planned is None:
                 sign = -1.0
                 moved[together] -= 2.0 * step[together]
-                path = self._planned(self.variables.applied(moved))
-            other = None if path is None else _Shifted(path, places)
+                planned = self._planned(moved)
+            other = None if planned is None else _Shifted(planned[1], places)
             if other is None or len(other.rooms) != len(drive.rooms):
                 continue
             self._take(drive, other, which, together, sign * step, made)
@@ -240,7 +275,7 @@ class Driver:
         corner = {move: k + 1 for k, move in enumerate(self._first.route.zone_moves)}
         owners: list[FloatArray] = []
         for part in self.variables.parts:
-            known = waypoint if isinstance(part, JointPoint | PosePoint) else corner
+            known = waypoint if isinstance(part, ViaPoint) else corner
             owners += [np.array([known[move] for move in part.moves], dtype=float)] * part.size
         return owners
 

@@ -16,7 +16,7 @@ class Fixed:
 
 @dataclass(frozen=True, slots=True)
 class Free:
-    """It may go anywhere within the joints' limits."""
+    """It may go anywhere within the joints' limits; how far the tool may turn, the task says."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Box:
 
     Args:
         position: m, half the edges of a box round the TCP, along the work object's axes.
-        turn: rad, largest turn of the tool from its programmed orientation.
+        turn: rad, largest turn of the tool from its programmed orientation; None for the task's.
         joints: rad or m, largest change of each of the arm's joints.
 
     Raises:

@@ -2,33 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from ...core.cell.cell import Cell
 from ...core.collision.certificate import SceneOf, certify, scenes_of
 from ...core.collision.verdict import Certificate
-from ...core.errors import InputError, MotionError, Note
+from ...core.errors import FlybyError, MotionError, Note
 from ...core.motion.controller import Controller, Run
 from ...core.program.move import Move
 from ...core.program.program import Program
 from ...core.program.zone import Fine
-from ..solution import RESOLUTION, Solution, measure, scene_notes
-from ..zones.points import passable_stops
+from ..reading_back import ReadBack, read_as_written
+from ..solution import RESOLUTION, Solution, measure, moved_points, scene_notes
 from ..zones.refusal import check_start
 from .blocks import Block, cut
 from .counting import Counted, change_count, idle_points
+from .driving import drivable
+from .freeing import with_freed_stops
 from .improving import Report, improve
 from .options import Effort, Freedom, Task, ViaCount
 from .selection import Selection, select
 from .variables import make_variables
 from .workshop import Answer, Workshop
 
-ReadBack = Callable[[Program], Program]
-"""Writes a program and reads what was written."""
-
-_FREED = 0.01
-"""m, radius that a freed stop begins with."""
 _GAIN = 1e-6
 """Share of the objective below which nothing has been gained."""
 
@@ -115,12 +112,12 @@ class _Optimization:
         check_start(self.controller, given, scenes, proof, self.task.residual)
         self.given = self._costs(given)
         notes = list(scene_notes(scenes, program))
-        base = self._freed(program)
+        base = with_freed_stops(self.controller, program, self.task, notes)
         found = self._improved(base, self.task, self.effort, scenes, notes)
         if found is not None and self.task.vias is ViaCount.CHANGE:
             found = self._counted(found, scenes)
         if found is not None:
-            found = self._as_read(found, scenes, read_back, notes)
+            found = self._as_read(program, found, scenes, read_back, notes)
         before = measure(self.controller, given, proof)
         if found is None or found.cost >= self._cost(given):
             notes.append(Note("nothing better was found: this is the program as it was given"))
@@ -128,25 +125,20 @@ class _Optimization:
         if self.task.vias is ViaCount.KEEP:
             notes += self._idle(found, scenes)
         after = measure(self.controller, found.run, found.certificate)
-        return Solution(program, found.run.program, before, after, found.certificate, tuple(notes))
+        return Solution(
+            program,
+            found.run.program,
+            before,
+            after,
+            found.certificate,
+            tuple(notes),
+            moved_points(self.controller.robot, given, found.run),
+        )
 
     @property
     def _clearance(self) -> float:
         wanted = self.task.clearance
         return self.cell.clearance if wanted is None else wanted
-
-    def _freed(self, program: Program) -> Program:
-        """The program with small zones at stops that may be passed."""
-        passable = passable_stops(program)
-        moves = list(program.moves)
-        for i in self.task.freed:
-            if not 0 <= i < len(moves) or i not in passable:
-                raise InputError(
-                    f"move {i + 1} cannot be passed: it is no stop, or one for a reason (the "
-                    "last move, a wait, something that is switched there)"
-                )
-            moves[i] = replace(moves[i], zone=self.task.pattern.resized(_FREED))
-        return program.with_moves(tuple(moves))
 
     def _improved(
         self,
@@ -158,11 +150,12 @@ class _Optimization:
     ) -> Counted | None:
         """The best proven program; None where the input is not bettered."""
         run = self.controller.run(program, task.start)
-        selection = select(program, run.path, task, self.freedom)
-        arm_size = self.controller.robot.arm_size
-        variables = make_variables(program, self.controller.robot, selection, task)
-        blocks = cut(program, run.path, variables, arm_size)
+        robot = self.controller.robot
+        selection = select(program, run.path, robot, task, self.freedom)
+        variables = make_variables(program, robot, selection, task)
         notes += _stays(program, selection, self.freedom)
+        cut_blocks = cut(program, run.path, variables, robot.arm_size)
+        blocks = drivable(self.controller, run.path, cut_blocks, notes)
         if not blocks:
             return None
         shop = Workshop(self.controller, scenes, task, effort, self._clearance, blocks)
@@ -198,10 +191,21 @@ class _Optimization:
         return None
 
     def _as_read(
-        self, found: Counted, scenes: SceneOf, read_back: ReadBack, notes: list[Note]
+        self,
+        given: Program,
+        found: Counted,
+        scenes: SceneOf,
+        read_back: ReadBack,
+        notes: list[Note],
     ) -> Counted | None:
         """The program as it is read from its new text, proven again; None if it is not."""
-        run = self._driven(read_back(found.run.program), found.task)
+        try:
+            written = read_as_written(given, found.run.program, read_back)
+        except FlybyError as error:
+            notes.append(Note(f"given up, as the new program cannot be written: {error}"))
+            return None
+        notes += written.notes
+        run = self._driven(written.program, found.task)
         proof = None if run is None else self._proof(run, scenes)
         if run is None or proof is None or not proof.proven:
             why = "it cannot be driven" if proof is None else proof.message
@@ -226,10 +230,11 @@ class _Optimization:
             return None
 
         def selected(counted: Counted) -> Selection:
-            return select(counted.run.program, counted.run.path, counted.task, self.freedom)
+            run, task = counted.run, counted.task
+            return select(run.program, run.path, robot, task, self.freedom)
 
-        arm_size = self.controller.robot.arm_size
-        return change_count(found, improved, selected, self.effort, arm_size)
+        robot = self.controller.robot
+        return change_count(found, improved, selected, self.effort, robot.arm_size)
 
     def _as_it_is(self, program: Program, task: Task, scenes: SceneOf) -> Counted | None:
         """A program in which nothing is left to change, or to better; None if it is not proven."""
@@ -248,7 +253,8 @@ class _Optimization:
                 return None
             return self._cost(run)
 
-        selection = select(found.run.program, found.run.path, found.task, self.freedom)
+        run, robot = found.run, self.controller.robot
+        selection = select(run.program, run.path, robot, found.task, self.freedom)
         return [
             Note("serves nothing any more: without it the program is as fast and as safe", i)
             for i in idle_points(found, selection, judged)

@@ -14,7 +14,7 @@ from ...core.program.target import JointTarget
 from ...core.program.zone import Radius
 from ..rounding import Rounding
 from ..zones.sizes import GRADED
-from .limits import FREE, PointLimit
+from .limits import FREE, Box, Cone, Fixed, Free, PointLimit
 
 _SAMPLING = Sampling()
 _ROUNDING = Rounding()
@@ -51,6 +51,9 @@ class Task:
         limits: how far the via points at the ends of these moves may be moved.
         limit: the same for all others.
         axes: joints (from 0) that joint targets may change; None for all.
+        tilt: rad by which the tool may be turned at a via point from what is programmed, where no
+            limit of that point speaks of it: the tool may hold something that is full, or hot. π
+            lets it turn as it likes.
         clearance: m to keep; None for the cell's own.
         freed: indices of moves that end in a stop for no reason but that it is programmed: the
             robot may pass there, and they become via points.
@@ -71,6 +74,7 @@ class Task:
     limits: Mapping[int, PointLimit] = field(default_factory=dict)
     limit: PointLimit = FREE
     axes: Collection[int] | None = None
+    tilt: float = 0.0
     clearance: float | None = None
     freed: Collection[int] = ()
     pattern: Radius = GRADED
@@ -82,10 +86,39 @@ class Task:
     def __post_init__(self) -> None:
         if not 0.0 <= self.time_weight <= 1.0:
             raise InputError(f"Task.time_weight lies between 0 and 1, not {self.time_weight}")
+        if not 0.0 <= self.tilt <= math.pi:
+            raise InputError(f"Task.tilt lies between 0 and π, not {self.tilt}")
         for name in ("clearance", "residual"):
             value = getattr(self, name)
             if value is not None and not 0.0 <= value < math.inf:
                 raise InputError(f"Task.{name} is zero or more metres, not {value}")
+
+    def free_axes(self, arm_size: int) -> list[int]:
+        """Joints that joint targets may change, of an arm with so many."""
+        return [a for a in range(arm_size) if self.axes is None or a in self.axes]
+
+    def turn_at(self, move: int) -> float | None:
+        """rad by which the tool may turn at the end of a move; None where no number bounds it."""
+        limit = self.limits.get(move, self.limit)
+        if isinstance(limit, Cone):
+            return None
+        turn = self.tilt
+        if isinstance(limit, Box) and limit.turn is not None:
+            turn = limit.turn
+        return None if turn >= math.pi else turn
+
+    def spent(self) -> Task:
+        """The same for a program whose points have been moved already.
+
+        Limits are about where a point was in the program as it was given: those points have had
+        their way, and stay; tools that may be tilted a little are not tilted further.
+        """
+        return replace(
+            self,
+            limits={i: _spent(limit) for i, limit in self.limits.items()},
+            limit=_spent(self.limit),
+            tilt=self.tilt if self.tilt >= math.pi else 0.0,
+        )
 
     def renumbered(self, new: Callable[[int], int | None]) -> Task:
         """The same of a program whose moves have other indices.
@@ -100,6 +133,10 @@ class Task:
             freed=[k for i in self.freed if (k := new(i)) is not None],
             limits={i: limit for i, limit in limits.items() if i is not None},
         )
+
+
+def _spent(limit: PointLimit) -> PointLimit:
+    return limit if isinstance(limit, Free) else Fixed()
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from ...core.robot.chain import Chain
 from ...core.robot.chain_kernels import jacobian, pose
 from ...core.spatial.rotation import rotation_vector, skew
 from .blocks import Block
-from .limits import Box, Cone
+from .limits import Box, Cone, PointLimit
 from .options import Task
-from .variables import JointPoint, PosePoint
+from .variables import PosePoint, ViaPoint
 
 FloatArray = NDArray[np.float64]
 
@@ -74,11 +74,12 @@ def point_rows(block: Block, path: Path, task: Task) -> tuple[PointRow, ...]:
     waypoint = {move: k + 1 for k, move in enumerate(path.route.moves)}
     rows: list[PointRow] = []
     for part in block.variables.parts:
-        if not isinstance(part, JointPoint | PosePoint):
+        if not isinstance(part, ViaPoint):
             continue
         for move in part.moves:
             limit = task.limits.get(block.first + move, task.limit)
-            if not isinstance(limit, Box | Cone):
+            turn = task.turn_at(block.first + move)
+            if turn is None and not isinstance(limit, Box | Cone):
                 continue
             chain = path.route.chains[waypoint[move] - 1]
             q = np.ascontiguousarray(path.segments.ends.q[waypoint[move] - 1, 1])
@@ -87,23 +88,29 @@ def point_rows(block: Block, path: Path, task: Task) -> tuple[PointRow, ...]:
             bounded = isinstance(part, PosePoint)
             rows += [
                 PointRow(waypoint[move], chain, measure)
-                for measure in _measures(limit, p, R, bounded)
+                for measure in _measures(limit, turn, p, R, bounded)
             ]
     return tuple(rows)
 
 
 def _measures(
-    limit: Box | Cone, p: FloatArray, R: FloatArray, position_is_bounded: bool
+    limit: PointLimit,
+    turn: float | None,
+    p: FloatArray,
+    R: FloatArray,
+    position_is_bounded: bool,
 ) -> Iterator[Measure]:
-    if limit.position is not None and not position_is_bounded:
+    position = limit.position if isinstance(limit, Box | Cone) else None
+    if position is not None and not position_is_bounded:
         for axis in range(3):
-            yield _side(p[axis] - limit.position[axis], axis, 1.0)
-            yield _side(p[axis] + limit.position[axis], axis, -1.0)
+            yield _side(p[axis] - position[axis], axis, 1.0)
+            yield _side(p[axis] + position[axis], axis, -1.0)
     if isinstance(limit, Cone):
         direction = np.array(limit.axis) / math.hypot(*limit.axis)
         yield _cone(R @ direction, direction, math.cos(limit.angle))
-    elif limit.turn is not None:
-        yield _turn(R, limit.turn)
+    elif turn:
+        # No turn at all is said by the variables: it leaves a step no room.
+        yield _turn(R, turn)
 
 
 def _side(bound: float, axis: int, sign: float) -> Measure:

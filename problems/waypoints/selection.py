@@ -15,9 +15,12 @@ from ...core.motion.path import Path
 from ...core.program.move import Move, MoveC
 from ...core.program.origin import Origin, Ownership
 from ...core.program.program import Program
+from ...core.program.target import JointTarget
 from ...core.program.zone import ContourFraction, Fine, Radius
+from ...core.robot.model import Robot
 from .limits import Fixed
 from .options import Freedom, Task
+from .oriented import stays_oriented
 
 
 @dataclass(frozen=True)
@@ -37,12 +40,13 @@ class Selection:
     passed: tuple[int, ...]
 
 
-def select(program: Program, path: Path, task: Task, freedom: Freedom) -> Selection:
+def select(program: Program, path: Path, robot: Robot, task: Task, freedom: Freedom) -> Selection:
     """What of a driven program may change.
 
     Args:
         program: the program.
         path: its path, which says where the robot stops.
+        robot: that drives it.
         task: the user's wishes.
         freedom: whether points may move.
 
@@ -66,6 +70,7 @@ def select(program: Program, path: Path, task: Task, freedom: Freedom) -> Select
         elif reason is not None:
             why_zone[i] = reason
         reason = reason or _why_fixed(moves, i, after[i], task, freedom)
+        reason = reason or _why_oriented(moves[i], i, robot, task)
         if reason is not None:
             why_point[i] = reason
     points = _groups(moves, passed, why_point, "target")
@@ -125,6 +130,17 @@ def _why_fixed(
     if isinstance(moves[i], MoveC) or isinstance(moves[after], MoveC):
         return "an arc begins or ends there"
     return None
+
+
+def _why_oriented(move: Move, i: int, robot: Robot, task: Task) -> str | None:
+    """Why a target cannot move at all while its tool keeps its orientation."""
+    target = move.target
+    if task.turn_at(i) != 0.0 or not isinstance(target, JointTarget):
+        return None
+    axes = task.free_axes(robot.arm_size)
+    if not stays_oriented(target, robot.arm_chain, axes):
+        return None
+    return "the joints that may change cannot move it without turning the tool: allow a tilt"
 
 
 def _groups(

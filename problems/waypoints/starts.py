@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ...core.motion.path import Path
 from .blocks import Block
 from .options import Effort
-from .variables import JointPoint, PosePoint
+from .variables import PosePoint, ViaPoint
 
 FloatArray = NDArray[np.float64]
 
@@ -51,7 +51,7 @@ def _varied(block: Block, path: Path, effort: Effort, number: int) -> FloatArray
     x = _taut(block, path, random.uniform()) if kind == _TAUT else variables.start.copy()
     common: dict[int, FloatArray] = {}
     for index, part in enumerate(variables.parts):
-        if not isinstance(part, JointPoint | PosePoint):
+        if not isinstance(part, ViaPoint):
             continue
         shift = spread * random.standard_normal(part.size)
         if kind == _TOGETHER and part.size in common:
@@ -70,7 +70,7 @@ def variations(block: Block, x: FloatArray, effort: Effort, generation: int) -> 
         spread = effort.spread * _NEAR[(generation + k) % len(_NEAR)]
         varied = x.copy()
         for index, part in enumerate(variables.parts):
-            if isinstance(part, JointPoint | PosePoint):
+            if isinstance(part, ViaPoint):
                 columns = slice(variables.offsets[index], variables.offsets[index + 1])
                 varied[columns] += spread * random.standard_normal(part.size)
         found.append(np.clip(varied, variables.lower, variables.upper))
@@ -78,7 +78,7 @@ def variations(block: Block, x: FloatArray, effort: Effort, generation: int) -> 
 
 
 def _movable(block: Block) -> bool:
-    return any(isinstance(part, JointPoint | PosePoint) for part in block.variables.parts)
+    return any(isinstance(part, ViaPoint) for part in block.variables.parts)
 
 
 def _taut(block: Block, path: Path, slack: float) -> FloatArray:
@@ -87,9 +87,7 @@ def _taut(block: Block, path: Path, slack: float) -> FloatArray:
     x = variables.start.copy()
     waypoint = {move: k + 1 for k, move in enumerate(path.route.moves)}
     q, position = _waypoints(path)
-    owners = [
-        part if isinstance(part, JointPoint | PosePoint) else None for part in variables.parts
-    ]
+    owners = [part if isinstance(part, ViaPoint) else None for part in variables.parts]
     moving = {waypoint[i] for part in owners if part is not None for i in part.moves}
     for index, part in enumerate(owners):
         if part is None:
@@ -101,13 +99,10 @@ def _taut(block: Block, path: Path, slack: float) -> FloatArray:
         while last in moving and last < len(q) - 1:
             last += 1
         share = (k - first) / (last - first) if last > first else 0.0
-        values = q if isinstance(part, JointPoint) else position
+        values = position if isinstance(part, PosePoint) else q
         pull = (1.0 - slack) * ((1.0 - share) * values[first] + share * values[last] - values[k])
         columns = slice(variables.offsets[index], variables.offsets[index + 1])
-        if isinstance(part, JointPoint):
-            x[columns] += pull[list(part.axes)]
-        else:
-            x[columns][:3] += pull
+        x[columns] += part.along(pull)
     return np.asarray(x)
 
 

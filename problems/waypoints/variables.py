@@ -1,6 +1,7 @@
 """The numbers of a program that an optimisation changes, as one vector.
 
-A joint target contributes its free joints (rad or m), a pose target a shift of its position and a
+A joint target contributes its free joints (rad or m), or shifts of a tool that keeps its
+orientation (`oriented`); a pose target a shift of its position and a
 turn of its orientation (rotation vector) about the axes of its work object, a zone its radius in m
 (or its share of the contour). Data that several moves read are one set of variables.
 """
@@ -25,6 +26,7 @@ from ...core.spatial.rotation import matrix_from_rotation_vector, quaternion_fro
 from ..rounding import Rounding
 from .limits import Box, PointLimit
 from .options import Task
+from .oriented import OrientedPoint
 from .selection import Selection
 
 FloatArray = NDArray[np.float64]
@@ -88,6 +90,14 @@ class JointPoint:
         ]
         return self.applied(move, np.array(rounded))
 
+    def along(self, change: FloatArray) -> FloatArray:
+        """The change of the variables that makes one of the joints (arm's axes,)."""
+        return change[list(self.axes)]
+
+    def slope(self, values: FloatArray) -> FloatArray:
+        """(len(axes), size), how the joints change with the variables."""
+        return np.eye(self.size)
+
     def gradient(self, made: ProgramGradient, values: FloatArray) -> FloatArray:
         """From the program's parameters to the variables."""
         return np.asarray(made.joints[list(self.moves)][:, list(self.axes)].sum(axis=0))
@@ -126,6 +136,10 @@ class PosePoint:
     def scale(self) -> FloatArray:
         """Changes that matter about equally."""
         return np.repeat([POSITION_STEP, TURN_STEP], 3)
+
+    def along(self, change: FloatArray) -> FloatArray:
+        """The change of the variables that shifts the TCP in its work object by (3,) m."""
+        return np.concatenate([change, np.zeros(3)])
 
     def applied(self, move: Move, values: FloatArray) -> Move:
         """A move with these values."""
@@ -177,13 +191,13 @@ class ZoneRadius:
 
     def values(self) -> FloatArray:
         """Those of the program that was given."""
-        return np.array([self.zone.tcp if self.chosen else max(self.zone.tcp, LEAST_RADIUS)])
+        return np.array([self.zone.tcp or LEAST_RADIUS])
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """Lower and upper ones."""
         if self.chosen:
             return self.values(), self.values()
-        return np.array([LEAST_RADIUS]), np.array([np.inf])
+        return np.minimum(self.values(), LEAST_RADIUS), np.array([np.inf])
 
     def scale(self) -> FloatArray:
         """Changes that matter about equally."""
@@ -232,11 +246,11 @@ class ZoneShare:
 
     def values(self) -> FloatArray:
         """Those of the program that was given."""
-        return np.array([max(self.zone.fraction, LEAST_SHARE)])
+        return np.array([self.zone.fraction or LEAST_SHARE])
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """Lower and upper ones."""
-        return np.array([LEAST_SHARE]), np.array([1.0])
+        return np.minimum(self.values(), LEAST_SHARE), np.array([1.0])
 
     def scale(self) -> FloatArray:
         """Changes that matter about equally."""
@@ -255,7 +269,8 @@ class ZoneShare:
         return np.array([made.zone[list(self.moves)].sum()])
 
 
-Part = JointPoint | PosePoint | ZoneRadius | ZoneShare
+ViaPoint = JointPoint | OrientedPoint | PosePoint
+Part = ViaPoint | ZoneRadius | ZoneShare
 """Variables of one datum: their values, bounds and scale, and what they do to a move."""
 
 
@@ -357,16 +372,15 @@ def make_variables(program: Program, robot: Robot, selection: Selection, task: T
 def _point(program: Program, robot: Robot, group: tuple[int, ...], task: Task) -> Part:
     target = program.moves[group[0]].target
     limits = [task.limits.get(i, task.limit) for i in group]
+    turns = [turn for i in group if (turn := task.turn_at(i)) is not None]
     if isinstance(target, JointTarget):
-        return _joint_point(target, robot, group, task, limits)
-    shift, turn = np.full(3, np.inf), np.inf
+        return _joint_point(target, robot, group, task, limits, min(turns, default=np.inf))
+    shift = np.full(3, np.inf)
     for limit in limits:
-        if isinstance(limit, Box) and limit.turn is not None:
-            turn = min(turn, limit.turn)
         position = getattr(limit, "position", None)
         if position is not None:
             shift = np.minimum(shift, position)
-    return PosePoint(group, target, shift, turn)
+    return PosePoint(group, target, shift, min(turns, default=np.inf))
 
 
 def _joint_point(
@@ -375,8 +389,9 @@ def _joint_point(
     group: tuple[int, ...],
     task: Task,
     limits: Sequence[PointLimit],
-) -> JointPoint:
-    axes = [a for a in range(robot.arm_size) if task.axes is None or a in task.axes]
+    turn: float,
+) -> JointPoint | OrientedPoint:
+    axes = task.free_axes(robot.arm_size)
     now = np.array(target.joints)[axes]
     lower = robot.limits.lower[axes] + _LIMIT_MARGIN
     upper = robot.limits.upper[axes] - _LIMIT_MARGIN
@@ -384,4 +399,7 @@ def _joint_point(
         if isinstance(limit, Box) and limit.joints is not None:
             ranges = np.array(limit.joints)[axes]
             lower, upper = np.maximum(lower, now - ranges), np.minimum(upper, now + ranges)
-    return JointPoint(group, target, tuple(axes), np.minimum(lower, now), np.maximum(upper, now))
+    bounds = np.minimum(lower, now), np.maximum(upper, now)
+    if turn == 0.0:
+        return OrientedPoint(group, target, robot.arm_chain, tuple(axes), *bounds, JOINT_STEP)
+    return JointPoint(group, target, tuple(axes), *bounds)

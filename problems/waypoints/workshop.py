@@ -153,18 +153,22 @@ class _Manner:
 
 def _searched(shop: Workshop, job: Job, manner: _Manner) -> Answer:
     """The best values near a start."""
-    problem = BlockProblem(
-        manner.controller,
-        shop.blocks[job.block],
-        shop.scenes,
-        shop.task,
-        shop.clearance + shop.effort.margin + manner.margin,
-        shop.clearance,
-        manner.density,
-        manner.more,
-    )
     memory = job.memory
-    start = problem.point(memory.x)
+    try:
+        problem = BlockProblem(
+            manner.controller,
+            shop.blocks[job.block],
+            shop.scenes,
+            shop.task,
+            shop.clearance + shop.effort.margin + manner.margin,
+            shop.clearance,
+            manner.density,
+            manner.more,
+        )
+        start = problem.point(memory.x)
+    except MotionError:
+        # As it is it can be driven, but not with these zones, or this sampling.
+        start = None
     if start is None:
         return Answer(job.block, memory.x, np.inf, np.inf, True, memory)
     try:

@@ -119,7 +119,7 @@ class Clearing:
     Args:
         scene: cell and tool.
         clearance: m to be kept.
-        deviation: (N,) rad or m by which the commanded joints may stray from the path.
+        deviation: (N,) rad or m by which the links may stray from the path.
         residual: m by which the real robot may stray from the emulated one.
     """
 

@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 from ...core.cell.cell import Cell
 from ...core.collision.certificate import SceneOf, certify, scenes_of
 from ...core.collision.verdict import Certificate
-from ...core.errors import MotionError
+from ...core.errors import FlybyError, MotionError, Note
 from ...core.motion.controller import Controller, Run
 from ...core.program.program import Program
 from ...core.program.zone import Radius, Zone
+from ..reading_back import ReadBack, read_as_written
 from ..solution import RESOLUTION, Solution, measure, scene_notes
 from .clearing import Clearing
 from .driving import ZoneOf, drive
@@ -28,7 +29,7 @@ from .options import ZoneOptions
 from .points import Points, find_points
 from .predefined import choices, choose
 from .refusal import check_start
-from .repair import Repair
+from .repair import Repair, is_slower
 from .rules import Rules, passable
 from .search import Asking, Found, Search, Sides
 from .settling import settle, with_zones
@@ -37,8 +38,6 @@ from .straying import segment_strays
 from .table import ZoneChange, changes
 
 FloatArray = NDArray[np.float64]
-ReadBack = Callable[[Program], Program]
-"""Writes a program and reads what was written."""
 Tell = Callable[[str], None]
 
 _AIM = 1.1
@@ -113,34 +112,66 @@ class _Maximization:
         found, zones = self._grown(points, before)
         self._tell("certifying the new program")
         repair = Repair(points, program, zones, options.rounding)
-        after, certificate = self._proven(repair, (before, proof), read_back)
+        notes: dict[Note, None] = dict.fromkeys(points.notes)
+        after, certificate = self._proven(repair, (before, proof), read_back, notes)
         return ZoneSolution(
             program,
             after.program if repair.changed else program,
             measure(self._controller, before, proof),
             measure(self._controller, after, certificate),
             certificate,
-            (*points.notes, *scene_notes(self._scenes, program)),
+            (*notes, *scene_notes(self._scenes, program)),
             zones=changes(points, program, repair.zones, found),
         )
 
     def _proven(
-        self, repair: Repair, given: tuple[Run, Certificate], read_back: ReadBack
+        self,
+        repair: Repair,
+        given: tuple[Run, Certificate],
+        read_back: ReadBack,
+        notes: dict[Note, None],
     ) -> tuple[Run, Certificate]:
-        """The new program driven, and its certificate; zones are made smaller as needed."""
+        """The new program driven, and its certificate; zones are made smaller as needed.
+
+        It is no slower than the one that was given.
+        """
         while repair.changed:
-            after = self._controller.run(read_back(repair.program), self._options.start)
+            after = self._as_read(repair, read_back, notes)
+            if after is None:
+                continue
             certificate = self._certified(after)
-            if certificate.proven:
-                again = repair.slower(given[0], after)
-            else:
-                again = repair.refused(after, certificate)
-                if not again and given[1].proven:
+            if not certificate.proven and repair.refused(after, certificate):
+                continue
+            if is_slower(given[0], after):
+                if not repair.slower(given[0], after):
                     repair.give_up()
-                    break
-            if not again:
+            elif certificate.proven or not given[1].proven:
                 return after, certificate
+            else:
+                repair.give_up()
         return given
+
+    def _as_read(self, repair: Repair, read_back: ReadBack, notes: dict[Note, None]) -> Run | None:
+        """The new program as read from its text, driven; None where it cannot be.
+
+        Zones that the text has no place for, or that cannot be driven, are then what they were.
+        """
+        try:
+            written = read_as_written(self._program, repair.program, read_back)
+        except FlybyError as error:
+            notes[Note(f"no zone is changed, as none can be written: {error}")] = None
+            repair.give_up()
+            return None
+        notes.update(dict.fromkeys(written.notes))
+        repair.hold(i for i, _ in written.refused)
+        if not repair.changed:
+            return None
+        try:
+            return self._controller.run(written.program, self._options.start)
+        except MotionError as error:
+            if not repair.undrivable(error.move):
+                repair.give_up()
+            return None
 
     def _rules(self, points: Points) -> Rules:
         return Rules(points.route, self._controller.model)
@@ -158,8 +189,8 @@ class _Maximization:
     def _grown(self, points: Points, before: Run) -> tuple[dict[int, Found], dict[int, Zone]]:
         """What was found at each corner, and the zones that come of it.
 
-        They leave room for how far smoothing in time, and leads of elastic joints, take the joints
-        off the path. Larger zones may make that more: then they grow anew, with that much room.
+        They leave room for how far smoothing in time takes the links off the path. Larger zones may
+        make that more: then they grow anew, with that much room.
         """
         moves = points.route.moves
         strays = segment_strays(self._controller, before, moves)
@@ -171,7 +202,10 @@ class _Maximization:
             if _INTERRUPTED in found.values() or not strays.any():
                 return found, zones
             program = with_zones(self._program, points, zones)
-            run = self._controller.run(program, self._options.start)
+            try:
+                run = self._controller.run(program, self._options.start)
+            except MotionError:
+                return found, zones  # Some of them go together badly: these are put back.
             needed = segment_strays(self._controller, run, moves)
             if (needed <= strays).all():
                 return found, zones

@@ -64,17 +64,21 @@ def find_points(
     """
     moves = program.moves
     _check_freed(moves, freed)
-    patterns = {
-        i: Growth.of(freed.get(i, move.zone))
-        for i, move in enumerate(moves)
-        if i not in kept and (i in freed or size_of(move.zone) > 0)
-    }
+    notes: list[Note] = []
+    skipped = _beside_left_out(controller.plan(program, start).route)
+    patterns: dict[int, Growth] = {}
+    for i, move in enumerate(moves):
+        if i in kept or not (i in freed or size_of(move.zone) > 0):
+            continue
+        if i in skipped:
+            notes.append(_note(moves, i, skipped[i]))
+        else:
+            patterns[i] = Growth.of(freed.get(i, move.zone))
     tiny = tuple(
         replace(move, zone=patterns[i].zone(_TINY)) if i in patterns else move
         for i, move in enumerate(moves)
     )
     route = controller.plan(program.with_moves(tiny), start).route
-    notes: list[Note] = []
     growths: dict[int, Growth] = {}
     for corner, index in enumerate(route.zone_moves):
         if index not in patterns:
@@ -84,10 +88,19 @@ def find_points(
             growths[corner] = patterns[index]
         else:
             notes.append(_note(moves, index, reason))
-    if not growths:
+    if not growths and not skipped:
         raise InputError(_nothing(moves, patterns, notes))
     groups = _groups(moves, route, growths, apart)
     return Points(route, route.zone_moves, growths, groups, tuple(notes))
+
+
+def _beside_left_out(route: Route) -> dict[int, str]:
+    """Moves whose zones decide that a waypoint is left out, and why they stay: it would return."""
+    found: dict[int, str] = {}
+    for i in route.left_out:
+        why = f"the controller leaves the waypoint of move {i + 1} out, as blends overlap there"
+        found.update((near, why) for near in (i - 1, i, i + 1))
+    return found
 
 
 def passable_stops(program: Program) -> list[int]:

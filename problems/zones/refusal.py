@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...core.cell.floor import FLOOR, LIFT
 from ...core.collision.certificate import SceneOf, certify
 from ...core.collision.verdict import Certificate, Verdict
 from ...core.errors import MotionError
@@ -34,6 +35,8 @@ def check_start(
         return
     overlap = _first_overlap(run, scenes)
     if overlap is not None:
+        if FLOOR in overlap.names:
+            raise _error(run, overlap.move, f"the program goes {overlap.below()}; {LIFT}")
         cell = scenes(run.program.moves[overlap.move].tool).cell
         hints = "".join(f"; {doubt}" for doubt in cell.doubtful_units())
         raise _error(run, overlap.move, f"the program collides as it is: {overlap}{hints}")
@@ -67,6 +70,12 @@ class _Overlap:
     time: float
     names: tuple[str, str]
     depth: float | None
+
+    def below(self) -> str:
+        """Where it is the floor that something is in."""
+        what = next(name for name in self.names if name != FLOOR)
+        depth = "" if self.depth is None else f"{1e3 * self.depth:.1f} mm "
+        return f"{depth}below {FLOOR} with {what}, at {self.time:.2f} s"
 
     def __str__(self) -> str:
         depth = "" if self.depth is None else f" by up to {1e3 * self.depth:.2f} mm"

@@ -21,8 +21,15 @@ PATIENCE = 4
 """How often, before it is put back to what it was."""
 MOST = 40
 """Changes in all."""
+_ONE_BY_ONE = 16
+"""Zones that cost time are put back singly so often, then more of them at a time."""
 _LATER = 1e-9
 """Share of the cycle time that does not count."""
+
+
+def is_slower(before: Run, after: Run) -> bool:
+    """Whether a program takes longer than another."""
+    return after.duration > before.duration * (1 + _LATER)
 
 
 class Repair:
@@ -45,6 +52,7 @@ class Repair:
         self._rounding = rounding
         self._tried: dict[int, int] = {}
         self._left = MOST
+        self._returned = 0
         self.zones = dict(zones)
 
     @property
@@ -73,18 +81,40 @@ class Repair:
         Returns:
             Whether there was anything to put back.
         """
-        if after.duration <= before.duration * (1 + _LATER):
+        if not is_slower(before, after):
             return False
         lost = self._lost(before, after)
-        worst = max(self._enlarged(), key=lambda i: lost.get(i, 0.0), default=None)
-        return worst is not None and self._change([worst], self._old.__getitem__)
+        worst = sorted(self._changed(), key=lambda i: lost.get(i, 0.0), reverse=True)
+        batch = worst[: 1 + self._returned // _ONE_BY_ONE]
+        self._returned += len(batch)
+        return self._change(batch, self._old.__getitem__)
+
+    def hold(self, moves: Iterable[int]) -> None:
+        """Put back the zones of some moves: the text has no other place for them."""
+        held = set(moves)
+        for corner in self._changed():
+            if self._points.move[corner] in held:
+                self.zones[corner] = self._old[corner]
+
+    def undrivable(self, move: int | None) -> bool:
+        """Put back the zones next to a move with which the program cannot be driven.
+
+        Args:
+            move: its index; None where it is not known.
+
+        Returns:
+            Whether there was anything to put back.
+        """
+        near = [] if move is None else [move - 1, move, move + 1]
+        corners = [i for i in self._changed() if self._points.move[i] in near]
+        return self._change(corners, self._old.__getitem__)
 
     def give_up(self) -> None:
         """Put everything back."""
         self.zones = dict(self._old)
 
-    def _enlarged(self) -> list[int]:
-        return [i for i, zone in self.zones.items() if size_of(zone) > size_of(self._old[i])]
+    def _changed(self) -> list[int]:
+        return [i for i, zone in self.zones.items() if zone != self._old[i]]
 
     def _lost(self, before: Run, after: Run) -> dict[int, float]:
         """s lost next to each corner, by the time that moves take."""

@@ -1,4 +1,4 @@
-"""How far smoothing in time, and leads of elastic joints, take the joints off each segment."""
+"""How far smoothing in time takes the links off each segment."""
 
 from __future__ import annotations
 
@@ -7,10 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.collision.strays import strays_of, stretches
+from ...core.collision.strays import Straying, stretches
 from ...core.motion.controller import Controller, Run
+from ...core.motion.limits import interval_samples
 
 FloatArray = NDArray[np.float64]
+
+_TOGETHER = 100
+"""Segments that are looked at together."""
 
 
 def segment_strays(controller: Controller, run: Run, moves: Sequence[int]) -> FloatArray:
@@ -22,10 +26,15 @@ def segment_strays(controller: Controller, run: Run, moves: Sequence[int]) -> Fl
         moves: indices of its moves; one that is not driven is between others, and has the most of
             all of them.
     """
-    waypoint = run.path.layout.waypoint
-    bands = strays_of(controller, run)
-    found = [stretches(strays, waypoint[:-1], waypoint[1:]).most for strays in bands]
-    most = np.max(found, axis=0)
+    waypoint, straying = run.path.layout.waypoint, Straying.of(controller, run)
+    left = run.path.sigma[interval_samples(run.path.pieces)]
+    most = np.zeros((len(waypoint) - 1, run.path.q.shape[1]))
+    for first in range(0, len(most), _TOGETHER):
+        ends = waypoint[first : first + _TOGETHER + 1]
+        begin = max(int(np.searchsorted(left, ends[0], "right")) - 1, 0)
+        found = straying.over(begin, max(int(np.searchsorted(left, ends[-1])), begin + 1))
+        part = [stretches(strays, ends[:-1], ends[1:]).most for strays in found]
+        most[first : first + _TOGETHER] = np.max(part, axis=0)
     row = {move: k for k, move in enumerate(run.path.route.moves)}
     greatest = most.max(axis=0)
     return np.stack([most[row[move]] if move in row else greatest for move in moves])

@@ -20,6 +20,7 @@ from ...core.motion.controller import Controller, Run
 from ...core.motion.derivatives import Derivatives
 from ...core.motion.model import LineTurn, MotionModel
 from ...core.motion.pieces import Sampling
+from ...core.motion.tcp_walk import JOINED
 from ...core.motion.trajectory import Trajectory
 from ...core.program.move import Move, MoveC, MoveJ, MoveL, Wait
 from ...core.program.program import Program
@@ -35,7 +36,7 @@ from ..observation import (
     outside_zones,
     turned_away,
 )
-from ..strategies import OfKind, Parts, fly_by_zones, programs
+from ..strategies import OfKind, Parts, fly_by_zones, lines_near_singularities, programs
 from .subject import PROGRAM_EXAMPLES, Subject
 
 ON_PATH = 1e-6
@@ -103,26 +104,47 @@ class EmulationChecks(Subject):
 
     @DRIVES
     @given(data=st.data())
+    def test_joints_never_jump_near_singular_postures(self, data: st.DataObject) -> None:
+        """Lines are followed on one branch of inverse kinematics, or refused by their move."""
+        robot = self._robot(data)
+        program = data.draw(lines_near_singularities(robot))
+        try:
+            run = self.controller(robot).run(program, period=PERIOD)
+        except MotionError as error:
+            assert error.move is not None, "the refusal names no move"
+            return
+        seen = Observed.of(robot, run)
+        rate = np.maximum(np.abs(seen.dq[1:]), np.abs(seen.dq[:-1]))
+        moved, step = np.abs(np.diff(seen.q, axis=0)), np.diff(seen.t)[:, None]
+        assert (moved <= 4 * rate * step + JOINED).all(), "joints go farther than they are fast"
+
+    @DRIVES
+    @given(data=st.data())
     def test_limits_hold_between_samples(self, data: st.DataObject) -> None:
         robot, run = self._drive(data, self.zones)
-        seen = Observed.of(robot, run)
-        assert (np.abs(seen.dq) <= SLACK * robot.limits.velocity).all()
-        assert (np.abs(seen.ddq) <= SLACK * robot.limits.acceleration).all()
-        twist = seen.twist()
-        # Of two parts that are limited, each for itself, the whole may take √2 times as much.
-        split = self.vendor.motion_of(robot).line_turn is LineTurn.SWIVEL
-        turning = math.sqrt(2.0) if split else 1.0
-        for k, move in enumerate(seen.moves):
-            rows = seen.segment == k
-            for part, limit, room in (
-                (slice(3), move.speed.tcp, 1.0),
-                (slice(3, 6), move.speed.reorientation, turning),
-            ):
-                if limit is not None:
-                    rate = np.linalg.norm(twist[rows, part], axis=1)
-                    assert (rate <= SLACK * room * limit).all()
-            if isinstance(move, MoveJ) and move.speed.joint is not None:
-                assert (np.abs(seen.dq[rows]) <= SLACK * move.speed.joint).all()
+        assert (self._shares(robot, run) <= SLACK).all()
+
+    @DRIVES
+    @given(data=st.data(), singular=st.booleans())
+    def test_limits_hold_between_usual_samples_or_are_noted(
+        self, data: st.DataObject, singular: bool
+    ) -> None:
+        """At the density that everybody drives with, near singular postures too."""
+        robot = self._robot(data)
+        controller = self.controller(robot)
+        controller.sampling = Controller(self.vendor, robot).sampling
+        if singular:
+            program = data.draw(lines_near_singularities(robot))
+        else:
+            program = data.draw(programs(robot, self.vendor.label, self._parts(self.zones), MOVES))
+        try:
+            run = controller.run(program, period=PERIOD)
+        except MotionError:
+            assume(False)
+            raise
+        noted = {note.move for note in run.notes if "between samples" in note.message}
+        passed = np.flatnonzero(self._shares(robot, run) > SLACK)
+        assert {run.path.route.moves[k] for k in passed} <= noted
 
     @DRIVES
     @given(data=st.data())
@@ -221,7 +243,7 @@ class EmulationChecks(Subject):
         assume(robot.name.partition("/")[2] in self.driven_robots())
         again = self.read_back(self.vendor.write(run.program, robot))
         try:
-            copy = self.controller(robot).run(again, run.program.start, PERIOD)
+            copy = self.controller(robot).run(again, period=PERIOD)
         except MotionError as error:
             raise AssertionError(f"the written program cannot be driven: {error}") from error
         first, second = run.timing, copy.timing
@@ -232,6 +254,32 @@ class EmulationChecks(Subject):
         late = 1e-3 * first.duration
         assert np.abs(apart[0] - apart[1]).max() < 1e-3 + fastest * late
 
+    def _shares(self, robot: Robot, run: Run) -> FloatArray:
+        """(M,), the greatest share of a limit that is taken on each leg, between samples too."""
+        seen = Observed.of(robot, run)
+        twist = seen.twist()
+        # Of two parts that are limited, each for itself, the whole may take √2 times as much.
+        split = self.vendor.motion_of(robot).line_turn is LineTurn.SWIVEL
+        turning = math.sqrt(2.0) if split else 1.0
+        most = np.zeros(len(seen.moves))
+        for k, move in enumerate(seen.moves):
+            rows = seen.segment == k
+            dq, ddq = np.abs(seen.dq[rows]), np.abs(seen.ddq[rows])
+            shares = [dq / robot.limits.velocity, ddq / robot.limits.acceleration]
+            for part, limit, room in (
+                (slice(3), move.speed.tcp, 1.0),
+                (slice(3, 6), move.speed.reorientation, turning),
+            ):
+                if limit is not None:
+                    shares.append(np.linalg.norm(twist[rows, part], axis=1) / (room * limit))
+            if isinstance(move, MoveJ) and move.speed.joint is not None:
+                shares.append(dq / move.speed.joint)
+            most[k] = max(float(share.max(initial=0.0)) for share in shares)
+        return most
+
+    def _parts(self, zone: OfKind[Zone]) -> Parts:
+        return Parts(zone, self.speeds, arc=self.arcs())
+
     def _drive(
         self,
         data: st.DataObject,
@@ -239,17 +287,21 @@ class EmulationChecks(Subject):
         kinds: Sequence[type[Move]] = (MoveJ, MoveL, MoveC),
     ) -> tuple[Robot, Run]:
         """A robot, and what came of a program that it can drive."""
-        names = [n for n in sorted(self.vendor.robots) if self.vendor.robot(n).arm_size == 6]
-        if not names:
-            pytest.skip(f"{self.name} has no arm of six axes")
-        robot = self.vendor.robot(data.draw(st.sampled_from(names[:ROBOTS])))
-        parts = Parts(zone, self.speeds, arc=self.arcs())
+        robot = self._robot(data)
+        parts = self._parts(zone)
         program = data.draw(programs(robot, self.vendor.label, parts, MOVES, kinds))
         try:
             return robot, self.controller(robot).run(program, period=PERIOD)
         except MotionError:
             assume(False)
             raise
+
+    def _robot(self, data: st.DataObject) -> Robot:
+        """One of the vendor's arms of six axes."""
+        names = [n for n in sorted(self.vendor.robots) if self.vendor.robot(n).arm_size == 6]
+        if not names:
+            pytest.skip(f"{self.name} has no arm of six axes")
+        return self.vendor.robot(data.draw(st.sampled_from(names[:ROBOTS])))
 
 
 def on_times(trajectory: Trajectory, t: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from difflib import SequenceMatcher
 from typing import Any
 
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -16,10 +17,13 @@ from ...core.program.origin import MoveOrigin, Origin, Ownership
 from ...core.program.program import Program
 from ...core.program.target import JointTarget, Target
 from ...core.program.zone import Fine, Radius, Zone
+from ...core.source.bystanders import bystanders
 from ...core.source.patching import difference, reading_of
-from ...core.source.reading import Files
+from ...core.source.reading import Files, Reading, ReadOptions
+from ...core.source.text import SourceFile
 from .subject import PROGRAM_EXAMPLES, Subject
 
+_BESIDE = "beside"
 PARTS = ("target", "via", "speed", "zone")
 
 
@@ -50,7 +54,8 @@ class PatchingChecks(Subject):
         except FlybyError as error:
             assert not must_be_patched(program, change), f"an owned {change.part}: {error}"
             return
-        assert set(files) <= set(before.files)
+        assert {file.name for file in files.values()} <= set(before.files)
+        assert not any(name.startswith(("/", "..")) for name in files), "a name leads elsewhere"
         assert difference(change.program, before.again(files)) is None
         check_stretches(before.files, files, change)
 
@@ -61,6 +66,37 @@ class PatchingChecks(Subject):
         robot = self.vendor.robot(self.driven_robots()[0])
         program = self.read_back(self.vendor.write(data.draw(self.programs(robot)), robot))
         assert dict(self.vendor.patch(program, robot)) == {}
+
+    @PROGRAM_EXAMPLES
+    @given(data=st.data())
+    def test_no_use_of_a_changed_datum_escapes(self, data: st.DataObject) -> None:
+        """Code beside the program that uses it, here its own statement once more, is told of.
+
+        So is code that drives under a setting that stands before the motion.
+        """
+        self.need("reader", "writer", "patcher")
+        wording = None if self.vendor.speaks is None else self.vendor.speaks.wording
+        if wording is None:
+            pytest.skip(f"the texts of {self.name} are not searched")
+        robot = self.vendor.robot(self.driven_robots()[0])
+        program = self.read_back(self.vendor.write(data.draw(self.programs(robot)), robot))
+        change = self._change(data, program)
+        own = change.statement
+        known = [span for span in change.origin.numbers if span is not None]
+        outside = [s for s in known if s.file != own.file or not own.start <= s.start < own.end]
+        if not outside:
+            return
+        reading = reading_of(program)
+        named = change.origin.datum is not None
+        for span in (own, change.origin.span) if named else (own,):
+            text = reading.files[span.file].text[span.start : span.end]
+            told = bystanders(
+                _beside(program, reading, text), _beside(change.program, reading, text), wording
+            )
+            wanted = [one for one in told if one.datum == change.origin.datum or not named]
+            assert any(place.file == _BESIDE for one in wanted for place in one.places), (
+                f"{change.origin.datum or 'a setting'} is used in {text!r}, and nobody is told"
+            )
 
     def _change(self, data: st.DataObject, program: Program) -> _Change:
         """One part of one move with other numbers."""
@@ -96,6 +132,16 @@ class PatchingChecks(Subject):
         )
 
 
+def _beside(program: Program, reading: Reading, text: str) -> Program:
+    """The program with a further file, whose text it does not drive."""
+
+    def read(_: Files, main: str, options: ReadOptions) -> Program:
+        return reading.read(reading.files, main, options)
+
+    files = {**reading.files, _BESIDE: SourceFile(_BESIDE, f"{text}\n")}
+    return replace(program, reading=replace(reading, files=files, read=read))
+
+
 def shifted(target: Target, step: float) -> Target:
     """The target further along its first axis, m or rad."""
     if isinstance(target, JointTarget):
@@ -124,7 +170,8 @@ def check_stretches(before: Files, after: Files, change: _Change) -> None:
     whole lines, declarations of new data, have come."""
     spans = [change.origin.span, change.statement]
     spans += [span for span in change.origin.numbers if span is not None]
-    for name, file in after.items():
+    for file in after.values():
+        name = file.name
         old = before[name]
         assert file.codec == old.codec and file.data != old.data
         own = sorted((s.start, s.end) for s in spans if s.file == name)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from ...core.errors import FlybyError
 from ...core.program.program import Program
 from ...core.source.patching import difference
+from .language import said
 from .subject import PROGRAM_EXAMPLES, Subject
 
 
@@ -28,7 +29,8 @@ class RecordingChecks(Subject):
         if self.vendor.reader is None:
             return
         again = Program(self.read_back(sources).moves)
-        found = difference(Program(program.moves), again, self.precision)
+        wanted = Program(said(program, self.vendor, robot, again).moves)
+        found = difference(wanted, again, self.precision)
         assert found is None, f"move {found[0] + 1} is driven with another {found[1]}"
 
     def test_a_period_that_is_none_is_refused(self) -> None:

@@ -23,7 +23,8 @@ def log(flyby: Flyby, tmp_path: Path) -> Path:
     path = tmp_path / "emulated.csv"
     result = flyby("emulate", SQUARE, "--robot", ROBOT, "--period", "0.008", "--csv", path)
     assert result.exit_code == 0, result.output
-    data = np.loadtxt(path, delimiter=",", skiprows=1)[:, :7]
+    # Controllers log the motors.
+    data = np.loadtxt(path, delimiter=",", skiprows=1)[:, [0, *range(-6, 0)]]
     rest = np.repeat(data[[0]], 20, axis=0)
     rest[:, 0] = 0.008 * np.arange(-20, 0)
     data = np.concatenate([rest, data])
@@ -158,3 +159,15 @@ def test_options_are_documented(flyby: Flyby) -> None:
     section = text[text.index("## flyby compare") : text.index("## Answers")]
     for option in ("--columns", "--start", "--plot", "--json", "--force", "--cell", "--entry"):
         assert option in section
+
+
+def test_a_clock_or_an_override_is_found_to_explain_a_log(flyby: Flyby, log: Path) -> None:
+    data = load(log)
+    data[:, 0] = data[0, 0] + 1.02 * (data[:, 0] - data[0, 0])
+    save(log, data)
+    words = ("compare", SQUARE, log, "--robot", ROBOT)
+    found = json.loads(flyby(*words, "--json").stdout)
+    assert found["time_scale"]["cause"] == "clock"
+    assert found["time_scale"]["value"] == pytest.approx(1.02, abs=1e-3)
+    told = " ".join(flyby(*words).stderr.split())
+    assert "a time scale of 1.020 alone explains this log: check override and clock" in told

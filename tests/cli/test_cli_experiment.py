@@ -178,4 +178,4 @@ def test_options_are_documented() -> None:
 
     (command,) = [c for n, c in get_command(app).commands.items() if n == "experiment"]
     options = {option for param in command.params for option in param.opts}
-    assert {o for o in options if o != "--help"} <= set(re.findall(r"--[a-z]+", section))
+    assert {o for o in options if o != "--help"} <= set(re.findall(r"--[a-z-]+", section))

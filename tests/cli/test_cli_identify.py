@@ -17,6 +17,7 @@ from flyby.core.motion.blend import Blend
 from flyby.core.motion.controller import Controller
 from flyby.core.motion.model import load_motion_model
 from flyby.core.registry import find_robot, find_vendor
+from flyby.identification.fit import Judgement
 from flyby.identification.logs.synthetic import Faults, synthetic_run
 
 ROOT = Path(__file__).parents[2]
@@ -178,3 +179,81 @@ def test_a_record_of_another_robot(flyby: Flyby, folder: Path, tmp_path: Path) -
     record.write_text(json.dumps({"robot": "UR10e", "moves": [], "log": {"file": "x.csv"}}))
     result = flyby("identify", folder, record, "--robot", ROBOT, *FIT)
     assert result.exit_code == 1
+
+
+JOINTS = """MODULE joints
+  PROC main()
+    MoveAbsJ [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]], v500, fine, tool0;
+    MoveAbsJ [[30,20,10,20,30,40],[9E9,9E9,9E9,9E9,9E9,9E9]], v500, z10, tool0;
+    MoveAbsJ [[-20,10,-10,-20,50,-40],[9E9,9E9,9E9,9E9,9E9,9E9]], v500, fine, tool0;
+  ENDPROC
+ENDMODULE
+"""
+SCRIPT = """def prog():
+  set_tcp(p[0,0,0,0,0,0])
+  movej([0,-1.57,1.57,-1.57,-1.57,0], a=1.4, v=1.05)
+  movel(p[0.4,-0.3,0.4,0,3.14,0], a=1.2, v=0.25, r=0.05)
+  movel(p[0.4,0.1,0.4,0,3.14,0], a=1.2, v=0.25, r=0.05)
+  movel(p[0.6,0.1,0.5,0,3.14,0], a=1.2, v=0.25)
+end
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "robot"),
+    [("joints.mod", JOINTS, "abb/irb1200-5-090"), ("prog.script", SCRIPT, "ur/ur10e")],
+)
+def test_robots_whose_lists_are_empty_are_fitted(
+    flyby: Flyby, tmp_path: Path, name: str, text: str, robot: str
+) -> None:
+    """Without --fit; figures that the log does not show stay as they are, and lists that are
+    empty stay so."""
+    program = tmp_path / name
+    program.write_text(text, "utf-8")
+    vendor, arm = find_vendor(robot.split("/")[0]), find_robot(robot)
+    truth = replace(vendor.motion_of(arm), smoothing=(0.03,))
+    told = vendor.read_file(program, None, arm)
+    run = synthetic_run(Controller(vendor, arm, truth), told, "run", Faults(), 1)
+    save(program.with_suffix(".csv"), np.column_stack([run.t, run.q]))
+    out = tmp_path / "out.toml"
+    result = flyby("identify", program, "--robot", robot, "--workers", 1, "--out", out, "--json")
+    assert result.exit_code == 0, result.stderr
+    found = json.loads(result.stdout)
+    assert found["loss_after"] < 0.2 * found["loss_before"]
+    assert found["held_back"]["better"] and found["held_back"]["by_corners"]
+    unseen = {one["name"] for one in found["not_identifiable"]}
+    assert "limit.joint_acceleration_scale[5]" in unseen
+    made = load_motion_model(out, vendor.motion_of(arm), robot)
+    assert made.smoothing == pytest.approx((0.03,), abs=2e-3)
+
+
+def test_a_log_that_is_only_slower_is_not_explained_by_physics(
+    flyby: Flyby, folder: Path, tmp_path: Path
+) -> None:
+    def slower(data: np.ndarray) -> np.ndarray:
+        return np.column_stack([1.02 * data[:, 0], data[:, 1:]])
+
+    program = copied(folder, tmp_path, slower)
+    result = flyby("identify", program, "--robot", ROBOT, *FIT, "--workers", 1, "--json")
+    assert result.exit_code == 0, result.output
+    found = json.loads(result.stdout)
+    for one in found["parameters"]:
+        assert one["value"] == pytest.approx(TRUE[one["name"]], rel=0.05)
+    (scale,) = found["time_scales"]
+    assert "a time scale of 1.020" in scale["says"] and "check override and clock" in scale["says"]
+
+
+def test_a_model_that_predicts_worse_is_not_written_unforced(
+    flyby: Flyby, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    worse = Judgement(("square",), (0.1,), (0.2,), (0.1,), (0.2,), True, ("runs at 50 mm/s",))
+    monkeypatch.setattr("flyby.identification.fit.judge", lambda *given: worse)
+    out, report = tmp_path / "params.toml", tmp_path / "page.html"
+    words = ("identify", folder, "--robot", ROBOT, *FIT, "--workers", 1, "--out", out)
+    result = flyby(*words, "--report", report)
+    told = " ".join(result.stderr.split())
+    assert result.exit_code == 1 and not out.exists()
+    for text in ("predicts worse", "0.1 → 0.2", "runs at 50 mm/s", "--force writes it"):
+        assert text in told
+    assert "predicts worse" in report.read_text("utf-8")
+    assert flyby(*words, "--force").exit_code == 0 and out.exists()

@@ -25,6 +25,12 @@ def test_a_folder_and_a_name_without_suffix_are_told(flyby: Flyby, tmp_path: Pat
     assert "no suffix" in flyby("emulate", tmp_path / "program", "--robot", ROBOT).stderr
 
 
+def test_a_start_beyond_a_limit_is_no_matter_of_targets(flyby: Flyby, small) -> None:
+    result = flyby("emulate", small(), "--robot", ROBOT, "--start", "200,0,0,0,0,0")
+    assert "the start: joint J1 would stand at 200.00 °, beyond its limit" in result.stderr
+    assert result.stderr.strip().endswith("start within the limits")
+
+
 def test_what_is_kept_is_told_once_with_its_count(flyby: Flyby, small) -> None:
     program = small("SetDO do1, 1", "SetDO do1, 0", "MoveL Offs(p1,10,0,0), v200, fine, tool0")
     told = flyby("emulate", program, "--robot", ROBOT).stderr
@@ -35,3 +41,8 @@ def test_configurations_are_written_as_their_vendor_does() -> None:
     assert str(AbbConfiguration(0, -1, 0, 7)) == "[0,-1,0,7]"
     assert (str(KukaConfiguration(2, 35)), str(KukaConfiguration(None, 3))) == ("S 2, T 35", "T 3")
     assert str(UrConfiguration((0.0, 3.141592653589793))) == "[0.00°, 180.00°]"
+
+
+def test_a_name_does_not_speak_to_the_terminal(flyby: Flyby, tmp_path: Path) -> None:
+    told = flyby("emulate", tmp_path / "a\x1b]0;owned\x07.mod", "--robot", ROBOT).stderr
+    assert "\x1b" not in told and "a\ufffd]0;owned\ufffd.mod" in told

@@ -168,7 +168,7 @@ def test_code_that_was_not_driven_is_told_and_bars_the_files_own_place(
     refused = flyby("optimize", program, "--cell", cell, *QUICK, "--in-place")
     told = refused.stderr.replace("\n", " ")
     assert refused.exit_code == 1 and "nothing was written" in told
-    assert "p2 has changed, and is also named in line 17" in told
+    assert "p2 has changed, and is also used in line 17" in told
     assert program.read_bytes() == given
     beside = flyby("optimize", program, "--cell", cell, *QUICK, "--out", tmp_path / "out")
     assert beside.exit_code == 0 and "p2 has changed" in beside.stderr.replace("\n", " ")

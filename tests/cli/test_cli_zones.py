@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import trimesh
@@ -14,8 +15,8 @@ from typer.testing import Result
 from flyby.cli.patching import Places
 from flyby.core.collision.verdict import Verdict
 from flyby.core.errors import InputError
-from flyby.core.motion.trajectory import write_whole
 from flyby.core.registry import find_robot, find_vendor
+from flyby.core.source.reading import Reading
 from flyby.core.source.text import SourceFile
 
 from .box_program import CELL, module
@@ -179,12 +180,13 @@ def test_an_edit_saved_meanwhile_is_not_lost(tmp_path: Path) -> None:
     path = tmp_path / "a.mod"
     read = {str(path): SourceFile(str(path), "old")}
     new = {str(path): SourceFile(str(path), "new")}
+    original = SimpleNamespace(name="a", reading=Reading(read, str(path), None, None))
     path.write_bytes(b"edited")
     with pytest.raises(InputError, match="has changed since it was read"):
-        IN_PLACE.write(new, read)
+        IN_PLACE.write(new, original)
     assert path.read_bytes() == b"edited"
     path.write_bytes(b"old")
-    assert IN_PLACE.write(new, read) == [path]
+    assert IN_PLACE.write(new, original) == [path]
     assert path.read_bytes() == b"new"
 
 
@@ -199,12 +201,99 @@ def test_files_that_cannot_be_encoded_leave_the_others_alone(tmp_path: Path) -> 
     assert [Path(name).read_bytes() for name in names] == [b"old", b"old"]
 
 
-def test_a_link_stays_one_and_permissions_are_kept(tmp_path: Path) -> None:
-    real, link = tmp_path / "real.mod", tmp_path / "link.mod"
-    real.write_bytes(b"old")
-    real.chmod(0o600)
-    link.symlink_to(real)
-    write_whole(link, b"new")
-    assert link.is_symlink()
-    assert real.read_bytes() == b"new"
-    assert real.stat().st_mode & 0o777 == 0o600
+LOW = """MODULE low
+  CONST jointtarget h := [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+  CONST robtarget p1 := [[1500,-400,500],[0,0,1,0],[-1,0,-1,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+  CONST robtarget p2 := [[1500,0,900],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+  CONST robtarget p3 := [[1500,400,-120],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+  PROC main()
+    MoveAbsJ h,v1000,fine,tool0;
+    MoveJ p1,v1000,fine,tool0;
+    MoveL p2,v1000,z10,tool0;
+    MoveL p3,v1000,fine,tool0;
+  ENDPROC
+ENDMODULE
+"""
+
+
+@pytest.mark.parametrize("command", ["zones", "optimize"])
+def test_without_a_cell_there_is_a_floor(flyby: Flyby, tmp_path: Path, command: str) -> None:
+    """A program's own targets below it are named, with what helps."""
+    program = tmp_path / "low.mod"
+    program.write_text(LOW, "utf-8")
+    words = [command, program, "--robot", "abb/irb6640-180-255"]
+    words += ["--starts", 1, "--generations", 0] if command == "optimize" else []
+    refused = flyby(*words)
+    assert refused.exit_code == 1
+    assert "low.mod:10" in refused.stderr and "below the plane under the base" in refused.stderr
+    assert "--no-floor" in refused.stderr
+    lifted = flyby(*words, "--no-floor")
+    assert lifted.exit_code == 0, lifted.output
+    assert "nothing stands around" in lifted.output
+    program.write_text(LOW.replace("400,-120", "400,300"), "utf-8")
+    above = flyby(*words)
+    assert above.exit_code == 0 and "the plane under the base" in above.output
+
+
+def test_a_cell_says_itself_what_stands_there(flyby: Flyby) -> None:
+    cell = Path(__file__).parents[2] / "examples" / "cell"
+    words = ["zones", cell / "two_joints.mod", "--cell", cell / "two_joints.toml", "--no-floor"]
+    result = flyby(*words)
+    assert result.exit_code == 1 and "--no-floor" in result.stderr
+
+
+SHARED = """MODULE shared
+  PERS zonedata own := [FALSE,12,18,18,1.8,18,1.8];
+  CONST robtarget p1 := [[1500,-200,900],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+  PROC main()
+    ConfL\\Off;
+    ConfJ\\Off;
+    MoveJ p1,v1000,fine,tool0;
+    MoveL Offs(p1,0,200,0),v500,own,tool0;
+    MoveL Offs(p1,0,200,200),v500,own,tool0;
+    MoveL Offs(p1,0,0,200),v500,fine,tool0;
+  ENDPROC
+ENDMODULE
+"""
+
+
+def test_a_datum_that_another_move_needs_stays_with_a_note(flyby: Flyby, tmp_path: Path) -> None:
+    """The command goes on, and its advice is an option that it has."""
+    program = tmp_path / "shared.mod"
+    program.write_text(SHARED, "utf-8")
+    words = ["zones", program, "--robot", "abb/irb6640-180-255", "--keep", 2]
+    result = flyby(*words)
+    assert result.exit_code == 0, result.output
+    told = " ".join(result.output.split())
+    assert "its zone stays as it is:" in told and "is read by move 2 as well" in told
+    assert "--own" in told
+    assert flyby(*words, "--own").exit_code == 0
+
+
+OVERLAPPING = """def overlapping():
+  movej([-0.3,-1.4,1.9,-2.0,-1.57,0],a=1.4,v=1.05)
+  movej(get_inverse_kin(p[0.5,-0.2,0.35,2.2,2.2,0]),a=1.4,v=1.05)
+  movel(p[0.5,-0.15,0.35,2.2,2.2,0],a=1.2,v=0.25,r=0.04)
+  movel(p[0.5,-0.15,0.38,2.2,2.2,0],a=1.2,v=0.25,r=0.02)
+  movel(p[0.5,0.1,0.38,2.2,2.2,0],a=1.2,v=0.25,r=0.02)
+  movel(p[0.5,0.1,0.5,2.2,2.2,0],a=1.2,v=0.25)
+end
+"""
+
+
+@pytest.mark.parametrize("command", ["zones", "optimize"])
+def test_a_waypoint_that_is_left_out_does_not_return(
+    flyby: Flyby, tmp_path: Path, command: str
+) -> None:
+    """Its blend overlaps the next one's; with smaller ones the robot would go there, and slower."""
+    program = tmp_path / "overlapping.script"
+    program.write_text(OVERLAPPING, "utf-8")
+    words = [command, program, "--robot", "ur/ur10e", "--no-floor", "--json"]
+    words += ["--starts", 1, "--generations", 0] if command == "optimize" else []
+    result = flyby(*words)
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    times = next(row for row in told["figures"] if row["what"] == "cycle time")
+    assert times["after"] <= times["before"]
+    if command == "zones":
+        assert any("leaves the waypoint of move 4 out" in n["message"] for n in told["notes"])

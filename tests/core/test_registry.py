@@ -12,6 +12,7 @@ import pytest
 from flyby.core import registry as registry_module
 from flyby.core.errors import InputError, UnknownNameError
 from flyby.core.hookspec import VendorRegister, hookimpl
+from flyby.core.program.program import Program
 from flyby.core.registry import BrokenPlugin, Registry
 from flyby.core.vendor import Vendor
 
@@ -26,7 +27,7 @@ class Language:
         return str(path), options.entry, options.robot
 
     def write(self, program: Any, robot: Any, options: Any) -> Any:
-        return {"main.txt": f"{program} {robot.name} {options}"}
+        return {"main.txt": f"{program.name} {robot.name} {options}"}
 
 
 def vendor(name: str = "acme", **parts: Any) -> Vendor:
@@ -276,7 +277,7 @@ def test_language_parts_are_reached_through_the_vendor() -> None:
         emulation_only={"arm-2": "it speaks another language"},
     )
     robots: list[Any] = [SimpleNamespace(name=f"acme/arm-{i}") for i in (1, 2)]
-    program: Any = "p"
+    program = Program((), "p")
     assert one.read("x", "a.txt") == ("x", "a.txt", None, None)
     assert one.read_file("a.txt", "weld", robots[0]) == ("a.txt", "weld", robots[0])
     assert one.write(program, robots[0]) == {"main.txt": "p acme/arm-1 {}"}

@@ -55,7 +55,7 @@ class Faulty:
 def joints(run: Run, time: np.ndarray) -> np.ndarray:
     """Joints of a motion at times, at rest before and after."""
     trajectory = run.trajectory
-    return np.stack([np.interp(time, trajectory.t, column) for column in trajectory.q.T], -1)
+    return np.stack([np.interp(time, trajectory.t, column) for column in trajectory.q_motor.T], -1)
 
 
 def faulty(

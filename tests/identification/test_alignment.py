@@ -188,7 +188,7 @@ def test_a_log_that_hardly_moves_near_the_path_is_none_in_degrees() -> None:
     path = np.linspace(-1.2, 1.2, 1000)[:, None] * np.ones(6)
     q = path + np.array([0.5, -0.5, 0.5, -0.5, 0.5, -0.5])
     with pytest.raises(InputError) as error:
-        check_path(ROBOT, SimpleNamespace(t=t, q=path), q, match(t, path, q), slice(0, 1000))
+        check_path(ROBOT, SimpleNamespace(t=t, q_motor=path), q, match(t, path, q), slice(0, 1000))
     assert "degrees" not in str(error.value)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from flyby.core.errors import InputError
-from flyby.core.program.move import MoveC, MoveJ, MoveL
+from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot
 from flyby.identification.logs import load_run, read_samples
@@ -137,7 +137,7 @@ def test_a_record_may_name_the_catalogue_robot(tmp_path) -> None:
         (f"{HEADER}\n0,0\n0.1,0,0,0,0,0,0\n", r"log\.csv:2: the line has no column 'q2'"),
         (
             f"{HEADER}\n0,0,0,0,0,0,0\n0.1,0,nan,0,0,0,0\n",
-            r"log\.csv:3: column 'q2'.*not finite; delete",
+            r"log\.csv:3: column 'q2'.*not finite, or beyond any quantity; delete",
         ),
         (f"{HEADER}\n0,0,0,0,0,0,0\n", "two samples"),
         (f"{HEADER}\n", "two samples"),
@@ -197,3 +197,20 @@ def test_a_time_of_zero_is_none(tmp_path) -> None:
     moves[1]["params"]["t"] = 0
     run = load_run(write(tmp_path, {"moves": moves}), find_robot)
     assert (run.program.moves[1].speed.duration, run.program.moves[1].speed.joint) == (None, 0.8)
+
+
+@pytest.mark.parametrize(
+    ("robot", "said", "turn"),
+    [
+        ("abb/irb6640-180-255", None, ArcOrientation.FOLLOWS_ARC),
+        ("kuka/kr3-r540", None, ArcOrientation.FIXED_FRAME),
+        ("ur/ur10e", None, ArcOrientation.FIXED_FRAME),
+        ("ur/ur10e", "follows_arc", ArcOrientation.FOLLOWS_ARC),
+    ],
+)
+def test_arcs_turn_the_tool_as_the_language_has_it(tmp_path, robot, said, turn) -> None:
+    at = {"xyz_m": [0.4, 0.1, 0.5], "quat_wxyz": [0.0, 1.0, 0.0, 0.0]}
+    arc = {"type": "MoveC", "target_pose": at, "via_pose": at}
+    moves = [arc if said is None else {**arc, "arc_orientation": said}]
+    run = load_run(write(tmp_path, {"robot": robot, "moves": moves}), find_robot)
+    assert run.program.moves[0].orientation is turn

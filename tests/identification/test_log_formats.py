@@ -224,7 +224,7 @@ def test_external_axes_come_last(tmp_path) -> None:
         ('time = { period = -1 }\njoints = { columns = ["a"] }', "above zero"),
         ('time = { period = nan }\njoints = { columns = ["a"] }', "above zero"),
         ('delimiter = ""\ntime = { column = "t" }\njoints = { columns = ["a"] }', "one character"),
-        ("time = {", "not a readable file of columns"),
+        ("time = {", "is not TOML"),
     ],
 )
 def test_broken_columns_name_file_and_key(tmp_path, text, message) -> None:
@@ -368,7 +368,7 @@ def test_files_of_columns_are_read_or_refused(tmp_path, text) -> None:
 
 def test_a_missing_file_a_folder_and_many_open_frames(tmp_path, robot) -> None:
     for path in (tmp_path / "absent", tmp_path):
-        with pytest.raises(InputError, match="not a readable log"):
+        with pytest.raises(InputError, match="cannot be read"):
             read_samples(path, robot)
     path = tmp_path / "rsi.xml"
     path.write_text("<Rob" * 200_000 + "</Rob>" * 2, "utf-8")

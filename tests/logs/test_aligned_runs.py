@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -10,9 +11,11 @@ import pytest
 
 from flyby.core.errors import InputError
 from flyby.core.motion.controller import Controller
+from flyby.core.motion.model import ArcTurn
 from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.alignment import align
 from flyby.identification.logs import clean, load_run
+from flyby.identification.prediction import predict
 from flyby.identification.residuals import residuals
 
 
@@ -24,8 +27,11 @@ def loaded(path: Path):
 
 def motion(path: Path):
     run, _ = loaded(path)
-    vendor = find_vendor(run.robot.split("/")[0])
-    return Controller(vendor, find_robot(run.robot)).run(run.program, period=1e-3).trajectory
+    vendor, robot = find_vendor(run.robot.split("/")[0]), find_robot(run.robot)
+    model = vendor.motion_of(robot)
+    if "robotstudio" in path.parent.name:
+        model = replace(model, arc_turn=ArcTurn.AXIS)
+    return Controller(vendor, robot, model).run(run.program, period=1e-3).trajectory
 
 
 def test_virtual_controllers_tear_no_samples_and_a_real_one_does(logs) -> None:
@@ -41,17 +47,35 @@ def test_virtual_controllers_tear_no_samples_and_a_real_one_does(logs) -> None:
 def test_few_samples_of_any_run_are_doubted(logs) -> None:
     for path in sorted(logs.glob("*/*.json")):
         _, log = loaded(path)
-        assert (~log.valid).mean() < 0.05, path
+        doubted = ~log.valid
+        doubted[log.held] = False  # the logger said the same twice: no doubt about those
+        assert doubted.sum() <= max(6, 0.05 * len(log.t)), path  # the shortest has 107
+        assert len(log.held) < 0.1 * len(log.t), path
 
 
 def test_every_run_is_aligned_with_its_own_program(logs) -> None:
     for path in sorted(logs.glob("*/*.json")):
         run, log = loaded(path)
+        if not run.zones_known:  # aligned once their zones are fitted
+            continue
         robot, trajectory = find_robot(run.robot), motion(path)
         found = align(robot, trajectory, log)
         rest = residuals(robot, run.program.moves[0].tool, trajectory, log, found)
         assert np.degrees(np.percentile(np.abs(rest.joint_path).max(axis=1), 50)) < 2.0, path
         assert len(found.rows) > 0.2 * len(log.t), path
+
+
+def test_a_robots_tool_follows_arcs_and_a_virtual_controllers_does_not(logs) -> None:
+    """The same RAPID, told nothing of how to turn."""
+    for folder, turn in (("real", ArcTurn.PROGRAMMED), ("robotstudio", ArcTurn.AXIS)):
+        paths = sorted(logs.glob(f"abb_irb6640_{folder}/movec_*.json"))
+        assert len(paths) >= 3
+        for path in paths:
+            run, log = loaded(path)
+            controller = Controller(find_vendor("abb"), find_robot(run.robot))
+            found = predict(controller, run.name, run.program, log, period=1e-3)
+            assert found.turn is turn, path
+            assert found.figures.joint_path_rms < np.radians(0.05), path
 
 
 def test_runs_of_other_programs_are_refused(logs) -> None:

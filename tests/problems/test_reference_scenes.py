@@ -241,7 +241,7 @@ def test_scenes_are_written_as_files_that_say_the_same(tmp_path: Path) -> None:
 def test_the_written_station_is_proven(tmp_path: Path, model: MotionModel | None) -> None:
     """On the catalogue's arm, whose shapes are others than the scene's, and as ABB drives it.
 
-    What is proven is no more than the commanded joints keep, and not much less.
+    What is proven is no more than the links keep, and hardly less.
     """
     example = runpy.run_path(str(ROOT / "examples" / "make_scenes.py"))
     scene = stud_welding()
@@ -252,4 +252,4 @@ def test_the_written_station_is_proven(tmp_path: Path, model: MotionModel | None
     run = controller.run(example["whole_program"](scene))
     proof = certify(controller, run, scenes_of(cell), cell.clearance, resolution=1e-4)
     kept = scenes_of(cell)(scene.tool).clearance(run.trajectory.q, 0.05).min()
-    assert proof.proven and kept - 0.0065 < proof.clearance <= kept
+    assert proof.proven and kept - 0.0002 < proof.clearance <= kept

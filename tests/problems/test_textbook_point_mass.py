@@ -143,6 +143,17 @@ def test_the_ways_are_free(scene: Scene) -> None:
     assert prove_free(Arcs(legs, 1.0), scene).free
 
 
+def test_the_wall_leaves_no_gap_in_the_square() -> None:
+    """Of the line through its circles' centres each covers a piece; together they cover it all."""
+    x = {circle[0] for circle in WALL.circles}
+    assert len(x) == 1 and WALL.start[0] < min(x) < WALL.goal[0]
+    covered = WALL.lower[1]
+    for _, y, radius in WALL.circles:
+        assert y - radius < covered
+        covered = y + radius
+    assert covered > WALL.upper[1]
+
+
 # -------------------------------------------------------------------------------- jumping
 
 

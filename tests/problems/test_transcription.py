@@ -15,6 +15,7 @@ from flyby.core.motion.pieces import Sampling
 from flyby.core.robot.shape import Cylinder
 from flyby.problems.transcription import (
     Grid,
+    Optimum,
     Overlap,
     Task,
     Transcription,
@@ -29,8 +30,12 @@ from flyby.problems.transcription import (
 from .transcription_tasks import SCENE, make_task, waypoints
 
 DENSE = Sampling(blend=64, joint=0.02)
+ZONES_ALONE, VIAS_TOO = 1.488, 1.1435
+"""Reference times, s."""
 AGREE = 0.005
 """Share by which the transcription's time and the emulator's may differ."""
+STARTS = (0.5, 0.7, 0.9)
+"""Radii of the starts, as shares of the largest."""
 
 
 def emulated(made: object) -> float:
@@ -38,16 +43,28 @@ def emulated(made: object) -> float:
     return SCENE.controller(sampling=DENSE).run(made).timing.duration  # type: ignore[arg-type]
 
 
+def fastest(task: Task, grid: Grid, freedom: float, enough: float = 0.0) -> Optimum:
+    """The fastest from several starts, or the first that takes no more than is enough (s).
+
+    Each start ends in a local optimum; which one depends on how BLAS rounds on the machine.
+    """
+    found: list[Optimum] = []
+    for share in STARTS:
+        found.append(optimize(task, grid, freedom=freedom, share=share))
+        if found[-1].success and found[-1].time <= enough:
+            return found[-1]
+    return min((one for one in found if one.success), key=lambda one: one.time)
+
+
 @pytest.fixture(scope="module")
 def zones_only() -> tuple[Transcription, np.ndarray]:
-    found = optimize(make_task(), Grid(4, 10), freedom=0.0)
-    assert found.success
+    found = fastest(make_task(), Grid(4, 10), freedom=0.0, enough=ZONES_ALONE * (1.0 + AGREE))
     return found.problem, found.x
 
 
 def test_zones_take_the_time_that_the_emulator_says(zones_only) -> None:  # type: ignore[no-untyped-def]
     problem, x = zones_only
-    assert problem.objective(x) == pytest.approx(1.488, rel=AGREE)
+    assert problem.objective(x) == pytest.approx(ZONES_ALONE, rel=AGREE)
     assert emulated(program(problem, x)) == pytest.approx(problem.objective(x), rel=AGREE)
 
 
@@ -56,7 +73,7 @@ def test_the_solution_holds_all_limits_at_nodes(zones_only) -> None:  # type: ig
     assert max(problem.worst_shares(x)) <= 1.0 + 1e-6
     held = check(problem, x)
     assert held.velocity < 1.02
-    assert held.clearance >= problem.task.cell.clearance - 1e-4
+    assert held.clearance >= problem.task.cell.clearance
 
 
 def test_the_motion_is_whole_and_at_rest_at_both_ends(zones_only) -> None:  # type: ignore[no-untyped-def]
@@ -93,19 +110,16 @@ def test_another_grid_carries_the_same_motion(zones_only) -> None:  # type: igno
 
 
 def test_via_points_that_may_move_reach_the_reference_time() -> None:
-    """1.142 to 1.1435 s are reached through the emulator; starts differ in the optima they find."""
-    starts = (optimize(make_task(), Grid(5, 10), freedom=0.35, share=s) for s in (0.7, 0.9))
-    found = min((o for o in starts if o.success), key=lambda o: o.time)
-    assert found.check.clearance >= SCENE.cell.clearance - 1e-4
-    assert found.time <= 1.1435 * (1.0 + AGREE)
+    """1.142 to 1.1435 s are reached through the emulator."""
+    most = VIAS_TOO * (1.0 + AGREE)
+    found = fastest(make_task(), Grid(5, 10), freedom=0.35, enough=most)
+    assert found.check.clearance >= SCENE.cell.clearance
+    assert found.time <= most
     assert emulated(found.program) == pytest.approx(found.time, rel=AGREE)
 
 
 def test_neighbours_that_may_touch_are_never_slower() -> None:
-    half, touch = (
-        optimize(make_task(1, overlap=rule), Grid(2, 6), freedom=0.0, rounds=1) for rule in Overlap
-    )
-    assert half.success and touch.success
+    half, touch = (fastest(make_task(1, overlap=rule), Grid(2, 6), freedom=0.0) for rule in Overlap)
     assert touch.time < 0.99 * half.time
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from flyby.core.collision.certificate import certify, scenes_of
 from flyby.core.motion.controller import Controller
@@ -45,8 +47,13 @@ FloatArray = NDArray[np.float64]
 
 SCENE = two_joints()
 THREE = with_zone(SCENE.programs[0], Radius(0.1))
+BOTH = Freedom.WAYPOINTS_AND_ZONES
 TWO = replace(THREE, statements=tuple(THREE.statements[k] for k in (0, 2, 3)))
 ARM = 6
+BETWEEN = 50
+"""Places looked at between two samples of a path."""
+NO_ROOM = 0.005
+"""m; zones smaller than this have no room for two."""
 QUICK = Effort(starts=1, generations=0, iterations=4, workers=1)
 
 
@@ -55,9 +62,17 @@ def controller() -> Controller:
 
 
 def tool_centres(path: Path) -> FloatArray:
-    """(S, 3)."""
-    chain = work_chain(SCENE.cell.robot, SCENE.tool, WORLD)
-    return poses(chain, path.q)[1]
+    """(T, 3), all along a path: where joints drive straight on, samples are up to 73 mm apart."""
+    samples = np.arange(len(path.q))
+    between = np.linspace(0.0, samples[-1], 1 + BETWEEN * samples[-1])
+    q = np.stack([np.interp(between, samples, joint) for joint in path.q.T], axis=1)
+    return poses(work_chain(SCENE.cell.robot, SCENE.tool, WORLD), q)[1]
+
+
+def farthest(one: FloatArray, other: FloatArray) -> float:
+    """The largest way (m) from a place on one curve to the other, and the other way round."""
+    there, back = (KDTree(b).query(a)[0].max() for a, b in ((one, other), (other, one)))
+    return float(max(there, back))
 
 
 def bent(program: Program) -> Program:
@@ -86,21 +101,28 @@ def by_lines(program: Program) -> Program:
 
 
 @pytest.mark.parametrize("make", [lambda p: p, by_lines], ids=["joints", "lines"])
-@given(index=st.integers(0, 2), radius=st.floats(0.01, 0.12))
-@settings(max_examples=15, deadline=None)
+@given(index=st.integers(0, 2), radius=st.floats(0.001, 0.12))
+@example(index=0, radius=0.021484375)
+@example(index=1, radius=0.012)
+@example(index=2, radius=0.08)
+@example(index=1, radius=0.002)
+@settings(max_examples=15)
 def test_a_corner_cut_in_two_is_hardly_another_path(
     make: Callable[[Program], Program], index: int, radius: float
 ) -> None:
     program = make(bent(with_zone(THREE, Radius(radius))))
     before = controller().plan(program)
     found = doubled(program, before, index, ARM)
-    assert found is not None and len(found.moves) == len(program.moves) + 1
+    if found is None:
+        assert radius < NO_ROOM
+        return
+    assert len(found.moves) == len(program.moves) + 1
     after = controller().plan(found)
     assert after.q[[0, -1]] == pytest.approx(before.q[[0, -1]])
     assert all(isinstance(move, type(program.moves[0])) for move in found.moves)
-    ways = np.linalg.norm(tool_centres(after)[:, None] - tool_centres(before)[None], axis=-1)
-    assert ways.min(axis=1).max() < 0.75 * radius
-    assert not any("zone" in note.message for note in after.notes)
+    assert farthest(tool_centres(after), tool_centres(before)) < 0.15 * radius
+    known = {note.message for note in before.notes}
+    assert not [note.message for note in after.notes if note.message not in known]
 
 
 def test_a_corner_between_kinds_keeps_its_point() -> None:
@@ -126,7 +148,7 @@ def test_one_more_pays_and_the_user_may_end_it() -> None:
         seen.append(state)
         return len(seen) > 18
 
-    plane = Task(axes=SCENE.free)
+    plane = Task(axes=SCENE.free, tilt=math.pi)
     kept = optimize_waypoints(controller(), TWO, SCENE.cell, plane, QUICK)
     task = replace(plane, vias=ViaCount.CHANGE)
     more = optimize_waypoints(controller(), TWO, SCENE.cell, task, QUICK, report=report)
@@ -143,14 +165,16 @@ def test_other_stretches_and_limited_points_are_left_alone() -> None:
     program = replace(THREE, statements=(*moves, again, home))
     run = controller().run(program)
     proof = certify(controller(), run, scenes_of(SCENE.cell), 0.005)
-    task = Task(axes=SCENE.free, limits={1: Box(joints=(0.1,) * ARM)})
+    task = Task(axes=SCENE.free, tilt=math.pi, limits={1: Box(joints=(0.1,) * ARM)})
     asked: list[tuple[Program, Task]] = []
 
     def improved(changed: Program, own: Task, effort: Effort) -> None:
         asked.append((changed, own))
 
     def selected(counted: Counted) -> Selection:
-        return select(program, run.path, counted.task, Freedom.WAYPOINTS_AND_ZONES)
+        return select(
+            program, run.path, SCENE.cell.robot, counted.task, Freedom.WAYPOINTS_AND_ZONES
+        )
 
     best = Counted(run, proof, 1.0, task)
     assert change_count(best, improved, selected, QUICK, ARM) is best
@@ -169,7 +193,7 @@ def test_a_point_where_something_is_switched_stays_one() -> None:
     program = replace(THREE, statements=statements)
     run = controller().run(program)
     proof = certify(controller(), run, scenes_of(SCENE.cell), 0.005)
-    task = Task(axes=SCENE.free)
+    task = Task(axes=SCENE.free, tilt=math.pi)
     asked: list[Program] = []
 
     def improved(changed: Program, own: Task, effort: Effort) -> None:
@@ -177,7 +201,9 @@ def test_a_point_where_something_is_switched_stays_one() -> None:
 
     def selected(counted: Counted) -> Selection:
         chosen = counted.run
-        return select(chosen.program, chosen.path, counted.task, Freedom.WAYPOINTS_AND_ZONES)
+        return select(
+            chosen.program, chosen.path, SCENE.cell.robot, counted.task, Freedom.WAYPOINTS_AND_ZONES
+        )
 
     best = Counted(run, proof, 1.0, task)
     assert list(selected(best).points) == [(0,), (1,), (2,)]
@@ -201,7 +227,7 @@ def test_ctrl_c_between_two_searches_keeps_what_is_proven(monkeypatch: pytest.Mo
         return certify(*arguments, **options)  # type: ignore[arg-type]
 
     monkeypatch.setattr(optimizing, "certify", interrupted)
-    task = Task(axes=SCENE.free, vias=ViaCount.CHANGE)
+    task = Task(axes=SCENE.free, tilt=math.pi, vias=ViaCount.CHANGE)
     found = optimize_waypoints(controller(), TWO, SCENE.cell, task, QUICK)
     assert proofs == 4 and found.proven
     assert len(found.program.moves) == len(TWO.moves)

@@ -23,6 +23,7 @@ from flyby.core.robot.chain_kernels import poses
 from flyby.core.robot.shape import Box as BoxShape
 from flyby.core.robot.work_chain import work_chain
 from flyby.core.spatial.pose import Pose
+from flyby.core.spatial.rotation import rotation_vector
 from flyby.problems.scenes.scene import PARABOLAS, SECOND_ORDER_BLENDS, joint_target, with_zone
 from flyby.problems.scenes.two_joints import two_joints
 from flyby.problems.solution import Solution
@@ -43,7 +44,7 @@ FloatArray = NDArray[np.float64]
 SCENE = two_joints()
 PROGRAM = with_zone(SCENE.programs[0], Radius(0.1))
 QUICK = Effort(starts=1, generations=0, iterations=25, workers=1)
-PLANE = Task(axes=SCENE.free)
+PLANE = Task(axes=SCENE.free, tilt=math.pi)
 
 
 def controller() -> Controller:
@@ -322,3 +323,45 @@ def test_what_is_proven_is_what_is_read_back() -> None:
         assert proof.proven
     else:
         assert any("new text" in note.message for note in found.notes)
+
+
+# ------------------------------------------------------------------------ what a tool holds
+
+
+def most_turned(solution: Solution) -> float:
+    """rad, the farthest that the tool is turned at a waypoint."""
+    robot = SCENE.cell.robot
+    pairs = zip(solution.original.moves, solution.program.moves, strict=True)
+    turns = [0.0]
+    for old, new in pairs:
+        assert isinstance(old.target, JointTarget) and isinstance(new.target, JointTarget)
+        R = robot.forward(np.array([old.target.joints, new.target.joints]))[0]
+        turns.append(float(np.linalg.norm(rotation_vector(R[1] @ R[0].T))))
+    return max(turns)
+
+
+@pytest.mark.parametrize("degrees", [0.0, 8.0])
+def test_tools_are_tilted_no_further_than_allowed(degrees: float) -> None:
+    """The same program goes up to a quarter of a turn where that is allowed."""
+    found = optimized(task=Task(tilt=math.radians(degrees)))
+    assert found.changed and found.proven
+    assert found.after.time < found.before.time
+    assert most_turned(found) < math.radians(degrees + 1e-3)
+    told = {point.move: point for point in found.moved}
+    assert told and max(point.turn for point in told.values()) == pytest.approx(most_turned(found))
+    if degrees:
+        assert most_turned(found) > math.radians(1.0)
+
+
+def test_what_was_moved_is_told(faster: Solution) -> None:
+    """Heights and turns, from the waypoints as they are driven."""
+    assert faster.moved and max(point.turn for point in faster.moved) > math.radians(1.0)
+    robot, lift = SCENE.cell.robot, SCENE.tool.tcp
+    for point in faster.moved:
+        old, new = (p.moves[point.move].target for p in (faster.original, faster.program))
+        assert isinstance(old, JointTarget) and isinstance(new, JointTarget)
+        before, after = (robot.flange_pose(t.joints) @ lift for t in (old, new))
+        assert point.rise == pytest.approx(after.position[2] - before.position[2])
+        assert point.distance == pytest.approx(math.dist(after.position, before.position))
+    what = {row.what: row for row in faster.table()}
+    assert what["lowest point of the TCP"].before is not None

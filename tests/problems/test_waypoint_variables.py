@@ -7,9 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from flyby.core.errors import InputError, Span
+from flyby.core.errors import InputError, MotionError, Span
 from flyby.core.motion.controller import Controller
 from flyby.core.motion.derivatives import Derivatives
 from flyby.core.program.event import Event
@@ -22,14 +24,15 @@ from flyby.core.program.zone import FINE, Radius, Zone
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.chain_kernels import poses
 from flyby.core.spatial.pose import Pose
-from flyby.core.spatial.rotation import quaternion_from_matrix
+from flyby.core.spatial.rotation import quaternion_from_matrix, rotation_vector
 from flyby.problems.rounding import Rounding
 from flyby.problems.waypoints import Box, Fixed, Task
 from flyby.problems.waypoints.blocks import cut
 from flyby.problems.waypoints.driving import Driver
 from flyby.problems.waypoints.options import Freedom
+from flyby.problems.waypoints.oriented import OrientedPoint
 from flyby.problems.waypoints.selection import Selection, select
-from flyby.problems.waypoints.variables import Variables, make_variables
+from flyby.problems.waypoints.variables import JOINT_STEP, Variables, make_variables
 
 FloatArray = NDArray[np.float64]
 
@@ -67,7 +70,7 @@ def four(*zones: Zone) -> Program:
 
 
 def selected(program: Program, task: Task | None = None, freedom: Freedom = BOTH) -> Selection:
-    return select(program, CONTROLLER.plan(program), task or Task(), freedom)
+    return select(program, CONTROLLER.plan(program), ROBOT, task or Task(), freedom)
 
 
 SMALL = Radius(0.05)
@@ -283,7 +286,7 @@ def test_chosen_zones_are_predefined_ones_and_stay() -> None:
 
 
 def test_ranges_and_axes_bound_the_variables() -> None:
-    task = Task(limit=Box(joints=(0.1,) * 6), axes=[0, 1])
+    task = Task(limit=Box(joints=(0.1,) * 6), axes=[0, 1], tilt=math.pi)
     variables = variables_of(four(SMALL, SMALL, SMALL, FINE), task)
     assert variables.size == 3 * (2 + 1)
     points = [k for k, part in enumerate(variables.parts) if part.size == 2]
@@ -293,6 +296,57 @@ def test_ranges_and_axes_bound_the_variables() -> None:
 
 
 # -------------------------------------------------------------- blocks and their paths
+
+
+def turned(target: JointTarget, other: JointTarget) -> float:
+    """rad by which the flange is turned between two joint targets."""
+    R = ROBOT.forward(np.array([target.joints, other.joints]))[0]
+    return float(np.linalg.norm(rotation_vector(R[1] @ R[0].T)))
+
+
+@settings(deadline=None)
+@given(values=st.lists(st.floats(-0.25, 0.25), min_size=9, max_size=9))
+def test_tools_keep_their_orientation_at_via_points(values: list[float]) -> None:
+    """Joint targets move over three coordinates, all of which keep the tool as it is turned."""
+    program = four(SMALL, SMALL, SMALL, FINE)
+    variables = variables_of(program)
+    assert [part.size for part in variables.parts] == [3, 1, 3, 1, 3, 1]
+    x = variables.start.copy()
+    x[np.flatnonzero(variables.scale == JOINT_STEP)] = values
+    try:
+        made = variables.applied(x)
+        written = variables.written(x, Rounding())
+    except MotionError:
+        assume(False)
+    for then, now, text in zip(program.moves, made.moves, written.moves, strict=True):
+        assert turned(then.target, now.target) < 1e-9
+        assert turned(then.target, text.target) < math.radians(3e-4)
+
+
+def test_what_keeps_its_orientation_has_derivatives() -> None:
+    program = four(SMALL, SMALL, SMALL, FINE)
+    variables = variables_of(program)
+    part = variables.parts[2]
+    assert isinstance(part, OrientedPoint)
+    values, step = np.array([0.1, -0.05, 0.07]), 1e-6
+    move = program.moves[part.moves[0]]
+
+    def joints_at(x: FloatArray) -> FloatArray:
+        target = part.applied(move, x).target
+        assert isinstance(target, JointTarget)
+        return np.array(target.joints)
+
+    found = [(joints_at(values + d) - joints_at(values - d)) / (2 * step) for d in step * np.eye(3)]
+    assert part.slope(values) == pytest.approx(np.array(found).T, abs=1e-7)
+
+
+def test_points_that_can_only_move_by_turning_the_tool_stay() -> None:
+    program = four(SMALL, SMALL, SMALL, FINE)
+    one = selected(program, Task(axes=[1]))
+    assert one.points == () and "allow a tilt" in one.reasons[0]
+    assert selected(program, Task(axes=[1], tilt=0.1)).points == ((0,), (1,), (2,))
+    parallel = variables_of(program, Task(axes=[1, 2]))
+    assert [part.size for part in parallel.parts] == [1, 1, 1, 1, 1, 1]
 
 
 def test_blocks_are_cut_at_stops() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -10,6 +11,8 @@ from typing import Any
 
 import pytest
 
+from flyby.core.dialect import Dialect
+from flyby.core.errors import MotionError
 from flyby.core.motion.model import MotionModel
 from flyby.core.program.program import Program
 from flyby.core.registry import find_vendor
@@ -86,6 +89,13 @@ def no_provenance() -> MotionModel:
     return replace(SOUND.motion(), provenance={})
 
 
+def deaf() -> Dialect:
+    """A language in whose texts no motion is found: they all count as comments."""
+    assert SOUND.speaks is not None and SOUND.speaks.wording is not None
+    motions = re.compile(r"\b(?:Move|Trigg)[^;]*;")
+    return replace(SOUND.speaks, wording=replace(SOUND.speaks.wording, silent=motions))
+
+
 @pytest.mark.parametrize(
     ("change", "check"),
     [
@@ -100,11 +110,13 @@ def no_provenance() -> MotionModel:
         ({"reader": Reader(None)}, "test_the_reader_survives_any_text"),
         ({"reader": Reader(Program(()))}, "test_what_is_written_is_read_again"),
         ({"reader": Reader(Program(()))}, "test_writing_again_changes_nothing"),
+        ({"speaks": deaf()}, "test_no_use_of_a_changed_datum_escapes"),
     ],
 )
 def test_a_fault_is_found(change: dict[str, Any], check: str) -> None:
     run(SOUND, check)
-    with pytest.raises((AssertionError, KeyError, ExceptionGroup)):
+    # Vendor.write itself refuses texts that are read as another program.
+    with pytest.raises((AssertionError, KeyError, ExceptionGroup, MotionError)):
         run(replace(SOUND, **{"robot_motion": {}, **change}), check)
 
 

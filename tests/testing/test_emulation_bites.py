@@ -145,6 +145,7 @@ class OffPeriod(Controller):
         ("targets_are_the_corners_of_the_path", CutsStops),
         ("the_path_has_a_continuous_tangent", Kinked),
         ("limits_hold_between_samples", Hasty),
+        ("limits_hold_between_usual_samples_or_are_noted", Hasty),
         ("the_motion_starts_and_ends_as_programmed", Late),
         ("half_the_speed_takes_twice_the_time", Sluggish),
         ("zones_between_joint_moves_save_time", Wandering),

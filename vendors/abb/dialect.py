@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
+import math
 import re
+from collections.abc import Iterator
 
-from ...core.dialect import Dialect, MoveWords, OutputWords, Wording
+from ...core.dialect import (
+    ArcRules,
+    Dialect,
+    Mention,
+    MoveWords,
+    OutputWords,
+    RoutineText,
+    Wording,
+)
 from ...core.program.zone import Radius
 
 _SPEEDS = frozenset(
@@ -20,12 +30,60 @@ _SPEEDS = frozenset(
     }
 )
 
+_ROUTINE = re.compile(
+    r"\b(?:PROC|FUNC\s+\w+|TRAP)\s+(?P<name>\w+)\s*(?:\((?P<parameters>[^)]*)\))?(?P<body>)"
+    r".*?\bEND(?:PROC|FUNC|TRAP)\b",
+    re.IGNORECASE | re.DOTALL,
+)
+
+
+def _routines(text: str) -> Iterator[RoutineText]:
+    for found in _ROUTINE.finditer(text):
+        places = found.start(), found.end("body"), found.end()
+        yield RoutineText(found["name"], found["parameters"] or "", *places)
+
+
+_GIVEN = re.compile(
+    # A declaration's name; the parameters of a routine; a name that is given a value; any other.
+    r"\b(?:(?:VAR|PERS|CONST|ALIAS|FUNC)\s+\w+|PROC|TRAP|RECORD|MODULE|FOR)\s+(?P<declared>\w+)"
+    r"(?:\s*\((?P<parameters>[^)]*)\))?"
+    r"|[.\\]\s*\w+"
+    r"|(?<![\w.\\])(?P<assigned>[^\W\d]\w*)(?=(?:\s*\{[^}]*\}|\s*\.\s*\w+)*\s*:=)"
+    r"|(?P<used>[^\W\d]\w*)",
+    re.IGNORECASE,
+)
+
+
+def _named(text: str) -> Iterator[tuple[str, Mention]]:
+    for found in _GIVEN.finditer(text):
+        for mention in Mention:
+            if found[mention] is not None:
+                yield found[mention], mention
+        for parameter in re.findall(
+            r"(\w+)\s*(?:\{[^}]*\}\s*)?(?=[,|\\]|$)", found["parameters"] or ""
+        ):
+            yield parameter, Mention.DECLARED
+
+
 _WORDING = Wording(
     silent=re.compile(r'![^\r\n]*|"[^"\r\n]*"'),
     targets=re.compile(
         r"\b(?:const|pers|var)\s+(?:robtarget|jointtarget)\s+(?P<names>\w+)", re.IGNORECASE
     ),
     name=re.compile(r"[^\W\d]\w*"),
+    heads=re.compile(
+        # What a compact IF executes has no sign before it.
+        r"IF\b(?:[^;]*?\bTHEN\b)?|(?:WHILE|FOR)\b[^;]*?\bDO\b|TEST\b[^;]*?(?=\b(?:CASE|DEFAULT)\b)",
+        re.IGNORECASE,
+    ),
+    routines=_routines,
+    named=_named,
+    blocks=re.compile(
+        r"(?P<once>\bIF\b(?:(?!\bTHEN\b)[^;])*;)|\b(?P<close>END(?:IF|WHILE|FOR|TEST))\b"
+        r"|\b(?P<part>ELSEIF\b[^;]*?\bTHEN|ELSE|CASE|DEFAULT|ERROR[ \t]*$|UNDO|BACKWARD)\b"
+        r"|\b(?P<open>THEN|DO|TEST)\b|(?P<label>^[ \t]*(?!DEFAULT\b)\w+[ \t]*:(?!=))",
+        re.IGNORECASE | re.MULTILINE,
+    ),
 )
 
 _MOVE = MoveWords((Radius,), _SPEEDS, frozenset({"tcp"}))
@@ -45,6 +103,10 @@ _OUTPUTS = OutputWords(
     longest_lead=0.5,  # TriggIO \Time
 )
 
+ARCS = ArcRules(math.radians(240), 1e-4, math.radians(1), "MoveC")
+"""Limits that RobotComponents checks for (PathGenerator): they follow the controller's own error
+messages for circles that are too small or too long."""
+
 RAPID = Dialect(
     joint=_MOVE,
     line=_MOVE,
@@ -56,6 +118,7 @@ RAPID = Dialect(
     least_acceleration_share=0.2,
     fastest=7.0,
     zones=_zones,
+    arcs=ARCS,
     wording=_WORDING,
     outputs=_OUTPUTS,
 )

@@ -3,9 +3,39 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
-from ...core.dialect import Dialect, MoveWords, Orientation, Wording
+from ...core.dialect import Dialect, Mention, MoveWords, Orientation, RoutineText, Wording
 from ...core.program.zone import Radius
+
+_BLOCKS = re.compile(
+    r"\b(?P<routine>(?:def|thread|sec)\s+(?P<name>\w+)\s*\((?P<parameters>[^)]*)\))"
+    r"|\b(?P<begin>if|while|for|thread|sec|def)\b|\b(?P<end>end)\b"
+)
+
+
+def _routines(text: str) -> Iterator[RoutineText]:
+    open_blocks: list[re.Match[str]] = []
+    for found in _BLOCKS.finditer(text):
+        if not found["end"]:
+            open_blocks.append(found)
+        elif open_blocks:
+            begin = open_blocks.pop()
+            if begin["routine"]:
+                parts = begin["name"], begin["parameters"]
+                yield RoutineText(*parts, begin.start(), begin.end(), found.end())
+
+
+def _named(text: str) -> Iterator[tuple[str, Mention]]:
+    from .urscript.mentions import mentions
+
+    return mentions(text)
+
+
+def _one_module(_: str) -> str:
+    """All files of a program share their names."""
+    return ""
+
 
 _WORDING = Wording(
     silent=re.compile(r"#[^\r\n]*|\$[^\r\n]*|\"[^\"\r\n]*\"|'[^'\r\n]*'"),
@@ -18,9 +48,21 @@ _WORDING = Wording(
     ),
     name=re.compile(r"[^\W\d]\w*"),
     same_case=False,
+    heads=re.compile(r"(?:if|while|for|def|thread|sec)\b[^\r\n]*?:"),
+    routines=_routines,
+    module=_one_module,
+    named=_named,
+    blocks=re.compile(
+        r"\b(?:(?P<open>if|while|for|thread|sec|def)|(?P<part>elif|else)|(?P<close>end))\b"
+    ),
 )
 
 _NEEDED = frozenset({"tcp", "tcp_acceleration"})
+_MOST = {"joint_acceleration": 5.0}
+"""rad/s². The arms have no limit of acceleration but what their torques give; this is what the
+maker sets for them, "chosen conservatively to work in most use cases" (UniversalRobots/
+Universal_Robots_ROS2_Driver, ur_moveit_config/config/joint_limits.yaml). 1.2 m/s² is movel's
+default by the "Script Directory"."""
 
 URSCRIPT = Dialect(
     joint=MoveWords(
@@ -40,5 +82,7 @@ URSCRIPT = Dialect(
     rigid_arcs=True,
     share_step=0.0,
     fastest=5.0,
+    most=_MOST,
+    path_acceleration=1.2,
     wording=_WORDING,
 )

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ....core.approach import approach_speed
 from ....core.errors import InputError
 from ....core.program.event import Event, EventAnchor
 from ....core.program.move import MoveJ, MoveL, Statement
 from ....core.program.program import Program
-from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.zone import FINE
 from ....core.spatial.pose import Pose
@@ -91,7 +91,13 @@ def paint_program(
     events = _events(trajectory, station, options)
     start = JointTarget(tuple(map(float, posture.joints[0])))
     statements: list[Statement] = [
-        MoveJ(start, _approach(station), FINE, station.gun, station.target_frame)
+        MoveJ(
+            start,
+            approach_speed(station.vendor.speaks, robot, APPROACH),
+            FINE,
+            station.gun,
+            station.target_frame,
+        )
     ]
     zone = station.zone(options.zone) if options.zone > 0.0 else FINE
     targets = _targets(trajectory, posture, station)
@@ -131,19 +137,3 @@ def _targets(trajectory: PaintTrajectory, posture: Posture, station: Station) ->
         matrix[:3, :3], matrix[:3, 3] = to_part @ rotation, position
         poses.append(station.to_targets @ Pose.from_matrix(matrix))
     return poses
-
-
-def _approach(station: Station) -> Speed:
-    """Of the joint move to the start, as the language paces joint moves."""
-    speaks = station.vendor.speaks
-    pace = "tcp" if speaks is None else speaks.pace
-    robot = station.cell.robot
-    joint = APPROACH * float(robot.limits.velocity.min())
-    needs = frozenset() if speaks is None else speaks.joint.needs
-    slowly = APPROACH * float(robot.limits.acceleration.min())
-    return Speed(
-        tcp=APPROACH if pace == "tcp" else None,
-        joint=joint if pace == "joint" else None,
-        joint_fraction=APPROACH if pace == "joint_fraction" else 1.0,
-        joint_acceleration=slowly if "joint_acceleration" in needs else None,
-    )

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import pytest
 import trimesh
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -167,7 +166,9 @@ def test_a_singular_stretch_is_unproven_and_named() -> None:
     # No more than the place itself.
     assert found.sigma[1] - found.sigma[0] < 1e-3 * run.path.sigma[-1]
     nearest = np.argmin(run.path.conditioning)
-    assert found.sigma[0] == pytest.approx(run.path.sigma[nearest], abs=0.02)
+    # The least since the sample before is the conditioning of a sample.
+    before, behind = run.path.sigma[[nearest - 1, nearest]]
+    assert before - 0.02 < found.sigma[0] < behind + 0.02
 
 
 def test_beside_a_singular_posture_the_proof_goes_through() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from flyby.core.collision.enclosure import Enclosure, Intervals
@@ -153,7 +153,7 @@ def test_external_axes_count_along_lines(points, axis) -> None:
     assert_program_enclosed(name, BLENDS["parabola"], program, robot)
 
 
-@FEW
+@settings(FEW, suppress_health_check=[HealthCheck.filter_too_much])
 @given(STEPS, STEPS, TURNS, st.sampled_from(list(ArcOrientation)))
 def test_arcs_with_a_turning_tool_stay_in_their_enclosures(via, end, turn, orientation) -> None:
     assume(np.linalg.norm(np.cross(via, end)) > 0.3 * np.linalg.norm(via) * np.linalg.norm(end))

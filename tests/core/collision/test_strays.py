@@ -1,4 +1,4 @@
-"""Bounds of how far commanded joints are off a path, against motions driven at many speeds."""
+"""Bounds of how far links are off a path, against motions driven at many speeds."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import pytest
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
-from flyby.core.collision.strays import Strays, strays_of, stretches
+from flyby.core.collision import strays as strays_module
+from flyby.core.collision.strays import Straying, Strays, parts_of, strays_of, stretches
 from flyby.core.errors import MotionError
 from flyby.core.motion.controller import Controller, Run
 from flyby.core.motion.elasticity import Carried, Coupled, Elasticity
@@ -40,6 +41,7 @@ LOADED = replace(
     weight=(0.0, 2.0, 1.0),
     spring=(0.0, 3e-3),
 )
+LATE = Elasticity(lag=(1e-3, 0.0, -2e-3))
 WEAK = Torque((0.03, 0.05, 0.09), (Borne(5, (0.03, 0.03)),), fade=(0.2, 0.1))
 SPEED = Speed(tcp=2.0, reorientation=6.0)
 DIRECTIONS = np.concatenate([np.eye(6), np.random.default_rng(3).normal(size=(20, 6))])
@@ -60,11 +62,12 @@ MODELS = {
     "ramp, short settling": MotionModel(smoothing=(0.05, 0.04), ramp=0.05, settling=0.03),
     "elastic": MotionModel(smoothing=(0.04, 0.03), elasticity=GEARS),
     "elastic, loaded": MotionModel(smoothing=(0.04, 0.03), elasticity=LOADED),
-    "elastic, unsmoothed": MotionModel(elasticity=GEARS),
     "elastic, weak": MotionModel(smoothing=(0.03, 0.03), elasticity=GEARS, torque=WEAK),
-    "elastic, ramp": MotionModel(smoothing=(0.04, 0.04), ramp=0.03, elasticity=GEARS),
     "elastic, slow start": MotionModel(smoothing=(0.04,), elasticity=GEARS, start_ramp=0.1),
-    "lag": MotionModel(smoothing=(0.03,), elasticity=Elasticity(lag=(1e-3, 0.0, -2e-3))),
+    "lag": MotionModel(smoothing=(0.03,), elasticity=LATE),
+    "lag, ramp": MotionModel(smoothing=(0.04, 0.03), ramp=0.03, elasticity=LATE),
+    "lag, slow start": MotionModel(smoothing=(0.04,), elasticity=LATE, start_ramp=0.1),
+    "lag, unsmoothed": MotionModel(elasticity=LATE),
     "fitted": ABB.motion_of(ROBOT),
 }
 
@@ -114,9 +117,9 @@ def places(run: Run) -> tuple[np.ndarray, np.ndarray]:
 
 
 def excess(strays: Strays, path_q: np.ndarray, sigma: np.ndarray, run: Run) -> float:
-    """By how much (rad) commanded joints are beyond the bounds at the best place on the path.
+    """By how much (rad) links are beyond the bounds at the best place on the path.
 
-    In every direction n, n · (commanded − path) is at most what the ways and the rest allow.
+    In every direction n, n · (links − path) is at most what the ways and the rest allow.
     """
     step = np.abs(np.diff(path_q, axis=0, append=path_q[-1:]) @ DIRECTIONS.T)
     row = stretches(strays, sigma, sigma).own
@@ -152,13 +155,53 @@ def test_no_motion_at_any_speed_strays_further_than_is_reckoned(name, data) -> N
         assert min(excess(strays, path_q, sigma, driven) for strays in bands) < 2e-6
 
 
+def test_what_gears_give_way_by_costs_nothing() -> None:
+    """Motors are ahead by as much; the links are where smoothing leaves them."""
+    model = MODELS["in position, elastic"]
+    moves = (
+        MoveJ(JointTarget(tuple(map(float, HOME + change))), SPEED, zone)
+        for change, zone in ((0.3, Radius(0.05)), (np.array([0.3, 0.0, 0.2, 0.0, -0.4, 0.1]), FINE))
+    )
+    program = Program(tuple(moves), start=JointTarget(tuple(map(float, HOME))))
+    found = []
+    for one in (model, replace(model, elasticity=Elasticity())):
+        controller = Controller(ABB, ROBOT, one)
+        found.append(strays_of(controller, controller.run(program, period=0.03)))
+    for soft, stiff in zip(*found, strict=True):
+        np.testing.assert_array_equal(soft.most, stiff.most)
+
+
+@pytest.mark.parametrize("name", ["fitted", "lag, ramp", "short settling", "cascade"])
+def test_parts_of_a_path_are_left_as_far_as_when_all_of_it_is_looked_at(name, monkeypatch) -> None:
+    tcp = ROBOT.flange_pose(HOME)
+    steps = np.array([[0, -0.3, 0], [0.2, 0, 0], [0, 0.3, 0.1], [-0.2, 0, 0], [0, 0, 0.1]])
+    places = np.array(tcp.position) + np.cumsum(np.concatenate([steps, -steps]), axis=0)
+    zones = [Radius(0.02), Radius(0.08), FINE, Radius(0.01), FINE] * 2
+    moves = [
+        MoveL(PoseTarget(Pose(tuple(map(float, at)), tcp.quaternion)), SPEED, zone=zone)
+        for at, zone in zip(places, zones, strict=True)
+    ]
+    program = Program(tuple(moves), start=JointTarget(tuple(map(float, HOME))))
+    controller = Controller(ABB, ROBOT, MODELS[name])
+    run = controller.run(program, period=0.03)
+    whole = strays_of(controller, run)
+    monkeypatch.setattr(strays_module, "_TOGETHER", 40)
+    parts, first_interval = list(parts_of(run.path)), run.path.pieces.first_interval
+    assert len(parts) > 5 and parts[-1][1] == len(first_interval) - 1
+    straying = Straying.of(controller, run)
+    for first, last in parts:
+        inside = np.linspace(*run.path.pieces.edge[[first, last]], 60)[1:-1]
+        made = straying.over(int(first_interval[first]), int(first_interval[last]))
+        for one, all_of_it in zip(made, whole, strict=True):
+            found, wanted = (stretches(s, inside, inside).most for s in (one, all_of_it))
+            np.testing.assert_allclose(found, wanted, rtol=1e-6, atol=1e-9)
+
+
 WAITING = {
     "fitted": replace(ABB.motion_of(ROBOT), settling=0.1, in_position=6e-3),
     "loaded": MODELS["in position, elastic"],
     "long window": MotionModel(smoothing=(0.05, 0.03), in_position=0.03, elasticity=GEARS),
-    "lag": MotionModel(
-        smoothing=(0.06, 0.05), in_position=0.01, elasticity=Elasticity(lag=(1e-3, 0.0, -2e-3))
-    ),
+    "lag": MotionModel(smoothing=(0.06, 0.05), in_position=0.01, elasticity=LATE),
 }
 
 

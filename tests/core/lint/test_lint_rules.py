@@ -10,7 +10,7 @@ import pytest
 from flyby.core.errors import MotionError, Note, SourceError, Span
 from flyby.core.lint.check import CANNOT_DRIVE, CANNOT_READ, check, rules, unreadable
 from flyby.core.lint.finding import Severity
-from flyby.core.program.move import MoveJ, MoveL, Opaque, Wait
+from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.origin import MoveOrigin, Origin, Ownership
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -57,6 +57,11 @@ def found(made: Program, robot: str = ABB):
     return check(made, find_vendor(robot.split("/")[0]), find_robot(robot))
 
 
+def arc(via: float, end: float) -> MoveC:
+    """From (0, 0.1): over (via, 0.15) to (end, 0.2), as `line` has them."""
+    return MoveC(line(end, 0.2).target, SPEED, via=line(via, 0.15).target)
+
+
 CASES = {
     "zone-last": (
         program(line(0.2, zone=Radius(0.01))),
@@ -101,6 +106,10 @@ CASES = {
     "half-turn": (
         program(line(0.1, turn=(0, 0, np.pi))),
         program(line(0.1, turn=(0, 0, 2.5))),
+    ),
+    "straight-arc": (
+        program(line(0.0, 0.1), arc(0.1, 0.2)),
+        program(line(0.0, 0.1), arc(0.15, 0.2)),
     ),
     "speed-not-reached": (
         program(line(0.4, turn=(0, 0, 3.0), tcp=3.0, reorientation=20.0)),

@@ -32,7 +32,7 @@ KRL = """DEF lines()
   $BASE={{X 0,Y 0,Z 0,A 0,B 0,C 0}}
   $VEL.CP=0.3
 {data}
-  PTP {{A1 0,A2 -90,A3 90,A4 0,A5 45,A6 0}}
+  PTP {{A1 0,A2 -90,A3 90,A4 0,A5 -45,A6 0}}
 {moves}
 END
 """

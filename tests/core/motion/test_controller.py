@@ -10,6 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import FlybyError, InputError, MotionError, Span
+from flyby.core.lint.check import check
+from flyby.core.lint.finding import Severity
 from flyby.core.motion.blend import Blend
 from flyby.core.motion.controller import Controller
 from flyby.core.motion.model import MotionModel
@@ -227,7 +229,7 @@ def test_the_move_of_every_sample_is_known(abb) -> None:
 
 
 ARCS = {
-    "lie on a line": ((0.5, 0, 0), (1, 0, 0)),
+    "lie on a line, and the auxiliary point not between": ((2, 0, 0), (1, 0, 0)),
     "are the same": ((0, 0, 0), (1, 0, 0)),
     "the same": ((1, 0, 0), (1, 0, 0)),
     "three different points": ((0.5, 0.5, 0), (0, 0, 0)),
@@ -240,6 +242,48 @@ def test_three_points_that_make_no_arc_are_refused(abb, message) -> None:
     with pytest.raises(MotionError, match=message) as caught:
         drive(abb, *lines(abb, (0, 0, 0.3), (0, 0, 0)), MoveC(end, SPEED, via=via))
     assert "move 3" in str(caught.value)
+
+
+def on_circle(arm, degrees):
+    angle = np.radians(degrees)
+    return arm.target((0.5 * np.sin(angle), 0, 0.5 - 0.5 * np.cos(angle)))
+
+
+def test_an_arc_of_three_points_on_a_line_is_driven_as_the_line(arm) -> None:
+    via, end = arm.target((0.3, 0, 0)), arm.target((1, 0, 0))
+    before = lines(arm, (0, 0, 0))
+    arc = drive(arm, *before, MoveC(end, SPEED, via=via), model=SLOW)
+    line = drive(arm, *before, MoveL(end, SPEED), model=SLOW)
+    assert arc.duration == line.duration
+    assert np.array_equal(arc.trajectory.q, line.trajectory.q)
+    (note,) = [n for n in arc.notes if "lie on a line" in n.message]
+    assert note.move == 1
+
+
+def test_arcs_beyond_what_the_controller_drives_are_refused(arm) -> None:
+    """RAPID takes 240°; KRL and URScript know no such limit."""
+    start = lines(arm, (0, 0, 0))
+    for sweep in (239.0, 241.0, 330.0):
+        arc = MoveC(on_circle(arm, sweep), SPEED, via=on_circle(arm, sweep / 2))
+        if arm.robot.name.startswith("abb/") and sweep > 240:
+            with pytest.raises(MotionError, match=f"an arc of {sweep:.0f}° is above the 240°"):
+                drive(arm, *start, arc)
+        else:
+            path = drive(arm, *start, arc).path
+            assert path.segments.angle[-1] == pytest.approx(np.radians(sweep))
+
+
+def test_a_check_says_what_the_controller_would_stop_at(abb) -> None:
+    arc = MoveC(on_circle(abb, 300), SPEED, via=on_circle(abb, 150))
+    straight = MoveC(abb.target((1, 0, 0)), SPEED, via=abb.target((0.5, 0, 0)))
+    program = Program((*lines(abb, (0, 0, 0)), arc), start=abb.start)
+    (error,) = [
+        f for f in check(program, find_vendor("abb"), abb.robot) if f.severity is Severity.ERROR
+    ]
+    assert (error.rule, error.move) == ("cannot-drive", 1) and "300°" in error.message
+    program = Program((*lines(abb, (0, 0, 0)), straight), start=abb.start)
+    found = [f for f in check(program, find_vendor("abb"), abb.robot) if "on a line" in f.message]
+    assert [f.severity for f in found] == [Severity.WARNING] and found[0].move == 1
 
 
 def test_an_unreachable_target_says_which_move_and_how_far(arm) -> None:

@@ -1,4 +1,4 @@
-"""How far commanded joints lead their links."""
+"""How far motors lead the links that they drive."""
 
 from __future__ import annotations
 
@@ -10,17 +10,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
+from flyby.core.motion.controller import Controller
 from flyby.core.motion.elasticity import RIGID, Carried, Coupled, Elasticity
 from flyby.core.motion.model import MotionModel, load_motion_model
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
+from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import FINE, Radius
-from flyby.core.registry import find_robot
+from flyby.core.registry import find_robot, find_vendor
+from flyby.core.spatial.pose import Pose
 
 GEARS = Elasticity(
     (0.0, 2e-4, 1e-4, 1e-5), (Carried(3, (1.5e-4, 1e-4)), Carried(5, (1e-4, 1e-4, 5e-5)))
 )
+ROBOT = "abb/irb6640-180-255"
 WIDTHS = (0.04, 0.04, 0.04)
 SPEED = Speed(tcp=0.8, reorientation=5.0)
 
@@ -77,7 +81,7 @@ def test_leads_at_a_share_of_the_speed_are_its_square(seed, factor) -> None:
 
 @settings(max_examples=6, deadline=None)
 @given(data=st.data())
-def test_commands_lead_the_links_and_meet_them_at_rest(arm, data) -> None:
+def test_motors_lead_the_links_and_meet_them_at_rest(arm, data) -> None:
     scale = data.draw(st.floats(0.1, 2.0))
     own = tuple(scale * value for value in GEARS.own)
     gears = Elasticity(own, GEARS.carried)
@@ -87,15 +91,53 @@ def test_commands_lead_the_links_and_meet_them_at_rest(arm, data) -> None:
     )
     assert motors.duration == links.duration
     ends = [0, -1]
-    np.testing.assert_allclose(motors.trajectory.q[ends], links.trajectory.q[ends], atol=1e-9)
-    made = links.trajectory
+    made, stiff = motors.trajectory, links.trajectory
+    assert stiff.q_motor is stiff.q and stiff.dq_motor is stiff.dq
+    for name in ("q", "dq", "ddq", "position", "quaternion"):
+        np.testing.assert_array_equal(getattr(made, name), getattr(stiff, name))
+    np.testing.assert_allclose(made.q_motor[ends], made.q[ends], atol=1e-9)
     lead = gears.leads(arm.robot, made.q, made.dq, made.ddq)
-    np.testing.assert_allclose(motors.trajectory.q - links.trajectory.q, lead, atol=2e-6)
+    np.testing.assert_allclose(made.q_motor - made.q, lead, atol=2e-6)
     assert np.abs(lead).max() > 1e-5
-    made = motors.trajectory
-    speed = np.gradient(made.q, made.t, axis=0)[2:-2]
-    scale = np.abs(made.dq).max()
-    assert np.abs(speed - made.dq[2:-2]).max() < 0.02 * scale
+    speed = np.gradient(made.q_motor, made.t, axis=0)[2:-2]
+    scale = np.abs(made.dq_motor).max()
+    assert np.abs(speed - made.dq_motor[2:-2]).max() < 0.02 * scale
+    push = np.gradient(made.dq_motor, made.t, axis=0)[2:-2]
+    scale = np.abs(made.ddq_motor).max()
+    assert np.abs(push - made.ddq_motor[2:-2]).max() < 0.2 * scale
+
+
+def test_a_flat_corner_of_the_tool_stays_flat() -> None:
+    """It is the motors that leave the plane: the gears give way by as much."""
+    robot = find_robot(ROBOT)
+    controller = Controller(find_vendor("abb"), robot)
+    stand = (0.1, 0.2, 0.3, 0.2, 0.9, 0.1)
+    pose, speed = robot.flange_pose(stand), Speed(tcp=1.0, reorientation=8.7)
+    at = np.array(pose.position)
+    corner, end = at - np.array([0.0, 0.5, 0.0]), at + np.array([0.3, -0.5, 0.0])
+    moves = tuple(
+        MoveL(PoseTarget(Pose(tuple(map(float, place)), pose.quaternion)), speed, zone)
+        for place, zone in ((corner, Radius(0.02, 0.03, 0.03)), (end, FINE))
+    )
+    made = controller.run(Program(moves, start=JointTarget(stand))).trajectory
+    np.testing.assert_array_equal(robot.forward(made.q)[1], made.position)
+    assert np.abs(made.position[:, 2] - at[2]).max() < 2e-4
+    assert np.abs(robot.forward(made.q_motor)[1][:, 2] - at[2]).max() > 1e-3
+
+
+def test_servos_that_lag_take_their_links_with_them(arm) -> None:
+    lag = (2e-3, 0.0, -1e-3)
+    plain = MotionModel(smoothing=WIDTHS)
+    late = replace(plain, elasticity=Elasticity(lag=lag))
+    moves = program(arm)
+    stiff = arm.controller(plain).run(moves, period=0.001).trajectory
+    made = arm.controller(late).run(moves, period=0.001).trajectory
+    ahead = np.array(lag) * stiff.dq[:, :3]
+    np.testing.assert_allclose(made.q[:, :3], stiff.q[:, :3] + ahead, atol=1e-12)
+    np.testing.assert_allclose(made.q_motor, made.q, atol=2e-6)
+    assert np.abs(ahead).max() > 1e-4
+    push = np.gradient(made.dq, made.t, axis=0)[2:-2]
+    assert np.abs(push - made.ddq[2:-2]).max() < 0.1 * np.abs(made.ddq).max()
 
 
 def test_leads_and_higher_limits_are_no_excess(arm) -> None:

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError, MotionError
-from flyby.core.motion.allowed import Allowed
+from flyby.core.motion.allowed import greatest
 from flyby.core.motion.binding import interval_limits
 from flyby.core.motion.model import MotionModel, load_motion_model
 from flyby.core.motion.torque import Borne, Shares, Torque
@@ -124,34 +124,17 @@ def test_torques_that_joints_do_not_have_leave_the_others_their_accelerations(ab
     assert share[:3].max() > 1.1
 
 
-def most_allowed(timing) -> np.ndarray:
-    """(N,), what joints' accelerations do not exceed within a path's limits."""
-    allowed = Allowed.of(timing)
-    return allowed.greatest(allowed.accelerations, np.abs).max(axis=0)
-
-
 @settings(max_examples=6, deadline=None)
 @given(share=st.floats(0.1, 1.0))
-def test_no_acceleration_passes_what_is_allowed(abb, share) -> None:
+def test_no_motion_is_faster_than_allowed(abb, share) -> None:
     """Driven as stamped, or slower."""
     controller = abb.controller(MotionModel(torque=MOTORS))
     driven = program(abb)
     timing = controller.stamp(driven, controller.plan(driven))
-    most = most_allowed(timing)
+    most = greatest(timing)
     slower = program(abb, joint_fraction=share)
     for made in (timing, controller.run(slower).timing):
-        ddq = made.states_at(np.linspace(0.0, made.duration, 3000))[2]
-        assert (np.abs(ddq).max(axis=0) <= most * (1 + 1e-6) + 1e-9).all()
-
-
-def test_without_torque_no_more_is_allowed_than_the_limits(abb) -> None:
-    controller = abb.controller(MotionModel())
-    driven = program(abb)
-    timing = controller.stamp(driven, controller.plan(driven))
-    # Between samples limits hold but for how q'' changes there.
-    most = timing.limits.acceleration[:, :6].max(axis=0)
-    assert (most_allowed(timing) <= 1.02 * most).all()
-    assert (most_allowed(timing) / most).max() >= 1.0
+        assert (made.stamp.x <= most * (1 + 1e-6) + 1e-12).all()
 
 
 def test_an_arm_too_weak_for_its_weight_is_refused(abb) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -13,8 +15,11 @@ from flyby.core.program.move import MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.zone import FINE, Radius
+from flyby.core.registry import find_robot
+from flyby.identification.logs import read_samples
 
 ARRAYS = ("t", "q", "dq", "ddq", "position", "quaternion", "sigma", "move")
+MOTORS = ("q_motor", "dq_motor", "ddq_motor")
 
 
 @pytest.fixture(scope="module")
@@ -25,6 +30,11 @@ def motion(abb) -> Trajectory:
         MoveL(abb.target((1, 1, 0)), speed, FINE),
     )
     return abb.controller().run(Program(moves, start=abb.start)).trajectory
+
+
+def leads_of(motion: Trajectory) -> tuple[np.ndarray, ...]:
+    made = 1e-3 * np.sin(np.arange(6.0)) * motion.ddq, 0.5 * motion.dq, -2.0 * motion.ddq
+    return tuple(part.astype(np.float32) for part in made)
 
 
 def test_csv_there_and_back(motion, tmp_path) -> None:
@@ -45,6 +55,42 @@ def test_npz_there_and_back_is_exact(motion, tmp_path) -> None:
     back = Trajectory.load_npz(path)
     for name in ARRAYS:
         np.testing.assert_array_equal(getattr(back, name), getattr(motion, name))
+    assert back.lead is None
+
+
+def test_motors_are_written_where_they_differ(motion, tmp_path) -> None:
+    led = replace(motion, lead=leads_of(motion))
+    led.save_csv(tmp_path / "led.csv")
+    header = (tmp_path / "led.csv").read_text("utf-8").splitlines()[0]
+    motors = ",".join(f"q{j}_motor" for j in range(1, 7))
+    assert header == f"t,q1,q2,q3,q4,q5,q6,x,y,z,qw,qx,qy,qz,move,{motors}"
+    back = Trajectory.load_csv(tmp_path / "led.csv")
+    for name in ("t", "q", "position", "quaternion", "q_motor"):
+        np.testing.assert_allclose(getattr(back, name), getattr(led, name), atol=1e-8)
+    np.testing.assert_array_equal(back.move, motion.move)
+    led.save_npz(tmp_path / "led.npz")
+    back = Trajectory.load_npz(tmp_path / "led.npz")
+    for name in (*ARRAYS, *MOTORS):
+        np.testing.assert_array_equal(getattr(back, name), getattr(led, name))
+    log = read_samples(tmp_path / "led.csv", find_robot("abb/irb6640-180-255"))
+    np.testing.assert_allclose(log.q, led.q_motor, atol=1e-8)
+
+
+def test_half_of_the_motors_is_no_trajectory(motion, tmp_path) -> None:
+    arrays = {name: getattr(motion, name) for name in ARRAYS}
+    np.savez(tmp_path / "half.npz", q_motor=motion.q, **arrays)
+    with pytest.raises(InputError, match="no dq_motor, ddq_motor"):
+        Trajectory.load_npz(tmp_path / "half.npz")
+    with pytest.raises(InputError, match="q_motor"):
+        replace(motion, lead=(leads_of(motion)[0][:-1], *leads_of(motion)[1:]))
+
+
+def test_motors_are_resampled_as_links_are(motion) -> None:
+    lead = (motion.q - motion.q[0], motion.dq, motion.ddq)
+    made = replace(motion, lead=tuple(part.astype(np.float32) for part in lead)).resampled(0.003)
+    np.testing.assert_allclose(made.q_motor, 2 * made.q - motion.q[0], atol=1e-6)
+    np.testing.assert_allclose(made.dq_motor, 2 * made.dq, atol=1e-4)
+    np.testing.assert_allclose(made.ddq_motor, 2 * made.ddq, atol=1e-5)
 
 
 def test_files_are_written_whole_or_not_at_all(motion, tmp_path) -> None:
@@ -186,3 +232,24 @@ def test_damaged_archives_and_other_arrays_are_refused(motion, tmp_path) -> None
 def test_periods_that_no_sampling_has_are_refused(motion, period) -> None:
     with pytest.raises(InputError, match="period"):
         motion.resampled(period)
+
+
+@given(
+    end=st.floats(0.0, 3.0),
+    period=st.floats(0.003, 0.7),
+    first=st.floats(-1.0, 4.0),
+    length=st.floats(0.0, 3.0),
+)
+def test_times_of_a_stretch_are_those_of_the_whole(end, period, first, length) -> None:
+    whole = sample_times(0.0, end, period)
+    some = sample_times(0.0, end, period, (first, first + length))
+    at = int(np.searchsorted(whole, some[0]))
+    np.testing.assert_array_equal(some, whole[at : at + len(some)])
+    missed = np.setdiff1d(whole, some)
+    assert not ((missed >= first) & (missed <= first + length)).any()
+
+
+def test_a_stretch_of_a_long_while_is_sampled() -> None:
+    assert len(sample_times(0.0, 1e7, 1e-3, (5.0, 6.0))) < 1_005
+    with pytest.raises(InputError, match="samples"):
+        sample_times(0.0, 1e7, 1e-3)

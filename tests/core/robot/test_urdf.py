@@ -132,5 +132,38 @@ def test_a_moving_branch_is_named_even_if_the_tip_is_chosen(load) -> None:
 def test_what_is_no_urdf_is_refused(load, tmp_path) -> None:
     with pytest.raises(InputError, match=r"arm\.urdf: is not a URDF"):
         load("<robot")
-    with pytest.raises(InputError, match="no such file"):
+    with pytest.raises(InputError, match="cannot be read: No such file"):
         load_urdf(tmp_path / "missing.urdf")
+
+
+SHORT = (
+    '<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="revolute">'
+    '<parent link="a"/><child link="b"/><axis xyz="0 0 1"/>'
+    '<limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>'
+)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('<link name="b"/>', "", "names 'b', which is no link"),
+        ('<link name="b"/>', '<link name="b"/><link name="b"/>', "two links have one name"),
+        ("0 0 1", "1e300 1e300 0", "has no axis"),
+        ("0 0 1", "nan 0 0", "has no axis"),
+        ("0 0 1", "0 1", "has no axis"),
+        ('upper="1"', 'upper="1e308"', "at most 10000 either way"),
+        ('upper="1"', 'upper="inf"', "at most 10000 either way"),
+        ('velocity="1"', 'velocity="nan"', "velocity nan"),
+        ("<robot", '<!DOCTYPE r [<!ENTITY a SYSTEM "file:///etc/passwd">]><robot', "document type"),
+        ("</robot>", "", "is not a URDF file"),
+        ('<parent link="a"/>', "", "is not a URDF file"),
+        ('<link name="a"/>', '<link name="a">' + "<x>" * 10_000, "is not a URDF file"),
+    ],
+)
+def test_hostile_files_are_refused_by_name(tmp_path, old, new, message) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(SHORT, "utf-8")
+    assert load_urdf(path).size == 1
+    path.write_text(SHORT.replace(old, new, 1), "utf-8")
+    with pytest.raises(InputError, match=rf"arm\.urdf: .*{message}"):
+        load_urdf(path)

@@ -64,6 +64,16 @@ def test_what_cannot_be_read_is_said_so(tmp_path: Path, monkeypatch: pytest.Monk
         read_source(tmp_path / "long.mod")
 
 
+@pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])
+def test_files_of_nothing_but_lines_are_refused(tmp_path: Path, end: str) -> None:
+    path = tmp_path / "lines.mod"
+    path.write_bytes(end.encode() * module.MOST_LINES)
+    assert len(read_source(path).text) == len(end) * module.MOST_LINES
+    path.write_bytes(end.encode() * (module.MOST_LINES + 1))
+    with pytest.raises(InputError, match="more than 500,000 lines"):
+        read_source(path)
+
+
 @given(LINES, st.lists(st.integers(0, 40), min_size=1, max_size=10))
 def test_lines_and_columns_count_as_an_editor_does(text: str, offsets: list[int]) -> None:
     source = SourceText(text, "a.src")

@@ -35,8 +35,13 @@ MOST = 100
 """Moves of a program that are translated; what follows is more of the same: time."""
 LONG = 60
 """Moves from which on a program is tried on one other robot only: time."""
-TOO_FAR = {("palletising.mod", "ur"), ("box_sorter.mod", "ur"), ("SpotMain.mod", "ur")}
-"""What no place of the small arm reaches."""
+TOO_FAR = {
+    ("palletising.mod", "ur"),
+    ("box_sorter.mod", "ur"),
+    ("SpotMain.mod", "ur"),
+    ("kleberaupe.script", "kuka"),
+}
+"""What no place of the new arm reaches, or not without a line through a singular wrist."""
 
 
 def entries() -> list[tuple[str, dict]]:

@@ -84,10 +84,15 @@ def test_other_laws_get_the_radius_that_cuts_alike(between) -> None:
 
 def test_a_tangent_arc_needs_a_smaller_radius_for_the_same_cut(between) -> None:
     pair = between("abb", "ur")
-    made = pair.translate(corner(pair, Radius(0.02)))
+    program = corner(pair, Radius(0.02))
+    slow = [replace(move, speed=replace(move.speed, tcp=0.1)) for move in program.moves]
+    made = pair.translate(program.with_moves(tuple(slow)))
     deflection = np.pi / 2
     expected = 0.02 * cut_share("abb") * np.cos(deflection / 4) ** 2
     assert made.program.moves[1].zone.tcp == pytest.approx(expected, rel=1e-3)
+    # At full speed the new robot brakes for it with what its maker allows, and cuts it less.
+    fast = pair.translate(program)
+    assert fast.program.moves[1].zone.tcp < expected and "passes the waypoint" in messages(fast)
 
 
 @pytest.mark.parametrize(
@@ -238,6 +243,19 @@ def test_joint_targets_stay_joint_targets_at_the_same_pose(pair) -> None:
     assert np.allclose(there.matrix(), pose.matrix(), atol=1e-8)
 
 
+def test_a_program_that_comes_back_to_where_it_began_does_so_on_the_new_robot() -> None:
+    home = "movej([0.2, -1.4, -1.8, -1.2, 1.5708, 0], a=1.4, v=1)"
+    places = ("-0.35, -0.35, 0.4", "-0.45, 0.05, 0.42", "-0.35, 0.35, 0.4")
+    first, *others = (f"p[{place}, 2.2, 2.2, 0], a=1.2, v=0.5)" for place in places)
+    lines = (f"movel({other}" for other in others)
+    text = "\n  ".join(("def there():", home, f"movej({first}", *lines, home)) + "\nend\n"
+    ur, ur5e = side("ur/ur5e")
+    made = translate(
+        ur.read(text, "there.script", robot=ur5e), (ur, ur5e), side("abb/irb1600-6-145")
+    )
+    assert made.program.moves[0].target == made.program.moves[-1].target
+
+
 def test_the_label_is_the_new_vendors(pair) -> None:
     made = pair.translate(corner(pair, FINE))
     joint, line, _ = made.program.moves
@@ -362,6 +380,48 @@ def test_lines_keep_their_speed_and_say_what_must_be_said(pair) -> None:
             assert new.speed.tcp_acceleration is not None
 
 
+@pytest.mark.parametrize("old", ["abb", "kuka"])
+def test_accelerations_are_those_that_the_maker_allows(between, old: str) -> None:
+    """Joint moves with 5 rad/s² at most, lines so that joints have no more, or movel's default."""
+    pair = between(old, "ur")
+    quick = {"tcp": 2.0, "joint_fraction": 1.0} if old == "kuka" else {"tcp": 2.0}
+    strong = {"tcp_acceleration": 25.3} if old == "kuka" else {}
+    moves = (
+        pair.joint((0.0, -0.3, 0.0)),
+        pair.joint((0.0, 0.3, 0.1), **quick),
+        pair.line((0.0, -0.3, 0.1), **quick, **strong),
+    )
+    made = pair.translate(Program(moves))
+    _, joint, line = made.program.moves
+    assert joint.speed.joint_acceleration <= 5.0
+    run = pair.run_new(made)
+    rows = run.trajectory.move == 2
+    fastest = np.abs(run.trajectory.ddq[rows]).max()
+    assert line.speed.tcp_acceleration <= 1.2 or fastest < 5.0 * 1.5
+    assert line.speed.tcp_acceleration < 6.0
+    told = messages(made)
+    assert "instead of" in told and "its maker allows, or drives it with, no more" in told
+
+
+def test_what_stands_in_a_program_of_the_same_language_stays(between) -> None:
+    robot, other = find_robot("ur/ur10e"), find_robot("ur/ur10")
+    ur, pair = find_vendor("ur"), between("abb", "ur")
+    strong = replace(corner(pair, Radius(0.02)), statements=())
+    moves = [
+        replace(move, speed=Speed(tcp=0.3, tcp_acceleration=9.0, joint=1.0, joint_acceleration=8.0))
+        for move in corner(pair, Radius(0.02)).moves
+    ]
+    made = translate(replace(strong, statements=tuple(moves)), (ur, robot), (ur, other))
+    assert {move.speed.tcp_acceleration for move in made.program.moves[1:]} == {9.0}
+
+
+def test_krl_gets_no_more_than_its_machine_data_take(between) -> None:
+    pair = between("abb", "kuka")
+    line = pair.line(ASIDE, tcp=1.0, reorientation=20.0, tcp_acceleration=15.0)
+    speed = pair.translate(Program((pair.joint(), line))).program.moves[1].speed
+    assert speed.tcp_acceleration == 10.0 and speed.reorientation == np.radians(400)
+
+
 def test_a_joint_speed_beyond_the_new_robot_is_told(between) -> None:
     pair = between("abb", "kuka")
     fast = pair.joint((0.1, 0.3, 0.1), tcp=7.0, reorientation=20.0, turn=(0.3, 0.2, 0.1))
@@ -454,7 +514,8 @@ def test_half_turns_about_the_tools_axis_go_that_way_too(between) -> None:
         return replace(move, tool=tool, target=PoseTarget(Pose.from_matrix(matrix)))
 
     party = Party(*side(pair.old))
-    for angle in np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False):
+    # None of them in the arm's plane, where the wrist would pass its straight posture.
+    for angle in 0.05 + np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False):
         swivel = 0.8 * np.array([0.0, np.cos(angle), np.sin(angle)])
         program = Program(
             (at(pair.joint(), 0.0 * swivel, 0.0), at(pair.line((0.05, 0.0, 0.0)), swivel, np.pi))

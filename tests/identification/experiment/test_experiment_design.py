@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from flyby.core.cell.cell import Cell, Obstacle
+from flyby.core.cell.floor import bare_cell
 from flyby.core.cell.geometry import Geometry
 from flyby.core.collision.certificate import certify, scenes_of
 from flyby.core.dialect import MoveWords
@@ -183,6 +184,24 @@ def test_obstacles_are_kept_clear_of(monkeypatch: pytest.MonkeyPatch) -> None:
     full = cell_of("ur/ur10e", ((0.8, 3.0, 3.0), (0.75, 0, 0.5)))
     with pytest.raises(InputError, match="no posture"):
         design(vendor, full, plan, bare=False)
+
+
+def test_without_a_cell_nothing_goes_below_the_base() -> None:
+    """Of a robot that hangs, the plane is above: nothing goes through the ceiling."""
+    hanging = find_robot("kuka/kr3-r540").with_base(Pose((0.0, 0.0, 2.0), (0.0, 1.0, 0.0, 0.0)))
+    plan = replace(SMALL, kinds=(Kind.JOINTS, Kind.SINGLE_AXES), postures=2)
+    made = design(find_vendor("kuka"), bare_cell(hanging, "kuka"), plan, bare=True)
+    assert len(made.runs) > 1
+    for run in made.runs:
+        for q in run.run.trajectory.q[::5]:
+            assert hanging.flange_pose(q).position[2] < 2.0
+    # Every way between runs is looked at, too.
+    assert all(run.way_proven is not None for run in made.runs[1:])
+    assert any("the plane under the base" in note for note in made.notes)
+    low = replace(plan, postures=(np.radians([0.0, 10.0, 60.0, 0.0, 50.0, 0.0]),))
+    with pytest.raises(InputError, match="--no-floor"):
+        design(find_vendor("kuka"), bare_cell(hanging, "kuka"), low, bare=True)
+    assert design(find_vendor("kuka"), bare_cell(hanging, "kuka", floor=False), low, bare=True).runs
 
 
 def test_what_cannot_be_said_is_refused() -> None:

@@ -152,7 +152,7 @@ def emulated(model: MotionModel, speed: float, radius: float) -> Measured:
     )
     program = Program(moves, start=JointTarget(START))
     found = Controller(VENDOR, ROBOT, model).run(program, period=0.004 * CLOCK).trajectory
-    return measured(found.t, found.position, speed)
+    return measured(found.t, tcp_positions(ROBOT, GUN, found.q_motor), speed)
 
 
 def faults(model: MotionModel) -> list[str]:

@@ -58,11 +58,14 @@ def test_a_range_is_one_figure_for_its_entries(value: float, at: int) -> None:
     )
 
 
-def test_an_index_one_beyond_appends() -> None:
+def test_a_list_grows_by_what_stands_for_nothing() -> None:
     made = with_value(MotionModel(), "blend.tcp.beta[0]", -0.5)
     assert made.tcp.beta == (-0.5,)
+    assert with_value(MotionModel(), "blend.tcp.beta[1]", -0.5).tcp.beta == (0.0, -0.5)
+    scaled = with_value(MotionModel(), "limit.joint_acceleration_scale[2]", 1.5)
+    assert scaled.joint_acceleration_scale == (1.0, 1.0, 1.5)
     with pytest.raises(InputError, match="0 entries"):
-        with_value(MotionModel(), "blend.tcp.beta[1]", -0.5)
+        with_value(MotionModel(), "blend.tcp.beta[*]", -0.5)
 
 
 @pytest.mark.parametrize(
@@ -126,7 +129,6 @@ def test_a_set_is_a_model(values: list[float]) -> None:
 
 def test_what_is_held_stays_at_its_start_and_what_is_left_out_at_the_base() -> None:
     named = ParameterSet.named(START, ["time.settling_s = 0.09", "blend.tcp.beta[0] = -0.5"])
-    assert named.holding(["time.settling_s"]).model([-1.0]).settling == 0.09
     assert named.without(["time.settling_s"]).model([-1.0]).settling == 0.05
     np.testing.assert_array_equal(named.starting_at(np.array([0.1, 0.2])).start, [0.1, 0.2])
 

@@ -65,7 +65,7 @@ def test_the_fit_commands_what_the_controller_does() -> None:
     q = commanded(
         controller, controller.smoothing(told, path), stamped_motion(timing), trajectory.t
     )
-    np.testing.assert_allclose(q, trajectory.q, atol=2e-7)
+    np.testing.assert_allclose(q, trajectory.q_motor, atol=2e-7)
 
 
 @pytest.mark.parametrize("place", [False, True])

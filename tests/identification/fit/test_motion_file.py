@@ -12,6 +12,7 @@ from flyby.core.errors import InputError
 from flyby.core.motion.blend import Blend
 from flyby.core.motion.elasticity import Carried, Coupled, Elasticity
 from flyby.core.motion.model import (
+    ArcTurn,
     DurationRule,
     LineTurn,
     MotionModel,
@@ -102,6 +103,7 @@ OTHER = MotionModel(
     tcp_acceleration=3.5,
     reorientation_acceleration=2.5,
     line_turn=LineTurn.SWIVEL,
+    arc_turn=ArcTurn.AXIS,
     centripetal=1.5,
     joint_acceleration_scale=(1.5, 0.5),
     torque=Torque((0.5, 0.25), (Borne(3, (0.125, 0.25)),), (0.5,), (0.75,)),

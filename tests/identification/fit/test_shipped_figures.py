@@ -14,6 +14,7 @@ from flyby.core.program.move import MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
+from flyby.core.program.tool import FLANGE
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
@@ -23,6 +24,7 @@ from flyby.identification.fit.outcome import predicted
 from flyby.identification.fit.parameters import fitted_before
 from flyby.identification.fit.problem import first_nuisances
 from flyby.identification.logs import load_run
+from flyby.identification.tcp_path import tcp_positions
 
 ROBOT = "abb/irb6640-180-255"
 HOME = np.array([0.3, 0.3, 0.4, 0.6, -0.5, -0.5])
@@ -41,7 +43,7 @@ def controller() -> Controller:
 
 
 def apex(controller: Controller, radius: float, speed: float) -> float:
-    """How far a corner of a right angle, turned by zones, leaves its waypoint, in m."""
+    """How far a corner of a right angle, turned by zones, leaves its waypoint, in m; as logged."""
     at = np.array(controller.robot.flange_pose(HOME).position)
     points = at + np.array([[0, 0, 0], [0, -0.35, 0], [0.35, -0.35, 0]])
     quaternion = controller.robot.flange_pose(HOME).quaternion
@@ -52,7 +54,8 @@ def apex(controller: Controller, radius: float, speed: float) -> float:
     )
     start = JointTarget(tuple(HOME))
     found = controller.run(Program(moves, start=start), period=5e-4).trajectory
-    return measure_corner(found.t, found.position, points, 2 * radius + 0.02).apex
+    logged = tcp_positions(controller.robot, FLANGE, found.q_motor)
+    return measure_corner(found.t, logged, points, 2 * radius + 0.02).apex
 
 
 def test_slow_corners_are_the_zones_alone(controller: Controller) -> None:

@@ -136,7 +136,7 @@ PROFILE = (
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("radius_mm = 3 4", "cannot be read as TOML"),
+        ("radius_mm = 3 4", "is not TOML"),
         ("radius = [1]", "no such key: radius; there are"),
         ("near_radius_mm = 35", "radius_mm is missing"),
         (PROFILE.format("[2, 20, 0]", "'a'"), "finite number, not 'a'"),

@@ -237,7 +237,7 @@ def test_an_unlikely_unit_is_doubted(
 
 
 def test_files_that_are_no_parts_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"missing.stl: there is no such file"):
+    with pytest.raises(InputError, match=r"missing.stl: cannot be read: No such file"):
         load_part(tmp_path / "missing.stl")
     text = tmp_path / "text.stl"
     text.write_text("no mesh at all")

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from flyby.core.errors import FlybyError, Span
+from flyby.core.errors import FlybyError, SourceError, Span
 from flyby.core.motion.controller import Controller
 from flyby.core.program.move import Move
 from flyby.core.program.origin import MoveOrigin, Ownership
@@ -103,12 +103,22 @@ def test_it_is_emulated_to_its_end(file: str) -> None:
 
 @each_program
 def test_it_is_written_and_read_again(file: str) -> None:
+    """Most of them keep statements that name data of their own: these become comments."""
     robot = find_robot(PROGRAMS[file]["robot"])
-    written = VENDOR.write(program(file), robot)
+    try:
+        written = VENDOR.write(program(file), robot)
+    except SourceError as error:
+        assert "which the new program does not have" in str(error)
+        written = VENDOR.write(program(file), robot, {"opaque": "comment"})
     ((name, text),) = written.items()
     again = VENDOR.read(text, name, robot=robot)
     assert len(again.moves) == len(program(file).moves)
-    assert VENDOR.write(again, robot) == written
+    (twice,) = VENDOR.write(again, robot).values()
+    assert _without_comments(twice) == _without_comments(text)
+
+
+def _without_comments(text: str) -> list[str]:
+    return [line for line in text.splitlines() if not line.lstrip().startswith("!")]
 
 
 # ------------------------------------------------------------------------------- patches
@@ -119,7 +129,7 @@ def patch(file: str, new: dict[int, Move]) -> Files:
     after = program(file).with_moves(tuple(moves))
     files = VENDOR.patch(after, find_robot(PROGRAMS[file]["robot"]))
     assert difference(after, reading(file).again(files)) is None
-    return files
+    return {one.name: one for one in files.values()}
 
 
 def assert_only(file: str, files: Files, stretches: list[Span], added: str = "") -> None:

@@ -261,3 +261,130 @@ def test_late_calls():
     assert heights('CallByVar "part",2; %"M:part2"%;', "", routines) == [2, 2]
     with pytest.raises(SourceError, match="the routine to call depends on"):
         program('%"part"+NumToStr(GInput(g),0)%;')
+
+
+def test_a_parameter_by_reference_is_the_element_that_it_was_at_the_call():
+    both = "PROC both(INOUT num n,INOUT num m)\nn:=n+1;\nm:=7;\nENDPROC"
+    body = "n:=1;\nboth n,g{n};\nat g{1};\nat n;"
+    assert heights(body, "VAR num n;\nVAR num g{3};", both) == [7, 2]
+
+
+def test_the_variable_of_a_for_can_only_be_read():
+    with pytest.raises(SourceError, match="i is a constant"):
+        program("FOR i FROM 1 TO 3 DO\ni:=i+1;\nENDFOR")
+    assert heights("k:=2;\nFOR i FROM 1 TO k DO\nk:=9;\nat i;\nENDFOR") == [1, 2]
+
+
+# -------------------------------------------------------- outputs that the program has set
+
+BY_HAND = "VAR signaldo sig;\nVAR triggdata tg;\nVAR intnum ino;"
+ROUTINES = """PROC put(VAR signaldo s,num v)
+SetDO s,v;
+ENDPROC
+TRAP tr
+Reset do1;
+ENDTRAP"""
+
+
+@pytest.mark.parametrize(
+    ("body", "taken"),
+    [
+        # The program knows what it has written.
+        ("SetDO do1,0; IF DOutput(do1)=1 at 1; at 9;", [9]),
+        ("SetDO do1,1; IF DOutput(do1)=1 at 1; at 9;", [1, 9]),
+        ("Set do1; IF do1=1 at 1;", [1]),
+        ("Reset DO1; IF DOutput(Do1)=high at 1; at 9;", [9]),
+        ("SetDO\\Sync,do1,low; IF DOutput(do1)=0 at 1;", [1]),
+        ("Set do1; InvertDO do1; IF DOutput(do1)=1 at 1; at 9;", [9]),
+        ("SetGO go1,5; TEST GOutput(go1) CASE 4: at 4; CASE 5: at 5; ENDTEST", [5]),
+        ("SetAO ao1,2.5; IF AOutput(ao1)>2 at 1;", [1]),
+        ("k:=3; SetGO go1,k; k:=1; FOR i FROM 1 TO GOutput(go1) DO at i; ENDFOR", [1, 2, 3]),
+        ("put do1,0; IF DOutput(do1)=1 at 1; at 9;", [9]),
+        ("put do2,1; put do1,0; IF DOutput(do2)=1 at 2;", [2]),
+        ("SetDO do1,0; AliasIO do1,sig; Set sig; IF DOutput(do1)=1 at 1;", [1]),
+        ("SetDO do1,1; SetDO do2,0; IF DOutput(do1)=0 OR DOutput(do2)=1 at 1; at 9;", [9]),
+        # Inputs, and what nobody has written, are not known: branches that move are taken.
+        ("IF DOutput(do1)=1 at 1;", [1]),
+        ("SetDO do1,0; IF DInput(do1)=1 at 1;", [1]),
+        # Nor is what something else may have written since.
+        ("SetDO do1,0; SetDO do1,DInput(di1); IF DOutput(do1)=1 at 1;", [1]),
+        ("SetDO do1,0; PulseDO\\PLength:=0.2,do1; IF DOutput(do1)=1 at 1;", [1]),
+        ("SetDO do1,0; SetDO\\SDelay:=0.2,do1,1; IF DOutput(do1)=1 at 1;", [1]),
+        ("SetDO do1,0; CONNECT ino WITH tr; IF DOutput(do1)=1 at 1;", [1]),
+        ("CONNECT ino WITH tr; SetDO do1,0; IF DOutput(do1)=1 at 1;", [1]),
+        ("CONNECT ino WITH tr; SetDO do2,0; IF DOutput(do2)=1 at 1; at 9;", [9]),
+        (
+            f"SetDO do1,0; MoveLDO {P},v100,z10,tool0,do1,1; IF DOutput(do1)=1 at 1;",
+            [600, 1],
+        ),
+        (
+            f"SetDO do1,0; SetDO do2,0; TriggIO tg,5\\DOp:=do1,1; TriggL {P},v100,tg,z10,tool0; "
+            "IF DOutput(do1)=1 at 1; IF DOutput(do2)=1 at 2;",
+            [600, 1],
+        ),
+        (f'SetDO do1,0; MoveLSync {P},v100,z10,tool0,"rP"; IF DOutput(do1)=1 at 1;', [600, 1]),
+        ('SetDO do1,0; IODisable "board",5; IF DOutput(do1)=1 at 1;', [1]),
+        ("SetDO do1,0; k:=fOther(); IF DOutput(do1)=1 at 1;", [1]),
+        # A write after that is certain again.
+        ("PulseDO do1; Reset do1; IF DOutput(do1)=1 at 1; at 9;", [9]),
+        # A wait for what the program has not set itself: somebody else sets it.
+        ("Set do1; WaitDO do1,0; IF DOutput(do1)=1 at 1; at 9;", [9]),
+        ("Set do1; WaitUntil DOutput(do1)=0; IF DOutput(do1)=1 at 1; at 9;", [9]),
+        ("Set do1; WaitUntil do1=0; IF DOutput(do1)=1 at 1; at 9;", [9]),
+        ("Set do1; WaitUntil do1=0 AND di1=1; at 9;", [9]),
+        ("SetGO go1,3; WaitGO go1\\GT,5; IF GOutput(go1)=3 at 1; at 9;", [1, 9]),
+        ("Set do1; WHILE DOutput(do1)=1 DO WaitTime 0.1; ENDWHILE at 9;", [9]),
+        ("Set do1; WHILE DOutput(do1)=1 DO at 3; ENDWHILE at 9;", [3, 9]),
+        ("Set do1; w: WaitTime 0.1; IF DOutput(do1)=1 GOTO w; at 9;", [9]),
+        ("Set do1; WHILE TRUE DO at 3; IF DOutput(do1)=0 GOTO out; ENDWHILE out: at 9;", [3, 3, 9]),
+        # It changes it itself.
+        (
+            "Set do1; k:=0; WHILE DOutput(do1)=1 DO k:=k+1; at k; IF k=3 Reset do1; ENDWHILE at 9;",
+            [1, 2, 3, 9],
+        ),
+        (
+            "Set do1; k:=0; WHILE DOutput(do1)=1 AND k<3 DO k:=k+1; at k; ENDWHILE at 9;",
+            [1, 2, 3, 9],
+        ),
+        ("Reset do1; n: IF DOutput(do1)=0 THEN at 1; Set do1; GOTO n; ENDIF at 9;", [1, 9]),
+    ],
+)
+def test_outputs_keep_what_the_program_sets(body, taken):
+    data = f"VAR num k:=0;\n{BY_HAND}"
+    assert heights(body, data, ROUTINES) == taken
+
+
+def test_answers_to_outputs():
+    """One after the other they are what is read; a lasting one is for what nobody has set."""
+    body = "SetDO do1,0; IF DOutput(do1)=1 at 1; IF DOutput(do1)=1 at 2; at 9;"
+    assert heights(body, answers=Answers({"doutput(do1)": 1.0})) == [9]
+    turns = Answers(sequences={"doutput(do1)": (0.0, 1.0)})
+    assert heights(body, answers=turns) == [2, 9]
+    skipped = "SetDO do1,0; rGrip; IF DOutput(do1)=1 at 1;"
+    assert heights(skipped, answers=Answers(skipped=frozenset({"rgrip"}))) == [1]
+
+
+@pytest.mark.parametrize(
+    ("body", "driven"),
+    [
+        # Only a branch that nobody can decide ends the loop.
+        ("WHILE run DO at 1; IF di1=1 run:=FALSE; ENDWHILE at 9;", [1, 9]),
+        ("WHILE run DO at 1; k:=k+1; IF di1=1 run:=FALSE; ENDWHILE at 9;", [1, 9]),
+        ("WHILE run DO at 1; IF di1=1 THEN off run; ENDIF ENDWHILE at 9;", [1, 9]),
+        (
+            "WHILE run DO at 1; TEST GInput(g) CASE 1: run:=FALSE; DEFAULT: k:=1; ENDTEST ENDWHILE "
+            "at 9;",
+            [1, 9],
+        ),
+        # Something else ends it.
+        ("WHILE k<3 DO at 1; k:=k+1; IF di1=1 k:=9; ENDWHILE at 9;", [1, 1, 1, 9]),
+        ("WHILE k<3 DO at 1; k:=k+1; IF di1=1 run:=FALSE; ENDWHILE at 9;", [1, 1, 1, 9]),
+    ],
+)
+def test_loops_that_an_undecided_branch_ends(body, driven):
+    data = "VAR num k:=0;\nVAR bool run:=TRUE;"
+    off = "PROC off(INOUT bool b)\nb:=FALSE;\nENDPROC"
+    assert heights(body, data, off) == driven
+    if driven == [1, 9]:
+        three = Answers(passes={"a.mod:5": 3})
+        assert heights(body, data, off, answers=three) == [1, 1, 1, 9]

@@ -149,6 +149,24 @@ def test_a_search_ends_where_it_is_told_to():
     assert isinstance(arc, MoveC)
 
 
+def test_a_search_starts_from_what_its_point_held():
+    """The point gets its value at the end: the arguments may be made of the one before."""
+    data = "VAR robtarget pp:=[[500,0,700],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];"
+    search = "SearchL\\Stop,di1,pp,Offs(pp,0,0,-50),v20,tGun;"
+    twice = f"{search}\n{search}\nMoveL Offs(pp,0,0,5),v100,fine,tGun;"
+    heights = [round(1e3 * m.target.pose.position[2], 6) for m in program(twice, data).moves]
+    assert heights == [650, 600, 605]
+    point = ((500.0, 0.0, 580.0), (0.0, 0.0, 1.0, 0.0), (0.0,) * 4, (9e9,) * 6)
+    answer = Answers({"pp": point})
+    flying = f"{search.replace('Stop', 'Sup')}\nMoveL pp,v100,fine,tGun;"
+    heights = [m.target.pose.position[2] for m in program(flying, data, answers=answer).moves]
+    assert heights == pytest.approx([0.65, 0.58])
+    arc = "MoveL p,v100,fine,tGun;\nSearchC\\Stop,di1,pp,Offs(pp,0,50,0),Offs(pp,50,50,0),v20,tGun;"
+    driven = program(arc, data, answers=answer).moves[1]
+    assert driven.via.pose.position == pytest.approx((0.5, 0.05, 0.7))
+    assert driven.target.pose.position == pytest.approx((0.5, 0, 0.58))
+
+
 def test_external_axes_alone():
     body = "MoveAbsJ home,v100,fine,tGun;\nMoveExtJ away,vmax,z50;"
     found = move(body, external_axes=("linear",))

@@ -19,9 +19,9 @@ from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedF
 from flyby.core.source.names import Names
 from flyby.core.source.options import OpaqueStyle
 from flyby.core.spatial.pose import Pose
+from flyby.core.spatial.rotation import arc_angle
 from flyby.vendors.abb.configuration import AbbConfiguration
 from flyby.vendors.abb.rapid import predefined
-from flyby.vendors.abb.rapid.arcs import arc_angle
 from flyby.vendors.abb.rapid.formatting import MAX_NAME, NAME_RULES
 from flyby.vendors.abb.rapid.literals import MM
 from flyby.vendors.abb.rapid.numbers import number

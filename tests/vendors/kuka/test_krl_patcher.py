@@ -74,7 +74,8 @@ def patch(
 ) -> tuple[str, str]:
     """The texts of .src and .dat after a patch."""
     wanted = changed(program, changes)
-    files = {**reading_of(program).files, **KUKA.patch(wanted, ROBOT, options)}
+    new = {f.name: f for f in KUKA.patch(wanted, ROBOT, options).values()}
+    files = {**reading_of(program).files, **new}
     assert difference(wanted, reading_of(program).again(files)) is None
     by_suffix = {Path(name).suffix: file for name, file in files.items()}
     for file in by_suffix.values():

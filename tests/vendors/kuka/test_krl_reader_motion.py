@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -389,7 +390,7 @@ def test_moves_to_where_the_robot_is(krl):
     )
     assert len(program.moves) == 1
     kept = [s for s in program.statements if isinstance(s, Opaque)]
-    assert [s.text for s in kept] == ["PTP $AXIS_ACT", "PTP here C_PTP"]
+    assert [s.text for s in kept] == ["PTP $AXIS_ACT", "PTP $AXIS_ACT C_PTP"]
     assert [s.stops for s in kept] == [True, False]
 
 
@@ -437,3 +438,34 @@ def test_any_position_is_read_as_it_stands(krl, numbers):
 def test_errors_are_of_the_project(krl):
     with pytest.raises(FlybyError):
         krl("LIN XP1")
+
+
+def test_the_present_position_is_one_in_its_own_base_only(krl):
+    """What was read in one base is another place in the next: that is not where the robot is."""
+    data = DATA_LIST + "DECL E6POS here"
+    program = krl(SET + "here=$POS_ACT\nPTP here\nPTP XA", data)
+    assert [s.text for s in program.statements if isinstance(s, Opaque)] == ["PTP $AXIS_ACT"]
+    with pytest.raises(SourceError, match="where the robot stands"):
+        krl(SET + "here=$POS_ACT\n$BASE.X=100\nPTP here\nPTP XA", data)
+
+
+UNSET = re.compile(r"(\$\w+) is set nowhere before this motion: .*; set it, as by BAS\(#")
+
+
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
+        ("LIN {X 1,Y 2,Z 3,A 0,B 0,C 0}\nLIN {X 2}", ["$TOOL", "$BASE"]),
+        ("PTP {X 1,Y 2,Z 3,A 0,B 0,C 0}", ["$TOOL", "$BASE"]),
+        ("$BASE=$NULLFRAME\nLIN {X 1,Y 2,Z 3,A 0,B 0,C 0}", ["$TOOL"]),
+        ("$TOOL={X 0,Y 0,Z 90,A 0,B 0,C 0}\nLIN {X 1,Y 2,Z 3,A 0,B 0,C 0}", ["$BASE"]),
+        ("BAS(#TOOL,0)\nBAS(#BASE,0)\nLIN {X 1,Y 2,Z 3,A 0,B 0,C 0}", []),
+        ("BAS(#INITMOV,0)\nLIN {X 1,Y 2,Z 3,A 0,B 0,C 0}", []),
+        ("$TOOL.Z=90\n$BASE.X=1\nLIN {X 1,Y 2,Z 3,A 0,B 0,C 0}", []),
+        # Axis values mean the same with every tool.
+        ("PTP {A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0}", []),
+    ],
+)
+def test_frames_that_nobody_sets_are_told_once(krl, body, told) -> None:
+    notes = [found for n in krl(body).notes if (found := UNSET.match(n.message))]
+    assert [found[1] for found in notes] == told

@@ -390,3 +390,197 @@ def test_a_data_list_is_no_program(tmp_path, krl):
         Krl().read_file(data, ReadOptions())
     with pytest.raises(SourceError, match="holds data"):
         krl(src="DEFDAT demo\nENDDAT")
+
+
+@pytest.mark.parametrize(
+    ("body", "passed"),
+    [
+        # The step is added to what the body has made of the counter.
+        ("FOR i=1 TO 8\nLIN_AT(i)\ni=i+1\nENDFOR\nLIN_AT(i)", [1, 3, 5, 7, 9]),
+        ("FOR i=8 TO 1 STEP -2\ni=i-1\nLIN_AT(i)\nENDFOR\nLIN_AT(i)", [7, 4, 1, -1]),
+        ("FOR i=1 TO 100\nLIN_AT(i)\nIF i==2 THEN\ni=100\nENDIF\nENDFOR", [1, 2]),
+        ("FOR i=1 TO 4\nskip(i)\nLIN_AT(i)\nENDFOR", [2, 4]),
+        ("FOR g[2]=1 TO 4\nLIN_AT(g[2])\ng[2]=g[2]+1\nENDFOR", [1, 3]),
+        # A parameter by reference is the item that it was at the call.
+        ("i=1\nboth(i,g[i])\nLIN_AT(g[1])\nLIN_AT(i)", [7, 2]),
+        # Once the loop is left by EXIT the counter is where it was.
+        ("FOR i=1 TO 9\nIF i==3 THEN\nEXIT\nENDIF\nENDFOR\nLIN_AT(i)", [3]),
+        ("FOR i=1 TO 3\nENDFOR\nLIN_AT(i)", [4]),
+        ("FOR i=5 TO 3\nENDFOR\nLIN_AT(i)", [5]),
+        # The bounds are those from before the loop.
+        ("last=2\nFOR i=1 TO last\nLIN_AT(i)\nlast=9\nENDFOR", [1, 2]),
+        ("i=3\nFOR i=i TO i+1\nLIN_AT(i)\nENDFOR", [3, 4]),
+        ("FOR i=1 TO 2\nFOR last=1 TO 2\nLIN_AT(last)\nlast=last+1\nENDFOR\nENDFOR", [1, 1]),
+        # It never gets on: endless, and read once.
+        (f"FOR i=1 TO 3\n{P[4]}\ni=i-1\nENDFOR\nLIN_AT(9)", [4]),
+        # What the counter becomes is not known.
+        ("FOR i=1 TO 5\nLIN_AT(7)\ni=$ANIN[1]\nENDFOR\nLIN_AT(9)", [7, 9]),
+        # The robot's place ends the loop.
+        (f"{P[9]}\nWHILE $POS_ACT.X>5\nLIN_REL {{X -2}}\nENDWHILE", [9, 7, 5]),
+        (f"{P[9]}\nREPEAT\nLIN_REL {{X -3}}\nUNTIL $POS_ACT.X<1", [9, 6, 3, 0]),
+    ],
+)
+def test_counters_are_data(krl, body, passed):
+    src = (
+        f"DEF demo( )\n{INIT}{body}\nEND\n"
+        "DEF LIN_AT(n:IN)\nINT n\nFRAME at\nat=$NULLFRAME\nat.X=n\nLIN at\nEND\n"
+        "DEF skip(n:OUT)\nINT n\nn=n+1\nEND\n"
+        "DEF both(n:OUT,m:OUT)\nINT n,m\nn=n+1\nm=7\nEND\n"
+    )
+    assert visited(krl(src=src, data="INT last=0\nINT i=0\nINT g[3]")) == passed
+
+
+def test_a_bound_that_the_body_changes_is_told(krl):
+    body = f"FOR i=1 TO last\n{P[1]}\nlast=1\nENDFOR"
+    (note,) = [
+        n for n in krl(INIT + body, "INT last=3\nINT i").notes if "changes last" in n.message
+    ]
+    assert note.span.line == 5
+
+
+# -------------------------------------------------------- outputs that the program has set
+
+SIGNALS = "SIGNAL grip $OUT[3]\nSIGNAL job $OUT[11] TO $OUT[14]\nSIGNAL part $IN[1] TO $IN[3]"
+
+
+def branch(condition):
+    return f"IF {condition} THEN\n{P[1]}\nENDIF\n{P[9]}"
+
+
+@pytest.mark.parametrize(
+    ("body", "passed"),
+    [
+        # The program knows what it has written.
+        (f"$OUT[3]=FALSE\n{branch('$OUT[3]')}", [9]),
+        (f"$OUT[3]=TRUE\n{branch('$OUT[3]==TRUE')}", [1, 9]),
+        (f"grip=FALSE\n{branch('grip')}", [9]),
+        (f"grip=FALSE\n{branch('$OUT[3]')}", [9]),
+        (f"$OUT[3]=FALSE\n{branch('grip==TRUE')}", [9]),
+        (f"$OUT_C[3]=FALSE\n{branch('grip')}", [9]),
+        (f"i=3\n$OUT[i]=FALSE\ni=4\n$OUT[i]=TRUE\n{branch('$OUT[3]')}", [9]),
+        (f"job=5\n{branch('job<>5')}", [9]),
+        (f"job=5\n{branch('$OUT[12]')}", [9]),
+        (f"job=5\n{branch('$OUT[11] AND $OUT[13]')}", [1, 9]),
+        (f"job=0\n$OUT[12]=TRUE\n{branch('job==2')}", [1, 9]),
+        (f"job=21\n{branch('job==5')}", [1, 9]),
+        (
+            f"$OUT[11]=TRUE\n$OUT[12]=TRUE\n$OUT[13]=FALSE\n$OUT[14]=FALSE\n{branch('job==3')}",
+            [1, 9],
+        ),
+        (f"$ANOUT[1]=0.5\n{branch('$ANOUT[1]>0.6')}", [9]),
+        (f"$FLAG[1]=FALSE\n{branch('$FLAG[1]')}", [9]),
+        (f"put(3,FALSE)\n{branch('grip')}", [9]),
+        # Inputs, and what nobody has written, are not known: branches that move are taken.
+        (branch("$OUT[3]"), [1, 9]),
+        (f"$OUT[3]=FALSE\n{branch('$IN[3]')}", [1, 9]),
+        (f"$OUT[11]=TRUE\n{branch('job==2')}", [1, 9]),
+        (branch("part==2"), [1, 9]),
+        # Nor is what is not certain.
+        (f"$OUT[3]=FALSE\n$OUT[3]=$IN[1]\n{branch('grip')}", [1, 9]),
+        (f"$OUT[3]=FALSE\nPULSE($OUT[3],TRUE,0.5)\n{branch('grip')}", [1, 9]),
+        (f"grip=FALSE\nPULSE(grip,TRUE,0.5)\n{branch('$OUT[3]')}", [1, 9]),
+        (f"job=0\nPULSE($OUT[12],TRUE,0.5)\n{branch('job==2')}", [1, 9]),
+        (f"PULSE(grip,TRUE,0.5)\ngrip=FALSE\n{branch('grip')}", [9]),
+        (
+            f"TRIGGER WHEN DISTANCE=0 DELAY=20 DO $OUT[3]=TRUE\ngrip=FALSE\n{P[5]}\n"
+            + branch("grip"),
+            [5, 1, 9],
+        ),
+        (
+            f"grip=FALSE\n$OUT[4]=FALSE\nTRIGGER WHEN PATH=-5 DELAY=0 DO set3( ) PRIO=-1\n{P[5]}\n"
+            f"{branch('grip')}\n{branch('$OUT[4]')}",
+            [5, 1, 9, 9],
+        ),
+        (
+            "INTERRUPT DECL 3 WHEN $IN[1]==TRUE DO set3( )\nINTERRUPT ON 3\ngrip=FALSE\n"
+            f"$OUT[4]=FALSE\n{branch('grip')}\n{branch('$OUT[4]')}",
+            [1, 9, 9],
+        ),
+        (f"grip=FALSE\nGRP(1,2)\n{branch('grip')}", [1, 9]),
+        # Somebody else changes what the program waits for.
+        (f"grip=TRUE\nWAIT FOR NOT grip\n{branch('NOT grip')}", [1, 9]),
+        (f"grip=TRUE\nWHILE grip\nWAIT SEC 0.1\nENDWHILE\n{branch('NOT grip')}", [1, 9]),
+        (f"grip=TRUE\nREPEAT\nWAIT SEC 0.1\nUNTIL grip==FALSE\n{P[9]}", [9]),
+        (f"grip=TRUE\nWHILE grip\n{P[3]}\nENDWHILE\n{P[9]}", [3, 9]),
+        (f"grip=TRUE\nLOOP\n{P[3]}\nIF NOT grip THEN\nEXIT\nENDIF\nENDLOOP\n{P[9]}", [3, 3, 9]),
+        (f"grip=TRUE\nw:\nWAIT SEC 0.1\nIF grip THEN\nGOTO w\nENDIF\n{P[9]}", [9]),
+        # It changes it itself.
+        (
+            f"grip=TRUE\ni=0\nWHILE grip\ni=i+1\n{P[3]}\nIF i==3 THEN\ngrip=FALSE\nENDIF\nENDWHILE\n"
+            + P[9],
+            [3, 3, 3, 9],
+        ),
+    ],
+)
+def test_outputs_keep_what_the_program_sets(krl, body, passed):
+    src = (
+        f"DEF demo( )\n{INIT}{body}\nEND\nDEF set3( )\nhelp( )\nEND\nDEF help( )\ngrip=TRUE\nEND\n"
+        "DEF put(n:IN,v:IN)\nINT n\nBOOL v\n$OUT[n]=v\nEND\n"
+    )
+    assert visited(krl(src=src, data=f"INT i=0\n{SIGNALS}")) == passed
+
+
+def test_answers_to_outputs_and_bits(krl):
+    body = f"{INIT}grip=FALSE\n{branch('grip')}"
+    assert visited(krl(body, SIGNALS, answers=Answers({"grip": True}))) == [9]
+    assert visited(krl(body, SIGNALS, answers=Answers(sequences={"grip": (True,)}))) == [1, 9]
+    bits = Answers({"$in[1]": False, "$in[2]": True, "$in[3]": False})
+    assert visited(krl(INIT + branch("part<>2"), SIGNALS, answers=bits)) == [9]
+    skipped = krl(
+        f"{INIT}grip=FALSE\nmy_clamp( )\n{branch('grip')}",
+        SIGNALS,
+        answers=Answers(skipped=frozenset({"my_clamp"})),
+    )
+    assert visited(skipped) == [1, 9]
+
+
+@pytest.mark.parametrize(
+    ("body", "passed"),
+    [
+        # Only a branch that nobody can decide ends the loop.
+        (f"WHILE run\n{P[1]}\nIF $IN[1] THEN\nrun=FALSE\nENDIF\nENDWHILE\n{P[9]}", [1, 9]),
+        (
+            f"WHILE run\n{P[1]}\nlast=last+1\nIF $IN[1] THEN\nrun=FALSE\nENDIF\nENDWHILE\n{P[9]}",
+            [1, 9],
+        ),
+        (f"REPEAT\n{P[1]}\nIF $IN[1] THEN\nrun=FALSE\nENDIF\nUNTIL NOT run\n{P[9]}", [1, 9]),
+        (f"WHILE run\n{P[1]}\nIF $IN[1] THEN\nstop_it(run)\nENDIF\nENDWHILE\n{P[9]}", [1, 9]),
+        (
+            f"WHILE run\n{P[1]}\nSWITCH $ANIN[1]\nCASE 1\nrun=FALSE\nENDSWITCH\nENDWHILE\n{P[9]}",
+            [1, 9],
+        ),
+        (
+            f"LOOP\n{P[1]}\nIF NOT run THEN\nEXIT\nENDIF\nIF $IN[1] THEN\nrun=FALSE\nENDIF\n"
+            f"ENDLOOP\n{P[9]}",
+            [1, 9],
+        ),
+        (f"LOOP\n{P[1]}\nlast=last+1\nIF $IN[1] THEN\nEXIT\nENDIF\nENDLOOP\n{P[9]}", [1, 9]),
+        # Something else ends it.
+        (
+            f"LOOP\n{P[1]}\nlast=last+1\nIF last>2 THEN\nEXIT\nENDIF\n"
+            f"IF $IN[1] THEN\nEXIT\nENDIF\nENDLOOP\n{P[9]}",
+            [1, 1, 1, 9],
+        ),
+        (
+            f"WHILE run\n{P[1]}\nIF $IN[1] THEN\nrun=FALSE\nENDIF\ncount( )\nENDWHILE\n{P[9]}",
+            [1, 1, 1, 9],
+        ),
+        (
+            f"WHILE last<3\n{P[1]}\nlast=last+1\nIF $IN[1] THEN\nlast=9\nENDIF\nENDWHILE\n{P[9]}",
+            [1, 1, 1, 9],
+        ),
+        (
+            f"WHILE last<3\n{P[1]}\nlast=last+1\nIF $IN[1] THEN\nrun=FALSE\nENDIF\nENDWHILE\n{P[9]}",
+            [1, 1, 1, 9],
+        ),
+    ],
+)
+def test_loops_that_an_undecided_branch_ends(krl, body, passed):
+    src = f"DEF demo( )\n{INIT}{body}\nEND\nDEF stop_it(b:OUT)\nBOOL b\nb=FALSE\nEND\n"
+    src += "DEF count( )\nlast=last+1\nIF last==3 THEN\nrun=FALSE\nENDIF\nEND\n"
+    program = krl(src=src, data="BOOL run=TRUE\nINT last=0")
+    assert visited(program) == passed
+    answers = Answers(passes={"demo.src:5": 3})
+    if passed == [1, 9]:
+        again = krl(src=src, data="BOOL run=TRUE\nINT last=0", answers=answers)
+        assert visited(again) == [1, 1, 1, 9]

@@ -323,3 +323,113 @@ def test_remote_procedures_are_kept() -> None:
     assert first == Opaque('cam = rpc_factory("xmlrpc", "http://127.0.0.1")')
     assert second == Opaque("ok = cam.shoot(1)")
     assert wait == Wait(0.1)
+
+
+# -------------------------------------------------------- outputs that the program has set
+
+
+def branch(condition: str) -> str:
+    return f"if {condition}:\n  {GO.format(1)}\nend\n{GO.format(9)}\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "driven"),
+    [
+        # The program knows what it has written.
+        ("set_digital_out(1, False)\n" + branch("get_digital_out(1)"), [9]),
+        ("set_digital_out(1, True)\n" + branch("get_digital_out(1)"), [1, 9]),
+        ("set_standard_digital_out(1, False)\n" + branch("get_digital_out(1)"), [9]),
+        ("set_tool_digital_out(1, False)\n" + branch("get_digital_out(9)"), [9]),
+        (
+            "set_configurable_digital_out(2, False)\n"
+            + branch("get_configurable_digital_out(2) == True"),
+            [9],
+        ),
+        ("set_flag(3, False)\n" + branch("get_flag(3)"), [9]),
+        (
+            "write_output_integer_register(4, 7)\n" + branch("read_output_integer_register(4) > 7"),
+            [9],
+        ),
+        (
+            "write_output_boolean_register(0, True)\n"
+            + branch("not read_output_boolean_register(0)"),
+            [9],
+        ),
+        (
+            "write_output_float_register(0, 0.5)\n" + branch("read_output_float_register(0) < 0.4"),
+            [9],
+        ),
+        (
+            "n = 2\nset_digital_out(n, False)\nn = n + 1\nset_digital_out(n, True)\n"
+            + branch("get_digital_out(2)"),
+            [9],
+        ),
+        (
+            "def put(n, v):\n  set_standard_digital_out(n, v)\nend\nput(1, False)\n"
+            + branch("get_standard_digital_out(1)"),
+            [9],
+        ),
+        # Inputs, and what nobody has written, are not known: branches that move are taken.
+        (branch("get_digital_out(1)"), [1, 9]),
+        ("set_digital_out(1, False)\n" + branch("get_digital_in(1)"), [1, 9]),
+        ("set_digital_out(1, False)\n" + branch("get_digital_out(2)"), [1, 9]),
+        (
+            "write_output_integer_register(4, 7)\n" + branch("read_input_integer_register(4) > 7"),
+            [1, 9],
+        ),
+        # Nor is what others may write, or what is not certain.
+        (
+            "set_standard_analog_out(0, 0.5)\n" + branch("get_standard_analog_out(0) > 1"),
+            [1, 9],
+        ),
+        (
+            "set_digital_out(1, False)\nset_digital_out(1, get_digital_in(1))\n"
+            + branch("get_digital_out(1)"),
+            [1, 9],
+        ),
+        (
+            "set_digital_out(1, False)\nset_digital_out(read_input_integer_register(0), True)\n"
+            + branch("get_digital_out(1)"),
+            [1, 9],
+        ),
+        (
+            "thread blink():\n  while True:\n    set_digital_out(1, True)\n    sync()\n  end\nend\n"
+            "h = run blink()\nset_digital_out(1, False)\n" + branch("get_digital_out(1)"),
+            [1, 9],
+        ),
+        (
+            "thread blink():\n  set_digital_out(1, True)\nend\nh = run blink()\njoin h\n"
+            "set_digital_out(1, False)\n" + branch("get_digital_out(1)"),
+            [9],
+        ),
+        ("set_tool_digital_out(0, False)\nrg_grip(20)\n" + branch("get_digital_out(8)"), [1, 9]),
+        # Somebody else changes what a loop waits for.
+        (
+            "set_digital_out(1, True)\nwhile get_digital_out(1):\n  sync()\nend\n" + GO.format(9),
+            [9],
+        ),
+        (
+            "set_digital_out(1, True)\nwhile get_digital_out(1):\n"
+            + f"  {GO.format(3)}\nend\n"
+            + GO.format(9),
+            [3, 9],
+        ),
+        # The loop changes it itself.
+        (
+            "set_digital_out(1, True)\nn = 0\nwhile get_digital_out(1):\n  n = n + 1\n"
+            + f"  {GO.format('n')}\n  if n == 3:\n    set_digital_out(1, False)\n  end\nend\n"
+            + GO.format(9),
+            [1, 2, 3, 9],
+        ),
+    ],
+)
+def test_outputs_keep_what_the_program_sets(text: str, driven: list[float]) -> None:
+    assert joints(text) == driven
+
+
+def test_answers_to_outputs() -> None:
+    text = "set_digital_out(1, False)\n" + branch("get_digital_out(1)")
+    assert joints(text, values={key("get_digital_out(1)"): True}) == [9]
+    assert joints(text, sequences={key("get_digital_out(1)"): (True,)}) == [1, 9]
+    skipped = "set_digital_out(1, False)\ngrip_it()\n" + branch("get_digital_out(1)")
+    assert joints(skipped, skipped=frozenset({"grip_it"})) == [1, 9]

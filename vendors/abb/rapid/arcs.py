@@ -1,28 +1,17 @@
-"""Arcs that the controller would refuse.
-
-The limits are those that RobotComponents checks for (PathGenerator): they follow the controller's
-own error messages for circles that are too small or too long.
-"""
+"""Arcs that the controller would refuse, as far as the program alone tells."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....core.errors import InputError
 from ....core.program.move import Move, MoveC
 from ....core.program.target import PoseTarget
 from ....core.spatial.pose import Pose
-
-LEAST_CHORD = 1e-4
-"""m, from the start to each of the two points."""
-LEAST_ANGLE = math.radians(1)
-"""Between the two points, seen from the start."""
-LARGEST_ARC = math.radians(240)
-
-FloatArray = NDArray[np.float64]
+from ....core.spatial.rotation import angle_between, arc_angle
+from ..dialect import ARCS
 
 
 def check_arc(before: Move | None, move: MoveC) -> None:
@@ -40,31 +29,18 @@ def check_arc(before: Move | None, move: MoveC) -> None:
         np.array(point)
         for point in (start.position, move.via.pose.position, move.target.pose.position)
     )
-    if min(np.linalg.norm(b - a), np.linalg.norm(c - a)) < LEAST_CHORD:
+    if min(np.linalg.norm(b - a), np.linalg.norm(c - a)) < ARCS.least_chord:
         raise InputError("MoveC: a point of the arc is less than 0.1 mm from its start")
-    if angle_between(b - a, c - a) < LEAST_ANGLE:
+    if angle_between(b - a, c - a) < ARCS.least_angle:
         raise InputError(
             "MoveC: seen from the start, its two points are less than 1° apart: use MoveL"
         )
     sweep = arc_angle(a, b, c)
-    if sweep > LARGEST_ARC:
+    if sweep > ARCS.longest:
         raise InputError(
             f"MoveC: an arc of {math.degrees(sweep):.0f}° is above the 240° that RAPID allows: "
             "split it in two"
         )
-
-
-def angle_between(u: FloatArray, v: FloatArray) -> float:
-    """Angle of two vectors (3,), rad."""
-    return math.atan2(float(np.linalg.norm(np.cross(u, v))), float(u @ v))
-
-
-def arc_angle(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
-    """Angle at the centre of the arc from ``a`` through ``b`` to ``c``, rad.
-
-    By the inscribed angle theorem the arcs a-b and b-c are twice the angles at c and at a.
-    """
-    return 2 * (angle_between(b - a, c - a) + angle_between(a - c, b - c))
 
 
 def _start(before: Move, move: MoveC) -> Pose | None:

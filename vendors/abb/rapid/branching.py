@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from .interpreter import Interpreter
 
 
+_SKIPPED = "a branch whose condition is not known"
+
+
 @dataclass(eq=False, slots=True)
 class Frame:
     """A routine that is being run.
@@ -28,14 +31,14 @@ class Frame:
         main: whether the program starts in it.
         labels: offsets of its labels, when somebody has asked.
         exits: branches that leave a loop and were not taken, as their conditions are not known:
-            offset and block.
+            offset and block, by the block's id. Each is there once, however often it is met.
     """
 
     routine: Routine
     home: Home
     main: bool
     labels: dict[str, int] | None = None
-    exits: list[tuple[int, Block]] = field(default_factory=list)
+    exits: dict[int, tuple[int, Block]] = field(default_factory=dict)
 
     def label_offsets(self) -> dict[str, int]:
         """See ``labels``."""
@@ -134,7 +137,9 @@ def _choose(
         raise SourceError(str(error), condition.span) from None
     chosen = otherwise if taken == 0 else everything[taken - 1]
     at = condition.span.start
-    frame.exits += [(at, block) for block, may in candidates if may and block is not chosen]
+    for block, may in candidates:
+        if may and block is not chosen:
+            frame.exits.setdefault(id(block), (at, block))
     if chosen is not None:
         run.run_block(chosen, scope)
 
@@ -143,7 +148,7 @@ def run_for(run: Interpreter, loop: For, scope: Scope) -> None:
     """``FOR``; without STEP the controller counts down where it has to."""
     bounds = [run.evaluator.evaluate(e, scope) for e in (loop.start, loop.stop)]
     given = run.evaluator.evaluate(loop.step, scope) if loop.step is not None else None
-    counter = Cell(loop.name, NUM)
+    counter = Cell(loop.name, NUM, constant=True)  # programs may only read it
     inner = Scope(scope.where, {loop.name: counter}, scope, scope.home)
     for value in _counts(run, loop, bounds[0], bounds[1], given):
         counter.value = value
@@ -184,23 +189,47 @@ def _number_or_none(run: Interpreter, value: Value, loop: For) -> float | None:
 def run_while(run: Interpreter, loop: While, scope: Scope) -> None:
     """``WHILE``; a loop without an end is read for one pass."""
     left: int | None = None
+    most: int | None = None
+    passed = waits = 0
+    home, outputs = run.frame.home, run.evaluator.outputs
     while True:
         turns = run.evaluator.turns
+        outputs.asked.clear()
         value = run.evaluator.evaluate(loop.condition, scope)
         if isinstance(value, Unknown):
             if left is None:
                 moving = run.flow.moves(loop.body, run.frame.home)
-                left = run.course.passes(loop.condition.span, value.reason, moving)
+                passes = run.course.passes(loop.condition.span, value.reason, moving)
+                left = max(0, passes - waits)
             if left == 0:
                 return
             left -= 1
         elif not run.evaluator.truth(value, "WHILE", loop.condition.span):
             return
         fixed = left is None and run.evaluator.turns == turns
+        waited = frozenset(outputs.asked)
         run.run_block(loop.body, scope)
         run.meter.statement(loop.span)
-        if fixed and run.flow.unchanging(loop, run.frame.home):
+        passed += 1
+        if most is None and left is None and _ends_by_what_was_skipped(run, loop):
+            moving = run.flow.moves(loop.body, home)
+            most = run.course.passes(loop.condition.span, _SKIPPED, moving)
+        if most is not None and passed >= most:
+            return
+        if not fixed or not run.flow.unchanging(loop, home):
+            continue
+        if not waited:
             end_loop(run, loop.span, loop.body, scope)
+        elif not waited & run.flow.signals_written(loop.body, home):
+            outputs.forget(waited)  # somebody else is to change what it waits for
+            waits = passed
+
+
+def _ends_by_what_was_skipped(run: Interpreter, loop: While) -> bool:
+    """Whether only branches that were not taken, as their conditions are not known, end a loop."""
+    span = loop.span
+    skipped = [block for at, block in run.frame.exits.values() if span.start <= at < span.end]
+    return bool(skipped) and run.flow.decided_by(loop, skipped, run.frame.home)
 
 
 def end_loop(run: Interpreter, span: Span, body: Block, scope: Scope) -> None:
@@ -209,11 +238,33 @@ def end_loop(run: Interpreter, span: Span, body: Block, scope: Scope) -> None:
     It is left by the way out that was not taken as its condition is not known; without any way out
     the program ends here; else it goes on.
     """
-    exits = [block for at, block in run.frame.exits if span.start <= at < span.end]
+    exits = [block for at, block in run.frame.exits.values() if span.start <= at < span.end]
     out = next((block for block in exits if run.flow.may_leave(block, body)), None)
     if out is not None:
         message = "a loop ends by what is not known: one pass is read, and then its way out"
         run.out.note_once(f"loop {span.start}", message, span)
         run.run_block(out, scope)
+    elif _waits_for_others(run, body):
+        _let_others_write(run)
     elif not run.flow.may_leave(body, body):
         run.finish("the program is an endless loop: one pass is read", span)
+
+
+def jump_back(run: Interpreter, between: Block) -> None:
+    """A jump back that a condition decides: a wait, if nothing moves the robot on the way."""
+    if not run.flow.moves(between, run.frame.home) and _waits_for_others(run, between):
+        _let_others_write(run)
+
+
+def _let_others_write(run: Interpreter) -> None:
+    outputs = run.evaluator.outputs
+    outputs.forget(outputs.asked)
+    outputs.asked.clear()
+
+
+def _waits_for_others(run: Interpreter, body: Block) -> bool:
+    """Whether a loop reads outputs that only somebody else can change, to end or to do nothing."""
+    home, asked = run.frame.home, set(run.evaluator.outputs.asked)
+    if not asked or asked & run.flow.signals_written(body, home):
+        return False
+    return run.flow.may_leave(body, body) or not run.flow.moves(body, home)

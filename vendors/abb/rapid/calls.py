@@ -9,7 +9,7 @@ from ....core.errors import SourceError, Span
 from .arguments import check_count
 from .evaluator import Evaluator
 from .scope import Cell, Scope, unknown_name
-from .syntax import Argument, Expression, Name, Parameter, Routine
+from .syntax import Argument, Expression, Name, Number, Parameter, Routine
 from .types import Foreign, Type, find_unknown, interpreted
 
 
@@ -51,12 +51,23 @@ def pass_arguments(
         scope.cells[parameter.name] = cell
         value = argument.value
         if parameter.mode != "in" and isinstance(value, Name) and value.path:
-            back.append((cell, value))
+            back.append((cell, _fixed(evaluator, value, caller)))
     for parameter in routine.parameters:
         if parameter.name not in scope.cells:
             type_ = evaluator.data.type(parameter.type, scope.home, parameter.span)
             scope.cells[parameter.name] = Cell(parameter.name, type_, value=False, present=False)
     return back
+
+
+def _fixed(evaluator: Evaluator, name: Name, caller: Scope) -> Name:
+    """A name with its indices as they are now: the routine may change what they are made of."""
+
+    def index(expression: Expression) -> Expression:
+        value = evaluator.evaluate(expression, caller)
+        return Number(expression.span, value) if type(value) is float else expression
+
+    path = tuple(s if isinstance(s, str) else tuple(map(index, s)) for s in name.path)
+    return replace(name, path=path)
 
 
 def _matched(
@@ -95,7 +106,7 @@ def _parameter(
         return Cell(parameter.name, type_, value=True)
     if parameter.mode != "in" or parameter.dimensions:
         return _referred(evaluator, parameter, type_, expression, caller)
-    found = evaluator.locate(expression, caller)
+    found = evaluator.locate(expression, caller, asking=not isinstance(type_, Foreign))
     if find_unknown(found.value) is None:
         evaluator.check(found.value, type_, f"parameter {parameter.name}", expression.span)
     name = found.cell.name if found.cell is not None else parameter.name
@@ -122,7 +133,8 @@ def _referred(
         )
     cell = evaluator.cell(expression, caller)
     if cell is None or expression.path:
-        found = evaluator.locate(expression, caller)  # a signal, an element, a component
+        # A signal, an element, a component: of a signal it counts which one it is.
+        found = evaluator.locate(expression, caller, asking=cell is not None)
         return Cell(expression.text, type_, value=found.value, source=found.source)
     evaluator.settle(cell)
     if parameter.dimensions not in (0, len(cell.dimensions)) and cell.value is not None:

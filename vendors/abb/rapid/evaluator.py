@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from ....core.errors import SourceError, Span
 from ....core.source.answers import Course
+from ....core.source.outputs import Outputs
 from ....core.source.provenance import ELSEWHERE, Reads
 from .answering import free, like_signals, typed
 from .checks import check_known, check_type
@@ -87,6 +88,7 @@ class Evaluator:
         self.data = data
         self.reads = Reads()
         self.reader = ELSEWHERE
+        self.outputs = Outputs()
         self.turns = 0
         """How many answers of sequences were given."""
         self._course = course
@@ -217,6 +219,27 @@ class Evaluator:
         answer = self.ask(target.span, found.type, sizes)
         self.assign(target, unknown if answer is None else answer, scope)
 
+    def signal(self, expression: Expression | None, scope: Scope) -> str | None:
+        """The signal that an expression means, lower case; None if that is not known."""
+        if not isinstance(expression, Name) or expression.path:
+            return None
+        cell = self.cell(expression, scope)
+        if cell is None:
+            return None if expression.name in self._elsewhere else expression.name
+        value = self.settle(cell) if isinstance(cell.type, Foreign) and cell.present else None
+        return value.key.lower() or None if isinstance(value, Unknown) else None
+
+    def output(self, signal: Expression | None, asked: Span, scope: Scope) -> Value | None:
+        """What the program has set an output to; None if that is not known.
+
+        Args:
+            asked: where it is read: a user's answers to it in turn come first.
+        """
+        name = self.signal(signal, scope)
+        if name is None or self._course.changing(self.key(asked)):
+            return None
+        return self.outputs.value(name)
+
     # -------------------------------------------------------------------- data
 
     def settle(self, cell: Cell) -> Value:
@@ -337,6 +360,9 @@ class Evaluator:
     def _locate_name(self, name: Name, scope: Scope, asking: bool = True) -> Located:
         found = self._find(name, scope)
         if asking and isinstance(found.value, Unknown):
+            held = self.output(name, name.span, scope)
+            if held is not None:
+                return Located(held, None, None)
             sizes = found.cell.dimensions if found.cell is not None and not name.path else ()
             answer = self.ask(name.span, found.type, sizes)
             if answer is None and not name.path and found.value.key != name.text:

@@ -6,11 +6,12 @@ the answers are kept.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from .instructions import KEPT, MOVING
 from .scope import Home
+from .signals import READING, WRITING
 from .syntax import (
     Argument,
     Assign,
@@ -82,10 +83,23 @@ class Flow:
         return self._once(f"leaves {id(body)}", block, lambda: _may_leave(block, body))
 
     def unchanging(self, loop: While, home: Home) -> bool:
-        """Whether nothing in a loop's body writes what its condition reads."""
-        if any(True for _ in calls_in(loop.condition)):
+        """Whether nothing in a loop's body writes the data that its condition reads."""
+        if any(call.name not in READING for call in calls_in(loop.condition)):
             return False
         return not (names_in(loop.condition) & self._writes(loop.body, home))
+
+    def decided_by(self, loop: While, skipped: Sequence[Block], home: Home) -> bool:
+        """Whether the data and outputs that a loop's condition reads are written in blocks of its
+        body that were not taken, and nowhere else in it."""
+        read = names_in(loop.condition)
+        if not any(
+            read & (self._writes(block, home) | self.signals_written(block, home))
+            for block in skipped
+        ):
+            return False
+        left_out = frozenset(map(id, skipped))
+        written = {*self._names_written(loop.body, home, left_out)}
+        return not read & (written | self.signals_written(loop.body, home, left_out))
 
     # ---------------------------------------------------------------------- moves
 
@@ -148,7 +162,37 @@ class Flow:
             self._written[id(block)] = frozenset(self._names_written(block, home))
         return self._written[id(block)]
 
-    def _names_written(self, block: Block, home: Home) -> Iterator[str]:
+    def signals_written(
+        self, block: Block, home: Home, left_out: frozenset[int] = frozenset()
+    ) -> set[str]:
+        """Lower-case names of the outputs that a block, and what it calls, may write.
+
+        What is handed to a routine that writes outputs is among them.
+
+        Args:
+            left_out: ids of blocks in it that do not count.
+        """
+        found: set[str] = set()
+        reached, todo = {id(block)}, [(block, home)]
+        while todo:
+            one, home = todo.pop()
+            for statement in one.statements:
+                todo += [(b, home) for b in inner_blocks(statement) if id(b) not in left_out]
+                if not isinstance(statement, Invoke):
+                    continue
+                called = self._data.routine(statement.name, home)
+                if called is not None or statement.name in WRITING:
+                    found |= set(_names_given(statement.arguments))
+                if called is not None and id(called.body) not in reached:
+                    reached.add(id(called.body))
+                    todo.append((called.body, self._data.scope_of(called).home))
+        return found
+
+    def _names_written(
+        self, block: Block, home: Home, left_out: frozenset[int] = frozenset()
+    ) -> Iterator[str]:
+        if id(block) in left_out:
+            return
         for statement in block.statements:
             if isinstance(statement, Assign):
                 yield statement.target.name
@@ -159,7 +203,10 @@ class Flow:
                     yield from self._written_by_routine(call.name, home)
                     yield from _names_given(call.arguments)
             for inner in inner_blocks(statement):
-                yield from self._writes(inner, home)
+                if left_out:
+                    yield from self._names_written(inner, home, left_out)
+                else:
+                    yield from self._writes(inner, home)
 
     def _written_by_call(self, statement: Invoke | LateInvoke, home: Home) -> Iterator[str]:
         if isinstance(statement, Invoke):

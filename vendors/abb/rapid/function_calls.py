@@ -16,6 +16,7 @@ from .lexer import END, tokenize
 from .operators import OperandError, is_vector
 from .provenance import constant, source_of_literal
 from .scope import Cell, Scope, unknown_name
+from .signals import READING
 from .syntax import Argument, Call, Name, Routine
 from .types import NUM, Unknown, Value, find_unknown, mismatch
 
@@ -75,6 +76,10 @@ class FunctionCalls:
                 return special(call, scope)
             if call.name in COMPUTED:
                 return self._computed(call, scope)
+            if call.name in READING and call.arguments:
+                held = self._evaluator.output(call.arguments[0].value, call.span, scope)
+                if held is not None:
+                    return held
             if call.name in STATE:
                 return Unknown(
                     f"the value of {call.text}()", call.span, self._evaluator.key(call.span)
@@ -88,6 +93,7 @@ class FunctionCalls:
 
     def _missing(self, call: Call) -> Unknown:
         """The value of a function of which nobody has the text; it is taken to move nothing."""
+        self._evaluator.outputs.forget()
         known = [*self._evaluator.data.routine_names("func"), *COMPUTED]
         hint = self._evaluator.data.hint(call.name)
         reason = unknown_name("function", call.text, known, hint or "its text is not at hand")

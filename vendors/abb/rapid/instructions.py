@@ -17,6 +17,7 @@ from .motion import MOVES
 from .operators import OperandError
 from .scope import Scope
 from .settings import SETTINGS, Handler
+from .signals import SIGNALS
 from .special_moves import SPECIAL_MOVES
 from .syntax import Invoke, Name
 from .text_functions import with_bit
@@ -238,6 +239,7 @@ INTERPRETED: dict[str, Handler] = {
     "bitclear": _set_bit,
     "waittime": _wait_time,
     WAIT_UNTIL: wait_until,
+    **SIGNALS,
     "incr": _step,
     "decr": _step,
     "clear": _step,

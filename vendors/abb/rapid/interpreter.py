@@ -18,7 +18,7 @@ from ....core.program.move import Statement as ProgramStatement
 from ....core.source.answers import Course
 from ....core.source.limits import Meter
 from ....core.source.reading import ReadOptions
-from .branching import Frame, end_loop, run_for, run_if, run_test, run_while
+from .branching import Frame, end_loop, jump_back, run_for, run_if, run_test, run_while
 from .calls import pass_arguments, present
 from .convert import Converter
 from .evaluator import Evaluator
@@ -93,7 +93,7 @@ class Interpreter:
         self.flow = Flow(data)
         self.robot = options.robot
         self.convert = Converter(self, external_axes)
-        self.whereabouts = Whereabouts(options.robot, external_axes)
+        self.whereabouts = Whereabouts(options.robot, external_axes, options.start)
         self.state = StateFunctions(self)
         self.evaluator = Evaluator(
             data,
@@ -193,7 +193,10 @@ class Interpreter:
         """
         while goto.name in block.labels:
             target = block.labels[goto.name]
-            if target > index or goto is not block.statements[index]:
+            if target > index:
+                return target
+            if goto is not block.statements[index]:
+                jump_back(self, Block(block.statements[target - 1 : index + 1]))
                 return target
             body = self._loops.setdefault(id(goto), Block(block.statements[target - 1 : index]))
             span = goto.span._replace(start=body.statements[0].span.start)
@@ -227,12 +230,16 @@ class Interpreter:
         elif isinstance(statement, LateInvoke):
             self._late(statement, scope)
         elif not isinstance(statement, Label):
-            self._keyword(statement)
+            self._keyword(statement, scope)
 
-    def _keyword(self, statement: Keyword) -> None:
+    def _keyword(self, statement: Keyword, scope: Scope) -> None:
         if statement.word == "exit":
             raise _Finished
         if statement.word == "connect":
+            trap = self.data.routine(statement.name, scope.home)
+            if trap is not None:
+                home = self.data.scope_of(trap).home
+                self.evaluator.outputs.share(self.flow.signals_written(trap.body, home))
             self.out.keep(statement, KEPT["connect"].why)
             return
         if statement.word == "placeholder":
@@ -268,6 +275,7 @@ class Interpreter:
         if routine is not None:
             self._call(routine, statement.arguments, scope, statement.span)
         elif self.course.skips(statement.text):
+            self.evaluator.outputs.forget()
             self.out.keep(statement, "it is skipped, as the answers say", stops=False)
         else:
             raise self._refusal(statement)
@@ -346,6 +354,7 @@ class Interpreter:
         routine = self.data.fetched_routine(own.strip().lower(), scope.home, span)
         if routine is None or routine.kind != "proc":
             if self.course.skips(name):
+                self.evaluator.outputs.forget()
                 return
             known = self.data.routine_names("proc")
             raise SourceError(unknown_name("routine", name, known), span)

@@ -18,7 +18,7 @@ import re
 from dataclasses import dataclass
 
 from ....core.source import cursor
-from ....core.source.text import SourceText
+from ....core.source.text import SourceText, unbroken
 
 
 def words(text: str) -> frozenset[str]:
@@ -90,7 +90,7 @@ def tokenize(source: SourceText) -> Tokens:
     Raises:
         SourceError: a character that no token begins with, or a string without an end.
     """
-    text = source.text
+    text = unbroken(source.text)
     kinds: list[str] = []
     starts: list[int] = []
     ends: list[int] = []
@@ -164,7 +164,7 @@ _BLANK = re.compile(r"(?:[\s\ufeff\x1a]++|![^\r\n]*+)*+")
 
 
 def _stray(source: SourceText, position: int) -> Exception:
-    blank = _BLANK.match(source.text, position)
+    blank = _BLANK.match(unbroken(source.text), position)
     start = blank.end() if blank else position
     character = source.text[start]
     if character == '"':

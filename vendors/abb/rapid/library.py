@@ -12,12 +12,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ....core.errors import Note, SourceError, Span
-from ....core.source.text import SourceFile, SourceText
+from ....core.source.text import SourceFile, SourceText, unbroken
 from .parser import parse
 from .syntax import Module
 
 _DECLARED = re.compile(
-    r"""!.*|"[^"\r\n]*"
+    r"""![^\r\n]*|"[^"\r\n]*"
       | (?<![\w.]) (?: (?P<end> END(?:PROC|FUNC|TRAP) )
       | (?: PROC | TRAP | RECORD | FUNC\s+\w+ | ALIAS\s+\w+ ) \s+ (?P<routine> \w+ )
       | (?: CONST | VAR | PERS ) \s+ \w+ \s+ (?P<datum> \w+ ) )""",
@@ -130,7 +130,7 @@ def _declared(text: str) -> set[str]:
     """Names that a text seems to declare outside its routines, without parsing it."""
     names: set[str] = set()
     inside = False
-    for found in _DECLARED.finditer(text):
+    for found in _DECLARED.finditer(unbroken(text)):
         kind = found.lastgroup
         if kind == "end":
             inside = False

@@ -309,11 +309,14 @@ def drive(
     scope: Scope,
     events: tuple[Event, ...] = (),
     bound: Bound | None = None,
-) -> None:
+) -> Record:
     """Carry a move instruction out.
 
     Args:
         bound: its arguments, if somebody has bound them already.
+
+    Returns:
+        Its target.
     """
     if bound is None:
         bound = bind_move(invoke, form)
@@ -324,6 +327,7 @@ def drive(
             reads.by_move(source, run.out.move_index)
     run.emit_move(move, sources)
     run.whereabouts.moved(move, sources.statement, sources.record)
+    return sources.record
 
 
 def _plain(run: Interpreter, invoke: Invoke, scope: Scope) -> None:

@@ -146,13 +146,14 @@ class _Plan:
             if options.derived is Sharing.REFUSE and not _plain_stop(operand):
                 raise use.error(
                     "the program computes it, so there is no number to change: have a datum put "
-                    "in the expression's place (derived=own), or leave it as it is"
+                    "in the expression's place (--own; in Python derived=own), or leave it as it is"
                 )
         elif against and options.shared is Sharing.REFUSE:
             datum = origin.datum or "the literal"
             raise use.error(
                 f"{datum} is read by {listed(against)} as well, and that is to have another "
-                "value: change them all alike, or give the move a datum of its own (shared=own)"
+                "value: change them all alike, or give the move a datum of its own (--own; in "
+                "Python shared=own)"
             )
 
     def _stops_alone(self, use: Use) -> bool:

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 from ....core.errors import SourceError
 from ....core.program.event import Event
 from .motion import Form, bind_move, drive
-from .scope import Scope
+from .scope import Cell, Scope
 from .syntax import Invoke, Name
+from .types import ROBTARGET
 
 if TYPE_CHECKING:
     from .interpreter import Interpreter
@@ -37,10 +38,14 @@ _SEARCHES = {
 }
 
 
+_FOUND = "what the search finds"
+
+
 def _search(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
     """A search drives to its end, where it is taken to have found what it looks for.
 
-    The user may answer the point that it finds; with \\Stop it drives there and no further.
+    The user may answer the point that it finds; with \\Stop it drives there and no further. The
+    point gets its value after the move: its arguments may be made of what it held before.
     """
     form = _SEARCHES[invoke.name]
     bound = bind_move(invoke, form)
@@ -54,13 +59,15 @@ def _search(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
     if answer is not None:
         where = "where the answers say"
     run.out.count(f"{invoke.text} is taken to find its point {where}", invoke.span)
-    found = run.evaluator.locate(end, scope).value if answer is None else answer
-    run.evaluator.assign(point, found, scope)
+    inner = scope
     if answer is not None and any(option in bound.options for option in _STOPS):
-        required = tuple(point if e is end else e for e in bound.required)
-        bound = replace(bound, required=required)
+        inner = scope.inner(scope.where)
+        inner.cells[_FOUND] = Cell(_FOUND, ROBTARGET, value=answer)
+        there = Name(end.span, _FOUND, point.text)
+        bound = replace(bound, required=tuple(there if e is end else e for e in bound.required))
     event = Event(f"{invoke.text} {run.out.text_of(bound.named('Signal').span)}", span=invoke.span)
-    drive(run, form, invoke, scope, (event,), bound)
+    reached = drive(run, form, invoke, inner, (event,), bound)
+    run.evaluator.assign(point, reached if answer is None else answer, scope)
 
 
 # --------------------------------------------------------------- external axes alone

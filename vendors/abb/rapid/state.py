@@ -193,7 +193,8 @@ class StateFunctions:
 
     def _unknown(self, call: Call, why: str | None) -> Unknown:
         if why is None:
-            why = "name the robot" if self._run.robot is None else "the robot has not moved yet"
+            unmoved = "the robot has not moved yet: give a start"
+            why = "name the robot" if self._run.robot is None else unmoved
         key = self._run.evaluator.key(call.span)
         return Unknown(f"the value of {call.text}() ({why})", call.span, key)
 

@@ -202,9 +202,9 @@ def _connect(cursor: Cursor) -> Keyword:
     cursor.advance()
     parse_name(cursor)
     cursor.expect("with", "after the interrupt")
-    cursor.name("the name of a trap routine")
+    name = cursor.name("the name of a trap routine").lower()
     cursor.expect(";", "at the end of CONNECT")
-    return Keyword(cursor.span_from(start), "connect")
+    return Keyword(cursor.span_from(start), "connect", name)
 
 
 def _placeholder(cursor: Cursor) -> Keyword:

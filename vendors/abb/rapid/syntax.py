@@ -249,10 +249,12 @@ class Keyword:
     Args:
         word: ``exit``, ``raise``, ``retry``, ``trynext``, ``connect``, or ``placeholder`` for
             an unfilled ``<SMT>``.
+        name: of the trap routine that is connected, lower case.
     """
 
     span: Span
     word: str
+    name: str = ""
 
 
 Statement = Assign | Invoke | LateInvoke | If | For | While | Test | Label | Goto | Return | Keyword

@@ -17,6 +17,7 @@ from .arguments import Bound, bind
 from .literals import PER_METRE
 from .motion import OVER_POINT, TO_JOINTS, TO_POINT, Form, bind_move, drive
 from .scope import Scope
+from .signals import write
 from .syntax import Expression, Invoke, Name
 from .types import NUM, Unknown, Value, mismatch
 
@@ -27,9 +28,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class TriggData(Unknown):
-    """A triggdata: not a value that a program could compute with, but events."""
+    """A triggdata: not a value that a program could compute with, but events.
+
+    Args:
+        signal: the output that they write; None if they write none, or it is not known which.
+    """
 
     events: tuple[Event, ...] = ()
+    signal: str | None = None
 
 
 _SIGNALS = {"dop": "", "gop": "\\GOp:=", "aop": "\\AOp:=", "procid": "\\ProcID:="}
@@ -74,7 +80,12 @@ def _define(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
     anchor = EventAnchor.START if "start" in bound.options else EventAnchor.END
     event = _event(_action(run, bound), anchor, distance, time, invoke.span)
     reason = f"'{target.text}', a triggdata"
-    run.evaluator.assign(target, TriggData(reason, target.span, events=(event,)), scope)
+    output = next((bound.options[o] for o in _SIGNALS if o in bound.options), None)
+    if output is None:
+        output = next((bound.named(n) for n in ("AOp", "AOutput") if n in names), None)
+    signal = run.evaluator.signal(output, scope)
+    data = TriggData(reason, target.span, events=(event,), signal=signal)
+    run.evaluator.assign(target, data, scope)
     if invoke.name == "triggspeed":
         why = "it sets an output in proportion to the speed, and the scale along the path"
         run.out.count(f"{invoke.text} is kept as an event: {why}", invoke.span)
@@ -137,25 +148,35 @@ def _trigger_move(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
     given = [bound.named("Trigg")] if "Trigg" in bound.names else []
     options = (*_TRIGGERS, "triggdata1", "triggdata2", "triggdata3")
     given += [e for o in options if (e := bound.options.get(o)) is not None]
-    events = tuple(event for e in given for event in _events_of(run, e, scope))
+    data = [run.evaluator.locate(e, scope, asking=False).value for e in given]
+    events = tuple(
+        event
+        for e, value in zip(given, data, strict=True)
+        for event in _events_of(run, e, _collected(value))
+    )
     drive(run, form, invoke, scope, events, bound)
+    for found in map(_collected, data):
+        # When the event comes is a matter of the motion, which lags behind the program.
+        signals = [one.signal for one in found if one.signal is not None]
+        run.evaluator.outputs.forget(signals if found else None)
 
 
-def _events_of(run: Interpreter, expression: Expression, scope: Scope) -> tuple[Event, ...]:
-    found = _collected(run.evaluator.locate(expression, scope, asking=False).value)
+def _events_of(
+    run: Interpreter, expression: Expression, found: tuple[TriggData, ...]
+) -> tuple[Event, ...]:
     if found:
-        return found
+        return tuple(event for one in found for event in one.events)
     text = run.out.text_of(expression.span)
     message = f"the trigger data {text} are not known: the event is taken to be at the target"
     run.out.note_once(f"trigger {text.lower()}", message, expression.span)
     return (Event(text, span=expression.span),)
 
 
-def _collected(value: Value) -> tuple[Event, ...]:
+def _collected(value: Value) -> tuple[TriggData, ...]:
     if isinstance(value, TriggData):
-        return value.events
+        return (value,)
     if isinstance(value, tuple):
-        return tuple(event for part in value for event in _collected(part))
+        return tuple(data for part in value for data in _collected(part))
     return ()
 
 
@@ -195,6 +216,10 @@ def _action_move(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
         message = f"{invoke.text} calls {text} on its way, which is not run"
         run.out.count(message, invoke.span)
     drive(run, form, invoke, scope, (Event(text, span=invoke.span),), bound)
+    if "Signal" in bound.names:
+        write(run.evaluator, bound.named("Signal"), None, scope)
+    else:
+        run.evaluator.outputs.forget()
 
 
 TRIGGER_DEFINITIONS: dict[str, Handler] = dict.fromkeys(_DEFINITIONS, _define)

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 from .arguments import bind
 from .scope import Scope
-from .syntax import Expression, Invoke, Name, Operation, Unary
+from .signals import READING
+from .syntax import Call, Expression, Invoke, Name, Operation, Unary
 from .tree import calls_in, names_in
 from .types import Unknown, Value
 
@@ -32,17 +33,21 @@ def wait_until(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
 
 def _suppose(run: Interpreter, condition: Expression, holds: bool, scope: Scope) -> None:
     """Give data the values with which a condition that does not hold does (or does not)."""
-    if any(True for _ in calls_in(condition)):
+    if any(call.name not in READING for call in calls_in(condition)):
         return
+    outputs = run.evaluator.outputs
+    outputs.asked.clear()
     value = run.evaluator.evaluate(condition, scope)
     if value is holds or isinstance(value, Unknown):
         return
+    asked = frozenset(outputs.asked)
     if isinstance(condition, Unary) and condition.operator == "not":
         _suppose(run, condition.operand, not holds, scope)
     elif isinstance(condition, Operation) and _all_must(condition, holds):
         for operand in (condition.first, *(operand for _, operand in condition.rest)):
             _suppose(run, operand, holds, scope)
     elif not _stated(run, condition, holds, scope):
+        outputs.forget(asked)
         _forget(run, condition, scope)
 
 
@@ -62,13 +67,21 @@ def _stated(run: Interpreter, condition: Expression, holds: bool, scope: Scope) 
     if operator != ("=" if holds else "<>"):
         return False
     return any(
-        isinstance(datum, Name) and _give(run, datum, run.evaluator.evaluate(other, scope), scope)
+        _give(run, datum, run.evaluator.evaluate(other, scope), scope)
         for datum, other in ((condition.first, second), (second, condition.first))
     )
 
 
-def _give(run: Interpreter, datum: Name, value: Value, scope: Scope) -> bool:
-    """Whether a datum could be given a value."""
+def _give(run: Interpreter, datum: Expression, value: Value, scope: Scope) -> bool:
+    """Whether a datum, or an output, could be given a value."""
+    if isinstance(datum, Call) and datum.name in READING:
+        datum = next((a.value for a in datum.arguments if a.value is not None), datum)
+    if not isinstance(datum, Name):
+        return False
+    name = run.evaluator.signal(datum, scope)
+    if name is not None:
+        run.evaluator.outputs.write(name, float(value) if isinstance(value, float | bool) else None)
+        return True
     cell = scope.find(datum.name)
     if cell is None or cell.constant:
         return False

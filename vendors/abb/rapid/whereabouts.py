@@ -38,10 +38,14 @@ class Whereabouts:
     Args:
         robot: None if it is not known.
         axes: kinds of its external axes, see `Converter`.
+        start: where it stands at first; None if nobody knows.
     """
 
-    def __init__(self, robot: Robot | None, axes: Sequence[str] | None) -> None:
+    def __init__(
+        self, robot: Robot | None, axes: Sequence[str] | None, start: JointTarget | None = None
+    ) -> None:
         self._robot = robot
+        self._start = start
         self._axes = axes or ()
         self._last: Move | None = None
         self._record: Record = ()
@@ -142,7 +146,7 @@ class Whereabouts:
     def _follow(self) -> Standing:
         assert self._robot is not None
         if self._standing is None:
-            self._standing = _standing(self._robot, None)
+            self._standing = _standing(self._robot, self._start)
         for move, statement in self._moves:
             self._standing.moved(move, statement)
         self._moves.clear()
@@ -166,7 +170,8 @@ class Whereabouts:
         return tuple(float(v) for v in (found.cf1, found.cf4, found.cf6, found.cfx))
 
     def _external(self) -> Record:
-        return self._external_of(() if self._last is None else self._last.target.external)
+        at = self._start if self._last is None else self._last.target
+        return self._external_of(() if at is None else at.external)
 
     def _external_of(self, values: Sequence[float]) -> Record:
         shown = [

@@ -11,6 +11,7 @@ from ....core.program.move import Move, MoveC, Opaque, Wait
 from ....core.program.program import Program
 from ....core.source.names import Names
 from ....core.source.options import OpaqueStyle
+from ....core.source.text import lines_of
 from .arcs import check_arc
 from .events import Events
 from .formatting import NAME_RULES
@@ -136,7 +137,7 @@ def _opaque(statement: Opaque, style: OpaqueStyle) -> list[Line]:
 
     ``WaitRob \\InPos`` waits until the robot stands at the point before (WaitRob).
     """
-    text = "\n".join(statement.text.splitlines())
+    text = "\n".join(lines_of(statement.text))
     if style is OpaqueStyle.KEEP:
         return [(text,)]
     comment = textwrap.indent(text, "! ", lambda line: True)

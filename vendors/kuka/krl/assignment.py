@@ -6,12 +6,11 @@ from itertools import pairwise
 
 from ....core.errors import SourceError, Span
 from .data import Data
-from .names import Names, spelled
+from .names import Names, Path, spelled
 from .scope import Cell, Scope
+from .system import OUTPUTS
 from .terms import Name
 from .values import Array, Pending, Struct, Unknown, Value, copied, shown
-
-Path = tuple[str | tuple[int, ...], ...]
 
 
 class Assignment:
@@ -26,8 +25,13 @@ class Assignment:
         self._data = data
         self._names = names
 
-    def assign(self, target: Name, value: Value, scope: Scope, span: Span) -> Cell:
+    def assign(
+        self, target: Name, value: Value, scope: Scope, span: Span, path: Path | None = None
+    ) -> Cell:
         """Give a datum, or a part of it, a value.
+
+        Args:
+            path: of the part, if its indices have been evaluated.
 
         Raises:
             SourceError: it is a constant, or of another type.
@@ -35,9 +39,12 @@ class Assignment:
         cell = self._data.find(target.name, scope) or self._data.implicit(target)
         if cell.constant:
             raise SourceError(f"{cell.name} is a constant", target.span)
-        path = self._names.path(target, scope)
-        if cell.signal is not None:
-            cell.value = value
+        path = self._names.path(target, scope) if path is None else path
+        if cell.signal is not None or target.name in OUTPUTS:
+            places = self._names.outputs(target, scope) if cell.signal is not None else None
+            self._write_outputs(
+                [spelled(OUTPUTS[target.name], path)] if places is None else places, value
+            )
             return cell
         self._names.settled(cell)
         self._data.journal.note(cell)
@@ -51,6 +58,17 @@ class Assignment:
             cell.value = _empty(path[0], cell.type)
         self._assign_part(cell, path, value, label, target, span)
         return cell
+
+    def _write_outputs(self, places: list[str], value: Value) -> None:
+        """One output, or the bits of several, the lowest first."""
+        known = isinstance(value, bool | int | float)
+        for k, place in enumerate(places):
+            part: bool | float | None = None
+            if known and len(places) == 1:
+                part = value if isinstance(value, bool) else float(value)  # type: ignore[arg-type]
+            elif isinstance(value, int) and not isinstance(value, bool):
+                part = bool(value >> k & 1)
+            self._data.outputs.write(place, part)
 
     def _assign_whole(self, cell: Cell, value: Value, label: str | None, span: Span) -> None:
         if isinstance(cell.value, Array):

@@ -88,6 +88,7 @@ class Basis:
         """A system variable."""
         cell = self.run.data.system[name]
         self.run.data.journal.note(cell)
+        cell.assigned = True
         cell.value = value
 
     def component(self, name: str, component: str, value: Value) -> None:

@@ -11,6 +11,7 @@ from .flow import Jump, Left, Returned
 from .functions import COMPUTED
 from .instructions import Kept, kept, refused
 from .library import Module
+from .names import Path
 from .scope import Cell, Scope, unknown_name
 from .syntax import Block, Invoke, Routine
 from .terms import Call, Name
@@ -41,6 +42,7 @@ class Calls:
                 self.run.basis.invoke(call, scope)
                 return
             if self.run.course.skips(call.text):
+                self.run.data.outputs.forget()
                 self.run.keep(statement.span, call.text, Kept("as the answers say"))
                 return
             table = self._from_table(call)
@@ -61,6 +63,8 @@ class Calls:
     def _keep_call(self, statement: Invoke, why: Kept, scope: Scope) -> None:
         if why.writes:
             self._forget(statement.call, scope)
+        if why.outputs:
+            self.run.output_writes.pulsed(statement.call, scope)
         self.run.keep(statement.span, statement.call.text, why)
 
     def _forget(self, call: Call, scope: Scope) -> None:
@@ -116,7 +120,7 @@ class Calls:
         self.run.meter.call(routine.text, call.span)
         kind = "DEF" if routine.returns is None else "DEFFCT"
         scope = Scope(f"{kind} {routine.text}", module, returns=routine.returns)
-        self._hand_over(routine, call, caller, scope)
+        back = self._hand_over(routine, call, caller, scope)
         self.run.where.append(module)
         skipped = self.run.flow.skipped_exit
         value: Value | None = None
@@ -135,7 +139,7 @@ class Calls:
             self.run.data.journal.forget(scope.cells.values())
             self.run.flow.skipped_exit = skipped
             self.run.meter.back()
-        self._hand_back(routine, call, caller, scope)
+        self._hand_back(back, call, caller)
         return self._returned(routine, value, call)
 
     def _returned(self, routine: Routine, value: Value | None, call: Call) -> Value | None:
@@ -146,28 +150,37 @@ class Calls:
         except KrlTypeError as error:
             raise SourceError(f"the value of {routine.text}: {error}", call.span) from None
 
-    def _hand_over(self, routine: Routine, call: Call, caller: Scope, scope: Scope) -> None:
+    def _hand_over(
+        self, routine: Routine, call: Call, caller: Scope, scope: Scope
+    ) -> list[tuple[Cell, Name, Path]]:
+        """Arguments become cells of the routine's scope.
+
+        Returns:
+            The parameters by reference with the caller's data that they stand for, and the paths
+            of those as they are now: the routine may change what an index is made of.
+        """
         if len(call.arguments) > len(routine.parameters):
             raise SourceError(
                 f"{routine.text} {wrong_count(len(routine.parameters), len(call.arguments))}",
                 call.span,
             )
+        back: list[tuple[Cell, Name, Path]] = []
         for index, parameter in enumerate(routine.parameters):
             argument = call.arguments[index] if index < len(call.arguments) else None
             cell = Cell(parameter.name)
             if argument is not None:
                 cell.value = copied(self.run.evaluator.evaluate(argument, caller))
             scope.cells[parameter.name] = cell
+            if parameter.by_reference and isinstance(argument, Name):
+                back.append((cell, argument, self.run.evaluator.names.path(argument, caller)))
+        return back
 
-    def _hand_back(self, routine: Routine, call: Call, caller: Scope, scope: Scope) -> None:
+    def _hand_back(self, back: list[tuple[Cell, Name, Path]], call: Call, caller: Scope) -> None:
         """What a parameter by reference was given goes into the caller's datum."""
-        for parameter, argument in zip(routine.parameters, call.arguments, strict=False):
-            cell = scope.cells[parameter.name]
+        for cell, datum, path in back:
             value = cell.value
-            if not (parameter.by_reference and cell.assigned and isinstance(argument, Name)):
-                continue
-            if value is not None and not isinstance(value, Pending):
-                self.run.evaluator.assign(argument, value, caller, call.span)
+            if cell.assigned and value is not None and not isinstance(value, Pending):
+                self.run.evaluator.assign(datum, value, caller, call.span, path)
 
     def body_of(self, call: Call) -> Block | None:
         """The statements that a call runs, as far as it is known without running."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ....core.errors import Note, SourceError, Span
+from ....core.source.outputs import Outputs
 from .journal import Journal
 from .library import SHIPPED, Library, Module
 from .scope import Cell, Scope
@@ -37,6 +38,7 @@ class Data:
             self.system[name].constant = True
         self.notes: list[Note] = []
         self.journal = Journal()
+        self.outputs = Outputs()
         self._implicit: dict[str, Cell] = {}
         self._missing: dict[str, Cell | None] = {}
         for module in (*library.config, library.main):

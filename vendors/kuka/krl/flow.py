@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from enum import Enum
-from typing import TYPE_CHECKING, NoReturn
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 from ....core.errors import SourceError, Span
-from .control import leaves
+from .control import guard_names, leaves, names_in, names_written
 from .operators import OperandError, apply
 from .scope import Scope
 from .syntax import Block, Exit, For, Goto, If, Loop, Repeat, Return, Statement, Switch, While
-from .terms import Expression, Number, Truth
-from .values import Unknown, Value, find_unknown, shown
+from .terms import Expression, Name, Number, Truth
+from .values import Unknown, Value, find_unknown, shown, unplaced
 
 if TYPE_CHECKING:
     from .interpreter import Interpreter
@@ -19,6 +21,11 @@ if TYPE_CHECKING:
 
 _WATCHED = 3
 """Passes of a loop in which it may turn out that nothing changes any more."""
+
+
+_FOLLOWED = 100
+"""Passes of a loop that gets on, after which it is left by a way out that nobody can decide."""
+_OTHERS = "outputs that only others can change"
 
 
 class Returned(Exception):
@@ -50,8 +57,24 @@ class After(Enum):
     """EXIT has left the loop."""
     SAME = "same"
     """All data are as they were before it."""
+    MOVED = "moved"
+    """They are, and the robot stands elsewhere."""
     CHANGED = "changed"
     """Some datum has another value, or that was not looked at."""
+
+
+class _Asked(NamedTuple):
+    """How often the program had asked for something when a loop began.
+
+    Args:
+        position: where the robot stands.
+        outputs: what outputs hold that it has set.
+        skipped: or rather, how many branches had not been taken as nobody knows their conditions.
+    """
+
+    position: int
+    outputs: int
+    skipped: int
 
 
 class Flow:
@@ -65,6 +88,11 @@ class Flow:
         self.run = run
         self.skipped_exit: str | None = None
         """What it depends on whether a loop is left, where a way out was not taken."""
+        self._jumped = 0
+        self._skips = 0
+        self._skipped: dict[int, tuple[int, Block, str]] = {}
+        # By the block's id: which skip was its last, the block, and why. Each once, however often.
+        self._writes: dict[int, set[str]] = {}
 
     def if_(self, statement: If, scope: Scope) -> None:
         value = self.run.evaluated(statement.condition, scope, statement.span)
@@ -89,6 +117,9 @@ class Flow:
         returning = [self.run.moving(block) and not leaves(block) for block in blocks]
         taken = self.run.course.branch(span, unknown.reason, returning)
         for number, block in enumerate(blocks, 1):
+            if number != taken:
+                self._skips += 1
+                self._skipped[id(block)] = (self._skips, block, unknown.reason)
             if number != taken and leaves(block):
                 self.skipped_exit = unknown.reason
         return blocks[taken - 1] if taken else None
@@ -133,37 +164,56 @@ class Flow:
         return equal if isinstance(equal, Unknown) else bool(equal)
 
     def for_(self, loop: For, scope: Scope) -> None:
+        """``FOR``: its bounds are evaluated once; the counter is the program's own datum, to which
+        the step is added after every pass, whatever the body has made of it."""
         bounds = [loop.start, loop.stop, *([loop.step] if loop.step is not None else [])]
         values = [self.run.evaluated(bound, scope, loop.span) for bound in bounds]
-        unknown = next(filter(None, map(find_unknown, values)), None)
-        if unknown is not None:
-            self._for_unknown(loop, values[0], unknown, scope)
-            return
         for value, bound in zip(values, bounds, strict=True):
-            if isinstance(value, bool) or not isinstance(value, int | float):
+            if find_unknown(value) is None and not _is_number(value):
                 raise SourceError(f"FOR counts numbers, not {shown(value)}", bound.span)
         start, stop, step = (*values, 1)[:3]
-        assert isinstance(start, int | float) and isinstance(stop, int | float)
-        assert isinstance(step, int | float)
         if step == 0:
             raise SourceError("STEP is zero: the loop has no end", loop.span)
-        counter: int | float = start + 0
-        while counter <= stop if step > 0 else counter >= stop:
-            self.run.evaluator.assign(loop.counter, counter, scope, loop.span)
-            self.run.meter.statement(loop.span)
-            if not self._pass(loop.body, scope):
+        unknown = next(filter(None, map(find_unknown, values)), None)
+        first = 1 if isinstance(start, Unknown) else unplaced(start)
+        self.run.evaluator.assign(loop.counter, first, scope, loop.span)
+        passes, asked = 0, self._asked()
+        after = After.CHANGED
+        while after is not After.LEFT:
+            counter = self.run.evaluator.names.value(loop.counter, scope)
+            open_ = unknown or find_unknown(counter)
+            if open_ is not None:
+                if passes >= self._passes(loop.start.span, open_, loop.body):
+                    return
+            elif _is_past(counter, stop, step) or (
+                self._stays(after, asked) and self._is_left(loop, passes, "FOR", asked, scope)
+            ):
                 return
-            counter = counter + step
-        self.run.evaluator.assign(loop.counter, counter, scope, loop.span)
+            passes += 1
+            run_pass = partial(self._counted, loop, step, scope)
+            after = self._watched(run_pass, loop.span, passes)
+            self._note_moved_bound(loop, stop, scope)
 
-    def _for_unknown(self, loop: For, start: Value, unknown: Unknown, scope: Scope) -> None:
-        moving = self.run.moving(loop.body)
-        passes = self.run.course.passes(loop.start.span, unknown.reason, moving)
-        first = start if isinstance(start, int) else 1
-        for number in range(passes):
-            self.run.evaluator.assign(loop.counter, first + number, scope, loop.span)
-            if not self._pass(loop.body, scope):
-                return
+    def _counted(self, loop: For, step: Value, scope: Scope) -> bool:
+        """One pass of a FOR, and its counter counted on; False if EXIT leaves it."""
+        if not self._pass(loop.body, scope):
+            return False
+        counter = self.run.evaluator.names.value(loop.counter, scope)
+        following = apply("+", counter, 1 if isinstance(step, Unknown) else step)
+        self.run.evaluator.assign(loop.counter, following, scope, loop.span)
+        return True
+
+    def _note_moved_bound(self, loop: For, stop: Value, scope: Scope) -> None:
+        """Say that the body has changed what the end of a FOR is made of."""
+        if isinstance(loop.stop, Name) and not loop.stop.path and not isinstance(stop, Unknown):
+            cell = self.run.data.find(loop.stop.name, scope)
+            if cell is not None and cell.signal is None and cell.value != stop:
+                self.run.note_once(
+                    f"bound {loop.span.start}",
+                    f"the body of FOR changes {loop.stop.text}, its end: the value from before the "
+                    "loop counts; count in a WHILE if it shall not",
+                    loop.span,
+                )
 
     def _pass(self, body: Block, scope: Scope) -> bool:
         """One pass of a loop; False if EXIT leaves it."""
@@ -177,7 +227,7 @@ class Flow:
         if _always(loop.condition, True):
             self._forever(loop.body, loop.span, "WHILE TRUE", scope)
             return
-        passes = 0
+        passes, asked = 0, self._asked()
         after = After.CHANGED
         while after is not After.LEFT:
             value = self.run.evaluated(loop.condition, scope, loop.span)
@@ -186,43 +236,135 @@ class Flow:
                     return
             else:
                 self._check_bool(value, loop.condition, "WHILE")
-                if not value or (after is After.SAME and self._is_left(loop, passes, "WHILE")):
+                if not value or self._ends(loop, after, passes, "WHILE", asked, scope):
                     return
             passes += 1
-            after = self._watched(loop.body, loop.span, passes, scope)
+            run_pass = partial(self._pass, loop.body, scope)
+            after = self._watched(run_pass, loop.span, passes)
 
     def repeat_(self, loop: Repeat, scope: Scope) -> None:
         if _always(loop.condition, False):
             self._forever(loop.body, loop.span, "REPEAT … UNTIL FALSE", scope)
             return
-        passes = 1
-        while (after := self._watched(loop.body, loop.span, passes, scope)) is not After.LEFT:
+        passes, asked = 1, self._asked()
+        run_pass = partial(self._pass, loop.body, scope)
+        while (after := self._watched(run_pass, loop.span, passes)) is not After.LEFT:
             value = self.run.evaluated(loop.condition, scope, loop.span)
             if isinstance(value, Unknown):
                 if passes >= self._passes(loop.condition.span, value, loop.body):
                     return
             else:
                 self._check_bool(value, loop.condition, "UNTIL")
-                if value or (after is After.SAME and self._is_left(loop, passes, "REPEAT")):
+                if value or self._ends(loop, after, passes, "REPEAT", asked, scope):
                     return
             passes += 1
 
-    def _watched(self, body: Block, span: Span, passes: int, scope: Scope) -> After:
-        """One pass of a loop, and what it has changed, as far as that is looked at."""
+    def _watched(self, run_pass: Callable[[], bool], span: Span, passes: int) -> After:
+        """One pass of a loop, and what it has changed, as far as that is looked at.
+
+        Args:
+            run_pass: False if the loop is left.
+        """
         self.run.meter.statement(span)
         if passes > _WATCHED or self.run.course.answers.sequences:
-            return After.CHANGED if self._pass(body, scope) else After.LEFT
+            return After.CHANGED if run_pass() else After.LEFT
         changed = True
+        place = self.run.position.last_move_numbers
+        held = self.run.data.outputs.held()
         self.run.data.journal.begin()
         try:
-            stays = self._pass(body, scope)
+            stays = run_pass()
         finally:
             changed = self.run.data.journal.end()
         if not stays:
             return After.LEFT
-        return After.CHANGED if changed else After.SAME
+        if changed or self.run.data.outputs.held() != held:
+            return After.CHANGED
+        return After.SAME if self.run.position.last_move_numbers == place else After.MOVED
 
-    def _is_left(self, loop: While | Repeat, passes: int, what: str) -> bool:
+    def _asked(self) -> _Asked:
+        return _Asked(self.run.asked, len(self.run.data.outputs.asked), self._skips)
+
+    def _stays(self, after: After, asked: _Asked) -> bool:
+        """Whether a pass shows that the loop gets no further.
+
+        Where the program asks for it, it is for the robot's position to end the loop.
+        """
+        return after is After.SAME or (after is After.MOVED and self.run.asked == asked.position)
+
+    def _leave_to_others(self, body: Block, first: int, scope: Scope) -> bool:
+        """Whether a loop has read outputs that only others can change; they have from now on.
+
+        Args:
+            first: of the outputs asked for, from which on the loop read them.
+        """
+        outputs = self.run.data.outputs
+        asked = set(outputs.asked[first:])
+        written = self.run.output_writes.written(body, scope)
+        if not asked or written is None or asked & written:
+            return False
+        outputs.forget(asked)
+        return True
+
+    def _ends(
+        self,
+        loop: While | Repeat,
+        after: After,
+        passes: int,
+        what: str,
+        asked: _Asked,
+        scope: Scope,
+    ) -> bool:
+        """Whether a loop ends after a pass though its condition says that it goes on.
+
+        Raises:
+            Finished: it goes on for ever.
+        """
+        reason = self._decided_by_what_was_skipped(names_in(loop.condition), loop.body, asked)
+        if reason is not None and passes:
+            return passes >= self._ends_by(loop.span, reason, loop.body)
+        return self._stays(after, asked) and self._is_left(loop, passes, what, asked, scope)
+
+    def _decided_by_what_was_skipped(
+        self, read: set[str], body: Block, asked: _Asked
+    ) -> str | None:
+        """What it depends on whether a loop ends, if the data that decide it are written in
+        branches of it that were not taken, and nowhere else in it.
+
+        Args:
+            read: names of the data.
+        """
+        skipped = self._skipped_since(asked)
+        found = (why for block, why in skipped if read & self._written_in(block))
+        reason = next(found, None)
+        if reason is None:
+            return None
+        left_out = frozenset(id(block) for block, _ in skipped)
+        return None if read & names_written(body, self.run.calls.body_of, left_out) else reason
+
+    def _skipped_since(self, asked: _Asked) -> list[tuple[Block, str]]:
+        """Branches that were not taken since a loop began, and what they depend on."""
+        return [(block, why) for at, block, why in self._skipped.values() if at > asked.skipped]
+
+    def _written_in(self, block: Block) -> set[str]:
+        """See `names_written`; kept, since loops ask it of every pass."""
+        found = self._writes.get(id(block))
+        if found is None:
+            found = self._writes[id(block)] = names_written(block, self.run.calls.body_of)
+        return found
+
+    def _gets_on(self, body: Block, asked: _Asked) -> bool:
+        """Whether a loop writes what decides of ways out of it that are known, and the user does
+        not say how often loops run."""
+        if self.run.course.answers.passes:
+            return False
+        left_out = frozenset(id(block) for block, _ in self._skipped_since(asked))
+        written = names_written(body, self.run.calls.body_of, left_out)
+        return bool(guard_names(body, left_out) & written)
+
+    def _is_left(
+        self, loop: For | While | Repeat, passes: int, what: str, asked: _Asked, scope: Scope
+    ) -> bool:
         """Whether a loop that nothing changes is left: by a way out that was not taken, or because
         it only waits.
 
@@ -231,6 +373,8 @@ class Flow:
         """
         if self.skipped_exit is not None:
             return passes >= self._ends_by(loop.span, self.skipped_exit, loop.body)
+        if self._leave_to_others(loop.body, asked.outputs, scope):
+            return passes >= self._ends_by(loop.span, _OTHERS, loop.body)
         self._wait_or_finish(loop.body, loop.span, what, passes)
         return True
 
@@ -262,16 +406,22 @@ class Flow:
         if not leaves(body):
             self._pass(body, scope)
             self._finish(_endless(what, 1), span)
-        passes = 0
+        passes, asked = 0, self._asked()
         while True:
             outer, self.skipped_exit = self.skipped_exit, None
             passes += 1
-            after = self._watched(body, span, passes, scope)
+            after = self._watched(partial(self._pass, body, scope), span, passes)
             skipped, self.skipped_exit = self.skipped_exit, outer
             if after is After.LEFT:
                 return
             if skipped is None:
-                if after is After.SAME:
+                skipped = self._decided_by_what_was_skipped(guard_names(body), body, asked)
+            elif after is After.CHANGED and passes < _FOLLOWED and self._gets_on(body, asked):
+                continue
+            if skipped is None:
+                if self._stays(after, asked):
+                    if self._leave_to_others(body, asked.outputs, scope):
+                        continue
                     self._wait_or_finish(body, span, what, passes)
                     return
             elif passes >= self._ends_by(span, skipped, body):
@@ -280,8 +430,11 @@ class Flow:
     def _ends_by(self, span: Span, reason: str, body: Block) -> int:
         return max(1, self.run.course.passes(span, reason, self.run.moving(body)))
 
-    def jump_back(self, goto: Goto, between: Block, last: Statement) -> None:
+    def jump_back(self, goto: Goto, between: Block, last: Statement, scope: Scope) -> None:
         """A jump to a label that was passed: a loop that is read once if nothing can end it."""
+        if not self.run.moving(between):
+            self._leave_to_others(Block((*between.statements, last)), self._jumped, scope)
+        self._jumped = len(self.run.data.outputs.asked)
         if isinstance(last, Goto) and (not leaves(between) or self.skipped_exit is not None):
             self._finish(_endless(f"GOTO {goto.name.upper()}", 1), goto.span)
 
@@ -300,6 +453,17 @@ class Flow:
 
     def exit_(self, statement: Exit, scope: Scope) -> None:
         raise Left
+
+
+def _is_number(value: Value) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _is_past(counter: Value, stop: Value, step: Value) -> bool:
+    """Whether a FOR has counted beyond its end."""
+    assert isinstance(counter, int | float) and isinstance(stop, int | float)
+    assert isinstance(step, int | float)
+    return counter > stop if step > 0 else counter < stop
 
 
 def _always(condition: Expression, value: bool) -> bool:

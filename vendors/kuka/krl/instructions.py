@@ -18,17 +18,19 @@ class Kept:
         why: what it does, for the note; empty if nothing needs to be said.
         stops: the robot comes to rest before it, or waits in it.
         writes: data that it names get values that only the running controller has.
+        outputs: it may write outputs.
     """
 
     why: str
     stops: bool = False
     writes: bool = False
+    outputs: bool = False
 
 
 _SETUP = Kept("it prepares a technology package and does not move the robot")
 _MESSAGE = Kept("messages and files do not move the robot", writes=True)
-_OUTPUT = Kept("outputs do not move the robot", stops=True)
-_TOOL = Kept("grippers, guns and processes are not emulated", stops=True)
+_OUTPUT = Kept("outputs do not move the robot", stops=True, outputs=True)
+_TOOL = Kept("grippers, guns and processes are not emulated", stops=True, outputs=True)
 _CHANNEL = Kept("what it brings is not known", stops=True, writes=True)
 _SENSOR = Kept("corrections by sensors are not emulated")
 _CLOCK = Kept("supervision does not change the programmed motion")

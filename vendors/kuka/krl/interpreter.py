@@ -29,6 +29,7 @@ from .inline import Inline
 from .instructions import Kept
 from .library import Library, Module
 from .motion import MotionReader, Parts
+from .outputs import OutputWrites
 from .placement import Placements
 from .position import Position
 from .scope import Cell, Scope
@@ -76,6 +77,9 @@ class Interpreter:
     Args:
         library: its files.
         options: robot, answers, limits.
+
+    Attributes:
+        asked: how often the program has asked where the robot stands.
     """
 
     def __init__(self, library: Library, options: ReadOptions) -> None:
@@ -85,11 +89,13 @@ class Interpreter:
         self.calls = Calls(self)
         self.flow = Flow(self)
         self._waits = Waits(self)
+        self.output_writes = OutputWrites(self)
         self.course = Course(options.answers)
         self.evaluator = Evaluator(self.data, self.course, self.calls.call_function, self._position)
         self.settings = Settings(self.data.system, self.config, self.note_once)
         self.placements = Placements(self.data.system, self.note_once)
-        self.position = Position(options.robot)
+        self.position = Position(options.robot, options.start)
+        self.asked = 0
         self.targets = Targets(options.robot, self.position)
         self.basis = Basis(self)
         self.inline = Inline(self)
@@ -222,6 +228,7 @@ class Interpreter:
 
     def take_events(self) -> tuple[Event, ...]:
         """What triggers have laid on the move that comes now."""
+        self.output_writes.driven()
         events, self.events = self.events, []
         return tuple(event for event, _ in events)
 
@@ -256,7 +263,7 @@ class Interpreter:
                     raise
                 if target <= index:
                     self.flow.jump_back(
-                        jump.goto, Block(statements[target:index]), statements[index]
+                        jump.goto, Block(statements[target:index]), statements[index], scope
                     )
                 index = target
                 continue
@@ -308,7 +315,7 @@ class Interpreter:
 
     def _assign(self, statement: Assign, scope: Scope) -> None:
         target = statement.target
-        datum = None if target.name.startswith("$") else target.text
+        datum = None if target.name.startswith("$") else self.text(target.span)
         self.evaluator.stopped = False
         value = self.evaluator.evaluate(statement.value, scope, datum)
         self._stop_if_read(statement.span)
@@ -356,11 +363,14 @@ class Interpreter:
 
     def _position(self, kind: str, span: Span) -> Value:
         """What ``$POS_ACT`` and ``$AXIS_ACT`` hold."""
-        if kind == "axes":
+        self.asked += 1
+        placement = None if kind == "axes" else self.placements.current(span)
+        if placement is None:
             value: Value = self.position.axes(span)
         else:
-            value = self.position.pose(self.placements.current(span), span)
-        return replace(value, here=self.move_index) if isinstance(value, Unknown) else value
+            value = self.position.pose(placement, span)
+        here = self.move_index, placement
+        return replace(value, here=here) if isinstance(value, Unknown) else value
 
 
 def _held(cell: Cell) -> Value:

@@ -15,7 +15,7 @@ import re
 from dataclasses import dataclass
 
 from ....core.source import cursor
-from ....core.source.text import SourceText
+from ....core.source.text import SourceText, unbroken
 
 
 def words(text: str) -> frozenset[str]:
@@ -93,7 +93,7 @@ def tokenize(source: SourceText) -> Tokens:
     Raises:
         SourceError: a character that no token begins with, or a string without an end.
     """
-    text = source.text
+    text = unbroken(source.text)
     kinds: list[str] = []
     starts: list[int] = []
     ends: list[int] = []
@@ -135,7 +135,7 @@ def bits_value(literal: str) -> int:
 
 
 def _stray(source: SourceText, position: int) -> Exception:
-    blank = re.compile(rf"(?:{_BLANK}++|;[^\r\n]*+)*+").match(source.text, position)
+    blank = re.compile(rf"(?:{_BLANK}++|;[^\r\n]*+)*+").match(unbroken(source.text), position)
     start = blank.end() if blank else position
     character = source.text[start]
     if character == '"':

@@ -71,11 +71,11 @@ class MotionReader:
         Raises:
             SourceError: it cannot be emulated, or a value is not known.
         """
-        if self._goes_nowhere(motion, scope):
-            self._stay(motion)
-            return
         word = motion.word.removesuffix("_rel")
         joint, arc = word.endswith("ptp"), word.endswith("circ")
+        if not arc and self._goes_nowhere(motion, scope):
+            self._stay(motion, joint)
+            return
         placement = self.run.placements.current(motion.span)
         start = None if joint else self._start(placement, motion)
         if arc:
@@ -104,13 +104,25 @@ class MotionReader:
             return True
         cell = self.run.data.find(target.name, scope)
         value = None if cell is None else cell.value
-        return isinstance(value, Unknown) and value.here == self.run.move_index
+        if not isinstance(value, Unknown) or value.here is None:
+            return False
+        moves, asked_in = value.here
+        return moves == self.run.move_index and (
+            asked_in is None or asked_in == self.run.placements.current(motion.span)
+        )
 
-    def _stay(self, motion: Motion) -> None:
-        """``PTP $AXIS_ACT``: no way, but an exact stop."""
-        run = self.run
-        run.emit(Opaque(run.text(motion.span), not motion.approximation, motion.span))
-        target = run.text(motion.targets[-1].span)
+    def _stay(self, motion: Motion, joint: bool) -> None:
+        """``PTP $AXIS_ACT``: no way, but an exact stop.
+
+        It is kept so that it goes nowhere wherever it is written, whatever the datum holds there.
+        """
+        run, at = self.run, motion.targets[-1].span
+        text, target = run.text(motion.span), run.text(at)
+        if target.lower() not in POSITION:
+            place = "$AXIS_ACT" if joint else "$POS_ACT"
+            begin = at.start - motion.span.start
+            text = text[:begin] + place + text[begin + len(target) :]
+        run.emit(Opaque(text, not motion.approximation, motion.span))
         run.note_once(
             "stays",
             f"{motion.word.upper()} {target} goes to where the robot is: kept, no move",
@@ -348,6 +360,8 @@ class MotionReader:
             self._part(motion.approximated, common.zone.sources),
             via,
         )
+        if isinstance(found.target, PoseTarget):
+            self.run.placements.remark_unset(motion.span)
         self.run.emit_move(move, parts)
         self.run.position.moved(move, motion.span, found.complete, common.placement)
 

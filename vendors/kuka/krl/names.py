@@ -13,7 +13,7 @@ from ....core.source.answers import Answer
 from .data import Data
 from .frames import null_frame
 from .scope import Cell, Scope
-from .system import NEVER_KNOWN, POSITION, STOPS_WHEN_READ
+from .system import NEVER_KNOWN, OUTPUTS, POSITION, STOPS_WHEN_READ
 from .terms import Expression, Name
 from .types import PREDEFINED, KrlTypeError, convert
 from .values import Array, Choice, Pending, Struct, Unknown, Value, copied, shown, unplaced
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 Position = Callable[[str, Span], Value]
 Path = tuple[str | tuple[int, ...], ...]
 _LONGEST_ARRAY = 100_000
+_WIDEST = 32
+"""Bits of a ``SIGNAL``."""
 
 
 class Names:
@@ -49,6 +51,8 @@ class Names:
         position = POSITION.get(node.name)
         if node.name in STOPS_WHEN_READ:
             self._evaluator.stopped = True
+        if node.name in OUTPUTS:
+            return self._output(node, scope)
         if node.name in NEVER_KNOWN:
             return self._undeclared(node, self.path(node, scope))
         cell = self._data.find(node.name, scope)
@@ -90,23 +94,73 @@ class Names:
             value = part
         return value
 
+    def _output(self, node: Name, scope: Scope) -> Value:
+        """What the program has set it to; a user's answers in turn come first."""
+        path = self.path(node, scope)
+        held = None
+        if not self._evaluator.course.changing(spelled(node.text, path)):
+            held = self._data.outputs.value(spelled(OUTPUTS[node.name], path))
+        return self._undeclared(node, path) if held is None else held
+
     def _signal(self, node: Name, cell: Cell, scope: Scope) -> Value:
-        """A ``SIGNAL``: answered by its own name, or by that of the input it stands for."""
-        answered = self._answer(node, ())
-        if answered is not None:
-            return answered
+        """A ``SIGNAL``: an output that the program has set; answered by its own name, or by those
+        of the inputs and outputs that it stands for."""
         assert cell.signal is not None
         first, last = cell.signal
         if first.name in STOPS_WHEN_READ:
             self._evaluator.stopped = True
+        value: Value | None = None
+        if first.name in OUTPUTS and not self._evaluator.course.changing(node.text):
+            value = self._whole(first, last, scope, self._data.outputs.value)
+        if value is None:
+            value = self._answer(node, ())
+        if value is None:
+            value = self._whole(first, last, scope, self._bit(first))
+        return Unknown(f"the value of {node.text}", node.span) if value is None else value
+
+    def _bit(self, first: Name) -> Callable[[str], Value | None]:
+        """What the user answers to one of the inputs or outputs of a signal."""
+        return lambda place: self._answer(Name(first.span, first.name, place), ())
+
+    def _whole(
+        self, first: Name, last: Name | None, scope: Scope, bit: Callable[[str], Value | None]
+    ) -> Value | None:
+        """The value of a signal from those of its places: one, or bits with the lowest first."""
+        values = [bit(place) for place in self.places(first, last, scope)]
+        known = [value for value in values if value is not None]
+        if last is None or len(known) < len(values):
+            return known[0] if last is None and known else None
+        return sum(1 << k for k, value in enumerate(known) if value is True or value == 1)
+
+    def places(self, first: Name, last: Name | None, scope: Scope) -> list[str]:
+        """The inputs or outputs that a signal stands for, as ``$OUT[3]``, the lowest bit first."""
+        name = OUTPUTS.get(first.name, first.text)
+        start = self.path(first, scope)
         if last is None:
-            value = self.value(first, scope)
-            return (
-                Unknown(f"the value of {node.text}", node.span)
-                if isinstance(value, Unknown)
-                else value
-            )
-        return Unknown(f"the value of {node.text}", node.span)
+            return [spelled(name, start)]
+        (low,), (high,) = (self._plain_index(p, first) for p in (start, self.path(last, scope)))
+        if not low <= high < low + _WIDEST:
+            raise SourceError(f"a SIGNAL has 1 to {_WIDEST} bits, in order", first.span)
+        return [f"{name}[{k}]" for k in range(low, high + 1)]
+
+    @staticmethod
+    def _plain_index(path: Path, node: Name) -> tuple[int, ...]:
+        if len(path) != 1 or isinstance(path[0], str) or len(path[0]) != 1:
+            raise SourceError("a SIGNAL stands for inputs or outputs with an index", node.span)
+        return path[0]
+
+    def outputs(self, node: Name, scope: Scope) -> list[str]:
+        """The outputs that a name stands for; none if it is something else.
+
+        Raises:
+            SourceError: its index is not known.
+        """
+        if node.name in OUTPUTS:
+            return [spelled(OUTPUTS[node.name], self.path(node, scope))]
+        cell = self._data.find(node.name, scope)
+        if cell is None or cell.signal is None or cell.signal[0].name not in OUTPUTS:
+            return []
+        return self.places(*cell.signal, scope)
 
     def part(
         self, value: Value, step: str | tuple[int, ...], node: Name, cell: Cell

@@ -188,14 +188,15 @@ class _Plan:
             if self._options.derived is Sharing.REFUSE:
                 raise InputError(
                     "the program computes it, or no literal in its files states it, so there is no "
-                    "number to change: have the move get its own (derived=own), or leave it"
+                    "number to change: have the move get its own (--own; in "
+                    "Python derived=own), or leave it"
                 )
         elif self._options.shared is Sharing.REFUSE:
             who = f"is read by {listed(against)} as well, and that is to have another value"
             raise InputError(
                 f"{use.origin.datum or 'the literal'} "
                 f"{who if against else 'does not state all of it'}: change all alike, or have "
-                "the move get its own (shared=own)"
+                "the move get its own (--own; in Python shared=own)"
             )
 
     def _check_executions(self, use: Use) -> None:

@@ -20,6 +20,12 @@ from .values import Choice, Struct, Value, find_unknown, left_open
 Note = Callable[[str, str, Span], None]
 
 
+_UNSET = {
+    "$tool": ("the flange is taken for the TCP", "BAS(#TOOL,1) or $TOOL=TOOL_DATA[1]"),
+    "$base": ("the world is taken for the base", "BAS(#BASE,1) or $BASE=BASE_DATA[1]"),
+}
+
+
 @dataclass(frozen=True, slots=True)
 class Placement:
     """Tool, work object and payload of a move."""
@@ -45,6 +51,17 @@ class Placements:
     def changed(self) -> None:
         """A system variable has another value now."""
         self._made = None
+
+    def remark_unset(self, span: Span) -> None:
+        """Say what is taken for a tool or base that nobody has set: a pose is driven with them."""
+        for name, (taken, remedy) in _UNSET.items():
+            if not self._system[name].assigned:
+                self._note(
+                    f"{name} is set nowhere",
+                    f"{name.upper()} is set nowhere before this motion: {taken}, where a "
+                    f"controller keeps what was set last; set it, as by {remedy}",
+                    span,
+                )
 
     def current(self, span: Span) -> Placement:
         """What holds for a move at ``span``.

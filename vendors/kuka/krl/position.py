@@ -7,6 +7,7 @@ else the robot's own kinematics answer, if it is named.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ....core.errors import FlybyError, SourceError, Span
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ....core.motion.standing import Standing
+    from ....core.program.target import JointTarget
     from ....core.robot.model import Robot
 
 WHERE = "where the robot stands"
@@ -32,15 +34,19 @@ class Position:
 
     Args:
         robot: None if none is named.
+        start: where it stands at first; None if nobody knows.
     """
 
-    def __init__(self, robot: Robot | None) -> None:
+    def __init__(self, robot: Robot | None, start: JointTarget | None = None) -> None:
         self._robot = robot
+        self._start = start
         self._moves: list[tuple[Move, Span]] = []
         self._told = 0
         self._standing: Standing | None = None
         self._last: Struct | None = None
         self._placement: Placement | None = None
+        if robot is not None and start is not None:
+            self._last = self.axis_struct((*start.joints, *start.external))
 
     def moved(self, move: Move, statement: Span, target: Struct, placement: Placement) -> None:
         """The robot has driven to a target, whose components are all in ``target``."""
@@ -51,7 +57,7 @@ class Position:
 
     @property
     def last_move_numbers(self) -> Struct | None:
-        """The components of the last target, None before the first move."""
+        """The components of the last target, or of the start; None if neither is known."""
         return self._last
 
     # ----------------------------------------------------------------------- queries
@@ -68,7 +74,7 @@ class Position:
         if self._robot is None:
             return Unknown(f"{WHERE} (name the robot: its kinematics tell)", span)
         if last is None:
-            return Unknown(f"{WHERE} before the first move", span)
+            return Unknown(f"{WHERE} before the first move (give a start)", span)
         q = self.joints(span)
         try:
             pose = self._follow().pose(placement.tool, placement.work_object)
@@ -90,11 +96,11 @@ class Position:
         if self._robot is None:
             return Unknown(f"{WHERE} (name the robot: its kinematics tell)", span)
         if last is None:
-            return Unknown(f"{WHERE} before the first move", span)
+            return Unknown(f"{WHERE} before the first move (give a start)", span)
         q = self.joints(span)
         return self.axis_struct(q)
 
-    def axis_struct(self, q: NDArray[np.float64]) -> Struct:
+    def axis_struct(self, q: Sequence[float] | NDArray[np.float64]) -> Struct:
         """A configuration (N,) as axis values."""
         fields: dict[str, Value] = {
             name: math.degrees(float(v)) for name, v in zip(AXIS_FIELDS, q, strict=False)
@@ -129,7 +135,7 @@ class Position:
         """The value that an external axis (from 0) was last sent to; None if to none yet."""
         return None if self._last is None else self._last.fields.get(EXTERNAL_FIELDS[index])
 
-    def _external_fields(self, q: NDArray[np.float64]) -> dict[str, Value]:
+    def _external_fields(self, q: Sequence[float] | NDArray[np.float64]) -> dict[str, Value]:
         assert self._robot is not None
         values = [float(v) for v in q[self._robot.arm_size :]]
         fields: dict[str, Value] = {}
@@ -146,7 +152,7 @@ class Position:
 
         assert self._robot is not None
         if self._standing is None:
-            self._standing = Standing(self._robot, label)
+            self._standing = Standing(self._robot, label, self._start)
         for move, statement in self._moves[self._told :]:
             self._standing.moved(move, statement)
         self._told = len(self._moves)

@@ -67,6 +67,9 @@ CONSTANTS = frozenset({"$nullframe", "$world", "$vel_ma", "$acc_ma"})
 MOTION = frozenset(initial()) - CONSTANTS
 """Variables that the emulation reads."""
 
+OUTPUTS = {"$out": "$OUT", "$out_c": "$OUT", "$anout": "$ANOUT"}
+"""Outputs → which they are: ``$OUT_C`` sets those of ``$OUT`` at the tip of the tool's motion."""
+
 STOPS_WHEN_READ = words(
     """$in $anin $timer $pos_act $axis_act $pos_act_mes $axis_act_mes $axis_act_meas $pos_ret
     $axis_ret $pos_int $axis_int $digin $timer_flag"""

@@ -19,6 +19,7 @@ from .terms import Expression
 
 if TYPE_CHECKING:
     from .library import Module
+    from .placement import Placement
 
 
 class Root:
@@ -160,12 +161,13 @@ class Unknown:
     Args:
         reason: what it is, for the refusal: ``the value of $IN[3]``.
         span: where it was read.
-        here: it is where the robot stood after this many moves.
+        here: it is where the robot stood after this many moves; of a pose, with the placement
+            that it was asked in.
     """
 
     reason: str
     span: Span
-    here: int | None = None
+    here: tuple[int, Placement | None] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,7 +45,10 @@ class Waits:
         self.run.emit(Wait(max(0.0, float(value)), statement.span))
 
     def wait_for(self, statement: WaitFor, scope: Scope) -> None:
-        self.run.evaluator.evaluate(statement.condition, scope)
+        outputs = self.run.data.outputs
+        mark = len(outputs.asked)
+        if self.run.evaluator.evaluate(statement.condition, scope) is False:
+            outputs.forget(outputs.asked[mark:])  # somebody else has changed what it waits for
         why = "taken as satisfied at once: waiting takes no time here"
         self.run.keep(statement.span, "WAIT FOR", Kept(why, stops=True))
 
@@ -75,6 +78,7 @@ class Waits:
         except InputError as error:
             raise SourceError(str(error), statement.span) from None
         self.run.events.append((event, statement.span))
+        self.run.output_writes.triggered(statement.action, scope)
 
     def _trigger_number(
         self, expression: Expression, scope: Scope, statement: Trigger
@@ -97,6 +101,8 @@ class Waits:
             raise SourceError(f"{statement.word.upper()} is refused: {reason}", statement.span)
         why = KEYWORDS[statement.word]
         if why is not None:
+            if statement.word in ("global", "interrupt"):
+                self.run.output_writes.interrupted(self.run.text(statement.span), scope)
             word = "INTERRUPT" if statement.word == "global" else statement.word.upper()
             self.run.keep(statement.span, word, why)
 

@@ -13,6 +13,7 @@ from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.model import Robot
 from ....core.source.names import Names
 from ....core.source.options import OpaqueStyle
+from ....core.source.text import lines_of
 from ..configuration import KukaConfiguration, label
 from .aggregates import ARM_AXES
 from .datalist import DataList, Datum
@@ -150,7 +151,7 @@ class _Body:
 
     def _opaque(self, text: str) -> list[Line]:
         keep = self._options.opaque is OpaqueStyle.KEEP
-        return [(line if keep else f"; {line}",) for line in text.splitlines()]
+        return [(line if keep else f"; {line}",) for line in lines_of(text)]
 
     def _move(self, move: Move) -> list[Line]:
         try:

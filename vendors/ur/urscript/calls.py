@@ -10,7 +10,7 @@ from ....core.errors import InputError, SourceError, Span
 from ....core.program.move import Opaque, Wait
 from ....core.source.answers import Answer
 from .arguments import bind
-from .catalogue import MOVES, REFUSED, Kept, asks, kept, known_names
+from .catalogue import ADD_ONS, MOVES, REFUSED, Kept, asks, kept, known_names
 from .control import Returned
 from .evaluator import answered
 from .functions import COMPUTED, SHAPES, Computed
@@ -18,6 +18,7 @@ from .kinematics import KINEMATICS
 from .lists import METHODS
 from .located import NOTHING, Located
 from .motion import move
+from .outputs import READING, WRITING, held, write
 from .scope import Cell, Function, Scope, near_names
 from .settings_calls import SETTINGS
 from .syntax import Argument, Assign, Call, Evaluate, MethodCall, Name, Run
@@ -196,6 +197,7 @@ class Calls:
         """A function that is not carried out: kept, asked for, or refused."""
         run = self._run
         if run.course.skips(call.name):
+            run.outputs.forget()
             return self.keep_call(call, SKIPPED, call.name)
         refused = REFUSED.get(call.name)
         span = run.texts.span(call.start, call.end)
@@ -205,16 +207,24 @@ class Calls:
                 f'answer [calls] "{call.name}" = "skip"',
                 span,
             )
-        for argument in call.arguments:
-            run.evaluator.evaluate(argument.value, scope)
+        values = [run.evaluator.evaluate(argument.value, scope) for argument in call.arguments]
+        if call.name in READING and not run.course.changing(self._text(call)):
+            known = held(run.outputs, call.name, values)
+            if known is not None:
+                return known
+        if call.name in WRITING:
+            write(run.outputs, call.name, values)
         if asks(call.name):
             return self.answer(call, f"{call.name}()")
         entry = kept(call.name)
         if entry is not None:
+            if entry is ADD_ONS:
+                run.outputs.forget()
             return self.keep_call(call, entry, call.name)
         answer = run.course.value(self._text(call))
         if answer is None:
             raise self._unknown(call, scope, span)
+        run.outputs.forget()
         self.keep_call(call, SKIPPED, call.name)
         return answered(answer)
 

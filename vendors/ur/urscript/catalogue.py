@@ -62,6 +62,23 @@ REFUSED: dict[str, str] = {
 }
 """name → why a program that calls it cannot be read further."""
 
+ADD_ONS = Kept(
+    "work grippers and other add-ons",
+    words("RG2 RG6 rg2 rg6 VG10 vg10 grip release"),
+    (
+        # Robotiq grippers, wrist cameras, force sensors and EPick
+        *("rq_", "gripper_", "GripperSocket", "cam_", "rq2_"),
+        # OnRobot
+        *("rg_", "rg2_", "rg6_", "RG2_", "vg_", "vgp", "vg10_", "vgc", "on_", "twofg_"),
+        *("twofgp_", "threefg_", "tfg_", "fg2_", "fg3_", "sg_", "mg_", "mg10_", "gecko_"),
+        *("msg_", "softgripper_", "sd_", "lift100_", "or_", "qc_", "hex_"),
+        # Schunk, Zimmer, Weiss, Schmalz, piab, Festo
+        *("schunk_", "egp_", "egh_", "zimmer_", "ieg_", "wsg_", "gripkit_", "schmalz_"),
+        *("ecbpi_", "cobotpump_", "piab_", "festo_", "dh_gripper_"),
+    ),
+)
+"""They may set outputs."""
+
 KEPT: tuple[Kept, ...] = (
     Kept("stop the robot", words("stopj stopl stop"), stops=True),
     Kept(
@@ -99,21 +116,7 @@ KEPT: tuple[Kept, ...] = (
         ),
         ("set_", "encoder_", "conveyor_", "path_offset_", "force_mode_", "freedrive_mode_"),
     ),
-    Kept(
-        "work grippers and other add-ons",
-        words("RG2 RG6 rg2 rg6 VG10 vg10 grip release"),
-        (
-            # Robotiq grippers, wrist cameras, force sensors and EPick
-            *("rq_", "gripper_", "GripperSocket", "cam_", "rq2_"),
-            # OnRobot
-            *("rg_", "rg2_", "rg6_", "RG2_", "vg_", "vgp", "vg10_", "vgc", "on_", "twofg_"),
-            *("twofgp_", "threefg_", "tfg_", "fg2_", "fg3_", "sg_", "mg_", "mg10_", "gecko_"),
-            *("msg_", "softgripper_", "sd_", "lift100_", "or_", "qc_", "hex_"),
-            # Schunk, Zimmer, Weiss, Schmalz, piab, Festo
-            *("schunk_", "egp_", "egh_", "zimmer_", "ieg_", "wsg_", "gripkit_", "schmalz_"),
-            *("ecbpi_", "cobotpump_", "piab_", "festo_", "dh_gripper_"),
-        ),
-    ),
+    ADD_ONS,
 )
 
 QUERIES = words(

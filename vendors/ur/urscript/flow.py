@@ -10,6 +10,7 @@ from collections import defaultdict
 from collections.abc import Callable, Container, Iterable, Iterator
 
 from .catalogue import MOVES, REFUSED
+from .outputs import written_by
 from .syntax import (
     Assign,
     Block,
@@ -29,6 +30,7 @@ from .walks import (
     base_name,
     calls_in,
     calls_of,
+    calls_written_in,
     inner_blocks,
     names_in,
     way_out,
@@ -81,6 +83,18 @@ class Flow:
         if own is None:
             return name in names
         return self._once(kind, name, lambda: any(self._reaches(kind, names, d.body) for d in own))
+
+    def outputs_written(self, block: Block) -> set[str]:
+        """Names of the outputs that a block, and what it calls, may write."""
+        return written_by(calls_written_in(block)) | self._outputs_of(calls_of(block))
+
+    def function_outputs(self, name: str) -> set[str]:
+        """Names of the outputs that a function, and what it calls, may write."""
+        return self._outputs_of([name])
+
+    def _outputs_of(self, names: Iterable[str]) -> set[str]:
+        bodies = (d.body for one in self._reached(names) for d in self._functions.get(one, ()))
+        return written_by(call for body in bodies for call in calls_written_in(body))
 
     def ends(self, block: Block, main: bool) -> bool:
         """Whether the program does not go on behind a block.
@@ -144,13 +158,20 @@ class Flow:
 
     def _assignments(self, name: str) -> Iterator[Assign]:
         """Those in a function and in all that it calls."""
-        reached, todo = {name}, [name]
+        for called in self._reached([name]):
+            for define in self._functions.get(called, ()):
+                yield from (s for s in all_statements(define.body) if isinstance(s, Assign))
+
+    def _reached(self, names: Iterable[str]) -> set[str]:
+        """Functions, with all that they call."""
+        todo = list(names)
+        reached = set(todo)
         while todo:
             for define in self._functions.get(todo.pop(), ()):
-                yield from (s for s in all_statements(define.body) if isinstance(s, Assign))
                 called = calls_of(define.body) - reached
                 reached |= called
                 todo += called
+        return reached
 
     def _function_writes(self, name: str) -> frozenset[str]:
         if name not in self._written:

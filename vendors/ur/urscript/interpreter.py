@@ -17,6 +17,7 @@ from ....core.program.move import Statement as ProgramStatement
 from ....core.program.origin import MoveOrigin
 from ....core.source.answers import Course
 from ....core.source.limits import Meter
+from ....core.source.outputs import Outputs
 from ....core.source.reading import ReadOptions
 from ..configuration import UrConfiguration
 from .assignments import Assignments
@@ -72,7 +73,8 @@ class Interpreter:
         self.course = Course(options.answers)
         self.meter = Meter(options.limits, options.executed)
         self.settings = Settings()
-        self.position = Position(options.robot)
+        self.outputs = Outputs()
+        self.position = Position(options.robot, options.start)
         self.notebook = Notebook()
         self.root = Scope("the program")
         self.threads = Threads(self)

@@ -135,7 +135,7 @@ def _near(
         if run.position.is_here(nearby):
             return None
         return find_unknown(nearby) or to_near(run, nearby, qnear.value)
-    if not (run.position.has_robot and run.position.moved_yet):
+    if not (run.position.has_robot and run.position.known):
         return None
     here = run.position.joints(call.name, run.span_of(call))
     return None if isinstance(here, Unknown) else UrConfiguration(here)

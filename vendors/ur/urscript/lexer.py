@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 from ....core.errors import SourceError
 from ....core.source import cursor
+from ....core.source.text import unbroken
 from .texts import Texts
 
 
@@ -86,7 +87,7 @@ def tokenize(texts: Texts, which: int) -> Tokens:
     Raises:
         SourceError: a character that no token begins with, or a string without an end.
     """
-    text, base = texts.sources[which].text, texts.bases[which]
+    text, base = unbroken(texts.sources[which].text), texts.bases[which]
     kinds: list[str] = []
     starts: list[int] = []
     ends: list[int] = []

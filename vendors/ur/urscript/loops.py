@@ -36,11 +36,13 @@ class OpenExit:
         word: by what.
         written: variables that it writes; empty if it holds the ``word`` itself.
         reason: what the condition depends on.
+        outputs: that it writes.
     """
 
     word: str
     written: frozenset[str]
     reason: Unknown
+    outputs: frozenset[str] = frozenset()
 
 
 class Loops:
@@ -55,14 +57,16 @@ class Loops:
         word, written = way_out(body), self._run.flow.writes(body)
         if word is not None:
             self.exits.append(OpenExit(word, frozenset(), reason))
-        elif written:
-            self.exits.append(OpenExit("break", written, reason))
+            return
+        outputs = frozenset(self._run.flow.outputs_written(body))
+        if written or outputs:
+            self.exits.append(OpenExit("break", written, reason, outputs))
 
     def carry_out(self, loop: While, scope: Scope) -> None:
         """``while condition: … end``"""
         outer, self.exits = self.exits, []
         _Passes(self._run, loop, scope).carry_out()
-        self.exits = outer + [e for e in self.exits if e.word != "break" or e.written]
+        self.exits = outer + [e for e in self.exits if e.word != "break" or e.written or e.outputs]
 
     def head(self, loop: While) -> Span:
         """The first word of a loop, for its line."""
@@ -78,15 +82,20 @@ class _Passes:
         self._scope = scope
         self._count = 0
         self._left: int | None = None  # passes, once the end of the loop is found to be open
+        self._waits = 0  # passes that were nothing but a wait for others
         self._first_move = run.move_index
+        self._waited: frozenset[str] = frozenset()  # outputs that the condition read
         self._decisive = run.flow.decisive_names(loop)
 
     def carry_out(self) -> None:
         run, loop = self._run, self._loop
         while True:
+            run.outputs.asked.clear()
             fulfilled = run.evaluator.condition(loop.condition, self._scope)
+            self._waited = frozenset(run.outputs.asked)
             if isinstance(fulfilled, Unknown):
-                self._left = self._passes(fulfilled) if self._left is None else self._left
+                if self._left is None:
+                    self._left = max(0, self._passes(fulfilled) - self._waits)
                 if self._left == 0:
                     self._keep_if_waiting()
                     return
@@ -130,6 +139,10 @@ class _Passes:
 
     def _open_exit(self) -> OpenExit | None:
         for found in self._run.loops.exits:
+            if found.outputs & self._waited:
+                return found
+            if not found.written and found.outputs:
+                continue
             if not found.written or self._decisive is None:
                 return found
             if not found.written.isdisjoint(self._decisive):
@@ -141,6 +154,12 @@ class _Passes:
         loop, run = self._loop, self._run
         endless = _always(loop.condition) and way_out(loop.body) is None
         if not endless and (changed or run.course.answers.sequences):
+            return
+        waited = self._waited.union(run.outputs.asked)
+        if waited and not endless:
+            if not waited & run.flow.outputs_written(loop.body):
+                run.outputs.forget(waited)  # somebody else is to change what the loop waits for
+                self._waits = self._count
             return
         text = run.texts.cut(loop.condition.start, loop.condition.end)[:40]
         moving = run.move_index > self._first_move

@@ -165,7 +165,7 @@ class _MoveReader:
             self.run.notebook.once(
                 "tcp",
                 "no set_tcp stands before the first move: the flange is taken for the TCP, where "
-                "a controller has the TCP of its installation",
+                "a controller has the TCP of its installation; write set_tcp(p[…]) before it",
                 self.span,
             )
         return settings.tool

@@ -128,8 +128,8 @@ class Asked:
             if options.derived is Sharing.OWN:
                 return True
             raise argument.error(
-                "the script computes it, so that there is no number to change; the option "
-                "derived=own puts a literal in its place"
+                "the script computes it, so that there is no number to change; "
+                "--own (in Python derived=own) puts a literal in its place"
             )
         if all(span is None or len(self._wanted[span]) == 1 for span in argument.spans):
             return False
@@ -139,8 +139,8 @@ class Asked:
         others = {move for span in spans for move in self._wanted[span].values()} - {argument.move}
         who = f"move {min(others) + 1}" if others else "another argument of the call"
         raise argument.error(
-            f"{who} reads the same number and wants another one: give them one value, or let the "
-            "option shared=own put a literal in its place"
+            f"{who} reads the same number and wants another one: give them one value, or let "
+            "--own (in Python shared=own) put a literal in its place"
         )
 
     def _in_place(self, argument: Argument) -> list[Edit]:

@@ -27,14 +27,16 @@ class Position:
 
     Args:
         robot: whose kinematics answer; None if none is at hand.
+        start: where it stands at first; None if nobody knows.
 
     Attributes:
         asked: how often somebody wanted to know.
         base: the frame in which programs give poses: the robot's base, wherever it stands.
     """
 
-    def __init__(self, robot: Robot | None) -> None:
+    def __init__(self, robot: Robot | None, start: JointTarget | None = None) -> None:
         self._robot = robot
+        self._start = start
         self.base = WORLD
         if robot is not None and robot.base != IDENTITY:
             self.base = WorkObject("base", user=robot.base)
@@ -50,9 +52,9 @@ class Position:
         return self._robot is not None
 
     @property
-    def moved_yet(self) -> bool:
-        """Whether there was a move."""
-        return bool(self._moves)
+    def known(self) -> bool:
+        """Whether there was a move, or a start is known."""
+        return bool(self._moves) or self._start is not None
 
     def is_here(self, value: Value) -> bool:
         """Whether a value is where the robot stands now, though nobody knows where that is."""
@@ -70,9 +72,9 @@ class Position:
             what: is asked, for the reason why it is not known.
         """
         self.asked += 1
-        if not self._moves:
+        if not self._moves and self._start is None:
             return AtStart(_before(what), span)
-        last = self._moves[-1].target
+        last = self._moves[-1].target if self._moves else self._start
         if isinstance(last, JointTarget):
             return last.joints
         if self._robot is None:
@@ -85,10 +87,10 @@ class Position:
     def pose(self, tool: Tool, what: str, span: Span) -> Pose | Unknown:
         """The TCP of a tool in the robot's base; ``what`` as in `joints`."""
         self.asked += 1
-        if not self._moves:
+        if not self._moves and self._start is None:
             return Unknown(_before(what), span)
-        last = self._moves[-1]
-        if isinstance(last.target, PoseTarget):
+        last = self._moves[-1] if self._moves else None
+        if last is not None and isinstance(last.target, PoseTarget):
             if last.tool.tcp == tool.tcp:
                 return last.target.pose
             return last.target.pose @ last.tool.tcp.inverse() @ tool.tcp
@@ -131,7 +133,7 @@ class Position:
             from ....core.motion.standing import Standing
 
             assert self._robot is not None
-            self._follower = Standing(self._robot, label)
+            self._follower = Standing(self._robot, label, self._start)
         for k in range(self._fed, len(self._moves)):
             self._follower.moved(self._moves[k], self._statements[k])
         self._fed = len(self._moves)
@@ -145,7 +147,7 @@ class Position:
 
 
 def _before(what: str) -> str:
-    return f"{what} before the first move, when nobody knows where the robot stands"
+    return f"{what} before the first move, when nobody knows where the robot stands (give a start)"
 
 
 def _nameless(what: str, span: Span) -> Unknown:

@@ -30,9 +30,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ....core.errors import InputError, SourceError
+from ....core.input_files import read_bytes
 from ....core.source.collection import collection_paused
 from ....core.source.reading import Files, ReadOptions, read_with
-from ....core.source.text import SourceFile, read_source
+from ....core.source.text import LARGEST_FILE, SourceFile, read_source
 from .entry import run_program
 from .flow import Flow
 from .interpreter import Interpreter
@@ -100,12 +101,7 @@ def _read(texts: Texts, main: str, options: ReadOptions) -> Program:
 
 
 def _check_kind(path: Path) -> None:
-    try:
-        with path.open("rb") as file:
-            compressed = file.read(len(_GZIP)) == _GZIP
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror or error}") from None
-    if compressed or path.suffix.casefold() == ".urp":
+    if read_bytes(path, LARGEST_FILE).startswith(_GZIP) or path.suffix.casefold() == ".urp":
         raise InputError(
             f"{path} is PolyScope's own compressed form of a program: PolyScope saves the same "
             "program as .script beside it; read that"

@@ -34,6 +34,7 @@ class _Started:
         endless: whether it would go on moving.
         waited: whether time has passed since, or something was decided that is not known.
         written: the variables that it may write.
+        outputs: the outputs that it may write.
     """
 
     name: str
@@ -42,6 +43,7 @@ class _Started:
     waited: bool = False
     decided: int = 0
     written: tuple[Cell, ...] = ()
+    outputs: frozenset[str] = frozenset()
 
 
 class Threads:
@@ -84,6 +86,8 @@ class Threads:
         else:
             interpreter.calls.keep_call(run, _STARTED, call.name)
             thread.written = self._mark(function)
+            thread.outputs = frozenset(interpreter.flow.function_outputs(call.name))
+            interpreter.outputs.share(thread.outputs)
         thread.decided = interpreter.decisions
         self._started.append(thread)
         return ThreadHandle(call.name, len(self._started))
@@ -146,8 +150,10 @@ class Threads:
         return cells
 
     def _release(self, thread: _Started | None, span: Span) -> None:
-        for cell in () if thread is None else thread.written:
-            assert thread is not None
+        if thread is None:
+            return
+        self._run.outputs.release(thread.outputs)
+        for cell in thread.written:
             cell.writer = None
             cell.value = Unknown(f"what thread {thread.name} has written", span)
             cell.sources = ()

@@ -104,6 +104,19 @@ def calls_of(block: Block) -> set[str]:
     return names
 
 
+def calls_written_in(block: Block) -> Iterator[Call]:
+    """The calls that a block makes itself, with their arguments."""
+    for statement in block:
+        todo = _expressions(statement)
+        while todo:
+            expression = todo.pop()
+            if isinstance(expression, Call):
+                yield expression
+            todo += _parts(expression)
+        for inner in inner_blocks(statement):
+            yield from calls_written_in(inner)
+
+
 def all_calls(block: Block) -> set[str]:
     """What a block and the functions defined in it call."""
     inside = [s.body for s in all_statements(block) if isinstance(s, Define)]

@@ -10,13 +10,13 @@ from ....core.program.program import Program
 from ....core.robot.model import Robot
 from ....core.source.names import Names
 from ....core.source.options import AS_COMMENTS, OpaqueStyle
+from ....core.source.text import lines_of
 from ....core.vendor import Sources
 from .declarations import Line
 from .formatting import comment, number
 from .options import ScriptOptions
 from .phrases import Phrases, Settings
 from .reserved import NAME_RULES
-from .standalone import check_kept
 
 SUFFIX = ".script"
 _STEP = "  "
@@ -33,7 +33,6 @@ def write(program: Program, robot: Robot, options: Mapping[str, str]) -> Sources
     Raises:
         InputError: URScript does not drive the robot, or an option is unknown.
         MotionError: URScript cannot say a move; it is named by number.
-        SourceError: a statement that was kept names what only its own script has.
     """
     script = body(program, robot, ScriptOptions.of(options))
     return {script.name + SUFFIX: script.text()}
@@ -75,15 +74,13 @@ def body(program: Program, robot: Robot, options: ScriptOptions, *taken: str) ->
         taken: names that the program's data may not have.
 
     Raises:
-        InputError, MotionError, SourceError: as `write`.
+        InputError, MotionError: as `write`.
     """
     phrases = Phrases(robot, program, options.shares)
     lines = _lines(program, phrases, options.opaque)
     names = Names(NAME_RULES, taken)
     name = names.claim(program.name, "program")
     given = phrases.declarations.names(names)
-    if options.opaque is OpaqueStyle.KEEP:
-        check_kept(program, given.values())
     statements = ["".join(p if isinstance(p, str) else given[p] for p in line) for line in lines]
     return Script(name, phrases.declarations.lines(given), statements)
 
@@ -106,7 +103,7 @@ def _lines(program: Program, phrases: Phrases, style: OpaqueStyle) -> list[Line]
 def _opaque(statement: Opaque, style: OpaqueStyle) -> list[str]:
     if style is OpaqueStyle.COMMENT:
         return comment(statement.text)
-    return ["\n".join(statement.text.splitlines())]
+    return ["\n".join(lines_of(statement.text))]
 
 
 def _move(

@@ -17,15 +17,16 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ..motion.curves import ARC, LINE, Curves, parameter_jet
-from ..motion.tcp_samples import Samples, TcpCurves
+from ..robot.lean import lean
+from .curves import ARC, LINE, Curves, parameter_jet
+from .tcp_samples import Samples, TcpCurves
 
 FloatArray = NDArray[np.float64]
 Bounds = tuple[float, float, float]
 """Of the first, second and third derivative."""
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def map_bounds(window: FloatArray, first: float, last: float) -> Bounds:
     """Bounds of |ds/dσ|, |d²s/dσ²| and |d³s/dσ³| for s from ``first`` to ``last``."""
     length, d0, d1 = window[1], window[2], window[3]
@@ -50,7 +51,7 @@ def map_bounds(window: FloatArray, first: float, last: float) -> Bounds:
     return s1, f2 * s1**3 * length, (3 * f2 * f2 + f1 * f3) * s1**5 * length**2
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def expand(curves: Curves, piece: int, s: float, begin: int, end: int, taylor: FloatArray) -> None:
     """Taylor coefficients by s of a polynomial's or line's components about ``s``.
 
@@ -82,7 +83,7 @@ def expand(curves: Curves, piece: int, s: float, begin: int, end: int, taylor: F
                 taylor[k, d] += s * taylor[k + 1, d]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _own_bounds(
     curves: Curves, piece: int, s: float, reach: float, begin: int, end: int, taylor: FloatArray
 ) -> Bounds:
@@ -111,7 +112,7 @@ def _own_bounds(
     return b1, b2, b3
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def curve_bounds(
     curves: Curves,
     piece: int,
@@ -131,6 +132,11 @@ def curve_bounds(
         taylor: (C, at least end − begin) scratch.
     """
     window = curves.window[piece]
+    if curves.kind[piece] == LINE and window[2] == 1.0 and window[3] == 1.0:
+        square = 0.0
+        for d in range(begin, end):
+            square += curves.control[piece, 1, d] ** 2
+        return math.sqrt(square) / window[1], 0.0, 0.0
     first = parameter_jet(window, max(sigma - half, window[0]))[0]
     last = parameter_jet(window, min(sigma + half, window[0] + window[1]))[0]
     middle = 0.5 * (first + last)
@@ -142,7 +148,7 @@ def curve_bounds(
     return b1 * s1, b2 * s1 * s1 + b1 * s2, b3 * s1**3 + 3 * b2 * s1 * s2 + b1 * s3
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _turn_bounds(
     curves: Curves, piece: int, sigma: float, half: float, begin: int, taylor: FloatArray
 ) -> Bounds:
@@ -158,7 +164,7 @@ def _turn_bounds(
     return b1, b2 + 0.5 * b1 * b1, b3 + 1.5 * b1 * b2 + 0.5 * b1**3
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def turning_bounds(
     curves: Curves, piece: int, sigma: float, half: float, taylor: FloatArray
 ) -> Bounds:
@@ -175,34 +181,48 @@ def turning_bounds(
 
 
 @njit(cache=True, error_model="numpy")
-def jerk_bounds(curves: TcpCurves, samples: Samples, half: FloatArray) -> FloatArray:
-    """Bounds of third derivatives by σ on M intervals.
-
-    Args:
-        curves: the TCP's path, with m prescribed axes.
-        samples: the middles, and each one's curves.
-        half: (M,), half widths.
-
-    Returns:
-        (M, 2 + m): of the position, of the angular velocity's second derivative, of each
-        prescribed axis.
-    """
-    count, axes = samples.sigma.size, curves.prescribed.control.shape[2]
-    widths = (
+def make_taylor(curves: TcpCurves) -> FloatArray:
+    """Scratch of `bound_jerk`."""
+    width = max(
         curves.position.coefficients.shape[1],
         curves.turning.coefficients.shape[1],
         curves.prescribed.coefficients.shape[1],
     )
-    taylor = np.empty((max(widths[0], widths[1], widths[2]), 3))
-    bounds = np.empty((count, 2 + axes))
-    for m in range(count):
-        sigma, reach = samples.sigma[m], half[m]
-        bounds[m, 0] = curve_bounds(
-            curves.position, samples.position[m], sigma, reach, 0, 3, taylor
-        )[2]
-        bounds[m, 1] = turning_bounds(curves.turning, samples.turning[m], sigma, reach, taylor)[2]
-        for j in range(axes):
-            bounds[m, 2 + j] = curve_bounds(
-                curves.prescribed, samples.prescribed[m], sigma, reach, j, j + 1, taylor
-            )[2]
+    return np.empty((width, 3))
+
+
+@lean
+def bound_jerk(
+    curves: TcpCurves,
+    samples: Samples,
+    m: int,
+    sigma: float,
+    half: float,
+    taylor: FloatArray,
+    out: FloatArray,
+) -> None:
+    """Write bounds of third derivatives by σ on [σ − half, σ + half].
+
+    Args:
+        curves: the TCP's path, with K prescribed axes.
+        samples: the m-th of them says which curves.
+        m, sigma, half: where.
+        taylor: scratch.
+        out: (2 + K,), written: of the position, of the angular velocity's second derivative, of
+            each prescribed axis.
+    """
+    position, turning, prescribed = samples.position[m], samples.turning[m], samples.prescribed[m]
+    out[0] = curve_bounds(curves.position, position, sigma, half, 0, 3, taylor)[2]
+    out[1] = turning_bounds(curves.turning, turning, sigma, half, taylor)[2]
+    for j in range(curves.prescribed.control.shape[2]):
+        out[2 + j] = curve_bounds(curves.prescribed, prescribed, sigma, half, j, j + 1, taylor)[2]
+
+
+@njit(cache=True, error_model="numpy")
+def jerk_bounds(curves: TcpCurves, samples: Samples, half: FloatArray) -> FloatArray:
+    """`bound_jerk` on M intervals about the samples, half (M,) wide to both sides: (M, 2 + K)."""
+    bounds = np.empty((samples.sigma.size, 2 + curves.prescribed.control.shape[2]))
+    taylor = make_taylor(curves)
+    for m in range(samples.sigma.size):
+        bound_jerk(curves, samples, m, samples.sigma[m], half[m], taylor, bounds[m])
     return bounds

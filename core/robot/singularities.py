@@ -1,0 +1,62 @@
+"""Which singularity of its arm a configuration is nearest to."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .chain_kernels import poses
+from .inverse import FULL_TURN, SOLVERS
+from .model import Robot
+
+
+class Singularity(NamedTuple):
+    """A kind of singular configuration.
+
+    Args:
+        name: shoulder, elbow or wrist.
+        meaning: what the arm looks like there.
+        remedy: how a path of the TCP gets round it.
+    """
+
+    name: str
+    meaning: str
+    remedy: str
+
+
+_KINDS = (
+    Singularity(
+        "shoulder",
+        "the wrist is as near to axis 1 as it gets",
+        "lead the path past axis 1 at a distance, or use a joint move",
+    ),
+    Singularity(
+        "elbow",
+        "the arm is stretched or folded to its end",
+        "keep the path within the arm's reach, or use a joint move",
+    ),
+    Singularity(
+        "wrist",
+        "axes 4 and 6 are parallel",
+        "turn the tool a little on the way, or use a joint move",
+    ),
+)
+
+
+def nearest_singularity(robot: Robot, q: ArrayLike) -> Singularity | None:
+    """The singularity that a configuration (N,) is nearest to; None where no closed form of the
+    arm tells them apart."""
+    known = robot.recognised
+    if known is None:
+        return None
+    arm = np.ascontiguousarray(np.asarray(q, dtype=float)[: robot.arm_size])
+    R, p = poses(robot.arm_chain, arm[None])
+    solutions, measures = np.empty((8, 6)), np.empty((8, 4))
+    SOLVERS[known.family](known.geometry, R[0], p[0], solutions, measures)
+    apart = solutions - arm
+    apart -= FULL_TURN * np.round(apart / FULL_TURN)
+    shoulder, *sines = np.abs(measures[np.argmin(np.abs(apart).max(axis=1)), :3])
+    upper = np.linalg.norm(known.geometry.elbow - known.geometry.shoulder)
+    return _KINDS[int(np.argmin([shoulder / upper, *sines]))]

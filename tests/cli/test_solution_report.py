@@ -1,0 +1,24 @@
+"""The table of what a change of a program brings."""
+
+from __future__ import annotations
+
+import pytest
+
+from flyby.cli.solution_report import percent
+from flyby.problems.solution import Row
+
+
+@pytest.mark.parametrize(
+    "before, after, shown",
+    [
+        (2.0, 1.5, "-25.0"),
+        (2.0, 2.5, "25.0"),
+        (2.0, 1.99999, "0.0"),
+        (0.0, 1.0, ""),
+        (3e-21, 4e-4, ""),  # no figure of percent is told of what is shown as zero
+        (None, 1.0, ""),
+        (1.0, None, ""),
+    ],
+)
+def test_percent_are_of_what_is_shown(before, after, shown) -> None:
+    assert percent(Row("energy", "J", before, after)) == shown
