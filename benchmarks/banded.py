@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP
-
-FloatArray = NDArray[np.float64]
 
 STATES, CONTROLS = 4, 2
 BLOCK = STATES + CONTROLS

@@ -7,11 +7,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 from ipopt import QUIET, IpoptResult, Options
-from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP
-
-FloatArray = NDArray[np.float64]
 
 
 class CasadiIpopt:

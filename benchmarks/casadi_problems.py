@@ -10,12 +10,11 @@ from typing import Any
 import casadi as ca
 import numpy as np
 from banded import BLOCK, EFFORT, RIPPLE, STATES, WAVES, Banded
-from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP
 from flyby.problems.textbook import Avoidance, DoubleIntegrator, PointMass, Scheme
 
-FloatArray = NDArray[np.float64]
 Expressions = dict[str, Any]
 
 

@@ -30,10 +30,10 @@ import coal
 import numpy as np
 import pinocchio as pin
 import trimesh
-from numpy.typing import NDArray
 from report import Figure, cpu_seconds, main
 from trimesh.collision import CollisionManager
 
+from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry, Mesh
 from flyby.core.collision.scene import CollisionScene
@@ -42,8 +42,6 @@ from flyby.core.program.tool import Tool
 from flyby.core.registry import installed
 from flyby.core.robot.shape import Box, Capsule, Cylinder, Sphere
 from flyby.core.spatial.pose import Pose
-
-FloatArray = NDArray[np.float64]
 
 PIN_NAME = f"pinocchio {version('pin')}"
 TRIMESH_NAME = f"trimesh {version('trimesh')}"

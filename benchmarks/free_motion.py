@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.core.collision.scene import CollisionScene
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
@@ -12,7 +12,6 @@ from flyby.core.robot.inertia import carried_inertia
 from flyby.problems.optimal_control import Surroundings, Task
 from flyby.problems.scenes.scene import Scene
 
-FloatArray = NDArray[np.float64]
 Question = tuple[Task, Surroundings, list[FloatArray]]
 """A task, what to keep clear of, and the corners of a free path on its only leg."""
 

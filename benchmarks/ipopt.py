@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP
 
-FloatArray = NDArray[np.float64]
 Matrix = FloatArray | sparse.csc_array
 Options = dict[str, str | float | int]
 

@@ -27,7 +27,6 @@ from dataclasses import replace
 import numpy as np
 from free_motion import Question, configurations, questions
 from ipopt import Ipopt
-from numpy.typing import NDArray
 from report import Figure, main
 
 from flyby.core.collision.certificate import scenes_of
@@ -58,7 +57,6 @@ from flyby.problems.scenes.clutter import clutter
 from flyby.problems.scenes.stud_welding import stud_welding
 from flyby.problems.scenes.two_joints import two_joints
 
-FloatArray = NDArray[np.float64]
 CASES = ("2dof", "stud", "6dof-clutter", "6dof-clutter-speeds", "6dof-free", "6dof-free-energy")
 
 FREE_START = (0.0, -15.0, 15.0, 0.0, 60.0, 0.0)

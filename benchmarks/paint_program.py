@@ -12,9 +12,9 @@ from importlib.metadata import version
 
 import numpy as np
 from ipopt import Ipopt
-from numpy.typing import NDArray
 from report import Figure
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP
 from flyby.problems.paint.coat import coat
 from flyby.problems.paint.deposition import Deposition
@@ -32,7 +32,6 @@ from flyby.problems.paint.robust import NO_ERRORS, scenarios
 from flyby.problems.paint.surfaces import plate
 from flyby.problems.paint.trajectory import PaintTrajectory
 
-FloatArray = NDArray[np.float64]
 TARGET, DISTANCE = 50e-6, 0.25
 MICRON, MILLI, MEGA = 1e-6, 1e-3, 1e6
 WIDE = OuterLoop(rounds=1, position=0.1, angle=math.radians(20.0), duration=0.9)

@@ -45,9 +45,9 @@ from functools import cache
 
 import numpy as np
 from free_motion import questions
-from numpy.typing import NDArray
 from report import Figure, main
 
+from flyby.core.arrays import FloatArray
 from flyby.core.collision.certificate import certify, scenes_of
 from flyby.core.motion.controller import Controller
 from flyby.core.program.program import Program
@@ -75,8 +75,6 @@ from flyby.problems.velocity_tuning import Task as TuningTask
 from flyby.problems.waypoints import Effort, optimize_waypoints
 from flyby.problems.waypoints import Task as Wishes
 from flyby.problems.zones.points import passable_stops
-
-FloatArray = NDArray[np.float64]
 
 SCENES: dict[str, Callable[[], Scene]] = {"2dof": two_joints, "stud": stud_welding}
 WEIGHTS = (1.0, 0.5, 0.0)

@@ -45,9 +45,9 @@ import numpy as np
 from banded import Banded
 from casadi_peer import CasadiIpopt
 from ipopt import Ipopt, IpoptResult, warm_options
-from numpy.typing import NDArray
 from report import Figure, main
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, BackendKind, Result, solve
 from flyby.problems.textbook import (
     CUBIC_START,
@@ -58,8 +58,6 @@ from flyby.problems.textbook import (
     Scene,
     cubic,
 )
-
-FloatArray = NDArray[np.float64]
 
 PEER, SAME = "ipopt", "ipopt, same callables"
 TOLERANCE = 1e-6

@@ -26,7 +26,6 @@ from types import SimpleNamespace
 import copp_py
 import numpy as np
 import toppra
-from numpy.typing import NDArray
 from report import Figure, cpu_seconds, main
 from scipy.interpolate import CubicSpline
 from toppra.algorithm import TOPPRA
@@ -37,10 +36,9 @@ from toppra.constraint import (
 )
 from toppra.interpolator import AbstractGeometricPath
 
+from flyby.core.arrays import FloatArray
 from flyby.core.motion.stamping import Stamp, joint_limits, stamp
 from flyby.core.motion.stamping_adjoint import stamp_adjoint
-
-FloatArray = NDArray[np.float64]
 
 TOPPRA_NAME, COPP_NAME = f"toppra {version('toppra')}", f"copp-py {version('copp-py')}"
 JOINTS = 6

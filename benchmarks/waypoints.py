@@ -51,9 +51,9 @@ from importlib.metadata import version
 
 import numpy as np
 from ipopt import Ipopt, IpoptResult
-from numpy.typing import NDArray
 from report import Figure, main
 
+from flyby.core.arrays import FloatArray
 from flyby.core.collision.certificate import certify, scenes_of
 from flyby.core.motion.model import MotionModel
 from flyby.core.motion.pieces import Sampling
@@ -71,8 +71,6 @@ from flyby.problems.waypoints import Effort, Task, ViaCount, optimize_waypoints,
 from flyby.problems.zones.maximize import maximize_zones
 from flyby.problems.zones.options import ZoneOptions
 from flyby.problems.zones.points import passable_stops
-
-FloatArray = NDArray[np.float64]
 
 SCENES: dict[str, tuple[Callable[[], Scene], MotionModel]] = {
     "2dof": (two_joints, SECOND_ORDER_BLENDS),

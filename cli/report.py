@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import FloatArray
 from ..core.errors import Note, Span
 from ..core.motion.binding import LimitShare, limit_shares
 from ..core.motion.controller import Run
@@ -16,8 +16,6 @@ from ..core.program.move import Move
 from ..core.program.target import JointTarget
 from ..core.program.zone import Fine, Radius
 from ..core.robot.model import Robot
-
-FloatArray = NDArray[np.float64]
 
 _PICOSECONDS = 12
 """Decimals of a second beyond which a difference of times is rounding."""

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.arrays import FloatArray
 from .style import LIMIT, NOMINAL, SPEED, STYLE, figure_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-FloatArray = NDArray[np.float64]
 
 MICRON = 1e-6
 SCALE = "RdBu_r"

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import FloatArray
 from ..core.motion.controller import Run
 from ..core.motion.reached import zone_reaches
 from ..core.motion.segments import ARC_SEGMENT, JOINT_SEGMENT
@@ -15,8 +15,6 @@ from ..core.program.tool import WORLD
 from ..core.robot.chain_kernels import poses
 from ..core.robot.model import Robot
 from ..core.robot.work_chain import work_chain
-
-FloatArray = NDArray[np.float64]
 
 STEPS = 40
 """Points of a curved segment."""

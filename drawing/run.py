@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import FloatArray
 from ..core.motion.controller import Run
 from ..core.robot.model import Robot
 from .geometry import PathGeometry, path_geometry, tcp_speed
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
-FloatArray = NDArray[np.float64]
 
 NUMBERED = 30
 """Waypoints up to which each is numbered."""

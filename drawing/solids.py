@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.arrays import FloatArray
 from ..core.cell.cell import Cell
 from ..core.cell.floor import FLOOR
 from ..core.cell.geometry import Geometry, Mesh
@@ -15,8 +16,6 @@ from ..core.robot.chain_kernels import poses
 from ..core.robot.model import Robot
 from ..core.robot.shape import Box, Capsule, Cylinder, Shape, Sphere
 from ..core.spatial.pose import Pose
-
-FloatArray = NDArray[np.float64]
 
 MOST = 4000
 """Triangles of a mesh above which points near to each other are drawn as one."""

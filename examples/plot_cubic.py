@@ -13,7 +13,6 @@ import sys
 
 import matplotlib
 import numpy as np
-from numpy.typing import NDArray
 
 from flyby.core.sqp import solve
 from flyby.problems.textbook import CUBIC_OPTIMUM, CUBIC_START, barrier_path, cubic
@@ -23,7 +22,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 
-FloatArray = NDArray[np.float64]
+from flyby.core.arrays import FloatArray
 
 SHOWN = (0, 1, 2, 4)
 WEIGHTS = (10.0, 3.0, 1.0, 0.3, 0.1, 0.03, 0.01)

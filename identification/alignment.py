@@ -6,17 +6,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import FloatArray, IntArray
 from ..core.errors import InputError
 from ..core.motion.trajectory import Trajectory
 from ..core.robot.model import Robot
 from .belonging import check_axes, check_coverage, check_path, check_time
 from .logs.cleaning import CleanLog
 from .matching import Match, match
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 STILL = 1e-4
 """rad (m) from where a robot rests within which it counts as resting. Joint noise at rest is 30

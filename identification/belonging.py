@@ -5,16 +5,14 @@ from __future__ import annotations
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ..core.arrays import FloatArray
 from ..core.errors import InputError
 from ..core.motion.trajectory import Trajectory
 from ..core.robot.model import Robot
 from .logs.cleaning import CleanLog
 from .matching import Match
-
-FloatArray = NDArray[np.float64]
 
 NEAR = 0.03
 """rad (m) of the path of joints within which half of a log must lie, and …"""

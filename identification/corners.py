@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import FloatArray
 from ..core.errors import InputError
-
-FloatArray = NDArray[np.float64]
 
 OFF_THE_LEGS = 5e-5
 """m from a leg beyond which the TCP counts as having left it: ten times the resolution of logs

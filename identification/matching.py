@@ -9,10 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from ..core.arrays import FloatArray, IntArray
 
 COARSE = 800
 """Steps of the path, and at most about as many of the log, that the forward match looks at."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import FloatArray
 from ..core.motion.trajectory import Trajectory
 from ..core.program.tool import FLANGE, Tool
 from ..core.robot.joint import JointKind
@@ -14,8 +14,6 @@ from ..core.robot.model import Robot
 from .alignment import Alignment
 from .logs.cleaning import CleanLog
 from .tcp_path import distance_to_polyline, tcp_positions
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

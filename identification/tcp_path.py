@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ..core.arrays import FloatArray
 from ..core.program.tool import Tool
 from ..core.robot.model import Robot
-
-FloatArray = NDArray[np.float64]
 
 _CHUNK = 1024
 """Points looked at together; bounds the memory for pairs of points and pieces."""

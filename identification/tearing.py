@@ -22,14 +22,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import FloatArray, IntArray
 from ..core.motion.trajectory import Trajectory
 from .alignment import Alignment
 from .logs.cleaning import CleanLog
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 EXPLAINED = 0.5
 """Share of the distances from the path that may be left, on average, in a log that counts as torn.

@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import FloatArray
 from ..core.dialect import Dialect, Orientation
 from ..core.program.zone import FINE, Angle, ContourFraction, Radius, Zone
 from ..core.spatial.pose import Pose, Quaternion, Vector3
@@ -21,8 +21,6 @@ from ..core.spatial.rotation import (
     quaternion_from_matrix,
     rotation_vector,
 )
-
-FloatArray = NDArray[np.float64]
 
 SMALLEST = 1e-4
 """Size of a zone (m, rad or share) below which there is no zone worth having."""

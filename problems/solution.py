@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..core.arrays import FloatArray
 from ..core.cell.floor import FLOOR
 from ..core.errors import InputError, Note
 from ..core.motion.controller import Controller, Run
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from ..core.collision.certificate import SceneOf
     from ..core.collision.verdict import Certificate
 
-FloatArray = NDArray[np.float64]
 
 _STILL = 1e-9
 """m and rad below which a point has not been moved."""

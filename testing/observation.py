@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.arrays import FloatArray, IntArray
 from ..core.motion.controller import Run
 from ..core.motion.model import LineTurn, MotionModel, Overlap
 from ..core.motion.swivel import swivel
@@ -16,9 +17,6 @@ from ..core.program.speed import Speed
 from ..core.program.zone import ContourFraction, Fine, Radius
 from ..core.robot.model import Robot
 from ..core.spatial.rotation import matrix_from_rotation_vector, rotation_vector
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _SHARES = np.array([0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0])
 """Where each interval of the stamp is looked at."""

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from hypothesis import assume
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from ..core.arrays import FloatArray
 from ..core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Statement, Wait
 from ..core.program.program import Program
 from ..core.program.speed import Speed
@@ -24,7 +24,6 @@ from ..core.spatial.rotation import matrix_from_rotation_vector
 if TYPE_CHECKING:
     from ..core.vendor import Vendor
 
-FloatArray = NDArray[np.float64]
 Label = Callable[[Robot, FloatArray], Configuration | None]
 Value = TypeVar("Value")
 OfKind = Callable[[type[Move]], st.SearchStrategy[Value]]

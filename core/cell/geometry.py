@@ -12,12 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import InputError, Note
 from ..robot.shape import Shape
 from ..spatial.pose import IDENTITY, Pose
 from .mesh_file import check_extent, read_scene
-
-FloatArray = NDArray[np.float64]
 
 MESH_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 25.4e-3}
 """Metres in one unit of a mesh file."""

@@ -9,13 +9,13 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..cell.cell import Cell
 from ..errors import Note
 from ..robot.model import Robot
 from .bodies import Body, Kind
 from .frames import FrameTree
 
-FloatArray = NDArray[np.float64]
 Touch = Callable[[FloatArray, NDArray[np.int64]], NDArray[np.bool_]]
 
 ROUNDS = (8, 64, 440)

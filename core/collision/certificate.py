@@ -9,7 +9,6 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..cell.cell import Cell
 from ..errors import InputError
@@ -23,7 +22,6 @@ from .strays import Straying, parts_of
 from .subdivision import Prover
 from .verdict import CONTACT, MM, Certificate, Met, Reader, nearest_of
 
-FloatArray = NDArray[np.float64]
 SceneOf = Callable[[Tool], CollisionScene]
 """The scene with a tool mounted."""
 

@@ -15,10 +15,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..robot.shape import Box, Capsule, Cylinder, Sphere
 from ..robot.vectors import Vector, add, load_row, scale, subtract
 from .segments import segment_box, segment_segment
-from .solid import FloatArray, Solid, extent
+from .solid import Solid, extent
 
 GROWN_SEGMENT, BOX, OTHER = 0, 1, 2
 """What a solid is to the kernels: a sphere or capsule, a box, anything else."""

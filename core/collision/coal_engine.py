@@ -15,9 +15,10 @@ from typing import Any
 import coal
 import numpy as np
 
+from ..arrays import FloatArray
 from ..robot.shape import Box, Capsule, Cylinder, Sphere
 from .containment import Nesting
-from .engine import FloatArray, Places, Witness
+from .engine import Places, Witness
 from .solid import Polytope, Solid, TriangleMesh, core_radius, extent
 
 HAIR = 1e-9

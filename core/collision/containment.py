@@ -15,9 +15,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..spatial.rotation import matrix_from_rotation_vector
 from .engine import Places
-from .solid import FloatArray, Solid, TriangleMesh, inner_points
+from .solid import Solid, TriangleMesh, inner_points
 
 TURNS = np.array([[0.3, 0.2, 0.1], [1.1, -0.7, 0.5], [-0.4, 1.9, 0.8], [2.1, 0.6, -1.3]])
 """Rotation vectors of the rays' frames; no face of a made thing is likely to lie along them."""

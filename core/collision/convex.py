@@ -12,9 +12,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..cell.geometry import Mesh
 from ..errors import InputError, Note
-from .solid import FloatArray, Polytope, Solid, TriangleMesh, connected_parts
+from .solid import Polytope, Solid, TriangleMesh, connected_parts
 
 FILLED = 1e-6
 """Share of its hull's volume that a part may lack to pass as convex: rounding of mesh files."""

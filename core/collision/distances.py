@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .closed_form import Measured
-from .engine import FloatArray, Witness
+from .engine import Witness
 
 MOST_KEPT = 8
 LARGEST_KEPT = 100_000

@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..motion.curve_bounds import expand
 from ..motion.curves import Curves, parameter_jet
 from ..motion.path import Path
@@ -25,8 +25,6 @@ from ..robot.chain import Chain
 from .boxes import Boxes
 from .tcp_enclosure import enclose
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 Span = tuple[float, float]
 """First and last σ."""
 

@@ -8,10 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
-FloatArray = NDArray[np.float64]
+from ..arrays import FloatArray
 
 
 class Places(NamedTuple):

@@ -6,10 +6,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum, auto
 
-import numpy as np
-from numpy.typing import NDArray
-
-FloatArray = NDArray[np.float64]
+from ..arrays import FloatArray
 
 
 class Cause(Enum):

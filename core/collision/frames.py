@@ -12,6 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..robot.assembly import Stage
 from ..robot.joint import Joint, JointKind
 from ..robot.model import Robot
@@ -30,8 +31,6 @@ from ..robot.vectors import (
     turn,
 )
 from ..spatial.pose import IDENTITY, Pose
-
-FloatArray = NDArray[np.float64]
 
 WORLD = 0
 """The frame that does not move."""

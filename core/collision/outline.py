@@ -12,15 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..robot.shape import Box, Capsule, Cylinder, Sphere
 from ..robot.vectors import Vector, load_row
 from .bodies import Body
 from .convex import hull
-from .solid import FloatArray, Polytope, Solid, extent
-
-IntArray = NDArray[np.int64]
+from .solid import Polytope, Solid, extent
 
 
 class Outlines(NamedTuple):

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import FloatArray
 from ..cell.cell import Cell
 from ..errors import InputError, Note
 from ..program.tool import FLANGE, Tool
@@ -19,7 +20,7 @@ from .closed_form import hulls_of, measure
 from .coal_engine import CoalEngine
 from .containment import Nesting
 from .distances import Contact, Distances, RecentDistances
-from .engine import ContactEngine, DistanceEngine, FloatArray, Places, Witness
+from .engine import ContactEngine, DistanceEngine, Places, Witness
 from .fcl_engine import FclEngine
 from .frames import FrameTree, distance_gradients, frame_tree, place_bodies
 from .outline import Outlines, outlines_of

@@ -20,8 +20,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..motion.allowed import Allowed, greatest
 from ..motion.averaging import Averages
 from ..motion.controller import Controller, Run
@@ -30,9 +30,6 @@ from ..motion.path import Path
 from ..motion.point_masses import filled
 from ..motion.smoothing import Smoothing
 from ..motion.timing import Timing
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _TOGETHER = 10_000
 """Intervals of a path that are looked at together."""

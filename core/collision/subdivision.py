@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .boxes import Boxes
 from .enclosure import Enclosure, Intervals, Span
 from .findings import Budget, Cause, Finding, Nearest
@@ -21,9 +22,6 @@ from .items import Items, Sweeps
 from .scene import CollisionScene
 from .strays import Strays, stretches
 from .sweep import sweep
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 ROUNDING = 1e-6
 """m by which measured distances may be off."""

@@ -23,8 +23,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..robot.vectors import (
     Vector,
     add,
@@ -41,9 +41,6 @@ from .frames import FrameTree, place_frames
 from .items import Items, Sweeps
 from .outline import Outlines, lever, support
 from .strays import Strays, Stretches
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _FEW = 4
 """Stretches of strays on an interval up to which each is looked at for itself."""

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..motion.branch import (
     LEAST,
     TubeWork,
@@ -36,9 +36,6 @@ from ..robot.chain import Chain
 from ..robot.chain_bounds import bias
 from ..robot.chain_kernels import jacobians
 from .boxes import Boxes
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @njit(cache=True, error_model="numpy")

@@ -15,13 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .limits import interval_samples
 from .timing import Timing
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _LOOSER = 1e-9
 """Share by which limits are passed through rounding."""

@@ -18,16 +18,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from .layout import flat_corners
 from .limits import interval_samples
 from .path import Path, zone_pieces
 from .tcp_samples import States
 from .zones import JOINT_CORNER, POSITION
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _FLOOR = 0.01
 """ε² as a share of the mean of |x'|² at a zone's two edges."""

@@ -30,8 +30,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from .averaging_kernels import (
     Cells,
     Offsets,
@@ -43,9 +43,6 @@ from .averaging_kernels import (
 )
 from .course import Course
 from .smoothing import Smoothing
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class Rates(NamedTuple):

@@ -13,15 +13,12 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from .pieces import Pieces
 from .quintic import slopes
 from .rates import pull_rates, rates
 from .tcp_samples import States
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 BETWEEN = 1 << 20
 """From here on, what stands for a row in `limits.PathLimits.binding` codes row and place inside."""

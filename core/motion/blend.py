@@ -25,11 +25,9 @@ from typing import Literal
 
 import numpy as np
 from numpy.polynomial import polynomial as P
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import InputError
-
-FloatArray = NDArray[np.float64]
 
 BASIS = 6
 """Control vectors of a blend: e, E, X, c, K₁, K₂."""

@@ -28,15 +28,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..robot.chain import Chain
 from ..robot.chain_bounds import Columns, bound_columns, turn_columns
 from ..robot.lean import lean
 from ..robot.linear import factor, invert_factors, solve
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 LEAST = 1e-9
 """rad or m: rounding of configurations from Newton's method."""

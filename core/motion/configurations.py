@@ -10,8 +10,8 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import InputError, MotionError
 from ..program.move import Move
 from ..program.target import Configuration, JointTarget, PoseTarget
@@ -23,7 +23,6 @@ from ..robot.model import Robot
 from ..robot.tracking import track
 from ..spatial.pose import Pose
 
-FloatArray = NDArray[np.float64]
 Label = Callable[[Robot, FloatArray], Configuration | None]
 
 _MATCH = 1e-9

@@ -20,11 +20,9 @@ from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import InputError
-
-FloatArray = NDArray[np.float64]
 
 
 class Rounded(NamedTuple):

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..errors import MotionError, Note
 from ..program.move import Move
 from ..program.program import Program
@@ -35,9 +35,6 @@ from .start_ramp import SUDDEN, StartRamp
 from .timing import Settling, Timing
 from .torque import WITHOUT_LIMIT, Shares
 from .trajectory import Trajectory, sample_times
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _SKIPS = 10_000
 _LIMIT_SLACK = 1e-6

@@ -13,13 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from .allowed import Allowed
 from .limits import interval_samples
 from .ramped import way_slopes
 from .timing import Timing
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _ROUNDING = 1e-12
 """Share of a tangent by which it may turn through rounding."""

@@ -15,13 +15,12 @@ import math
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..robot.lean import lean
 from .curves import ARC, LINE, Curves, parameter_jet
 from .tcp_samples import Samples, TcpCurves
 
-FloatArray = NDArray[np.float64]
 Bounds = tuple[float, float, float]
 """Of the first, second and third derivative."""
 

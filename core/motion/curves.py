@@ -23,10 +23,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..robot.lean import lean
 from .blend import BASIS
 
-FloatArray = NDArray[np.float64]
 LINE, POLYNOMIAL, ARC = 0, 1, 2
 
 

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import InputError
 from ..program.program import Program
 from ..program.target import JointTarget, PoseTarget
@@ -29,7 +29,6 @@ from .timing import Timing
 from .timing_gradient import Seeds, pull_rests, seed_configuration
 from .zones import ZoneGradient
 
-FloatArray = NDArray[np.float64]
 _SINGULAR = 1e8
 """Condition number (m and rad) of the Jacobian from which on a target counts as singular."""
 

@@ -11,16 +11,14 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..robot.model import Robot
 from .elasticity import LEAD_STEP, RIGID, Elasticity, derivatives_of
 from .ramped import stamped_motion
 from .smoothing import Smoothing, States
 from .timing import Timing
 from .trajectory import Leads, no_leads, sample_times
-
-FloatArray = NDArray[np.float64]
 
 _STRETCH = 20.0
 """s that are looked at together."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import MotionError
 from .arc_length import ArcLength
 from .limits import PathLimits, SegmentLimits, path_limits
@@ -16,8 +16,6 @@ from .stamping import StampingError, stamp
 from .superposed import superposed_zones
 from .timing import Settling, Timing
 from .torque import Shares
-
-FloatArray = NDArray[np.float64]
 
 _DURATION_ROUNDS = 60
 _DURATION_MET = 1e-6

@@ -33,15 +33,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import InputError
 from ..robot.chain_kernels import jacobians, motions
 from ..robot.model import Robot
 from .point_masses import chain_to_axis, filled, row_of
 from .smoothing import States
-
-FloatArray = NDArray[np.float64]
 
 LEAD_STEP = 1e-3
 """s between the times at which leads are worked out; between them they are cubic."""

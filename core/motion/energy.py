@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import InputError
 from ..robot.inertia import Inertia
 from ..robot.model import Robot
@@ -19,8 +20,6 @@ from .consumption import SQUARED_TORQUE, Consumption
 from .limits import interval_samples
 from .tcp_samples import States
 from .timing import Timing
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..errors import Note
 from ..robot.chain import Chain
 from ..robot.chain_kernels import motion
@@ -16,9 +16,6 @@ from .limits import SegmentLimits, interval_samples
 from .quintic import basis, bends, slopes
 from .tcp_samples import States
 from .timing import Timing
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _EXCESS = 1.004
 """Share of a limit from which on it is reported: between the places looked at, 1.005 at most."""

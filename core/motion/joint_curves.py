@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .curves import POLYNOMIAL, Curves
 from .layout import (
     Layout,
@@ -26,8 +26,6 @@ from .model import MotionModel
 from .segments import JOINT_SEGMENT, EndsGradient, SegmentsGradient
 from .tcp_curves import BlendGradient
 from .zones import JOINT_CORNER, POSITION
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass

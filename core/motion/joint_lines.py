@@ -6,12 +6,10 @@ import math
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..robot.chain import Chain
 from ..robot.chain_kernels import jacobian, pose
-
-FloatArray = NDArray[np.float64]
 
 
 @njit(cache=True, error_model="numpy")

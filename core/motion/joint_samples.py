@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..robot.chain import Chain
 from ..robot.chain_kernels import acceleration_gradient, jacobian, motion, velocity_gradient
 from .curves import Curves, evaluate, pull
 from .tcp_samples import States
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @njit(cache=True, error_model="numpy")

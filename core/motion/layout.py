@@ -11,12 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .blend import Blend
 from .model import MotionModel
 from .segments import Segments, SegmentsGradient
 from .zones import JOINT_CORNER, STOP, TCP_CORNER, Corners
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

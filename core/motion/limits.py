@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..program.speed import Speed
 from ..robot.joint import JointKind
 from ..robot.model import Robot
@@ -32,9 +32,6 @@ from .swivel import pull_turn_shares, turn_shares
 from .tcp_samples import States
 from .torque import Shares
 from .torque_rows import pull_torque_rows, torque_rows
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _TOGETHER = 20_000
 """Intervals whose rows of torque are made in one go."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..errors import MotionError, Note
 from ..program.zone import Zone
 from ..robot.chain import Chain
@@ -29,9 +30,6 @@ from .tcp_curves import TcpGeometry, make_tcp_curves
 from .tcp_samples import Samples, States, TcpCurves
 from .tcp_walk import JOINED, sample_tcp
 from .zones import JOINT_CORNER, POSITION, Corners, ZonePlanner
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _LEAD = 8
 """Steps in which inverse kinematics walks from a waypoint to the edge of its zone."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .joint_curves import Edges, pull_joint_curves, pull_joint_legs
 from .joint_samples import pull_joint
 from .layout import LayoutGradient, pull_layout
@@ -15,8 +15,6 @@ from .segments import EndsGradient, SegmentsGradient, pull_segments
 from .tcp_curves import BlendGradient, pull_tcp_curves
 from .tcp_samples import Samples, States, TcpCurves, pull_tcp
 from .zones import POSITION, ZoneGradient, pull_corners
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass

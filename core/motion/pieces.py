@@ -9,14 +9,12 @@ from functools import cache, cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from .curves import POLYNOMIAL, Curves, parameter_slopes
 from .layout import Layout, LayoutGradient
 from .segments import JOINT_SEGMENT
 from .tcp_samples import TcpCurves
 from .zones import JOINT_CORNER, POSITION, PRESCRIBED, STOP, TCP_CORNER, TURNING
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _MERGED = 1e-9
 """Boundaries nearer than this share of a segment are one."""

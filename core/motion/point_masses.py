@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import InputError
 from ..robot.chain import Chain
 from ..robot.model import Robot
-
-FloatArray = NDArray[np.float64]
 
 
 def chain_to_axis(robot: Robot, joint: int, key: str) -> Chain:

@@ -7,9 +7,8 @@ data are q, Δ q', Δ² q'' at the left sample, then at the right one.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ..arrays import FloatArray
 
 _TABLE = np.array(
     [

@@ -12,14 +12,12 @@ where σ runs unevenly.)
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .limits import interval_samples
 from .smoothing import Motion
 from .timing import Timing
 from .trajectory import sample_times
-
-FloatArray = NDArray[np.float64]
 
 _STAMPED_STEP = 0.002
 _FINE = 2.5e-4

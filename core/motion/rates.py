@@ -8,13 +8,10 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .tcp_samples import States
-
-FloatArray = NDArray[np.float64]
 
 _STILL = 1e-9
 """Rates (m or rad per unit) below which the TCP or the tool does not move."""

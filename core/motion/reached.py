@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..robot.chain_kernels import poses
 from .controller import Run
 from .limits import interval_samples
 from .path import Path
 from .zones import POSITION
 from .zones import STOP as STOP_CORNER
-
-FloatArray = NDArray[np.float64]
 
 
 def lengths_and_speeds(run: Run) -> tuple[FloatArray, FloatArray]:

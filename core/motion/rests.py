@@ -20,14 +20,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from .arc_length import ArcLength
 from .limits import interval_ends
 from .path import Path
 from .quintic import basis
 from .stamping import Stamp
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _HALVINGS = 52
 """Of an interval, until the place at which an axis comes into the window is exact."""

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import InputError, MotionError, Note, Span
 from ..program.move import Move, MoveC, MoveJ, Opaque, Wait
 from ..program.program import Program
@@ -46,7 +47,6 @@ from .zones import Corners
 if TYPE_CHECKING:
     from ..dialect import ArcRules
 
-FloatArray = NDArray[np.float64]
 _START = -1
 _FURTHEST = 1e3
 """m from the frame that it is given in beyond which a target, tool or work object is a mistake."""

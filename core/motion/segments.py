@@ -20,12 +20,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..spatial.rotation import matrix_from_rotation_vector, rotation_vector, skew
 from .curves import ARC, LINE
 from .swivel import pull_swivel, swivel
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 JOINT_SEGMENT, LINE_SEGMENT, ARC_SEGMENT = 0, 1, 2
 _AMBIGUOUS = 2 * np.pi / 3

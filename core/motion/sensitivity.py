@@ -16,14 +16,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from .path import Path
 from .segments import JOINT_SEGMENT
 from .zones import POSITION, STOP, Reach
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _GRID, _ZOOMS = 41, 3
 """Shares that are looked at, and how often more closely."""

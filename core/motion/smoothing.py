@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ..arrays import FloatArray
+
 States = tuple[FloatArray, FloatArray, FloatArray]
 
 _FINEST, _COARSEST = 2.5e-4, 1e-3

@@ -16,9 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
+from ..arrays import FloatArray, IntArray
 from ..errors import InputError
 from .stamping import Stamp
-from .stamping_kernels import CEILING, NEXT, FloatArray, IntArray, bound_normal, half_plane
+from .stamping_kernels import CEILING, NEXT, bound_normal, half_plane
 
 RowArrays = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 

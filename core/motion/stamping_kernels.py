@@ -17,12 +17,9 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from .stamping_polygon import ROUNDING, greatest_sum
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 CEILING = -1
 """x_k ≤ ceiling_k."""

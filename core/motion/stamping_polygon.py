@@ -9,11 +9,9 @@ may be negative, as everywhere in numpy.
 
 from __future__ import annotations
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ..arrays import FloatArray
 
 ROUNDING = 1e-14
 """Rounding of p y + q z, relative to the size of its terms."""

@@ -9,8 +9,8 @@ came from.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import InputError, MotionError, Span
 from ..program.move import Move
 from ..program.target import JointTarget
@@ -20,8 +20,6 @@ from ..robot.model import Robot
 from ..robot.work_chain import work_chain
 from ..spatial.pose import Pose
 from .configurations import ConfigurationFinder, Label
-
-FloatArray = NDArray[np.float64]
 
 
 class Standing:

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..arrays import FloatArray
 from ..robot.model import Robot
 from ..robot.singularities import nearest_singularity
 from .tcp_samples import CONVERGED
-
-FloatArray = NDArray[np.float64]
 
 
 def why_stranded(robot: Robot, q: FloatArray, share: float, length: float, short: float) -> str:

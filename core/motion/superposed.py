@@ -22,8 +22,8 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from .curves import ARC
 from .model import Pace
 from .path import Path, zone_pieces
@@ -31,9 +31,6 @@ from .pieces import Pieces
 from .rates import pull_rates, rates
 from .tcp_samples import States
 from .zones import POSITION, TCP_CORNER
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 ZONE = -2
 """What stands for a row in `limits.PathLimits.binding` where the ceiling is a zone's."""

@@ -20,9 +20,8 @@ alone.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ..arrays import FloatArray
 
 _SMALL = 1e-3
 """rad below which θ / sin θ is taken from its series."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .curves import ARC, Curves
 from .layout import Layout
 from .segments import LINE_SEGMENT, SegmentsGradient
@@ -20,7 +21,6 @@ from .zones import POSITION, TCP_CORNER
 if TYPE_CHECKING:
     from .tcp_curves import Legs
 
-FloatArray = NDArray[np.float64]
 _STRAIGHT, _REVERSAL = 1e-4, np.pi - 1e-2
 """rad of deflection below and above which the circle degenerates and the polynomial is kept."""
 

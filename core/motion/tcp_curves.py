@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..spatial.rotation import matrix_from_rotation_vector
 from .blend import Blend
 from .curves import ARC, POLYNOMIAL, Curves
@@ -28,8 +28,6 @@ from .segments import EndsGradient, Segments, SegmentsGradient, left_jacobian
 from .tangent_arc import TangentArcs, pull_tangent_arcs, tangent_arcs
 from .tcp_samples import TcpCurves
 from .zones import POSITION, PRESCRIBED, TCP_CORNER, TURNING
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..robot.chain import Chain
 from ..robot.chain_kernels import acceleration_gradient, jacobian, motion, velocity_gradient
 from ..robot.lean import lean
@@ -25,9 +25,6 @@ from ..robot.linear import factor, solve, solve_transposed
 from ..robot.tracking import pose_error
 from .curves import Curves, evaluate, pull
 from .turning import orientation, pull_orientation
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _ITERATIONS = 30
 CONVERGED = 1e-9

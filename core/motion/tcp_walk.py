@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from ..robot.chain import Chain
 from ..robot.chain_kernels import jacobian
 from ..robot.lean import lean
@@ -28,9 +28,6 @@ from .tcp_samples import (
     make_scratch,
     state_at,
 )
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 JOINED = 1e-5
 """rad or m by which configurations of one place may differ: what Newton's method leaves of a pose

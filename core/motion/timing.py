@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from .arc_length import ArcLength
 from .limits import PathLimits, SegmentLimits, interval_samples
 from .path import Path
@@ -15,9 +15,6 @@ from .rests import InPosition, Rests
 from .stamping import Stamp
 from .start_ramp import SUDDEN, StartRamp
 from .tcp_samples import States
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _ROUNDING = 1e-12
 """s, by which times may be off."""

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from . import quintic
 from .limits import interval_ends
 from .tcp_samples import States
 from .timing import Timing
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass

@@ -24,15 +24,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import InputError
 from ..robot.chain import Chain
 from ..robot.chain_kernels import acceleration_gradient, jacobians, motions, velocity_gradient
 from ..robot.model import Robot
 from .point_masses import chain_to_axis, filled, row_of
-
-FloatArray = NDArray[np.float64]
 
 _TOGETHER = 20_000
 """Samples whose Jacobians are made in one go."""

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from .stamping_adjoint import StampGradient
 from .torque import Shares
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 def torque_rows(

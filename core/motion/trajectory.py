@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..array_files import read_npz
+from ..arrays import FloatArray, IntArray
 from ..errors import InputError
 from ..input_files import read_text
 from ..output_files import write_file
@@ -21,8 +22,6 @@ from ..robot.inertia import Inertia
 from ..robot.model import Robot
 from .smoothing import States
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 MOST_SAMPLES = 20_000_000
 """Some 5 GB of a six-axis robot's samples; at a period of 4 ms nearly a day."""
 MOST_BYTES = 2_000_000_000

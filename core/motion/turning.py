@@ -11,12 +11,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..robot.lean import lean
 from ..robot.vectors import Vector, add, cross, dot, load, scale, turn
-
-FloatArray = NDArray[np.float64]
 
 _TERMS = 11
 _SERIES = np.array(

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import MotionError, Note
 from ..program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction, Zone
 from ..robot.chain import Chain
@@ -23,8 +24,6 @@ from .reach import Part, least
 from .reach import Reach as Reach
 from .segments import ARC_SEGMENT, JOINT_SEGMENT, EndsGradient, Segments, SegmentsGradient
 from .sharp_corners import share_kept
-
-FloatArray = NDArray[np.float64]
 
 STOP, TCP_CORNER, JOINT_CORNER = 0, 1, 2
 POSITION, TURNING, PRESCRIBED = 0, 1, 2

@@ -10,11 +10,9 @@ from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .chain import Chain
-
-FloatArray = NDArray[np.float64]
 
 EXACT = 1e-9
 """rad and m by which axes may miss their ideal place for the closed form to be exact."""

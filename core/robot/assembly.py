@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..spatial.pose import Pose
-from .chain import Chain, FloatArray
+from .chain import Chain
 from .joint import Joint, JointKind
 
 Stage = Pose | tuple[Joint, int]

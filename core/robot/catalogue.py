@@ -68,12 +68,12 @@ from pathlib import Path
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..errors import InputError
 from ..pose_table import pose_at, read_pose
 from ..spatial.pose import IDENTITY, Pose
 from ..spatial.rotation import matrix_from_rotation_vector
 from ..tables import ANGLE, LENGTH, Table
-from .chain import FloatArray
 from .inertia import Inertia
 from .joint import Joint, JointKind
 from .model import Robot

@@ -8,12 +8,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .chain import Chain
 from .lean import lean
-
-FloatArray = NDArray[np.float64]
 
 
 class Columns(NamedTuple):

@@ -12,11 +12,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .chain import Chain
 from .chain_kernels import jacobians
 from .vectors import Vector, cross
-
-FloatArray = NDArray[np.float64]
 
 
 def hessians(chain: Chain, q: FloatArray) -> FloatArray:

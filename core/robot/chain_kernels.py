@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .chain import Chain
 from .lean import lean
 from .vectors import (
@@ -36,8 +36,6 @@ from .vectors import (
     subtract,
     turn,
 )
-
-FloatArray = NDArray[np.float64]
 
 
 @lean

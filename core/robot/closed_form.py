@@ -8,14 +8,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .arm_geometry import ArmGeometry
 from .vectors import Rotation, Vector, add, compose, cross, dot, load, scale, subtract
-
-FloatArray = NDArray[np.float64]
 
 SLACK = 1e-10
 """m by which a target may lie out of reach and still be met at full stretch."""

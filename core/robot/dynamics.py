@@ -8,13 +8,11 @@ from typing import Any
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..spatial.pose import Pose, Vector3
 from .inertia import Inertia
 from .joint import Joint, JointKind
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

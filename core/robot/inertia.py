@@ -7,13 +7,12 @@ from dataclasses import dataclass
 from typing import Protocol, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import InputError
 from ..spatial.pose import IDENTITY, Pose, Quaternion, Vector3
 from ..spatial.rotation import matrix_from_quaternion, skew
 
-FloatArray = NDArray[np.float64]
 Matrix3 = tuple[Vector3, Vector3, Vector3]
 
 

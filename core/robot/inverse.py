@@ -10,6 +10,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import MotionError
 from .arm_geometry import EXACT, Family, Recognised
 from .chain import Chain
@@ -20,7 +21,6 @@ from .spherical_wrist import solve_spherical_wrist
 from .tracking import track
 from .ur_geometry import solve_parallel_axes
 
-FloatArray = NDArray[np.float64]
 FULL_TURN = 2 * math.pi
 LIMIT_SLACK = 1e-9
 """rad or m by which a solution may miss a limit; it is set onto the limit."""

@@ -9,13 +9,11 @@ from enum import StrEnum
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import InputError
 from ..spatial.pose import Pose, Vector3
 from .inertia import Inertia
-
-FloatArray = NDArray[np.float64]
 
 
 class JointKind(StrEnum):

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray, IntArray
 from .lean import lean
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @lean

@@ -8,8 +8,9 @@ from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import FloatArray
 from ..errors import InputError, UnknownNameError
 from ..spatial.pose import IDENTITY, Pose, Vector3
 from .arm_geometry import Recognised, recognise
@@ -23,7 +24,6 @@ from .inverse import Solution, equivalent_turns, solve
 from .joint import ExternalAxis, ExternalRole, Joint, Limits
 from .shape import LinkShape
 
-FloatArray = NDArray[np.float64]
 STANDARD_GRAVITY: Vector3 = (0.0, 0.0, -9.80665)
 """m/s² (3rd General Conference on Weights and Measures, 1901)."""
 

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .chain import Chain
 from .chain_kernels import jacobian
 from .tracking import least_step, pose_error, track
-
-FloatArray = NDArray[np.float64]
 
 STARTS = 96
 LEVENBERG_ITERATIONS = 60

@@ -10,8 +10,8 @@ import math
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .arm_geometry import ArmGeometry
 from .closed_form import (
     ALIGNED,
@@ -27,8 +27,6 @@ from .closed_form import (
     wrist_target,
 )
 from .vectors import Rotation, compose, cross, dot, rotation_about, turn
-
-FloatArray = NDArray[np.float64]
 
 
 @njit(cache=True, error_model="numpy")

@@ -8,13 +8,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from .chain import Chain
 from .chain_kernels import jacobian
 from .lean import lean
 from .linear import solve_in_place
 from .vectors import Vector, dot, load_row
-
-FloatArray = NDArray[np.float64]
 
 TOLERANCE = 1e-12
 """m and rad of pose error at which tracking has converged."""

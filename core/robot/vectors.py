@@ -7,12 +7,9 @@ from __future__ import annotations
 
 import math
 
-from numpy import float64
-from numpy.typing import NDArray
-
+from ..arrays import FloatArray
 from .lean import lean
 
-FloatArray = NDArray[float64]
 Vector = tuple[float, float, float]
 Rotation = tuple[float, float, float, float, float, float, float, float, float]
 

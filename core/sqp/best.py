@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .arrays import FloatArray
+from ..arrays import FloatArray
 from .evaluation import Point
 from .kkt import Residuals
 

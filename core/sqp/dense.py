@@ -7,13 +7,11 @@ takes a tenth of the time.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
-from .matrices import FloatArray, SparseMatrix, Sparsity
-
-BoolArray = NDArray[np.bool_]
+from ..arrays import BoolArray, FloatArray
+from .matrices import SparseMatrix, Sparsity
 
 _LEAST_SIZE = 100
 _LEAST_SHARE = 0.3

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import FloatArray, matrix, numbers, scalar, vector
+from ..arrays import FloatArray
+from .arrays import matrix, numbers, scalar, vector
 from .nlp import NLP
 from .options import start_point
 

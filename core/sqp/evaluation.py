@@ -10,7 +10,8 @@ from typing import TypeVar
 import numpy as np
 from scipy import sparse
 
-from .arrays import FloatArray, matrix, numbers, scalar, vector
+from ..arrays import FloatArray
+from .arrays import matrix, numbers, scalar, vector
 from .errors import CallableError, NlpError
 from .matrices import SparseMatrix, empty
 from .nlp import NLP

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .arrays import FloatArray
+from ..arrays import FloatArray
 from .errors import CallableError
 from .evaluation import Point
 from .filter import Filter

@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from .arrays import FloatArray
+from ..arrays import FloatArray
 from .differences import Differences
 from .errors import NlpError
 from .evaluation import Evaluation, Point

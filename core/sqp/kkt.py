@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import BoolArray, FloatArray
 from . import violation
-from .arrays import BoolArray, FloatArray
 from .matrices import SparseMatrix
 
 _ON_BOUND = 1e-8

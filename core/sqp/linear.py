@@ -6,13 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ..arrays import BoolArray, FloatArray, IntArray
 from . import dense
 from .ldl import Factors, Ldl, factorise, substitute
-from .matrices import FloatArray, IntArray, SparseMatrix, Sparsity
-
-BoolArray = NDArray[np.bool_]
+from .matrices import SparseMatrix, Sparsity
 
 _REGULARISATION = 1e-9
 _REFINEMENTS = 4

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..arrays import FloatArray
 from . import violation
-from .arrays import FloatArray
 from .convexify import ActiveSet, ConvexModel, raised
 from .damping import Damping
 from .evaluation import Point

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .arrays import FloatArray
+from ..arrays import FloatArray
 from .evaluation import Point
 from .kkt import at_bounds, slope_terms
 from .linear import Saddle

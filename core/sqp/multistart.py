@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import FloatArray, numbers, whole_number
+from ..arrays import FloatArray
+from .arrays import numbers, whole_number
 from .errors import NlpError
 from .nlp import NLP
 from .options import start_point

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import sparse
 
-from .arrays import FloatArray as FloatArray
+from ..arrays import FloatArray
 from .arrays import numbers, whole_number
 from .errors import NlpError as NlpError
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import FloatArray, numbers, scalar, whole_number
+from ..arrays import FloatArray
+from .arrays import numbers, scalar, whole_number
 from .errors import NlpError
 from .nlp import NLP
 from .result import Iteration, Result

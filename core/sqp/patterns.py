@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from .arrays import FloatArray, matrix
+from ..arrays import FloatArray
+from .arrays import matrix
 from .errors import NlpError
 from .matrices import SparseMatrix, Sparsity, from_scipy
 

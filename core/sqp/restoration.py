@@ -12,7 +12,7 @@ from enum import Enum, auto
 
 import numpy as np
 
-from .arrays import FloatArray
+from ..arrays import FloatArray
 from .elastic import Elastic
 from .errors import CallableError
 from .evaluation import Point

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
-from .arrays import FloatArray
+from ..arrays import FloatArray
 
 if TYPE_CHECKING:
     from .workspace import Workspace

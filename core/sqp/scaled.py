@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import FloatArray
 from . import violation
-from .arrays import FloatArray
 from .evaluation import Evaluation, Point
 from .kkt import Residuals, lagrangian_slope, residuals, row_terms, slope_terms
 from .nlp import NLP

@@ -17,7 +17,7 @@ import time
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import FloatArray
+from ..arrays import FloatArray
 from .best import Best
 from .errors import CallableError
 from .evaluation import Point

@@ -12,15 +12,14 @@ import cmath
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import MotionError
 from ..robot.arm_geometry import Family
 from ..robot.inverse import Solution
 from ..robot.model import Robot
 from ..robot.posture import posture
 
-FloatArray = NDArray[np.float64]
 Signs = tuple[int, ...]
 """1 or -1 for each of the things that are compared, 0 where it is undecided."""
 

@@ -15,6 +15,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..dialect import Dialect
 from ..motion.model import Overlap
 from ..motion.path import OverlapError, Path, Route
@@ -24,8 +25,6 @@ from ..program.program import Program
 from ..program.zone import FINE, Angle, ContourFraction, Radius, Zone
 from ..robot.chain_kernels import poses
 from .emulation import Party
-
-FloatArray = NDArray[np.float64]
 
 _ROUNDS = 12
 _MET = 2e-4

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..errors import MotionError
 from ..motion.controller import Controller
 from ..motion.limits import interval_samples
@@ -20,8 +20,6 @@ from ..program.program import Program
 from ..program.target import JointTarget
 from ..robot.model import Robot
 from ..vendor import Vendor
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

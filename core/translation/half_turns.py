@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..motion.path import Route
 from ..motion.segments import Segments, make_segments
 from ..program.move import MoveL
@@ -20,8 +20,6 @@ from ..program.target import PoseTarget
 from ..spatial.pose import Pose
 from ..spatial.rotation import matrix_from_rotation_vector, rotation_vector
 from .losses import LossesOfPart
-
-FloatArray = NDArray[np.float64]
 
 NEARER = 2e-5
 """rad that a half turn is made smaller: many times what the digits of any language leave open."""

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..dialect import Dialect, MoveWords
 from ..motion.path import Path
 from ..program.move import Move, MoveJ
@@ -23,8 +23,6 @@ from ..program.speed import Speed
 from ..robot.model import Robot
 from .emulation import Party, Peaks
 from .losses import LossesOfPart
-
-FloatArray = NDArray[np.float64]
 
 _ROUNDS = 8
 _GROWTHS = 4

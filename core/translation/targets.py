@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..dialect import Dialect
 from ..errors import MotionError
 from ..motion.configurations import ConfigurationFinder, located
@@ -27,8 +27,6 @@ from .alike import Likeness, Signs, differing
 from .emulation import Party, waypoints
 from .frames import Frames
 from .losses import LossesOfPart
-
-FloatArray = NDArray[np.float64]
 
 _MOST_TRIED = 12
 """Configurations of one target that are tried before the moves that follow are given up."""

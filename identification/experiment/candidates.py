@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import FlybyError
 from ...core.motion.controller import Controller, Run
 from ...core.program.move import Move, MoveC, MoveJ
@@ -22,8 +22,6 @@ from .plan import Candidate, Corner, Kind, Plan, Skipped
 from .postures import Site
 from .star import Leg, Spoke, Star
 from .words import Words
-
-FloatArray = NDArray[np.float64]
 
 LEGS: dict[Kind, tuple[Leg, ...]] = {
     Kind.LINES: (Leg.LINE,),

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import FlybyError
 from ...core.motion.controller import Controller, Run
 from ...core.motion.model import Overlap
@@ -19,8 +19,6 @@ from ...core.robot.chain_kernels import jacobians, poses
 from ...core.robot.work_chain import work_chain
 from .plan import Candidate
 from .postures import REGULAR, reach_of, regularity
-
-FloatArray = NDArray[np.float64]
 
 REACHED = 0.98
 """Of the programmed speed that is reached on every leg outside its zones."""

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.cell.cell import Cell
 from ...core.cell.floor import FLOOR, LIFT
@@ -31,7 +30,6 @@ from .postures import Clear, Site, find_sites, given_site, reach_of
 from .selection import Choice, Option
 from .words import Words
 
-FloatArray = NDArray[np.float64]
 Say = Callable[[str], None]
 
 PERIODS = (0.008, 0.012, 0.016, 0.024, 0.1)

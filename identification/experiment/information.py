@@ -21,8 +21,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.motion.blend import Blend
 from ...core.motion.controller import Controller
 from ...core.motion.elasticity import RIGID
@@ -37,8 +37,6 @@ from ...core.robot.model import Robot
 from ...core.vendor import Vendor
 from ..fit.keys import with_value
 from .plan import Candidate, Precision
-
-FloatArray = NDArray[np.float64]
 
 NOISE = 1e-4
 """rad (or m), by which logs of robots scatter about the best emulation: not their resolution."""

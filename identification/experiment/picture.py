@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.cell.cell import Cell
 from ...drawing.solids import obstacle_triangles, robot_triangles
 from ...drawing.style import STYLE, figure_file
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-FloatArray = NDArray[np.float64]
 
 OBSTACLE, ARM = "#b8b3a8", "#f2a043"
 MOST_PANELS = 6

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.collision.verdict import Certificate
 from ...core.errors import InputError
 from ...core.motion.controller import Run
@@ -18,8 +18,6 @@ from ...core.program.tool import FLANGE, Tool
 from ...core.robot.model import Robot
 from ...core.vendor import Sources
 from .postures import Site
-
-FloatArray = NDArray[np.float64]
 
 TURNS = tuple(math.radians(turn) for turn in (30, 60, 90, 120, 150))
 SPEEDS = (0.05, 0.2, 0.5, 1.0)

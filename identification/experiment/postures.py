@@ -8,8 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.program.tool import WORLD, Tool
 from ...core.robot.chain_kernels import jacobians, poses
@@ -19,7 +19,6 @@ from ...core.robot.work_chain import work_chain
 from ...core.spatial.pose import Pose
 from ...core.spatial.rotation import matrix_from_rotation_vector
 
-FloatArray = NDArray[np.float64]
 Clear = Callable[[FloatArray], bool]
 """Whether configurations (M, N) are free of collisions."""
 

@@ -12,12 +12,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from .information import nats
 from .plan import Candidate, Plan, Skipped
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,8 +15,8 @@ from enum import StrEnum
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget
@@ -28,8 +28,6 @@ from ...core.robot.work_chain import work_chain
 from ...core.spatial.pose import Pose
 from ...core.spatial.rotation import matrix_from_rotation_vector
 from ...core.vendor import Vendor
-
-FloatArray = NDArray[np.float64]
 
 SWEEP = 0.8
 """rad that an arc turns over its whole length."""

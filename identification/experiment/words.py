@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.dialect import Dialect, MoveWords
 from ...core.errors import InputError
 from ...core.program.move import MoveC, MoveJ, MoveL
@@ -15,8 +15,6 @@ from ...core.program.speed import Speed
 from ...core.program.zone import Radius, Zone
 from ...core.robot.model import Robot
 from ...core.vendor import Vendor
-
-FloatArray = NDArray[np.float64]
 
 RAMP = 0.25
 """s in which the programmed speed is reached where the language states accelerations."""

@@ -9,16 +9,13 @@ from dataclasses import replace
 from types import TracebackType
 from typing import Any, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...core.arrays import FloatArray
 from ...core.errors import FlybyError
 from ...core.motion.model import MotionModel
 from .emulation import Nuisance, Rows, RunEmulator
 from .parameters import ParameterSet
 from .runs import PreparedRun
 
-FloatArray = NDArray[np.float64]
 Answer = TypeVar("Answer")
 
 _emulators: list[RunEmulator] = []

@@ -11,8 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.motion.controller import Controller
 from ...core.motion.elasticity import RIGID
 from ...core.motion.model import MotionModel
@@ -24,8 +24,6 @@ from ..prediction import PERIOD, start_of
 from .keys import with_value
 from .parameters import ParameterSet
 from .runs import PreparedRun
-
-FloatArray = NDArray[np.float64]
 
 _NEVER = frozenset({"provenance", "period"})
 _AFTER_STAMP = _NEVER | {"elasticity"}

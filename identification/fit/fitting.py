@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import FlybyError, InputError
 from ...core.motion.model import ArcTurn, MotionModel
 from .clocks import timed, told
@@ -24,7 +24,6 @@ from .parameters import ParameterSet
 from .problem import Problem, Variables, first_nuisances
 from .runs import PreparedRun, shown_turn
 
-FloatArray = NDArray[np.float64]
 HALVINGS = 12
 WORTH = 0.01
 """Share of the loss that a figure must be worth for the fit not to do without it."""

@@ -18,14 +18,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from .emulation import Rows
 from .loss import curvature, influence
 from .parameters import ParameterSet
 from .runs import PreparedRun
-
-FloatArray = NDArray[np.float64]
 
 CONFIDENCE = 0.95
 SEEN = 1e-3

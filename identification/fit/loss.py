@@ -7,9 +7,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ...core.arrays import FloatArray
 
 BEND = 2.0
 """δ: weighted residuals beyond it count linearly."""

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.sqp import Iteration, Result, Status, solve
 from .crew import Crew
@@ -15,7 +15,6 @@ from .emulation import Nuisance
 from .parameters import ParameterSet
 from .problem import Problem, Variables
 
-FloatArray = NDArray[np.float64]
 Watch = Callable[[Iteration], bool | None]
 
 LEAST_GAIN = 1e-4

@@ -8,14 +8,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.motion.model import MotionModel
 from ...core.robot.model import Robot
 from .keys import nothing, value_of, with_value
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.errors import FlybyError, InputError
 from ...core.sqp import NLP
 from .crew import Crew
@@ -15,9 +15,6 @@ from .emulation import Nuisance, Rows
 from .loss import square_root
 from .parameters import ParameterSet
 from .runs import PreparedRun
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 OFFSET_SCALE, CLOCK_SCALE, SIZE_SCALE, OVERRIDE_SCALE = 0.01, 0.01, 0.5, 0.01
 """s, 1, 1 and 1: the units of nuisances in the problem's variables."""

@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.errors import InputError
 from ...core.motion.controller import Controller
 from ...core.motion.model import ArcTurn, MotionModel
@@ -39,9 +40,6 @@ from ..prediction import Prediction, predict
 from ..tcp_path import tcp_positions
 from ..time_scale import Cause, TimeScale, time_scale
 from .zone_sizes import COARSE, guess, resized
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 PLACE, LAG = 1e-5, 1e-4
 """m and s: of the TCP's path, 0.015 mm at 50 mm/s and 0.11 mm at 1 m/s."""

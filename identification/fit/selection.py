@@ -12,8 +12,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import FlybyError, InputError
 from ...core.motion.model import MotionModel
 from ...core.program.zone import Radius
@@ -24,8 +24,6 @@ from .loss import loss
 from .minimum import Minimum, minimise
 from .parameters import ParameterSet
 from .runs import PreparedRun
-
-FloatArray = NDArray[np.float64]
 
 POSTURE = 0.5
 """rad within which starts count as one posture."""

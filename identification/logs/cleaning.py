@@ -11,16 +11,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, median_filter
 
+from ...core.arrays import BoolArray, FloatArray, IntArray
 from ...core.errors import InputError
 from ...core.motion.trajectory import sample_times
 from .run import LoggedRun
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
-IntArray = NDArray[np.int64]
 
 HOLE = 3.0
 """Median periods without a sample that make a hole."""

@@ -8,11 +8,9 @@ its ends, and what the two legs at a waypoint say is averaged.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.spatial.rotation import matrix_from_rotation_vector, rotation_vector
-
-FloatArray = NDArray[np.float64]
 
 _CLEAR = 0.2
 """Share of a leg that must lie outside of its zones."""

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.input_files import read_json
 from ...core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
@@ -30,8 +30,6 @@ from ...core.spatial.rotation import matrix_from_rotation_vector, quaternion_fro
 from .orientations import orientations_at
 from .reading import read_samples
 from .run import LoggedRun
-
-FloatArray = NDArray[np.float64]
 
 _ROBOTS = {
     "irb 6640-180/2.55": "abb/irb6640-180-255",

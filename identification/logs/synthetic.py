@@ -8,14 +8,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.motion.controller import Controller
 from ...core.program.program import Program
 from .run import LoggedRun
-
-FloatArray = NDArray[np.float64]
 
 _FINE = 2.5e-4
 """s between the samples of the motion that a log is read from."""

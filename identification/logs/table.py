@@ -10,13 +10,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.errors import InputError
 from .text import lines_of, read_text
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 DELIMITERS = (";", "\t", ",")
 """Looked for in this order, since a semicolon or a tab leaves the comma to the decimals."""
 _LARGEST = 1e30

@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.robot.model import Robot
 from ...drawing.geometry import PathGeometry, path_geometry
 from ...drawing.style import NOMINAL, STOP, STYLE, ZONE, figure_file
@@ -18,7 +18,6 @@ from .corners import AROUND, CutCorner, cut_corners
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-FloatArray = NDArray[np.float64]
 
 LOGGED, EMULATED = "#b3261e", "#1f4e9c"
 WIDTH = 15

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.collision.certificate import SceneOf, certify
 from ...core.collision.verdict import Certificate
 from ...core.errors import MotionError
@@ -26,7 +26,6 @@ from .options import Effort, Goal, Task
 from .pacing import Pacing
 from .problem import Evaluated, Fixed, PacedProblem
 
-FloatArray = NDArray[np.float64]
 ReadBack = Callable[[Program], Program]
 """Writes a program and reads what was written."""
 

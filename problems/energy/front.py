@@ -6,17 +6,13 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...core.arrays import FloatArray
 from ...core.collision.verdict import Certificate
 from ...core.errors import Note
 from ...core.motion.consumption import Consumption
 from ...core.motion.controller import Controller, Run
 from ...core.motion.energy import energy_by_joint
 from ...core.program.program import Program
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

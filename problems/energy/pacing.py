@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.dialect import Dialect
 from ...core.motion.derivatives import ProgramGradient
 from ...core.motion.timing import Timing
@@ -23,8 +24,6 @@ from ...core.program.program import Program
 from ...core.robot.model import Robot
 from ...core.translation.emulation import Peaks
 from ..waypoints import Task as Wishes
-
-FloatArray = NDArray[np.float64]
 
 _STILL = 1e-6
 """m/s below which the TCP does not move: the move turns the tool."""

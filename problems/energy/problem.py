@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.errors import MotionError
 from ...core.motion.consumption import Consumption
 from ...core.motion.controller import Controller
@@ -28,9 +28,6 @@ from ..waypoints.evaluation import BlockProblem
 from ..waypoints.evaluation import Evaluated as Shape
 from .options import Goal
 from .pacing import Pacing
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _PLANES = 16
 """Gradients of the time that are remembered."""

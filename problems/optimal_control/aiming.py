@@ -14,14 +14,12 @@ What comes of it counts only if it is better and proven, wherever the tangents w
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from .motion import Motion
 from .start import Guess
 from .surroundings import Places
 from .task import Task
-
-FloatArray = NDArray[np.float64]
 
 _FASTER, _FARTHEST = 1.5, 4.0
 """How far ahead, in steps of the last size."""

@@ -11,17 +11,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from .limits import Limits
 from .motion import Motion
 from .sampled import Plant, State, TcpSpeed
 from .scheme import bernstein
 from .task import Task
 from .torque_bounds import BendBounds
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _FIRST, _FINEST = 8, 1024
 """Samples between nodes."""

@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError, MotionError
 from ..planning.free_space import FreeSpace
 from ..planning.search import quickest_path
 from .start import Polyline
 from .surroundings import Surroundings
 from .task import Task
-
-FloatArray = NDArray[np.float64]
 
 _ROOM = 1e-3
 """m beyond the clearance that planned paths keep, so that the proof ends."""

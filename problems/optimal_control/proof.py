@@ -10,7 +10,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.collision.certificate import BUDGET
 from ...core.collision.enclosure import Enclosure
@@ -23,8 +22,6 @@ from ...core.motion.blend import BASIS
 from ...core.motion.curves import POLYNOMIAL, Curves
 from .motion import Motion
 from .task import Task
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,15 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from .audit import Audit
 from .layout import Layout
 from .motion import Motion
 from .start import Guess, breaks_of
 from .task import Task
 from .transcription import Margins
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 SPLIT = 5e-3
 """Share of a limit beyond which an interval is cut in two instead of given a margin."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.collision.verdict import Certificate
 from ...core.errors import InputError, Note
 from ...core.motion.consumption import SQUARED_TORQUE, Consumption
@@ -21,8 +21,6 @@ from .limits import Limits
 from .motion import Motion
 from .sampled import Plant, State
 from .task import Task
-
-FloatArray = NDArray[np.float64]
 
 _DENSE = 16
 """Parts of a piece for integrals, by Simpson's rule."""

@@ -9,12 +9,10 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from .layout import Layout
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 Places = tuple[IntArray, IntArray]
 """Rows and columns of entries; entries at one place add up."""
 

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.motion.consumption import Consumption, Rounded
 from .layout import Layout
 from .limits import TorqueLimits
 from .rows import Places
 from .sampled import State, TcpSpeed, TorqueField
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class SamplePlaces:

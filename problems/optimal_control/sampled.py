@@ -10,17 +10,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.errors import InputError
 from ...core.program.tool import WORLD, Tool
 from ...core.robot.chain_derivatives import hessians
 from ...core.robot.chain_kernels import jacobians
 from ...core.robot.work_chain import work_chain
 from .task import Task
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _STEP = 1e-6
 """rad or m, for difference quotients of derivatives."""

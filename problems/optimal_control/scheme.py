@@ -19,9 +19,8 @@ from math import comb
 
 import numpy as np
 from numpy.polynomial import polynomial as P
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ...core.arrays import FloatArray
 
 
 class SchemeKind(StrEnum):

@@ -13,8 +13,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.sqp import Result, Status, solve
 from .aiming import Aim
 from .audit import Audit, audit
@@ -34,7 +34,6 @@ from .surroundings import Breach, Linearised, Places, Surroundings, breaches, li
 from .task import Task
 from .transcription import Bounds, Transcription
 
-FloatArray = NDArray[np.float64]
 Report = Callable[[Step], bool | None]
 
 _CORRECTIONS = 4

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from .grid import Grid
 from .layout import Layout
 from .limits import Limits
@@ -14,9 +14,6 @@ from .motion import Motion
 from .sampled import Plant, State, TcpSpeed
 from .scheme import Scheme
 from .task import Task
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _LEAST = 4
 """Intervals on a straight line."""

@@ -6,17 +6,14 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.collision.scene import CollisionScene
 from ...core.errors import InputError
 from .layout import Layout
 from .motion import Motion
 from .rows import PlaceRows
 from .task import Task
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _CURVED = 1.5
 """How much nearer than the linear model says a pair may come within the box."""

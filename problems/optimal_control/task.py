@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.motion.consumption import SQUARED_TORQUE, Consumption
 from ...core.robot.inertia import Inertia
@@ -16,7 +17,6 @@ from ...core.robot.model import Robot
 from ...core.spatial.pose import IDENTITY, Pose
 from ..checks import all_of_kind, of_kind, positive, within
 
-FloatArray = NDArray[np.float64]
 AT_REST = "at rest"
 
 

@@ -15,14 +15,13 @@ from __future__ import annotations
 from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.robot.inertia import Inertia
 from ...core.robot.joint import JointKind
 from ...core.robot.model import Robot
 from ...core.spatial.pose import Pose
 
-FloatArray = NDArray[np.float64]
 _ORDERS = 5
 
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
+from ...core.arrays import FloatArray
 from ...core.sqp import NLP
 from ..textbook.entries import Entries
 from .layout import Layout
@@ -32,8 +32,6 @@ from .rows import (
 from .sample_rows import EnergyTerm, TcpSpeedRows, TorqueRows
 from .sampled import Plant, TcpSpeed, TorqueField
 from .task import Task
-
-FloatArray = NDArray[np.float64]
 
 _SHORTEST, _LONGEST = 1e-4, 400.0
 """Least and largest S."""

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from .deposition import Deposition
 from .trajectory import PaintTrajectory
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,9 +16,9 @@ from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
+from ...core.arrays import BoolArray, FloatArray, IntArray
 from ...core.errors import InputError
 from .deposition_kernels import Brush, Cone, Guns
 from .deposition_loops import (
@@ -35,9 +35,6 @@ from .surface_blocks import grouped
 from .trajectory import PaintTrajectory
 
 T = TypeVar("T")
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 SUBPOINTS = 4
 """Of a segment; enough where segments are not longer than half the footprint's radius."""

@@ -9,20 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from .deposition_kernels import (
-    Blocks,
-    BoolArray,
-    Brush,
-    FloatArray,
-    Guns,
-    IntArray,
-    across,
-    gun_at,
-    meets,
-    profile,
-    ray,
-    slopes_of,
-)
+from ...core.arrays import BoolArray, FloatArray, IntArray
+from .deposition_kernels import Blocks, Brush, Guns, across, gun_at, meets, profile, ray, slopes_of
 
 
 @njit(cache=True, error_model="numpy", nogil=True)

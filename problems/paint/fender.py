@@ -8,11 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from .part import Part
-
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
 
 CROWN_RADIUS, CROWN_WIDTH = 1.2, 0.42
 """m: the crown's arc and its chord."""

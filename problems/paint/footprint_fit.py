@@ -14,15 +14,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from ...core.arrays import FloatArray
 from ...core.errors import FlybyError, InputError
 from ...core.sqp import NLP, solve
 from .footprint import Footprint
 from .strokes import Stroke, chord_nodes, section, spread
-
-FloatArray = NDArray[np.float64]
 
 _LEAST_PIECES = 3
 _PIECES = 10, 20

@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.cell.geometry import MESH_UNITS
 from ...core.cell.mesh_file import check_extent, read_scene
 from ...core.errors import InputError, Note
@@ -16,10 +17,6 @@ from .part import Part
 from .rays import RayEngine, make_rays
 from .region import skin
 from .resolution import refined
-
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 PLAUSIBLE_SIZE = (0.01, 20.0)
 """m, longest side of what is painted by robots; beyond, the unit is probably wrong."""
@@ -62,7 +59,7 @@ def load_part(
 
 def make_part(
     vertices: FloatArray,
-    faces: IndexArray,
+    faces: IntArray,
     name: str = "part",
     view: ArrayLike | None = None,
     longest_edge: float = COARSE,
@@ -149,11 +146,11 @@ def _size_notes(name: str, vertices: FloatArray) -> tuple[Note, ...]:
     return ()
 
 
-def _is_closed(faces: IndexArray) -> bool:
+def _is_closed(faces: IntArray) -> bool:
     """Whether triangles surround something: no edge has an odd number of them."""
     return bool((find_edges(faces).triangles % 2 == 0).all())
 
 
-def _area(vertices: FloatArray, faces: IndexArray) -> float:
+def _area(vertices: FloatArray, faces: IntArray) -> float:
     a, b, c = np.moveaxis(vertices[faces], 1, 0)
     return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())

@@ -10,15 +10,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ...core.arrays import BoolArray, FloatArray, IntArray
 from ...core.errors import InputError, Note
-
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 WELD = 1e-7
 """Points nearer than this share of the mesh's size are one."""
@@ -36,7 +33,7 @@ class Repaired(NamedTuple):
     """
 
     vertices: FloatArray
-    faces: IndexArray
+    faces: IntArray
     notes: tuple[Note, ...]
 
 
@@ -52,17 +49,17 @@ class Edges(NamedTuple):
         of_face: (F, 3) edges of each triangle, from corner k to k + 1.
     """
 
-    ends: IndexArray
-    triangles: IndexArray
-    pairs: IndexArray
-    shared: IndexArray
+    ends: IntArray
+    triangles: IntArray
+    pairs: IntArray
+    shared: IntArray
     alike: BoolArray
-    of_face: IndexArray
+    of_face: IntArray
 
 
 def repair(
     vertices: FloatArray,
-    faces: IndexArray,
+    faces: IntArray,
     name: str = "mesh",
     view: ArrayLike | None = None,
     normals: FloatArray | None = None,
@@ -93,7 +90,7 @@ def repair(
     return Repaired(vertices[used], np.searchsorted(used, faces), tuple(notes))
 
 
-def find_edges(faces: IndexArray) -> Edges:
+def find_edges(faces: IntArray) -> Edges:
     """The edges of triangles (F, 3)."""
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     ends, edge = np.unique(
@@ -111,7 +108,7 @@ def find_edges(faces: IndexArray) -> Edges:
     return Edges(ends, count, pairs, np.flatnonzero(count == 2), alike, edge.reshape(-1, 3))
 
 
-def _check(vertices: FloatArray, faces: IndexArray, name: str) -> None:
+def _check(vertices: FloatArray, faces: IntArray, name: str) -> None:
     if len(faces) == 0:
         raise InputError(f"{name}: the mesh has no triangles")
     if faces.min() < 0 or faces.max() >= len(vertices):
@@ -126,11 +123,11 @@ def _check(vertices: FloatArray, faces: IndexArray, name: str) -> None:
 
 def _cleaned(
     vertices: FloatArray,
-    faces: IndexArray,
+    faces: IntArray,
     normals: FloatArray | None,
     name: str,
     notes: list[Note],
-) -> tuple[FloatArray, IndexArray, FloatArray | None]:
+) -> tuple[FloatArray, IntArray, FloatArray | None]:
     """The mesh without what is there twice or is nothing, until there is no more of it."""
     empty = repeated = 0
     while True:
@@ -152,8 +149,8 @@ def _cleaned(
 
 
 def _welded(
-    vertices: FloatArray, faces: IndexArray, normals: FloatArray | None
-) -> tuple[FloatArray, IndexArray, FloatArray | None]:
+    vertices: FloatArray, faces: IntArray, normals: FloatArray | None
+) -> tuple[FloatArray, IntArray, FloatArray | None]:
     """The mesh with equal points made one; the first of them stays as it is."""
     used = np.unique(faces)
     corner = vertices[used].min(axis=0)
@@ -170,20 +167,20 @@ def _welded(
     return vertices[kept], new[faces], None if normals is None else normals[kept]
 
 
-def face_normals(vertices: FloatArray, faces: IndexArray) -> FloatArray:
+def face_normals(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """Normals (F, 3) of triangles, as long as twice their areas."""
     a, b, c = np.moveaxis(vertices[faces], 1, 0)
     return np.cross(b - a, c - a)
 
 
-def _has_area(vertices: FloatArray, faces: IndexArray) -> BoolArray:
+def _has_area(vertices: FloatArray, faces: IntArray) -> BoolArray:
     """(F,) whether a triangle has any, next to the size of the mesh."""
     size = float(np.ptp(vertices, axis=0).max())
     double = np.linalg.norm(face_normals(vertices, faces), axis=1)
     return np.asarray(double > 2.0 * FLAT * size * size)
 
 
-def _is_first(faces: IndexArray) -> BoolArray:
+def _is_first(faces: IntArray) -> BoolArray:
     """(F,) whether no triangle before has the same vertices."""
     first = np.zeros(len(faces), dtype=bool)
     first[np.unique(np.sort(faces, axis=1), axis=0, return_index=True)[1]] = True
@@ -205,13 +202,13 @@ def _note_crowded(vertices: FloatArray, edges: Edges, name: str, notes: list[Not
 
 def _turned(
     vertices: FloatArray,
-    faces: IndexArray,
+    faces: IntArray,
     edges: Edges,
     name: str,
     view: FloatArray | None,
     normals: FloatArray | None,
     notes: list[Note],
-) -> IndexArray:
+) -> IntArray:
     """Triangles turned alike, piece by piece."""
     flip, piece, twisted = _flips(len(faces), edges)
     across = face_normals(vertices, faces)
@@ -236,7 +233,7 @@ def _turned(
     return np.where(flip[:, None], faces[:, ::-1], faces)
 
 
-def _flips(n: int, edges: Edges) -> tuple[BoolArray, IndexArray, BoolArray]:
+def _flips(n: int, edges: Edges) -> tuple[BoolArray, IntArray, BoolArray]:
     """Which of n triangles to turn so that pieces are turned alike; pieces; one-sided ones.
 
     On the double cover, where each triangle stands twice, once turned round, and neighbours that
@@ -261,10 +258,10 @@ def _flips(n: int, edges: Edges) -> tuple[BoolArray, IndexArray, BoolArray]:
 
 def _wrong_pieces(
     vertices: FloatArray,
-    faces: IndexArray,
+    faces: IntArray,
     edges: Edges,
     flip: BoolArray,
-    piece: IndexArray,
+    piece: IntArray,
     view: FloatArray | None,
     normals: FloatArray | None,
 ) -> BoolArray:

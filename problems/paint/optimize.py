@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ...core.arrays import BoolArray
 from ...core.sqp import BackendKind, Result, Status
 from .coat import Coat, coat
-from .deposition import BoolArray, Deposition
+from .deposition import Deposition
 from .optimize_constraints import PaintConstraints
 from .optimize_objective import PaintObjective
 from .optimize_options import OuterLoop, PaintLimits, PaintWeights

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
+from ...core.arrays import FloatArray, IntArray
 from .optimize_options import PaintLimits
 from .optimize_variables import Variables
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _LENGTH = 0.1
 """Unit of the rows on lengths, m."""

@@ -13,15 +13,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from .deposition import Deposition
 from .optimize_options import PaintWeights
 from .optimize_path import PathCost
 from .optimize_variables import Variables
 from .trajectory import PaintTrajectory
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,13 +6,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
+from ...core.arrays import FloatArray
 from .optimize_options import PaintWeights
 from .trajectory import PaintTrajectory
-
-FloatArray = NDArray[np.float64]
 
 _SHORT = 1e-9
 

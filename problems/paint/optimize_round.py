@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.sqp import NLP, BackendKind, Result, solve
 from ...core.sqp.result import Iteration
 from .optimize_constraints import PaintConstraints
@@ -16,7 +16,6 @@ from .optimize_options import OuterLoop
 from .optimize_variables import Variables
 from .trajectory import PaintTrajectory
 
-FloatArray = NDArray[np.float64]
 Progress = Callable[[int, Iteration], bool | None]
 
 TOLERANCE = 1e-3

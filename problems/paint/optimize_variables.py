@@ -12,13 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from .reference import Reference
 from .trajectory import PaintTrajectory
-
-FloatArray = NDArray[np.float64]
 
 POSITION = 0.02
 """Unit of positions, m."""

@@ -9,9 +9,10 @@ from enum import StrEnum
 
 import numpy as np
 
+from ...core.arrays import BoolArray
 from ...core.errors import InputError, Note
 from .coat import Coat, coat
-from .deposition import BoolArray, Deposition
+from .deposition import Deposition
 from .footprint import Footprint
 from .initial.curve import InitialCurve, initial_curve
 from .initial.plan import SweepPlan

@@ -11,15 +11,12 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ...core.arrays import BoolArray, FloatArray, IntArray
 from ...core.errors import InputError, Note
 from ...core.spatial.pose import Pose
 from .mesh_repair import Edges, face_normals, find_edges
 from .rays import RayEngine, Rays, make_rays
 from .samples import SurfaceSamples
-
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 SHARP = np.deg2rad(50.0)
 """rad; at edges that turn by more, vertices are doubled: each side has its own normal."""
@@ -47,7 +44,7 @@ class Part:
     """
 
     vertices: FloatArray
-    faces: IndexArray
+    faces: IntArray
     normals: FloatArray
     areas: FloatArray
     painted: BoolArray
@@ -78,7 +75,7 @@ class Part:
     def of_triangles(
         cls,
         vertices: FloatArray,
-        faces: IndexArray,
+        faces: IntArray,
         painted_faces: BoolArray | None = None,
         name: str = "part",
         notes: tuple[Note, ...] = (),
@@ -165,13 +162,13 @@ class Part:
         return self.with_painted(self.painted_faces & ~covered_faces)
 
 
-def vertex_areas(vertices: FloatArray, faces: IndexArray) -> FloatArray:
+def vertex_areas(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """(V,) m²: a third of the area of each vertex's triangles."""
     third = np.linalg.norm(face_normals(vertices, faces), axis=1) / 6.0
     return np.bincount(faces.ravel(), np.repeat(third, 3), len(vertices)).astype(float)
 
 
-def vertex_normals(vertices: FloatArray, faces: IndexArray) -> FloatArray:
+def vertex_normals(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """(V, 3) unit normals: of the triangles, weighted by their angles at the vertex.
 
     So the way in which a face is cut into triangles does not matter (G. Thürmer, C. Wüthrich,
@@ -196,7 +193,7 @@ def vertex_normals(vertices: FloatArray, faces: IndexArray) -> FloatArray:
     return np.where(norm[:, None] > 1e-9, total / np.maximum(norm, 1e-9)[:, None], single)
 
 
-def sharp_pairs(vertices: FloatArray, faces: IndexArray, edges: Edges, angle: float) -> BoolArray:
+def sharp_pairs(vertices: FloatArray, faces: IntArray, edges: Edges, angle: float) -> BoolArray:
     """Which of the edges' pairs of triangles turn by more than an angle (rad)."""
     across = face_normals(vertices, faces)
     across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), np.finfo(float).tiny)
@@ -205,8 +202,8 @@ def sharp_pairs(vertices: FloatArray, faces: IndexArray, edges: Edges, angle: fl
 
 
 def _doubled(
-    vertices: FloatArray, faces: IndexArray, chosen: BoolArray
-) -> tuple[FloatArray, IndexArray]:
+    vertices: FloatArray, faces: IntArray, chosen: BoolArray
+) -> tuple[FloatArray, IntArray]:
     """The mesh with a copy of each vertex for every group of its triangles that belong together.
 
     A vertex's triangles belong together if one gets from one to the other through edges at that

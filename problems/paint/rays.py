@@ -16,10 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.errors import InputError
-
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
 
 
 class Hits(NamedTuple):
@@ -31,7 +29,7 @@ class Hits(NamedTuple):
         point: (N, 3) m, NaN where there is none.
     """
 
-    face: IndexArray
+    face: IntArray
     distance: FloatArray
     point: FloatArray
 
@@ -50,7 +48,7 @@ class Nearest(NamedTuple):
         point: (N, 3) m.
     """
 
-    face: IndexArray
+    face: IntArray
     distance: FloatArray
     point: FloatArray
 
@@ -66,7 +64,7 @@ class Rays(ABC):
         InputError: there is no triangle.
     """
 
-    def __init__(self, vertices: FloatArray, faces: IndexArray) -> None:
+    def __init__(self, vertices: FloatArray, faces: IntArray) -> None:
         self.vertices = np.ascontiguousarray(vertices, dtype=float)
         self.faces = np.ascontiguousarray(faces, dtype=np.int64)
         if len(self.faces) == 0:
@@ -122,7 +120,7 @@ class Rays(ABC):
     @abstractmethod
     def _first(
         self, origins: FloatArray, directions: FloatArray, far: float
-    ) -> tuple[IndexArray, FloatArray]:
+    ) -> tuple[IntArray, FloatArray]:
         """Triangle (-1: none) and distance (inf: none) of what is met first in [0, far) m."""
 
     @abstractmethod
@@ -130,7 +128,7 @@ class Rays(ABC):
         """Whether anything is met between origins and origins + ways."""
 
     @abstractmethod
-    def _nearest(self, points: FloatArray) -> tuple[IndexArray, FloatArray]:
+    def _nearest(self, points: FloatArray) -> tuple[IntArray, FloatArray]:
         """Triangle and point of the mesh nearest to each point."""
 
 
@@ -143,7 +141,7 @@ class RayEngine(StrEnum):
     TREE = "tree"
 
 
-def make_rays(vertices: FloatArray, faces: IndexArray, engine: RayEngine = RayEngine.AUTO) -> Rays:
+def make_rays(vertices: FloatArray, faces: IntArray, engine: RayEngine = RayEngine.AUTO) -> Rays:
     """Queries on a mesh.
 
     Args:
@@ -175,7 +173,7 @@ def _rays(origins: FloatArray, directions: FloatArray) -> tuple[FloatArray, Floa
 
 
 def _hits(
-    origins: FloatArray, directions: FloatArray, face: IndexArray, distance: FloatArray
+    origins: FloatArray, directions: FloatArray, face: IntArray, distance: FloatArray
 ) -> Hits:
     found = face >= 0
     reach = np.where(found, distance, np.nan)

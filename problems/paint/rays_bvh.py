@@ -16,7 +16,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from .rays import FloatArray, IndexArray, Rays
+from ...core.arrays import FloatArray, IntArray
+from .rays import Rays
 from .rays_tree import DEPTH, Tree, build_tree
 
 BATCH = 8192
@@ -31,13 +32,13 @@ class BvhRays(Rays):
         faces: (F, 3).
     """
 
-    def __init__(self, vertices: FloatArray, faces: IndexArray) -> None:
+    def __init__(self, vertices: FloatArray, faces: IntArray) -> None:
         super().__init__(vertices, faces)
         self._tree = build_tree(self.vertices[self.faces])
 
     def _first(
         self, origins: FloatArray, directions: FloatArray, far: float
-    ) -> tuple[IndexArray, FloatArray]:
+    ) -> tuple[IntArray, FloatArray]:
         face = np.empty(len(origins), dtype=np.int64)
         distance = np.empty(len(origins))
 
@@ -58,7 +59,7 @@ class BvhRays(Rays):
         _in_threads(part, len(origins))
         return found
 
-    def _nearest(self, points: FloatArray) -> tuple[IndexArray, FloatArray]:
+    def _nearest(self, points: FloatArray) -> tuple[IntArray, FloatArray]:
         face = np.empty(len(points), dtype=np.int64)
         nearest = np.empty((len(points), 3))
 
@@ -87,7 +88,7 @@ def _first_hits(
     origins: FloatArray,
     directions: FloatArray,
     far: float,
-    face: IndexArray,
+    face: IntArray,
     distance: FloatArray,
 ) -> None:
     stack = np.empty(2 * DEPTH, dtype=np.int64)
@@ -116,7 +117,7 @@ def trace(
     origin: FloatArray,
     direction: FloatArray,
     far: float,
-    stack: IndexArray,
+    stack: IntArray,
     any_will_do: bool,
 ) -> tuple[int, float]:
     """Place in ``tree.face`` and distance of the first triangle in [0, far); -1 if none."""
@@ -239,7 +240,7 @@ def _cross(
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _nearest_points(tree: Tree, points: FloatArray, face: IndexArray, nearest: FloatArray) -> None:
+def _nearest_points(tree: Tree, points: FloatArray, face: IntArray, nearest: FloatArray) -> None:
     stack = np.empty(2 * DEPTH, dtype=np.int64)
     gaps = np.empty(2 * DEPTH)
     found = np.empty(3)

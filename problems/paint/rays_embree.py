@@ -11,7 +11,8 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
-from .rays import FloatArray, IndexArray, Rays
+from ...core.arrays import FloatArray, IntArray
+from .rays import Rays
 from .rays_bvh import BvhRays
 
 _BEYOND = 1.0 + 1e-5
@@ -26,7 +27,7 @@ class EmbreeRays(Rays):
         faces: (F, 3).
     """
 
-    def __init__(self, vertices: FloatArray, faces: IndexArray) -> None:
+    def __init__(self, vertices: FloatArray, faces: IntArray) -> None:
         super().__init__(vertices, faces)
         used = self.vertices[self.faces].reshape(-1, 3)
         self._centre = 0.5 * (used.min(axis=0) + used.max(axis=0))
@@ -43,7 +44,7 @@ class EmbreeRays(Rays):
 
     def _first(
         self, origins: FloatArray, directions: FloatArray, far: float
-    ) -> tuple[IndexArray, FloatArray]:
+    ) -> tuple[IntArray, FloatArray]:
         face = self._run(origins, directions, far * _BEYOND, "INTERSECT")
         found = face >= 0
         a, n = self._corner[face], self._across[face]
@@ -57,14 +58,12 @@ class EmbreeRays(Rays):
     def _any(self, origins: FloatArray, ways: FloatArray) -> NDArray[np.bool_]:
         return np.asarray(self._run(origins, ways, 1.0, "OCCLUDED") >= 0)
 
-    def _nearest(self, points: FloatArray) -> tuple[IndexArray, FloatArray]:
+    def _nearest(self, points: FloatArray) -> tuple[IntArray, FloatArray]:
         if self._tree is None:
             self._tree = BvhRays(self.vertices, self.faces)
         return self._tree._nearest(points)
 
-    def _run(
-        self, origins: FloatArray, directions: FloatArray, far: float, query: str
-    ) -> IndexArray:
+    def _run(self, origins: FloatArray, directions: FloatArray, far: float, query: str) -> IntArray:
         if len(origins) == 0:
             return np.empty(0, dtype=np.int64)
         reach = np.full(len(origins), min(far, 1e30), dtype=np.float32)

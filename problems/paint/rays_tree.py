@@ -9,10 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
+from ...core.arrays import FloatArray, IntArray
 
 LEAF = 4
 """Triangles in a leaf, at most, unless their centres coincide."""
@@ -37,11 +35,11 @@ class Tree(NamedTuple):
 
     low: FloatArray
     high: FloatArray
-    other: IndexArray
-    first: IndexArray
-    held: IndexArray
+    other: IntArray
+    first: IntArray
+    held: IntArray
     corners: FloatArray
-    face: IndexArray
+    face: IntArray
 
 
 def build_tree(corners: FloatArray) -> Tree:
@@ -116,7 +114,7 @@ def _bound(tree: Tree, node: int, low: FloatArray, high: FloatArray, first: int,
 
 @njit(cache=True, error_model="numpy")
 def _cut(
-    order: IndexArray, low: FloatArray, high: FloatArray, middle: FloatArray, first: int, last: int
+    order: IntArray, low: FloatArray, high: FloatArray, middle: FloatArray, first: int, last: int
 ) -> int:
     """Sort a range of triangles to both sides of the best cut and give its place; first if none."""
     axis, start, extent = 0, 0.0, 0.0
@@ -143,7 +141,7 @@ def _cut(
 
 @njit(cache=True, error_model="numpy")
 def _best_bin(
-    order: IndexArray,
+    order: IntArray,
     low: FloatArray,
     high: FloatArray,
     middle: FloatArray,
@@ -177,7 +175,7 @@ def _best_bin(
 
 
 @njit(cache=True, error_model="numpy")
-def _gather(box: FloatArray, count: IndexArray, cost: FloatArray) -> None:
+def _gather(box: FloatArray, count: IntArray, cost: FloatArray) -> None:
     """Area times number of all bins up to each; infinite where there are none."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     number = 0

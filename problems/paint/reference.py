@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from .trajectory import PaintTrajectory
-
-FloatArray = NDArray[np.float64]
 
 _UNIT = 1e-6
 

@@ -7,18 +7,15 @@ Selections are masks (F,) over triangles and combine with ``&``, ``|`` and ``~``
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ...core.arrays import BoolArray, FloatArray, IntArray
 from ...core.errors import InputError
 from .mesh_repair import face_normals, find_edges
 from .part import SHARP, sharp_pairs
 from .rays import Rays
-
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 OPENING = np.deg2rad(60.0)
 """rad by which a gun turns from its main direction to reach what it does not see from there."""
@@ -34,7 +31,7 @@ SMALLEST = 0.01
 
 def seen_from(
     vertices: FloatArray,
-    faces: IndexArray,
+    faces: IntArray,
     rays: Rays,
     view: ArrayLike,
     opening: float = OPENING,
@@ -64,7 +61,7 @@ def seen_from(
 
 
 def skin(
-    vertices: FloatArray, faces: IndexArray, rays: Rays, view: ArrayLike, opening: float = OPENING
+    vertices: FloatArray, faces: IntArray, rays: Rays, view: ArrayLike, opening: float = OPENING
 ) -> BoolArray:
     """The surface to paint of a closed part: what the gun sees, without edges of sheets and chance.
 
@@ -99,8 +96,8 @@ def skin(
 
 
 def patches(
-    vertices: FloatArray, faces: IndexArray, among: BoolArray, angle: float = SHARP
-) -> IndexArray:
+    vertices: FloatArray, faces: IntArray, among: BoolArray, angle: float = SHARP
+) -> IntArray:
     """(F,) numbers of connected pieces of the triangles in ``among``, cut where edges turn by more
     than an angle (rad); -1 elsewhere."""
     edges = find_edges(faces)
@@ -117,7 +114,7 @@ def patches(
 
 
 def grown_from(
-    vertices: FloatArray, faces: IndexArray, rays: Rays, point: ArrayLike, angle: float = SHARP
+    vertices: FloatArray, faces: IntArray, rays: Rays, point: ArrayLike, angle: float = SHARP
 ) -> BoolArray:
     """Triangles that one gets to from the one nearest to a point without crossing a sharp edge.
 
@@ -132,9 +129,7 @@ def grown_from(
     return np.asarray(piece == piece[at])
 
 
-def within_box(
-    vertices: FloatArray, faces: IndexArray, low: ArrayLike, high: ArrayLike
-) -> BoolArray:
+def within_box(vertices: FloatArray, faces: IntArray, low: ArrayLike, high: ArrayLike) -> BoolArray:
     """Triangles whose centres lie in a box between two corners (3,) m.
 
     Raises:
@@ -147,9 +142,7 @@ def within_box(
     return np.asarray(((centres >= low) & (centres <= high)).all(axis=1))
 
 
-def facing(
-    vertices: FloatArray, faces: IndexArray, direction: ArrayLike, angle: float
-) -> BoolArray:
+def facing(vertices: FloatArray, faces: IntArray, direction: ArrayLike, angle: float) -> BoolArray:
     """Triangles whose outward normals are within an angle (rad) of a direction (3,)."""
     across = face_normals(vertices, faces)
     cosine = across @ _unit(direction) / np.linalg.norm(across, axis=1)
@@ -170,7 +163,7 @@ def directions_within(axis: FloatArray, angle: float) -> FloatArray:
     return np.asarray(height[:, None] * axis + radius[:, None] * flat)
 
 
-def _narrow(vertices: FloatArray, faces: IndexArray, among: BoolArray) -> BoolArray:
+def _narrow(vertices: FloatArray, faces: IntArray, among: BoolArray) -> BoolArray:
     """(F,) whether a triangle belongs to a patch that is too narrow."""
     piece = patches(vertices, faces, among)
     edges = find_edges(faces)

@@ -9,16 +9,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.errors import InputError
 from .mesh_repair import find_edges
 from .part import Part
-
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
 
 ROUNDS = 8
 """How often clusters are formed anew round their centres."""
@@ -27,8 +24,8 @@ MOST_VERTICES = 4_000_000
 
 
 def refined(
-    vertices: FloatArray, faces: IndexArray, longest: float
-) -> tuple[FloatArray, IndexArray, IndexArray]:
+    vertices: FloatArray, faces: IntArray, longest: float
+) -> tuple[FloatArray, IntArray, IntArray]:
     """Triangles cut until no edge is longer than a length.
 
     All triangles at an edge cut it in its middle, so that none is left with a vertex on its side;
@@ -66,8 +63,8 @@ def refined(
 
 
 def _cut(
-    vertices: FloatArray, faces: IndexArray, source: IndexArray, middle: IndexArray
-) -> tuple[IndexArray, IndexArray]:
+    vertices: FloatArray, faces: IntArray, source: IntArray, middle: IntArray
+) -> tuple[IntArray, IntArray]:
     """Triangles cut at the middles (F, 3) of their edges; -1 where an edge stays whole."""
     cuts = (middle >= 0).sum(axis=1)
     parts, sources = [faces[cuts == 0]], [source[cuts == 0]]
@@ -144,7 +141,7 @@ def _lengths(part: Part) -> csr_array:
     return csr_array((np.maximum(length, 1e-12), (ends[:, 0], ends[:, 1])), shape=(n, n))
 
 
-def _drawn(part: Part, graph: csr_array, count: int, seed: int) -> IndexArray:
+def _drawn(part: Part, graph: csr_array, count: int, seed: int) -> IntArray:
     """First centres, drawn by area, and one for every piece of the mesh that got none."""
     rng = np.random.default_rng(seed)
     weights = np.maximum(part.areas, 1e-12 * part.areas.max())
@@ -155,7 +152,7 @@ def _drawn(part: Part, graph: csr_array, count: int, seed: int) -> IndexArray:
     return np.sort(np.concatenate([drawn, first[missed]]))
 
 
-def _nearest_centre(graph: csr_array, centres: IndexArray) -> IndexArray:
+def _nearest_centre(graph: csr_array, centres: IntArray) -> IntArray:
     """(V,) index of the centre that is nearest along edges."""
     _, _, source = dijkstra(
         graph, directed=False, indices=centres, min_only=True, return_predecessors=True
@@ -165,7 +162,7 @@ def _nearest_centre(graph: csr_array, centres: IndexArray) -> IndexArray:
     return np.asarray(number[source])
 
 
-def _middles(part: Part, cluster: IndexArray, count: int) -> IndexArray:
+def _middles(part: Part, cluster: IntArray, count: int) -> IntArray:
     """Of each cluster the vertex nearest to its centre of area."""
     total = np.maximum(np.bincount(cluster, part.areas, count), np.finfo(float).tiny)
     centre = np.stack(

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
-
-FloatArray = NDArray[np.float64]
 
 _UNIT = 1e-6
 _LARGEST = 50.0

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.arrays import BoolArray, FloatArray
 from .footprint import Footprint
 from .part import Part
 from .trajectory import PaintTrajectory
-
-BoolArray = NDArray[np.bool_]
-FloatArray = NDArray[np.float64]
 
 GAP = 1e-4
 """m next to a point where nothing counts as in the way: the surface's own triangles."""

@@ -11,8 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError, Note
 from ...core.sqp.matrices import SparseMatrix, Sparsity, empty
 from ...core.sqp.qp.backends import BackendKind, make_backends
@@ -21,8 +21,6 @@ from ...core.sqp.qp.subproblems import Subproblems
 from .deposition import Deposition
 from .reach import reach_notes
 from .trajectory import PaintTrajectory
-
-FloatArray = NDArray[np.float64]
 
 _EXACT = 1e-9
 _NO_EFFECT = 1e-14

@@ -11,12 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from .footprint import Footprint
-
-FloatArray = NDArray[np.float64]
 
 _NODES = 16
 _THICKEST = 0.01

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .deposition_kernels import Blocks, FloatArray, IntArray
+from ...core.arrays import FloatArray, IntArray
+from .deposition_kernels import Blocks
 from .samples import SurfaceSamples
 
 GROUP = 32

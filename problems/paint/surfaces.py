@@ -9,13 +9,10 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.errors import InputError
 from .part import Part
-
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
 
 SIDE = 1.0
 """m, of the square surfaces."""
@@ -108,7 +105,7 @@ def scanned(part: Part, noise: float, lost: float, seed: int) -> Part:
     )
 
 
-def grid_faces(rows: int, columns: int) -> IndexArray:
+def grid_faces(rows: int, columns: int) -> IntArray:
     """Triangles (F, 3) of a grid of vertices, rows one after the other, diagonals in turn.
 
     Diagonals that alternate do not favour a direction.

@@ -6,13 +6,11 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...core.arrays import BoolArray, FloatArray
 from ...core.errors import InputError
 from ...core.spatial.pose import Pose
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 _UNIT = 1e-6
 _ROUNDING = 1e-15

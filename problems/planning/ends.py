@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.collision.scene import CollisionScene
 from ...core.errors import InputError, MotionError
 from ...core.program.target import JointTarget, PoseTarget, Target
@@ -16,8 +16,6 @@ from ...core.robot.inverse import UnreachableError
 from ...core.robot.model import Robot
 from ...core.spatial.pose import Pose
 from .free_space import FreeSpace
-
-FloatArray = NDArray[np.float64]
 
 SLACK = 1e-9
 """rad or m by which a joint value may pass its limit."""

@@ -11,14 +11,11 @@ or if both its halves are free.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.collision.scene import CollisionScene
 from ...core.collision.solid import extent
 from ...core.robot.joint import JointKind
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 LONGEST = 0.05
 """m of motion up to which distances are measured; longer stretches are halved at once."""

@@ -12,13 +12,11 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.robot.joint import Joint
 from .free_space import FreeSpace
-
-FloatArray = NDArray[np.float64]
 
 STEP = 0.5
 """s at full speed: the longest motion by which a tree grows."""

@@ -10,17 +10,15 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from ...core.arrays import FloatArray
 from ...core.cell.geometry import Mesh
 from ...core.spatial.pose import Pose
 from ...core.spatial.rotation import matrix_from_quaternion
 from .clutter_path import COLUMNS, ROWS
 from .clutter_shapes import KINDS
 from .swept import SweptArm
-
-FloatArray = NDArray[np.float64]
 
 NEAREST, FARTHEST = 0.007, 0.011
 """m, the range of the gaps that are left between a thing and the arm's way."""

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.program.move import Move, MoveC, MoveJ, MoveL
 from ...core.program.program import Program
@@ -19,8 +19,6 @@ from ...core.robot.model import Robot
 from ...core.spatial.pose import Pose
 from ...core.spatial.rotation import matrix_from_rotation_vector
 from .scene import joint_target
-
-FloatArray = NDArray[np.float64]
 
 HOME = (0.0, -15.0, 15.0, 0.0, 60.0, 0.0)
 """degree."""

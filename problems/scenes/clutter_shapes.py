@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.cell.geometry import Mesh
 from .solids import tube
-
-FloatArray = NDArray[np.float64]
 
 RINGS, AROUND = 100, 50
 """Points along and around: 10 000 triangles."""

@@ -6,12 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.cell.geometry import Mesh, Triangles
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 Place = tuple[float, float]
 
 

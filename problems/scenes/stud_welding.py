@@ -9,8 +9,9 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...core.arrays import FloatArray
 from ...core.cell.cell import Cell, Obstacle
 from ...core.cell.geometry import Geometry
 from ...core.program.program import Program
@@ -21,8 +22,6 @@ from .arm import ALWAYS_TOUCHING, degrees_per_second, rod_shape, rod_tool, scene
 from .scene import Scene, joint_program, joint_target
 from .solids import plate
 from .stud_poses import HOME, STUDS, VIAS
-
-FloatArray = NDArray[np.float64]
 
 VELOCITY = (100.0, 90.0, 90.0, 170.0, 120.0, 190.0)
 """degree/s."""

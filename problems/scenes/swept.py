@@ -6,17 +6,15 @@ from collections.abc import Iterable
 from itertools import groupby
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from ...core.arrays import FloatArray
 from ...core.cell.geometry import Geometry
 from ...core.errors import InputError
 from ...core.robot.assembly import assemble
 from ...core.robot.chain_kernels import poses
 from ...core.robot.model import Robot
 from ...core.robot.shape import Capsule, Cylinder, Sphere
-
-FloatArray = NDArray[np.float64]
 
 SPACING = 0.02
 """m between points along an axis."""

@@ -23,10 +23,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from ...core.arrays import FloatArray, IntArray
+
 Places = tuple[IntArray, IntArray]
 
 STRIDE = 6

@@ -14,12 +14,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.sqp import NLP, solve
-
-FloatArray = NDArray[np.float64]
 
 CUBIC_START = np.array([5.0, 5.0])
 CUBIC_OPTIMUM = np.array([4.0 / 3.0, 44.0 / 27.0])

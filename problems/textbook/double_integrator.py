@@ -31,12 +31,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.sqp import NLP
 from .entries import Entries
 from .ranges import check_force, check_nodes
-
-FloatArray = NDArray[np.float64]
 
 
 class Scheme(StrEnum):

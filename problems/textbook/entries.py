@@ -5,11 +5,9 @@ from __future__ import annotations
 import copy
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from ...core.arrays import FloatArray, IntArray
 
 
 class Entries:

@@ -11,12 +11,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from .arcs import Arcs
 from .scenes import Scene
-
-FloatArray = NDArray[np.float64]
 
 _DEPTH = 40
 

@@ -21,9 +21,9 @@ from collections.abc import Sequence
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.errors import InputError
 from ...core.sqp import NLP
 from .arcs import Arcs
@@ -31,9 +31,6 @@ from .avoidance import STRIDE, AvoidanceRows, Bernstein, Chords, Samples, State,
 from .entries import Entries
 from .ranges import check_force, check_nodes
 from .scenes import Place, Scene
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class Avoidance(StrEnum):

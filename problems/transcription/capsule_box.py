@@ -19,13 +19,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from .kinematics import MovingPoint
 from .last import Last
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _TOUCHING = 1e-9
 """m; an axis nearer to a box counts as inside of it."""

@@ -17,9 +17,8 @@ from typing import Protocol
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from ...core.arrays import FloatArray
 
 PARAMETERS = 5
 """s, r₁, ℓ₁, r₂, ℓ₂."""

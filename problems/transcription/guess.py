@@ -4,14 +4,12 @@ beginning, as slow as the limits ask for."""
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from .curves import Blend
 from .layout import Layout
 from .task import Task
 from .transcription import Transcription
-
-FloatArray = NDArray[np.float64]
 
 _HALVINGS = 60
 

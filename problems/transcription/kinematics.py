@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.robot.assembly import Stage, assemble
 from ...core.robot.chain import Chain
 from ...core.robot.chain_derivatives import hessians
 from ...core.robot.chain_kernels import jacobians, poses
 from ...core.robot.model import Robot
 from ...core.spatial.pose import Pose
-
-FloatArray = NDArray[np.float64]
 
 
 class MovingPoint:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.program.move import MoveJ
 from ...core.program.program import Program
 from ...core.program.speed import Speed
@@ -14,8 +14,6 @@ from ...core.program.target import JointTarget
 from ...core.program.zone import FINE, Radius, Zone
 from .curves import Curve, Line
 from .transcription import Transcription
-
-FloatArray = NDArray[np.float64]
 
 _UNLIMITED = Speed(tcp=100.0)
 """m/s: the joints' own limits alone count."""

@@ -8,8 +8,8 @@ from functools import partial
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.program.program import Program
 from ...core.sqp import NLP, BackendKind, solve
 from .guess import initial_guess
@@ -17,8 +17,6 @@ from .layout import Grid
 from .motion import Check, carried_over, check, program, sampled
 from .task import Task
 from .transcription import Transcription
-
-FloatArray = NDArray[np.float64]
 
 NEAR = 0.25
 """m; pairs farther apart than this all along the motion get no rows."""

@@ -8,8 +8,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from ...core.arrays import FloatArray, IntArray
+
 Places = tuple[IntArray, IntArray]
 
 

@@ -8,8 +8,8 @@ from enum import StrEnum
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.cell.cell import Cell, Obstacle
 from ...core.errors import InputError
 from ...core.motion.blend import Blend
@@ -18,8 +18,6 @@ from ...core.robot.shape import Box, Capsule, Sphere
 from ...core.spatial.pose import Pose
 from .capsule_box import CapsuleAndBox, Clearances
 from .kinematics import MovingPoint
-
-FloatArray = NDArray[np.float64]
 
 
 class Overlap(StrEnum):

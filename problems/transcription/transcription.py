@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.sqp import NLP
 from ..textbook.entries import Entries
 from .capsule_box import Clearances
@@ -17,9 +18,6 @@ from .layout import Grid, Layout
 from .motion_rows import Acceleration, MotionRows, Nodes, StraightAcceleration, Velocity
 from .rows import Quadratic, Rows, SpeedMatch
 from .task import Overlap, Task
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 LEAST_RADIUS = 1e-3
 """m; a via point without a zone would be a stop, which no trajectory of this form passes."""

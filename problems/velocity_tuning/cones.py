@@ -20,13 +20,11 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import FlybyError
 from .rows import Knots, Rows, jerk_rows, kinematic_rows, torque_rows
 from .task import Task
-
-FloatArray = NDArray[np.float64]
 
 _MOST = 1e4
 """Share of the known motion's x that no knot exceeds."""

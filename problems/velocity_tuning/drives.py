@@ -17,13 +17,11 @@ from itertools import pairwise
 from numbers import Real
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.robot.model import Robot
 from ..checks import all_of_kind, not_negative, of_kind
-
-FloatArray = NDArray[np.float64]
 
 _SAME = 1e-9
 """Share of the largest torque by which a curve's runs may miss its points."""

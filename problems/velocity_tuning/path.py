@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.motion.binding import row_names
 from ...core.motion.controller import Controller
@@ -30,8 +31,6 @@ from ...core.robot.inertia import Inertia
 from ...core.robot.model import Robot
 from ..checks import of_kind
 from .drives import Drive
-
-FloatArray = NDArray[np.float64]
 
 
 class Rigid(NamedTuple):

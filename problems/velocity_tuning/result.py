@@ -6,16 +6,14 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.motion.controller import Controller
 from ...core.motion.energy import by_load
 from ...core.motion.timing import Settling, Timing
 from ...core.program.program import Program
 from .task import Task
 from .usage import excess, jerks, usage
-
-FloatArray = NDArray[np.float64]
 
 
 class Way(StrEnum):

@@ -21,12 +21,10 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from .drives import Run
 from .path import FixedPath
 from .task import Task
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 FLOOR = 1e-10
 """Share of the fastest motion's x at a knot below which no tangent is taken."""

@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.motion.consumption import SQUARED_TORQUE, Consumption
 from ...core.motion.stamping import Limits, StandingStillError
 from ..checks import all_of_kind, of_kind, positive, within
 from .drives import Drive
 from .path import FixedPath, Torques
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.motion.stamping import stamp
 from ..checks import of_kind
@@ -23,8 +23,6 @@ from .result import Tuned, Way
 from .rows import FLOOR
 from .task import FASTEST, Task
 from .usage import excess
-
-FloatArray = NDArray[np.float64]
 
 _ROUNDS = 40
 _TOLERANCE = 1e-5

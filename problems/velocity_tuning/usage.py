@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from .task import Task
-
-FloatArray = NDArray[np.float64]
 
 SPEED = "speed"
 """Name of what bounds the speed alone: joints, TCP, tool, programmed speeds."""

@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.motion.path import Path
 from ...core.motion.segments import JOINT_SEGMENT, LINE_SEGMENT
@@ -26,8 +25,6 @@ from ...core.spatial.rotation import (
     quaternion_from_matrix,
     rotation_vector,
 )
-
-FloatArray = NDArray[np.float64]
 
 _ALONG = 0.5
 """Share of the way from the corner to an edge of its zone at which a point stands."""

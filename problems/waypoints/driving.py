@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.errors import MotionError, Note
 from ...core.motion.controller import Controller
 from ...core.motion.path import Path
@@ -29,9 +30,6 @@ from ...core.robot.chain_kernels import jacobians
 from .blocks import Block
 from .oriented import OrientedPoint
 from .variables import JointPoint, PosePoint, ViaPoint
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _STRAIGHT, _ZONE = 0.05, 16
 """rad of joint motion (or its like in m of path, see `segments`) between places on straight parts;

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.collision.certificate import SceneOf
 from ...core.collision.distances import Distances
 from ...core.collision.scene import CollisionScene
@@ -23,9 +23,6 @@ from .blocks import Block
 from .driving import Drive, Driver
 from .options import Task
 from .point_limits import PointRow, point_rows
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _WITHIN = 0.3
 """m beyond which distances are of no concern to a step."""

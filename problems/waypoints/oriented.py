@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.errors import MotionError
 from ...core.motion.derivatives import ProgramGradient
 from ...core.program.move import Move
@@ -23,8 +23,6 @@ from ...core.robot.chain import Chain
 from ...core.robot.chain_kernels import jacobian
 from ...core.spatial.rotation import rotation_vector
 from ..rounding import Rounding
-
-FloatArray = NDArray[np.float64]
 
 _STEPS, _TURNED, _LARGEST = 40, 1e-11, 0.5
 """Newton steps at most; rad of orientation that may be left; rad of a step at most."""

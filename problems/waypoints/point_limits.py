@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.motion.path import Path
 from ...core.robot.chain import Chain
 from ...core.robot.chain_kernels import jacobian, pose
@@ -17,8 +17,6 @@ from .blocks import Block
 from .limits import Box, Cone, PointLimit
 from .options import Task
 from .variables import PosePoint, ViaPoint
-
-FloatArray = NDArray[np.float64]
 
 Measure = Callable[[FloatArray, FloatArray], tuple[float, FloatArray]]
 """Position (3,) and rotation (3, 3) of the TCP in the work object → a value that is to be zero or

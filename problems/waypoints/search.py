@@ -22,15 +22,12 @@ from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.sqp import BackendKind
 from ...core.sqp.matrices import SparseMatrix, Sparsity, identity
 from ...core.sqp.qp.backends import make_backends
 from ...core.sqp.qp.problem import QpSolution, QpStatus, QuadraticProgram, failed
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 _FIRST_PRICE, _PRICE_MARGIN, _LARGEST_PRICE = 10.0, 2.0, 1e5
 _TAKEN, _GOOD, _POOR = 0.05, 0.6, 0.25

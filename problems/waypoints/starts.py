@@ -9,14 +9,12 @@ moved together, so that they land on one side of what is in the way.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.motion.path import Path
 from .blocks import Block
 from .options import Effort
 from .variables import PosePoint, ViaPoint
-
-FloatArray = NDArray[np.float64]
 
 _OWN = 0.35
 """Spread of each via point about the common one, as a share of it."""

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.motion.derivatives import ProgramGradient
 from ...core.motion.segments import left_jacobian
 from ...core.program.move import Move
@@ -28,8 +28,6 @@ from .limits import Box, PointLimit
 from .options import Task
 from .oriented import OrientedPoint
 from .selection import Selection
-
-FloatArray = NDArray[np.float64]
 
 JOINT_STEP, POSITION_STEP, TURN_STEP = 0.1, 0.1, 0.1
 """Changes of a joint, a position and an orientation that matter about equally: rad, m, rad."""

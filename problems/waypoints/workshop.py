@@ -8,8 +8,8 @@ from enum import Enum, auto
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.collision.certificate import SceneOf, certify
 from ...core.collision.verdict import Certificate, Verdict
 from ...core.errors import MotionError
@@ -22,8 +22,6 @@ from .driving import crowd, rooms_of
 from .evaluation import BlockProblem
 from .options import Effort, Task
 from .search import Memory, Settings, search, violation
-
-FloatArray = NDArray[np.float64]
 
 FINE_BOX = 0.2
 """First trust box of a refinement."""

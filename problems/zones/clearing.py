@@ -15,17 +15,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import BoolArray, FloatArray, IntArray
 from ...core.collision.certificate import TOLERANCE
 from ...core.collision.scene import CollisionScene
 from ...core.collision.verdict import CONTACT
 from .displacement import Placed, moved, placed, planar_gaps, strayed
 from .neighbourhood import CornerPath
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 MARGIN = 1.1
 """On sampled displacements. A bend that is quadratic in the cell exceeds samples at five places

@@ -10,14 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.collision.frames import FrameTree, place_frames
 from ...core.collision.outline import Outlines, lever, support
 from ...core.robot.vectors import load_row, scale
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 class Placed(NamedTuple):

@@ -11,8 +11,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.cell.cell import Cell
 from ...core.collision.certificate import SceneOf, certify, scenes_of
 from ...core.collision.verdict import Certificate
@@ -37,7 +37,6 @@ from .sizes import Growth
 from .straying import segment_strays
 from .table import ZoneChange, changes
 
-FloatArray = NDArray[np.float64]
 Tell = Callable[[str], None]
 
 _AIM = 1.1

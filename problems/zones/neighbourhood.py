@@ -12,8 +12,8 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray, IntArray
 from ...core.errors import MotionError
 from ...core.motion.limits import interval_samples
 from ...core.motion.model import MotionModel
@@ -24,9 +24,6 @@ from ...core.motion.zones import POSITION, STOP, Corners, ZonePlanner
 from ...core.program.zone import FINE, Zone
 from ...core.robot.chain import Chain
 from ...core.robot.model import Robot
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 LIMIT_SLACK = 1e-6
 """rad or m by which a joint may pass its limit: rounding of programmed values."""

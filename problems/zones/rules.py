@@ -13,7 +13,6 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...core.motion.model import MotionModel, Overlap
 from ...core.motion.path import Route
@@ -24,7 +23,6 @@ from ...core.robot.chain_kernels import poses
 from .neighbourhood import Neighbourhoods
 from .sizes import Growth
 
-FloatArray = NDArray[np.float64]
 Leg = int
 """Index of the segment between two corners: leg k lies between corners k − 1 and k."""
 

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...core.arrays import FloatArray
 from ...core.collision.strays import Straying, stretches
 from ...core.motion.controller import Controller, Run
 from ...core.motion.limits import interval_samples
-
-FloatArray = NDArray[np.float64]
 
 _TOGETHER = 100
 """Segments that are looked at together."""

@@ -6,8 +6,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from ...core.arrays import FloatArray
 from ...core.robot.model import Robot
-from ..strategies import FloatArray, configurations, regular_configurations, robots
+from ..strategies import configurations, regular_configurations, robots
 from .subject import EXAMPLES, Subject
 
 POSE_TOLERANCE = 1e-7

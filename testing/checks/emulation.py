@@ -15,6 +15,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from ...core.arrays import FloatArray
 from ...core.errors import MotionError
 from ...core.motion.controller import Controller, Run
 from ...core.motion.derivatives import Derivatives
@@ -28,14 +29,7 @@ from ...core.program.speed import Speed
 from ...core.program.target import JointTarget
 from ...core.program.zone import FINE, Radius, Zone
 from ...core.robot.model import Robot
-from ..observation import (
-    FloatArray,
-    Observed,
-    at_speed,
-    away_from_legs,
-    outside_zones,
-    turned_away,
-)
+from ..observation import Observed, at_speed, away_from_legs, outside_zones, turned_away
 from ..strategies import OfKind, Parts, fly_by_zones, lines_near_singularities, programs
 from .subject import PROGRAM_EXAMPLES, Subject
 

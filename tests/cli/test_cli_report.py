@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from flyby.cli.report import Report, make_report
+from flyby.core.arrays import FloatArray
 from flyby.core.motion.controller import Controller, Run
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Statement, Wait
 from flyby.core.program.program import Program
@@ -28,7 +28,6 @@ ROBOT = find_robot("abb/irb6640-180-255")
 CONTROLLER = Controller(find_vendor("abb"), ROBOT)
 HOME = JointTarget((0.0, 0.0, 0.0, 0.0, np.pi / 2, 0.0))
 Small = Callable[..., Path]
-FloatArray = NDArray[np.float64]
 
 
 def drive(path: Path) -> tuple[Run, Report]:

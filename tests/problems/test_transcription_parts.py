@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.core.motion.blend import PARABOLA
 from flyby.core.sqp import check_derivatives
 from flyby.problems.scenes.scene import SECOND_ORDER
@@ -16,8 +16,6 @@ from flyby.problems.transcription.capsule_box import nearest
 from flyby.problems.transcription.curves import Blend, Line
 
 from .transcription_tasks import make_task
-
-FloatArray = NDArray[np.float64]
 
 blends = st.sampled_from([SECOND_ORDER, PARABOLA])
 shares = st.floats(0.05, 0.49)

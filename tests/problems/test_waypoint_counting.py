@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from flyby.core.arrays import FloatArray
 from flyby.core.collision.certificate import certify, scenes_of
 from flyby.core.motion.controller import Controller
 from flyby.core.motion.path import Path
@@ -42,8 +42,6 @@ from flyby.problems.waypoints.counting import Counted, change_count, idle_points
 from flyby.problems.waypoints.doubling import doubled
 from flyby.problems.waypoints.options import Freedom
 from flyby.problems.waypoints.selection import Selection, select
-
-FloatArray = NDArray[np.float64]
 
 SCENE = two_joints()
 THREE = with_zone(SCENE.programs[0], Radius(0.1))

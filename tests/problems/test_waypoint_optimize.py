@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.collision.certificate import certify, scenes_of
 from flyby.core.errors import InputError, MotionError
@@ -38,8 +38,6 @@ from flyby.problems.waypoints import (
     optimize_waypoints,
     optimize_zones,
 )
-
-FloatArray = NDArray[np.float64]
 
 SCENE = two_joints()
 PROGRAM = with_zone(SCENE.programs[0], Radius(0.1))

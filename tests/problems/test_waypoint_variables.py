@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.core.errors import InputError, MotionError, Span
 from flyby.core.motion.controller import Controller
 from flyby.core.motion.derivatives import Derivatives
@@ -33,8 +33,6 @@ from flyby.problems.waypoints.options import Freedom
 from flyby.problems.waypoints.oriented import OrientedPoint
 from flyby.problems.waypoints.selection import Selection, select
 from flyby.problems.waypoints.variables import JOINT_STEP, Variables, make_variables
-
-FloatArray = NDArray[np.float64]
 
 ROBOT = find_robot("abb/irb6640-180-255")
 CONTROLLER = Controller(find_vendor("abb"), ROBOT)

@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import FloatArray
 from ..linear import Saddle
-from .problem import FloatArray, QpSolution, QpStatus, QuadraticProgram
+from .problem import QpSolution, QpStatus, QuadraticProgram
 
 _PATIENCE = 3
 _NO_MULTIPLIER = 1e-10

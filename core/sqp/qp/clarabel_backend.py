@@ -6,20 +6,11 @@ from dataclasses import dataclass
 
 import clarabel
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
+from ...arrays import BoolArray, FloatArray, IntArray
 from ..matrices import Sparsity
-from .problem import (
-    FloatArray,
-    QpSolution,
-    QpStatus,
-    QuadraticProgram,
-    failed,
-)
-
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
+from .problem import QpSolution, QpStatus, QuadraticProgram, failed
 
 _SOLVED = ("Solved", "AlmostSolved")
 _INFEASIBLE = ("PrimalInfeasible", "AlmostPrimalInfeasible")

@@ -12,14 +12,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 from scipy.linalg import LinAlgError
 
+from ...arrays import FloatArray, IntArray
 from ..dense import Cholesky, array_of
-from .problem import FloatArray, QpSolution, QpStatus, QuadraticProgram, failed
-
-IntArray = NDArray[np.int64]
+from .problem import QpSolution, QpStatus, QuadraticProgram, failed
 
 _TO_BOUNDARY = 0.995
 _REGULARISATION = 1e-12

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..matrices import FloatArray, SparseMatrix
+from ...arrays import FloatArray
+from ..matrices import SparseMatrix
 from .problem import QpSolution, QuadraticProgram
 
 _SWEEPS = 4

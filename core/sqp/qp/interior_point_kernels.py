@@ -16,9 +16,9 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from ...arrays import FloatArray
 from ..ldl import Factors, substitute
 from ..linear import Places
-from ..matrices import FloatArray
 from .interior_point_scaling import Scaled, values
 from .interior_point_state import (
     Point,

@@ -11,11 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from ..matrices import FloatArray, IntArray
-
-BoolArray = NDArray[np.bool_]
+from ...arrays import BoolArray, FloatArray, IntArray
 
 _INFINITE = 1e20
 _EQUAL = 1e-13

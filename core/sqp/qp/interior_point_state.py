@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from ..matrices import FloatArray
+from ...arrays import FloatArray
 from .interior_point_scaling import Scaled, values
 
 _CERTIFICATE = 1e-8

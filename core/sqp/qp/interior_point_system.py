@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from ...arrays import FloatArray
 from ..ldl import Factors, factorise, substitute
 from ..linear import Places
-from ..matrices import FloatArray
 from .interior_point_scaling import Scaled
 
 _LINEAR = 1e-11

@@ -6,14 +6,9 @@ import numpy as np
 import osqp
 from scipy import sparse
 
+from ...arrays import FloatArray
 from ..matrices import SparseMatrix, Sparsity
-from .problem import (
-    FloatArray,
-    QpSolution,
-    QpStatus,
-    QuadraticProgram,
-    failed,
-)
+from .problem import QpSolution, QpStatus, QuadraticProgram, failed
 
 _INFINITY = 1e30
 _STATUS = {

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from ...arrays import BoolArray
 from ...errors import InputError
 from ..matrices import SparseMatrix, Sparsity
 from .problem import (
@@ -18,7 +19,6 @@ from .problem import (
     failed,
 )
 
-BoolArray = NDArray[np.bool_]
 _INFINITY = 1e30
 
 

@@ -13,11 +13,9 @@ from enum import Enum, auto
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import FloatArray
 from ..matrices import SparseMatrix
-
-FloatArray = NDArray[np.float64]
 
 
 class QpStatus(Enum):

@@ -5,18 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
+from ....core.arrays import FloatArray, IntArray
 from ....core.errors import Note
 from ....core.motion.controller import Controller, Run
 from ....core.program.program import Program
 from ....core.spatial.rotation import matrix_from_quaternion
 from ..trajectory import PaintTrajectory
 from .station import Station
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 PERIOD = 0.02
 """s between samples of the driven motion: 5 mm at usual speeds, against footprints of 0.2 m."""

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....core.arrays import FloatArray
 from ....core.collision.certificate import certify, scenes_of
 from ....core.collision.scene import CollisionScene
 from ....core.collision.verdict import CONTACT, Certificate
@@ -26,8 +26,6 @@ from .lag import lag_notes
 from .spin import Clear, Posture, choose_posture
 from .station import Station
 from .writing import DriveOptions, with_run_in
-
-FloatArray = NDArray[np.float64]
 
 _BUDGET = 400_000
 """Distances measured for the proof: a minute's worth. Usually some thousand are enough."""

@@ -12,20 +12,18 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
+from ....core.arrays import BoolArray, FloatArray
 from ....core.motion.controller import Controller
 from ....core.program.program import Program
 from ..coat import Coat, coat
-from ..deposition import BoolArray, Deposition
+from ..deposition import Deposition
 from ..trajectory import PaintTrajectory
 from .emulated import Driven, drive
 from .spin import Posture
 from .station import Station
 from .writing import DriveOptions, paint_program
-
-FloatArray = NDArray[np.float64]
 
 ROUNDS = 4
 STEP = 0.2

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....core.arrays import FloatArray
 from ....core.spatial.rotation import matrix_from_rotation_vector
 from ..trajectory import PaintTrajectory
-
-FloatArray = NDArray[np.float64]
 
 
 def gun_frames(trajectory: PaintTrajectory) -> FloatArray:

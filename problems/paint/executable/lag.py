@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....core.arrays import FloatArray
 from ....core.errors import Note
 from ..coat import Coat
 from ..trajectory import PaintTrajectory
 from .stretch import Stretch, describe
-
-FloatArray = NDArray[np.float64]
 
 WORSE = 0.01
 """Root-mean-square error, as a share of the target, by which a coat may be worse without a word."""

@@ -13,8 +13,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....core.arrays import FloatArray, IntArray
 from ....core.errors import InputError
 from ....core.program.tool import WORLD
 from ....core.robot.inverse import UnreachableError
@@ -25,9 +25,6 @@ from ..trajectory import PaintTrajectory
 from .frames import gun_frames, turned
 from .station import Station
 from .stretch import Stretch, unreachable
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 COARSE = math.radians(15.0)
 """rad between the turns that are tried first."""

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ....core.arrays import FloatArray
 from ....core.errors import MotionError
 from ....core.robot.inverse import UnreachableError
 from ....core.robot.model import Robot
 from ..trajectory import PaintTrajectory
 from .station import Station
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

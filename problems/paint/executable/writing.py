@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....core.approach import approach_speed
 from ....core.errors import InputError
@@ -20,8 +19,6 @@ from ..gun import GunSignals, gun_events
 from ..trajectory import PaintTrajectory
 from .spin import Posture
 from .station import Station
-
-FloatArray = NDArray[np.float64]
 
 APPROACH = 0.5
 """m/s or share of the joints' speeds on the way to where the curve begins."""

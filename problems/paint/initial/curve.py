@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from ....core.arrays import BoolArray, FloatArray
 from ....core.errors import InputError, Note
 from ..footprint import Footprint
 from ..part import Part
@@ -22,9 +23,6 @@ from .remarks import missed_notes, ripple_notes, spacing_notes
 from .sideways import sideways
 from .spacing import Ripple, predicted_ripple
 from .sweep import Sweep, fit
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 SHORTEST = 1e-3
 """s; no segment takes less, even where the gun only turns."""

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ....core.arrays import FloatArray
 from .projection import Frames
-
-FloatArray = NDArray[np.float64]
 
 
 def fan_across(frames: Frames, sweep: NDArray[np.int64]) -> FloatArray:

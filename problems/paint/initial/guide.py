@@ -6,18 +6,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ....core.arrays import BoolArray, FloatArray, IntArray
 from ..mesh_repair import face_normals
 from ..part import Part
 from ..rays_tree import build_tree
 from .guide_kernels import find_edges_along, meet_lines
-
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 STEPS = 16
 """Steps of the search for an edge."""
@@ -152,8 +148,8 @@ def _least(reach: float) -> float:
 
 
 def _closed(
-    vertices: FloatArray, faces: IndexArray, normals: FloatArray, hole_size: float
-) -> tuple[FloatArray, IndexArray, FloatArray]:
+    vertices: FloatArray, faces: IntArray, normals: FloatArray, hole_size: float
+) -> tuple[FloatArray, IntArray, FloatArray]:
     """The surface with fans of triangles over its small holes."""
     # Vertices doubled at sharp edges are one here: a crease is no hole.
     _, first, same = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
@@ -177,7 +173,7 @@ def _closed(
     return vertices, faces, normals
 
 
-def _pieces(faces: IndexArray, n: int) -> IndexArray:
+def _pieces(faces: IntArray, n: int) -> IntArray:
     """(V,) number of the connected piece to which each vertex belongs."""
     rows, columns = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     graph = coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(n, n))
@@ -185,8 +181,8 @@ def _pieces(faces: IndexArray, n: int) -> IndexArray:
 
 
 def _loops(
-    start: IndexArray, end: IndexArray, piece: IndexArray, vertices: FloatArray, hole_size: float
-) -> list[IndexArray]:
+    start: IntArray, end: IntArray, piece: IntArray, vertices: FloatArray, hole_size: float
+) -> list[IntArray]:
     """Rows of the rim's edges that run round holes up to a size."""
     if len(start) == 0:
         return []
@@ -195,7 +191,7 @@ def _loops(
     _, label = connected_components(graph, directed=False)
     span = np.linalg.norm(vertices[end] - vertices[start], axis=1)
     length = np.bincount(label[start], span, label.max() + 1)
-    found: list[tuple[IndexArray, int, float]] = []
+    found: list[tuple[IntArray, int, float]] = []
     longest: dict[int, float] = {}
     for loop in np.unique(label[start]):
         rows = np.flatnonzero(label[start] == loop)

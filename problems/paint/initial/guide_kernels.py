@@ -6,20 +6,16 @@ import math
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from ....core.arrays import BoolArray, FloatArray, IntArray
 from ..rays_bvh import trace
 from ..rays_tree import DEPTH, Tree
-
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def meet_lines(
     tree: Tree,
-    faces: IndexArray,
+    faces: IntArray,
     normals: FloatArray,
     points: FloatArray,
     directions: FloatArray,
@@ -122,7 +118,7 @@ def _meet(
     reach: float,
     back: float,
     least: float,
-    stack: IndexArray,
+    stack: IntArray,
 ) -> tuple[int, float]:
     """Place in the tree and length along the direction of a meeting from the painted side."""
     if math.isinf(reach):
@@ -149,7 +145,7 @@ def _meet(
 def _interpolate(
     corners: FloatArray,
     normals: FloatArray,
-    face: IndexArray,
+    face: IntArray,
     point: FloatArray,
     normal: FloatArray,
 ) -> None:

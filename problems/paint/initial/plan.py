@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....core.errors import InputError
 
-FloatArray = NDArray[np.float64]
 Direction = tuple[float, float, float]
 
 

@@ -11,14 +11,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....core.arrays import BoolArray, FloatArray, IntArray
 from .guide import Guide
 from .plan import SweepPlan
-
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
 
 TOLERANCE = 1e-5
 """m by which a point may lie farther out than the overhang."""
@@ -49,7 +45,7 @@ class Frames(NamedTuple):
     tangent: FloatArray
     spray: FloatArray
 
-    def at(self, rows: slice | list[int] | BoolArray | IndexArray) -> Frames:
+    def at(self, rows: slice | list[int] | BoolArray | IntArray) -> Frames:
         """Some of them."""
         return Frames(self.point[rows], self.tangent[rows], self.spray[rows])
 

@@ -6,16 +6,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
+from ....core.arrays import FloatArray
 from ....core.errors import InputError
 from ..part import Part
 from .guide import Guide
 from .plan import SweepPlan
 from .projection import Frames
-
-FloatArray = NDArray[np.float64]
 
 MOST_SEGMENTS = 1500
 """A raster has no more: six variables for each make full matrices of 0.65 GB."""

@@ -11,14 +11,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....core.arrays import BoolArray, FloatArray
 from .projection import Frames, Projector
 from .raster import sweep_count
 from .sweep import Sweep, directed, fit
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 STEPS = 9
 """Steps of a walk over one sweep width."""

@@ -7,13 +7,12 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....core.arrays import FloatArray
 from ..footprint import Footprint
 from ..strokes import section, spread
 from .sweep import Sweep
 
-FloatArray = NDArray[np.float64]
 PLACES = 400
 """Places across a sweep at which the coat is worked out."""
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 import trimesh
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Cell
 from flyby.core.cell.geometry import Mesh
 from flyby.core.collision.engine import Places
@@ -21,8 +21,6 @@ from flyby.core.robot.model import Robot
 from flyby.core.robot.shape import Box, Capsule, Cylinder, LinkShape, Sphere
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
-
-FloatArray = NDArray[np.float64]
 
 lengths = st.floats(0.02, 0.6)
 spheres = st.builds(Sphere, lengths)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flyby.core.arrays import FloatArray
 from flyby.core.collision.frames import (
     WORLD,
     base_place,
@@ -17,7 +18,7 @@ from flyby.core.robot.joint import ExternalAxis, ExternalRole
 from flyby.core.robot.model import Robot
 from flyby.core.spatial.pose import Pose
 
-from .conftest import FloatArray, arm, configurations, table, track
+from .conftest import arm, configurations, table, track
 
 TURNED = Pose((0.3, -0.2, 0.1), (0.8, 0.0, 0.6, 0.0))
 ROBOTS = {

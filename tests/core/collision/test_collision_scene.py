@@ -12,6 +12,7 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry, Mesh
 from flyby.core.collision.scene import CollisionScene
@@ -23,7 +24,7 @@ from flyby.core.robot.shape import Box, Capsule, Cylinder, Sphere
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
 
-from .conftest import FloatArray, arm, cell_of, configurations, table, track, u_profile
+from .conftest import arm, cell_of, configurations, table, track, u_profile
 
 GUN = Tool("gun")
 GUN_SHAPE = Geometry(Capsule(0.04, 0.2), Pose((0.05, 0.0, 0.1), (0.8, 0.6, 0.0, 0.0)))

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
+from flyby.core.arrays import FloatArray
 from flyby.core.collision.enclosure import Enclosure, Intervals
 from flyby.core.errors import MotionError
 from flyby.core.motion.blend import PARABOLA, TANGENT_ARC, Blend
@@ -28,7 +29,6 @@ from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
 from flyby.testing.strategies import programs
 
-FloatArray = np.ndarray
 SECOND_ORDER = Blend(alpha=(0.0, 0.0, 0.0, 10.0, -15.0, 6.0))
 BLENDS = {
     "parabola": MotionModel(),

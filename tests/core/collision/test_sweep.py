@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Obstacle
 from flyby.core.cell.geometry import Geometry
 from flyby.core.collision.boxes import Boxes
@@ -18,7 +19,7 @@ from flyby.core.program.tool import Tool
 from flyby.core.robot.shape import Box, Capsule, Sphere
 from flyby.core.spatial.pose import Pose
 
-from .conftest import FloatArray, arm, cell_of, table, track
+from .conftest import arm, cell_of, table, track
 
 GUN = Tool("gun")
 GUN_SHAPE = Geometry(Capsule(0.04, 0.3), Pose((0.05, 0.0, 0.1), (0.8, 0.6, 0.0, 0.0)))

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.core.motion.blend import PARABOLA, Blend
 from flyby.core.motion.controller import Controller
 from flyby.core.motion.model import MotionModel, Overlap
@@ -32,8 +32,6 @@ from flyby.core.program.tool import FLANGE, WORLD
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
-
-FloatArray = NDArray[np.float64]
 
 ROBOT = find_robot("abb/irb6640-180-255")
 SECOND_ORDER = Blend(alpha=(0.0, 0.0, 0.0, 10.0, -15.0, 6.0))

@@ -7,8 +7,8 @@ import pinocchio as pin
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.core.robot.chain import Chain
 from flyby.core.robot.chain_kernels import (
     acceleration_gradient,
@@ -22,7 +22,6 @@ from flyby.core.robot.chain_kernels import (
 )
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
 
-FloatArray = NDArray[np.float64]
 SETTINGS = settings(max_examples=60, deadline=None)
 
 

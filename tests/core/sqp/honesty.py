@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy import optimize, sparse
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, Result, Status, solve
-from flyby.core.sqp.arrays import FloatArray
 
 _REACH = 0.1
 """Share of a variable's size, but at least of 1, within which a violation is stationary."""

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from scipy import special
 
-from flyby.core.sqp.arrays import FloatArray
+from flyby.core.arrays import FloatArray
 
 
 class Jet:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP
-from flyby.core.sqp.arrays import FloatArray
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP
-from flyby.core.sqp.arrays import FloatArray
 
 from .jets import Jet, variables
 

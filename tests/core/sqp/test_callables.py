@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy import sparse
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, NlpError, Status, solve
-from flyby.core.sqp.arrays import FloatArray
 
 from .honesty import solved
 from .problem import nlp_from

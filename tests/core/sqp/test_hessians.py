@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, HessianKind
-from flyby.core.sqp.arrays import FloatArray
 from flyby.core.sqp.differences import Differences
 from flyby.core.sqp.patterns import Pattern
 from flyby.core.sqp.scaled import ScaledProblem

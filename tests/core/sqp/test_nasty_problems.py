@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy import sparse
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, BackendKind, HessianKind, NlpError, Status
-from flyby.core.sqp.arrays import FloatArray
 
 from .honesty import solved
 from .jets import exp, log, sqrt

@@ -12,8 +12,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy import sparse
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, BackendKind, HessianKind, Status
-from flyby.core.sqp.arrays import FloatArray
 
 from .honesty import solved
 from .known_points import KnownPoint, known_point

@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, BackendKind, HessianKind, Iteration, NlpError, Status
-from flyby.core.sqp.arrays import FloatArray
 
 from .honesty import solved
 from .jets import exp, sin

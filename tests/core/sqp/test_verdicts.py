@@ -9,8 +9,8 @@ import threading
 import numpy as np
 import pytest
 
+from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, Iteration, Status, solve
-from flyby.core.sqp.arrays import FloatArray
 from flyby.core.sqp.kkt import Residuals
 from flyby.core.sqp.verdict import Ending, Evidence, verdict
 

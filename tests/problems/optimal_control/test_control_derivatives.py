@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.core.motion.consumption import SQUARED_TORQUE, Consumption, Motors
 from flyby.core.robot.inertia import Inertia
 from flyby.core.spatial.pose import Pose
@@ -33,7 +33,6 @@ from flyby.problems.optimal_control.transcription import Bounds, Transcription
 
 from .control_tasks import ARM, END, START, TORQUE, arm_task, middle
 
-FloatArray = NDArray[np.float64]
 LOAD = Inertia(30.0, (0.0, 0.0, 0.2), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 0.5)))
 STEP = 1e-6
 

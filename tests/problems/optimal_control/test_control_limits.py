@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.core.motion.consumption import Motors, SquaredTorque
 from flyby.core.robot.inertia import Inertia
 from flyby.core.spatial.pose import Pose
@@ -31,7 +31,6 @@ from flyby.problems.optimal_control.sampled import TcpSpeed
 
 from .control_tasks import ARM, END, START, TORQUE, arm_task, cart, middle
 
-FloatArray = NDArray[np.float64]
 QUICK = Effort(intervals=16)
 COARSE = Effort(intervals=10)
 LOAD = Inertia(40.0, (0.0, 0.0, 0.2))

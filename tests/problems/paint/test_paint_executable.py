@@ -10,8 +10,8 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Cell
 from flyby.core.collision.scene import CollisionScene
 from flyby.core.errors import InputError, MotionError
@@ -33,8 +33,6 @@ from flyby.problems.paint.part import Part
 from flyby.problems.paint.trajectory import PaintTrajectory
 
 from .paint_cases import TARGET, plate_case, wandering
-
-FloatArray = NDArray[np.float64]
 
 ABB, ROBOT = find_vendor("abb"), find_robot("abb/irb6640-180-255")
 SPEED = (0.05, 0.8)

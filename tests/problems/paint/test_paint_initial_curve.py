@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from flyby.core.errors import InputError
 from flyby.core.spatial.pose import Pose
@@ -24,7 +23,6 @@ from flyby.problems.paint.part import Part
 from flyby.problems.paint.surfaces import grid_faces, plate, saddle, sloped, wavy
 from flyby.problems.paint.trajectory import PaintTrajectory
 
-FloatArray = NDArray[np.float64]
 X = (1.0, 0.0, 0.0)
 DOWN = (0.0, 0.0, -1.0)
 

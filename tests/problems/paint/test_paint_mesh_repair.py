@@ -7,21 +7,18 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray, IntArray
 from flyby.core.errors import InputError
 from flyby.problems.paint.mesh_repair import face_normals, find_edges, repair
 from flyby.problems.paint.surfaces import saddle, wavy
 
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int64]
 
-
-def area(vertices: FloatArray, faces: IndexArray) -> float:
+def area(vertices: FloatArray, faces: IntArray) -> float:
     return float(0.5 * np.linalg.norm(face_normals(vertices, faces), axis=1).sum())
 
 
-def torn(vertices: FloatArray, faces: IndexArray, seed: int) -> tuple[FloatArray, IndexArray]:
+def torn(vertices: FloatArray, faces: IntArray, seed: int) -> tuple[FloatArray, IntArray]:
     """The same surface as a bad file has it: corners apart, some turned, repeated or empty."""
     rng = np.random.default_rng(seed)
     points = vertices[faces].reshape(-1, 3)
@@ -92,7 +89,7 @@ def test_an_open_sheet_faces_the_gun_or_what_the_file_says() -> None:
     assert (face_normals(mended.vertices, mended.faces)[:, 2] > 0).all()
 
 
-def moebius(count: int = 24) -> tuple[FloatArray, IndexArray]:
+def moebius(count: int = 24) -> tuple[FloatArray, IntArray]:
     """A strip with half a twist."""
     angle = 2 * np.pi * np.arange(count) / count
     radial = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.core.errors import InputError
 from flyby.core.spatial.pose import Pose
 from flyby.problems.paint import fender as fenders
@@ -24,7 +25,6 @@ from flyby.problems.paint.region import facing, grown_from, seen_from, within_bo
 from flyby.problems.paint.resolution import coarsened, refined
 from flyby.problems.paint.surfaces import plate, saddle, scanned, sloped, wavy
 
-FloatArray = NDArray[np.float64]
 DOWN = (0.0, 0.0, -1.0)
 
 

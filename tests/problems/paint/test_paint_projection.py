@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.problems.paint.initial.guide import Guide
 from flyby.problems.paint.initial.plan import SweepPlan
 from flyby.problems.paint.initial.projection import Frames, Projector, cluster_mean
 from flyby.problems.paint.part import Part
 from flyby.problems.paint.surfaces import grid_faces, plate, saddle, scanned
 
-FloatArray = NDArray[np.float64]
 DOWN = np.array([0.0, 0.0, -1.0])
 
 

@@ -10,11 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from flyby.core.arrays import FloatArray
 from flyby.core.errors import InputError
 from flyby.problems.paint.rays import RayEngine, make_rays
 from flyby.problems.paint.surfaces import saddle
-
-FloatArray = NDArray[np.float64]
 
 ENGINES = [
     RayEngine.TREE,

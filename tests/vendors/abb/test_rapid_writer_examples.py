@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from flyby.core.arrays import FloatArray
 from flyby.core.program.move import Move, MoveC, MoveJ, Opaque
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget, PoseTarget
@@ -18,8 +19,6 @@ from flyby.vendors.abb.rapid.writer import write
 EXAMPLES = Path(__file__).parents[3] / "examples"
 MODULES = sorted(EXAMPLES.glob("*.mod"))
 ROBOT = find_vendor("abb").robot("irb6640-180-255")
-
-FloatArray = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
 
 
 def drive(program: Program) -> list[tuple[Move, FloatArray]]:

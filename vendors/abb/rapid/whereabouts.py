@@ -21,13 +21,10 @@ from ..configuration import AbbConfiguration
 from .literals import MM, UNUSED_AXIS, Record, pose_record
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from ....core.arrays import FloatArray
     from ....core.motion.standing import Standing
     from ....core.robot.model import Robot
 
-    FloatArray = NDArray[np.float64]
 
 AXES = 6
 

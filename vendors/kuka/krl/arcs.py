@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....core.arrays import FloatArray
 from ....core.errors import InputError
 from ....core.spatial.pose import Pose
 
-FloatArray = NDArray[np.float64]
 _FULL_TURN = 360.0
 _FLAT = 1e-9
 

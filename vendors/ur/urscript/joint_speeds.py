@@ -11,9 +11,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from ....core.arrays import FloatArray
 from ....core.program.move import MoveJ
 from ....core.robot.model import Robot
-from .standpoint import FloatArray, Standpoint
+from .standpoint import Standpoint
 
 
 def with_leading_speed(move: MoveJ, robot: Robot, standpoint: Standpoint) -> MoveJ:

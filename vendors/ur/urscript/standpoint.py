@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....core.arrays import FloatArray
 from ....core.errors import InputError, MotionError
 from ....core.motion.standing import Standing
 from ....core.program.move import Move, MoveC, MoveJ
@@ -14,8 +14,6 @@ from ....core.robot.model import Robot
 from ....core.spatial.pose import Pose
 from ..configuration import label
 from .arcs import carried_along
-
-FloatArray = NDArray[np.float64]
 
 _SAME_TURN = 1e-6
 """rad, to which an arc's end must have the orientation that a controller gives it."""
