@@ -12,12 +12,6 @@ if TYPE_CHECKING:
     from ...core.source.reading import Files, ReadOptions
     from ...core.vendor import Sources
 
-SUFFIXES = (".src",)
-COMPANIONS = {
-    ".dat": "a data list drives no robot: read the .src of the same name, which takes its .dat "
-    "with it"
-}
-
 
 class Krl:
     """Reader, writer, patcher and recorder."""

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from ...core.hookspec import VendorRegister, hookimpl
 from ...core.vendor import Vendor, lazy_motion, lazy_robots, motion_layers
 from .dialect import KRL
-from .language import COMPANIONS, SUFFIXES, Krl
+from .krl.suffixes import COMPANIONS, PROGRAMS
+from .language import Krl
 
 if TYPE_CHECKING:
     import numpy as np
@@ -42,7 +43,7 @@ def flyby_register_vendors(register: VendorRegister) -> None:
             writer=krl,
             patcher=krl,
             recorder=krl,
-            suffixes=SUFFIXES,
+            suffixes=PROGRAMS,
             companions=COMPANIONS,
             speaks=KRL,
             emulation_only={"iiwa7-r800": SUNRISE, "iiwa14-r820": SUNRISE},

@@ -8,17 +8,17 @@ which the controllers have switched on, a percentage of a PTP is ``$ACC_AXIS`` i
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from ....core.errors import SourceError, Span
+from .config_data import ConfigData
+from .data import Data
+from .evaluator import Evaluator
 from .frames import null_frame
+from .output import Output
 from .scope import Scope
 from .terms import Call, Constant, Expression
 from .types import convert
 from .values import Array, Choice, Struct, Unknown, Value, left_open, shown
-
-if TYPE_CHECKING:
-    from .interpreter import Interpreter
 
 AXES = 6
 Command = Callable[["Basis", Value | None, Span], None]
@@ -28,11 +28,26 @@ class Basis:
     """The commands of ``BAS``.
 
     Args:
-        run: the program run.
+        data: the system variables.
+        evaluator: for arguments.
+        config: the data of ``$CONFIG.DAT``.
+        output: takes notes.
+        changed: is told that system variables have other values now.
     """
 
-    def __init__(self, run: Interpreter) -> None:
-        self.run = run
+    def __init__(
+        self,
+        data: Data,
+        evaluator: Evaluator,
+        config: ConfigData,
+        output: Output,
+        changed: Callable[[], None],
+    ) -> None:
+        self._data = data
+        self._evaluator = evaluator
+        self._config = config
+        self._output = output
+        self._changed = changed
 
     def invoke(self, call: Call, scope: Scope) -> None:
         """``BAS(#COMMAND, value)``
@@ -40,14 +55,14 @@ class Basis:
         Raises:
             SourceError: the command is not known, or its value is missing.
         """
-        run, arguments = self.run, call.arguments
+        arguments = call.arguments
         first = arguments[0] if arguments else None
         command = None if first is None else self._command(first, scope)
         if command is None:
             raise SourceError(f"{call.text} begins with a command, as #INITMOV", call.span)
         handler = _COMMANDS.get(command)
         if handler is None:
-            run.note_once(
+            self._output.note_once(
                 f"bas {command}",
                 f"{call.text}(#{command.upper()}) is stepped over: it sets nothing that is "
                 "emulated",
@@ -55,21 +70,21 @@ class Basis:
             )
             return
         second = arguments[1] if len(arguments) > 1 else None
-        value = None if second is None else run.evaluator.evaluate(second, scope)
+        value = None if second is None else self._evaluator.evaluate(second, scope)
         handler(self, value, call.span)
-        run.system_changed()
+        self._changed()
 
     def _command(self, first: Expression, scope: Scope) -> str | None:
         if isinstance(first, Constant):
             return first.name
-        value = self.run.evaluator.known(first, scope, "the command of BAS")
+        value = self._evaluator.known(first, scope, "the command of BAS")
         return value.name if isinstance(value, Choice) else None
 
     # --------------------------------------------------------------------- variables
 
     def default(self, name: str) -> Value:
         """A datum of ``$CONFIG.DAT``."""
-        return self.run.config(name)
+        return self._config.value(name)
 
     def datum(self, name: str, span: Span) -> Struct:
         """``PDAT_ACT``, ``LDAT_ACT`` or ``FDAT_ACT``.
@@ -77,7 +92,7 @@ class Basis:
         Raises:
             SourceError: it is not known.
         """
-        value = self.run.config(name)
+        value = self._config.value(name)
         if isinstance(value, Unknown):
             raise left_open(name, value, span)
         if not isinstance(value, Struct):
@@ -86,15 +101,15 @@ class Basis:
 
     def set(self, name: str, value: Value) -> None:
         """A system variable."""
-        cell = self.run.data.system[name]
-        self.run.data.journal.note(cell)
+        cell = self._data.system[name]
+        self._data.journal.note(cell)
         cell.assigned = True
         cell.value = value
 
     def component(self, name: str, component: str, value: Value) -> None:
         """A component of a system variable."""
-        cell = self.run.data.system[name]
-        self.run.data.journal.note(cell)
+        cell = self._data.system[name]
+        self._data.journal.note(cell)
         if not isinstance(cell.value, Struct):
             cell.value = Struct(cell.type)
         cell.value.fields[component] = value
@@ -115,7 +130,7 @@ class Basis:
         """A speed of the TCP, cut to ``DEF_VEL_CP``."""
         most = self.default("DEF_VEL_CP")
         if isinstance(value, int | float) and isinstance(most, int | float) and value > most:
-            self.run.note_once(
+            self._output.note_once(
                 "DEF_VEL_CP",
                 f"a path speed of {value:g} m/s is cut to DEF_VEL_CP={most:g} m/s",
                 span,
@@ -156,14 +171,14 @@ class Basis:
         """
         if index <= 0:
             return null_frame()
-        value = self.run.config_item(table, index, span)
+        value = self._config.item(table, index, span)
         if value is None:
             return null_frame(f"{table.upper()}[{index}]", shipped=True)
         return value.copy() if isinstance(value, Struct) else value
 
     def load(self, index: int) -> Value:
         """An item of ``LOAD_DATA``."""
-        value = self.run.config_item("load_data", index, None) if index > 0 else None
+        value = self._config.item("load_data", index, None) if index > 0 else None
         return value.copy() if isinstance(value, Struct) else Struct("load")
 
     @staticmethod

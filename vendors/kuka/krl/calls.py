@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING
 
 from ....core.errors import SourceError
-from ....core.source.arguments import wrong_count
-from .flow import Jump, Left, Returned
+from ....core.source.answers import Course
+from ....core.source.provenance import ELSEWHERE
+from .basis import Basis
+from .data import Data
+from .evaluator import Evaluator
 from .functions import COMPUTED
+from .inline import Function
 from .instructions import Kept, kept, refused
-from .library import Module
-from .names import Path
-from .scope import Cell, Scope, unknown_name
-from .syntax import Block, Invoke, Routine
+from .library import Library
+from .output import Output
+from .outputs import OutputWrites
+from .routines import Routines
+from .scope import Module, Scope, unknown_name
+from .syntax import Block, Invoke
 from .terms import Call, Name
-from .types import KrlTypeError, convert
-from .values import Array, Pending, Struct, Unknown, Value, copied
-
-if TYPE_CHECKING:
-    from .interpreter import Interpreter
+from .values import Array, Struct, Unknown, Value
 
 NATIVE = frozenset({"bas"})
 
@@ -28,31 +30,61 @@ class Calls:
     """Carries calls out.
 
     Args:
-        run: the program run.
+        data: of the program.
+        evaluator: for arguments.
+        course: says which routines are stepped over.
+        routines: runs those whose text is at hand.
+        basis: carries out ``BAS``.
+        functions: of KUKA's own files, by lower-case name.
+        writes: outputs at uncertain moments.
+        output: takes what is kept.
     """
 
-    def __init__(self, run: Interpreter) -> None:
-        self.run = run
+    def __init__(
+        self,
+        data: Data,
+        evaluator: Evaluator,
+        course: Course,
+        routines: Routines,
+        basis: Basis,
+        functions: Mapping[str, Function],
+        writes: OutputWrites,
+        output: Output,
+    ) -> None:
+        self._data = data
+        self._library = data.library
+        self._evaluator = evaluator
+        self._course = course
+        self._routines = routines
+        self._basis = basis
+        self._functions = functions
+        self._writes = writes
+        self._output = output
 
     def invoke(self, statement: Invoke, scope: Scope) -> None:
+        """A call as a statement.
+
+        Raises:
+            SourceError: it is refused, or the routine is not at hand.
+        """
         call = statement.call
-        own = self.run.library.main.routines.get(call.name) or scope.module.routines.get(call.name)
+        own = self._library.main.routines.get(call.name) or scope.module.routines.get(call.name)
         if own is None:
             if call.name in NATIVE:
-                self.run.basis.invoke(call, scope)
+                self._basis.invoke(call, scope)
                 return
-            if self.run.course.skips(call.text):
-                self.run.data.outputs.forget()
-                self.run.keep(statement.span, call.text, Kept("as the answers say"))
+            if self._course.skips(call.text):
+                self._data.outputs.forget()
+                self._output.keep(statement.span, call.text, "as the answers say")
                 return
             table = self._from_table(call)
             if table is not None:
                 self._keep_call(statement, table, scope)
                 return
-        found = self.run.library.routine(call.name, scope.module)
+        found = self._library.routine(call.name, scope.module)
         if found is None:
             raise self._refusal(call, scope)
-        self.run_routine(*found, call, scope)
+        self._routines.run(*found, call, scope)
 
     def _from_table(self, call: Call) -> Kept | None:
         reason = refused(call.name)
@@ -64,29 +96,29 @@ class Calls:
         if why.writes:
             self._forget(statement.call, scope)
         if why.outputs:
-            self.run.output_writes.pulsed(statement.call, scope)
-        self.run.keep(statement.span, statement.call.text, why)
+            self._writes.pulsed(statement.call, scope)
+        self._output.keep(statement.span, statement.call.text, why.why, why.stops)
 
     def _forget(self, call: Call, scope: Scope) -> None:
         """Data that a kept call may have written have no known value any more."""
         for argument in call.arguments:
             if not isinstance(argument, Name):
                 continue
-            cell = self.run.data.find(argument.name, scope)
+            cell = self._data.find(argument.name, scope)
             if cell is None or cell.constant or cell.signal is not None:
                 continue
             if any(isinstance(step, str) for step in argument.path):
                 continue
             unknown = Unknown(f"what {call.text} gave {argument.text}", call.span)
             if not isinstance(cell.value, Array | Struct):
-                self.run.data.journal.note(cell)
+                self._data.journal.note(cell)
                 cell.value = unknown
             elif argument.path:
                 with suppress(SourceError):
-                    self.run.evaluator.assign(argument, unknown, scope, call.span)
+                    self._evaluator.assign(argument, unknown, scope, call.span)
 
     def _refusal(self, call: Call, scope: Scope) -> SourceError:
-        known = self.run.library.routine_names(scope.module)
+        known = self._library.routine_names(scope.module)
         offer = (
             "it might move the robot, so it is not stepped over: put its .src beside the program, "
             f'name it with the other files, or answer [calls] {call.text} = "skip"'
@@ -95,96 +127,42 @@ class Calls:
 
     def call_function(self, call: Call, scope: Scope) -> Value | None:
         """The value of a function of the program or of KUKA's own files."""
-        own = self.run.library.main.routines.get(call.name) or scope.module.routines.get(call.name)
+        own = self._library.main.routines.get(call.name) or scope.module.routines.get(call.name)
         if own is None:
-            value = self.run.inline.value(call, scope)
-            if value is not None:
-                return value
-        found = self.run.library.routine(call.name, scope.module)
+            function = self._functions.get(call.name)
+            if function is not None:
+                evaluate = self._evaluator.evaluate
+                arguments = [None if a is None else evaluate(a, scope) for a in call.arguments]
+                return function(call, arguments, scope)
+        found = self._library.routine(call.name, scope.module)
         if found is None:
             if call.name not in COMPUTED:
                 self._forget(call, scope)
             return None
         routine, module = found
-        reader, self.run.evaluator.reader = self.run.evaluator.reader, -1
-        value = self.run_routine(routine, module, call, scope)
-        self.run.evaluator.reader = reader
+        reader, self._evaluator.reader = self._evaluator.reader, ELSEWHERE
+        value = self._routines.run(routine, module, call, scope)
+        self._evaluator.reader = reader
         if value is None:
             raise SourceError(f"{routine.text} ends without RETURN and a value", call.span)
         return value
 
-    def run_routine(
-        self, routine: Routine, module: Module, call: Call, caller: Scope
-    ) -> Value | None:
-        self.run.data.declare_module(module)
-        self.run.meter.call(routine.text, call.span)
-        kind = "DEF" if routine.returns is None else "DEFFCT"
-        scope = Scope(f"{kind} {routine.text}", module, returns=routine.returns)
-        back = self._hand_over(routine, call, caller, scope)
-        self.run.where.append(module)
-        skipped = self.run.flow.skipped_exit
-        value: Value | None = None
-        try:
-            self.run.run_block(routine.body, scope)
-        except Returned as returned:
-            value = returned.value
-        except Jump as jump:
-            raise SourceError(
-                f"no label '{jump.goto.name}' can be reached from here", jump.goto.span
-            ) from None
-        except Left:
-            raise SourceError("EXIT stands outside a loop", routine.span) from None
-        finally:
-            self.run.where.pop()
-            self.run.data.journal.forget(scope.cells.values())
-            self.run.flow.skipped_exit = skipped
-            self.run.meter.back()
-        self._hand_back(back, call, caller)
-        return self._returned(routine, value, call)
 
-    def _returned(self, routine: Routine, value: Value | None, call: Call) -> Value | None:
-        if value is None or routine.returns is None:
-            return value
-        try:
-            return convert(value, routine.returns, self.run.data.types)
-        except KrlTypeError as error:
-            raise SourceError(f"the value of {routine.text}: {error}", call.span) from None
+class Bodies:
+    """The statements that calls run, as far as they are known without running.
 
-    def _hand_over(
-        self, routine: Routine, call: Call, caller: Scope, scope: Scope
-    ) -> list[tuple[Cell, Name, Path]]:
-        """Arguments become cells of the routine's scope.
+    Args:
+        library: the files.
+        where: modules of the routines under way, the innermost last.
+    """
 
-        Returns:
-            The parameters by reference with the caller's data that they stand for, and the paths
-            of those as they are now: the routine may change what an index is made of.
-        """
-        if len(call.arguments) > len(routine.parameters):
-            raise SourceError(
-                f"{routine.text} {wrong_count(len(routine.parameters), len(call.arguments))}",
-                call.span,
-            )
-        back: list[tuple[Cell, Name, Path]] = []
-        for index, parameter in enumerate(routine.parameters):
-            argument = call.arguments[index] if index < len(call.arguments) else None
-            cell = Cell(parameter.name)
-            if argument is not None:
-                cell.value = copied(self.run.evaluator.evaluate(argument, caller))
-            scope.cells[parameter.name] = cell
-            if parameter.by_reference and isinstance(argument, Name):
-                back.append((cell, argument, self.run.evaluator.names.path(argument, caller)))
-        return back
+    def __init__(self, library: Library, where: Sequence[Module]) -> None:
+        self._library = library
+        self._where = where
 
-    def _hand_back(self, back: list[tuple[Cell, Name, Path]], call: Call, caller: Scope) -> None:
-        """What a parameter by reference was given goes into the caller's datum."""
-        for cell, datum, path in back:
-            value = cell.value
-            if cell.assigned and value is not None and not isinstance(value, Pending):
-                self.run.evaluator.assign(datum, value, caller, call.span, path)
-
-    def body_of(self, call: Call) -> Block | None:
-        """The statements that a call runs, as far as it is known without running."""
+    def __call__(self, call: Call) -> Block | None:
+        """The body of the routine that a call means; None if it is not at hand."""
         if call.name in NATIVE or kept(call.name) is not None:
             return None
-        found = self.run.library.routine(call.name, self.run.where[-1])
+        found = self._library.routine(call.name, self._where[-1])
         return None if found is None else found[0].body

@@ -5,8 +5,8 @@ from __future__ import annotations
 from ....core.errors import Note, SourceError, Span
 from ....core.source.outputs import Outputs
 from .journal import Journal
-from .library import SHIPPED, Library, Module
-from .scope import Cell, Scope
+from .library import SHIPPED, Library
+from .scope import Cell, Module, Scope
 from .syntax import (
     Assign,
     Declaration,
@@ -124,7 +124,7 @@ class Data:
             cell = self.cell(statement, module)
             cell.shipped = shipped
             if statement.value is not None:
-                cell.value = Pending(statement.value, module)
+                cell.value = Pending(statement.value, module.stem)
             module.cells.setdefault(statement.name, cell)
             if statement.shared:
                 module.shared.add(statement.name)
@@ -143,7 +143,7 @@ class Data:
             if target.name.startswith("$"):
                 return
             cell = module.cells[target.name] = Cell(target.text, shipped=shipped)
-        pending = Pending(statement.value, module)
+        pending = Pending(statement.value, module.stem)
         indices = [step for step in target.path if isinstance(step, tuple)]
         index = _constant_indices(indices[0]) if len(target.path) == 1 and indices else ()
         if index == ():

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from ....core.errors import SourceError, Span
 from ....core.source.answers import Course
 from ....core.source.provenance import ELSEWHERE, Reads
+from .advance_run import AdvanceRun
 from .assignment import Assignment
 from .data import Data
 from .functions import COMPUTED, computed
@@ -56,17 +57,23 @@ class Evaluator:
         call: the value of a function of the program or of the inline forms; None if there is none
             of that name.
         position: where the robot is: ``pose`` or ``axes``.
+        advance: is stopped by reading some system variables.
     """
 
-    def __init__(self, data: Data, course: Course, call: CallFunction, position: Position) -> None:
+    def __init__(
+        self,
+        data: Data,
+        course: Course,
+        call: CallFunction,
+        position: Position,
+        advance: AdvanceRun,
+    ) -> None:
         self.data = data
         self.course = course
         self.reads = Reads()
         self.reader = ELSEWHERE
-        self.stopped = False
-        """Whether something was read that stops the advance run."""
         self._call = call
-        self.names = Names(self, data, position)
+        self.names = Names(self, data, course, position, advance)
         self.assign = Assignment(data, self.names).assign
         self._evaluate: dict[type, Callable[..., Value]] = {
             Flat: self._flat,

@@ -5,19 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable
 from enum import Enum
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple, NoReturn
+from typing import NamedTuple, NoReturn
 
 from ....core.errors import SourceError, Span
-from .control import guard_names, leaves, names_in, names_written
+from ....core.source.answers import Course
+from ....core.source.limits import Meter
+from .control import Moving, Routines, guard_names, leaves, names_in, names_written
+from .data import Data
+from .evaluator import Evaluator
+from .exits import Finished, Jump, Left, Returned
 from .operators import OperandError, apply
+from .output import Output
+from .outputs import OutputWrites
+from .own_position import OwnPosition
+from .position import Position
 from .scope import Scope
 from .syntax import Block, Exit, For, Goto, If, Loop, Repeat, Return, Statement, Switch, While
 from .terms import Expression, Name, Number, Truth
 from .values import Unknown, Value, find_unknown, shown, unplaced
-
-if TYPE_CHECKING:
-    from .interpreter import Interpreter
-
 
 _WATCHED = 3
 """Passes of a loop in which it may turn out that nothing changes any more."""
@@ -26,28 +31,6 @@ _WATCHED = 3
 _FOLLOWED = 100
 """Passes of a loop that gets on, after which it is left by a way out that nobody can decide."""
 _OTHERS = "outputs that only others can change"
-
-
-class Returned(Exception):
-    """RETURN, with the value of a function."""
-
-    def __init__(self, value: Value | None) -> None:
-        self.value = value
-
-
-class Jump(Exception):
-    """GOTO a label that is not in the block."""
-
-    def __init__(self, goto: Goto) -> None:
-        self.goto = goto
-
-
-class Left(Exception):
-    """EXIT of the innermost loop."""
-
-
-class Finished(Exception):
-    """The end of the program."""
 
 
 class After(Enum):
@@ -77,15 +60,53 @@ class _Asked(NamedTuple):
     skipped: int
 
 
+Evaluated = Callable[[Expression, Scope, Span], Value]
+"""A value; if reading it stops the advance run, the robot stops at the statement's place."""
+
+
 class Flow:
     """Carries out the statements that decide which statements run.
 
     Args:
-        run: the program run.
+        run_block: carries statements out.
+        evaluated: evaluates what a statement depends on.
+        evaluator: for counters and cases.
+        data: of the program.
+        course: decides what nobody knows.
+        meter: counts passes.
+        body: of the routine that a call means.
+        position: follows the robot.
+        own_position: is asked by the program.
+        writes: which outputs statements write.
+        output: takes notes.
     """
 
-    def __init__(self, run: Interpreter) -> None:
-        self.run = run
+    def __init__(
+        self,
+        run_block: Callable[[Block, Scope], None],
+        evaluated: Evaluated,
+        evaluator: Evaluator,
+        data: Data,
+        course: Course,
+        meter: Meter,
+        body: Routines,
+        position: Position,
+        own_position: OwnPosition,
+        writes: OutputWrites,
+        output: Output,
+    ) -> None:
+        self._run_block = run_block
+        self._evaluated = evaluated
+        self._evaluator = evaluator
+        self._data = data
+        self._course = course
+        self._meter = meter
+        self._body = body
+        self._position = position
+        self._own_position = own_position
+        self._output_writes = writes
+        self._output = output
+        self._moving = Moving(body)
         self.skipped_exit: str | None = None
         """What it depends on whether a loop is left, where a way out was not taken."""
         self._jumped = 0
@@ -94,16 +115,24 @@ class Flow:
         # By the block's id: which skip was its last, the block, and why. Each once, however often.
         self._writes: dict[int, set[str]] = {}
 
+    def run_body(self, body: Block, scope: Scope) -> None:
+        """The statements of a routine: a way out that is not taken in it leaves no loop outside."""
+        skipped = self.skipped_exit
+        try:
+            self._run_block(body, scope)
+        finally:
+            self.skipped_exit = skipped
+
     def if_(self, statement: If, scope: Scope) -> None:
-        value = self.run.evaluated(statement.condition, scope, statement.span)
+        value = self._evaluated(statement.condition, scope, statement.span)
         if isinstance(value, Unknown):
             blocks = [statement.body, statement.otherwise]
             chosen = self._choice(statement.condition.span, value, blocks)
             if chosen is not None:
-                self.run.run_block(chosen, scope)
+                self._run_block(chosen, scope)
             return
         self._check_bool(value, statement.condition, "IF")
-        self.run.run_block(statement.body if value else statement.otherwise, scope)
+        self._run_block(statement.body if value else statement.otherwise, scope)
 
     @staticmethod
     def _check_bool(value: Value, condition: Expression, what: str) -> None:
@@ -114,8 +143,8 @@ class Flow:
 
     def _choice(self, span: Span, unknown: Unknown, blocks: list[Block]) -> Block | None:
         """The branch that is taken where nobody knows."""
-        returning = [self.run.moving(block) and not leaves(block) for block in blocks]
-        taken = self.run.course.branch(span, unknown.reason, returning)
+        returning = [self._moving(block) and not leaves(block) for block in blocks]
+        taken = self._course.branch(span, unknown.reason, returning)
         for number, block in enumerate(blocks, 1):
             if number != taken:
                 self._skips += 1
@@ -125,7 +154,7 @@ class Flow:
         return blocks[taken - 1] if taken else None
 
     def switch_(self, statement: Switch, scope: Scope) -> None:
-        subject = self.run.evaluated(statement.subject, scope, statement.span)
+        subject = self._evaluated(statement.subject, scope, statement.span)
         unknown = find_unknown(subject)
         if unknown is not None:
             self._switch_unknown(statement, unknown, scope)
@@ -136,12 +165,12 @@ class Flow:
                 if isinstance(equal, Unknown):
                     unknown = unknown or equal  # cases differ: a known one that fits is the one
                 elif equal:
-                    self.run.run_block(case.body, scope)
+                    self._run_block(case.body, scope)
                     return
         if unknown is not None:
             self._switch_unknown(statement, unknown, scope)
         elif statement.otherwise is not None:
-            self.run.run_block(statement.otherwise, scope)
+            self._run_block(statement.otherwise, scope)
 
     def _switch_unknown(self, statement: Switch, unknown: Unknown, scope: Scope) -> None:
         blocks = [case.body for case in statement.cases]
@@ -149,13 +178,13 @@ class Flow:
             blocks.append(statement.otherwise)
         chosen = self._choice(statement.subject.span, unknown, blocks)
         if chosen is not None:
-            self.run.run_block(chosen, scope)
+            self._run_block(chosen, scope)
 
     def _equal(self, subject: Value, expression: Expression, scope: Scope) -> bool | Unknown:
         value = (
             expression.value
             if isinstance(expression, Number)
-            else self.run.evaluator.evaluate(expression, scope)
+            else self._evaluator.evaluate(expression, scope)
         )
         try:
             equal = apply("==", subject, value)
@@ -167,7 +196,7 @@ class Flow:
         """``FOR``: its bounds are evaluated once; the counter is the program's own datum, to which
         the step is added after every pass, whatever the body has made of it."""
         bounds = [loop.start, loop.stop, *([loop.step] if loop.step is not None else [])]
-        values = [self.run.evaluated(bound, scope, loop.span) for bound in bounds]
+        values = [self._evaluated(bound, scope, loop.span) for bound in bounds]
         for value, bound in zip(values, bounds, strict=True):
             if find_unknown(value) is None and not _is_number(value):
                 raise SourceError(f"FOR counts numbers, not {shown(value)}", bound.span)
@@ -176,11 +205,11 @@ class Flow:
             raise SourceError("STEP is zero: the loop has no end", loop.span)
         unknown = next(filter(None, map(find_unknown, values)), None)
         first = 1 if isinstance(start, Unknown) else unplaced(start)
-        self.run.evaluator.assign(loop.counter, first, scope, loop.span)
+        self._evaluator.assign(loop.counter, first, scope, loop.span)
         passes, asked = 0, self._asked()
         after = After.CHANGED
         while after is not After.LEFT:
-            counter = self.run.evaluator.names.value(loop.counter, scope)
+            counter = self._evaluator.names.value(loop.counter, scope)
             open_ = unknown or find_unknown(counter)
             if open_ is not None:
                 if passes >= self._passes(loop.start.span, open_, loop.body):
@@ -198,17 +227,17 @@ class Flow:
         """One pass of a FOR, and its counter counted on; False if EXIT leaves it."""
         if not self._pass(loop.body, scope):
             return False
-        counter = self.run.evaluator.names.value(loop.counter, scope)
+        counter = self._evaluator.names.value(loop.counter, scope)
         following = apply("+", counter, 1 if isinstance(step, Unknown) else step)
-        self.run.evaluator.assign(loop.counter, following, scope, loop.span)
+        self._evaluator.assign(loop.counter, following, scope, loop.span)
         return True
 
     def _note_moved_bound(self, loop: For, stop: Value, scope: Scope) -> None:
         """Say that the body has changed what the end of a FOR is made of."""
         if isinstance(loop.stop, Name) and not loop.stop.path and not isinstance(stop, Unknown):
-            cell = self.run.data.find(loop.stop.name, scope)
+            cell = self._data.find(loop.stop.name, scope)
             if cell is not None and cell.signal is None and cell.value != stop:
-                self.run.note_once(
+                self._output.note_once(
                     f"bound {loop.span.start}",
                     f"the body of FOR changes {loop.stop.text}, its end: the value from before the "
                     "loop counts; count in a WHILE if it shall not",
@@ -218,7 +247,7 @@ class Flow:
     def _pass(self, body: Block, scope: Scope) -> bool:
         """One pass of a loop; False if EXIT leaves it."""
         try:
-            self.run.run_block(body, scope)
+            self._run_block(body, scope)
         except Left:
             return False
         return True
@@ -230,7 +259,7 @@ class Flow:
         passes, asked = 0, self._asked()
         after = After.CHANGED
         while after is not After.LEFT:
-            value = self.run.evaluated(loop.condition, scope, loop.span)
+            value = self._evaluated(loop.condition, scope, loop.span)
             if isinstance(value, Unknown):
                 if passes >= self._passes(loop.condition.span, value, loop.body):
                     return
@@ -249,7 +278,7 @@ class Flow:
         passes, asked = 1, self._asked()
         run_pass = partial(self._pass, loop.body, scope)
         while (after := self._watched(run_pass, loop.span, passes)) is not After.LEFT:
-            value = self.run.evaluated(loop.condition, scope, loop.span)
+            value = self._evaluated(loop.condition, scope, loop.span)
             if isinstance(value, Unknown):
                 if passes >= self._passes(loop.condition.span, value, loop.body):
                     return
@@ -265,32 +294,34 @@ class Flow:
         Args:
             run_pass: False if the loop is left.
         """
-        self.run.meter.statement(span)
-        if passes > _WATCHED or self.run.course.answers.sequences:
+        self._meter.statement(span)
+        if passes > _WATCHED or self._course.answers.sequences:
             return After.CHANGED if run_pass() else After.LEFT
         changed = True
-        place = self.run.position.last_move_numbers
-        held = self.run.data.outputs.held()
-        self.run.data.journal.begin()
+        place = self._position.last_move_numbers
+        held = self._data.outputs.held()
+        self._data.journal.begin()
         try:
             stays = run_pass()
         finally:
-            changed = self.run.data.journal.end()
+            changed = self._data.journal.end()
         if not stays:
             return After.LEFT
-        if changed or self.run.data.outputs.held() != held:
+        if changed or self._data.outputs.held() != held:
             return After.CHANGED
-        return After.SAME if self.run.position.last_move_numbers == place else After.MOVED
+        return After.SAME if self._position.last_move_numbers == place else After.MOVED
 
     def _asked(self) -> _Asked:
-        return _Asked(self.run.asked, len(self.run.data.outputs.asked), self._skips)
+        return _Asked(self._own_position.asked, len(self._data.outputs.asked), self._skips)
 
     def _stays(self, after: After, asked: _Asked) -> bool:
         """Whether a pass shows that the loop gets no further.
 
         Where the program asks for it, it is for the robot's position to end the loop.
         """
-        return after is After.SAME or (after is After.MOVED and self.run.asked == asked.position)
+        return after is After.SAME or (
+            after is After.MOVED and self._own_position.asked == asked.position
+        )
 
     def _leave_to_others(self, body: Block, first: int, scope: Scope) -> bool:
         """Whether a loop has read outputs that only others can change; they have from now on.
@@ -298,9 +329,9 @@ class Flow:
         Args:
             first: of the outputs asked for, from which on the loop read them.
         """
-        outputs = self.run.data.outputs
+        outputs = self._data.outputs
         asked = set(outputs.asked[first:])
-        written = self.run.output_writes.written(body, scope)
+        written = self._output_writes.written(body, scope)
         if not asked or written is None or asked & written:
             return False
         outputs.forget(asked)
@@ -340,7 +371,7 @@ class Flow:
         if reason is None:
             return None
         left_out = frozenset(id(block) for block, _ in skipped)
-        return None if read & names_written(body, self.run.calls.body_of, left_out) else reason
+        return None if read & names_written(body, self._body, left_out) else reason
 
     def _skipped_since(self, asked: _Asked) -> list[tuple[Block, str]]:
         """Branches that were not taken since a loop began, and what they depend on."""
@@ -350,16 +381,16 @@ class Flow:
         """See `names_written`; kept, since loops ask it of every pass."""
         found = self._writes.get(id(block))
         if found is None:
-            found = self._writes[id(block)] = names_written(block, self.run.calls.body_of)
+            found = self._writes[id(block)] = names_written(block, self._body)
         return found
 
     def _gets_on(self, body: Block, asked: _Asked) -> bool:
         """Whether a loop writes what decides of ways out of it that are known, and the user does
         not say how often loops run."""
-        if self.run.course.answers.passes:
+        if self._course.answers.passes:
             return False
         left_out = frozenset(id(block) for block, _ in self._skipped_since(asked))
-        written = names_written(body, self.run.calls.body_of, left_out)
+        written = names_written(body, self._body, left_out)
         return bool(guard_names(body, left_out) & written)
 
     def _is_left(
@@ -385,9 +416,9 @@ class Flow:
         Raises:
             Finished: it moves the robot, for ever.
         """
-        if self.run.moving(body):
+        if self._moving(body):
             self._finish(_endless(what, passes), span)
-        self.run.note_once(
+        self._output.note_once(
             f"waits {span.file}:{span.start}",
             f"the loop ({what}) only waits for what the program does not change itself: it is "
             "taken as satisfied at once",
@@ -396,7 +427,7 @@ class Flow:
 
     def _passes(self, span: Span, unknown: Unknown, body: Block) -> int:
         """How often a loop runs whose end nobody knows; decided once for every run of it."""
-        return self.run.course.passes(span, unknown.reason, self.run.moving(body))
+        return self._course.passes(span, unknown.reason, self._moving(body))
 
     def loop_(self, loop: Loop, scope: Scope) -> None:
         self._forever(loop.body, loop.span, "LOOP", scope)
@@ -428,18 +459,18 @@ class Flow:
                 return
 
     def _ends_by(self, span: Span, reason: str, body: Block) -> int:
-        return max(1, self.run.course.passes(span, reason, self.run.moving(body)))
+        return max(1, self._course.passes(span, reason, self._moving(body)))
 
     def jump_back(self, goto: Goto, between: Block, last: Statement, scope: Scope) -> None:
         """A jump to a label that was passed: a loop that is read once if nothing can end it."""
-        if not self.run.moving(between):
+        if not self._moving(between):
             self._leave_to_others(Block((*between.statements, last)), self._jumped, scope)
-        self._jumped = len(self.run.data.outputs.asked)
+        self._jumped = len(self._data.outputs.asked)
         if isinstance(last, Goto) and (not leaves(between) or self.skipped_exit is not None):
             self._finish(_endless(f"GOTO {goto.name.upper()}", 1), goto.span)
 
     def _finish(self, message: str, span: Span) -> NoReturn:
-        self.run.note_once("end", message, span)
+        self._output.note_once("end", message, span)
         raise Finished
 
     def goto_(self, statement: Goto, scope: Scope) -> None:
@@ -448,7 +479,7 @@ class Flow:
     def return_(self, statement: Return, scope: Scope) -> None:
         value = None
         if statement.value is not None:
-            value = self.run.evaluated(statement.value, scope, statement.span)
+            value = self._evaluated(statement.value, scope, statement.span)
         raise Returned(value)
 
     def exit_(self, statement: Exit, scope: Scope) -> None:

@@ -1,4 +1,4 @@
-"""Functions of KUKA's own files that programs call: spline inline forms, coupled bases, kinematics.
+"""Functions of KUKA's own files that programs call for spline inline forms.
 
 ``SPTP XP1 WITH $VEL_AXIS[1]=SVEL_JOINT(50.0),$TOOL=STOOL2(FP1),… C_SPL``: what each function gives
 follows from its name and the datum that it takes (see `basis` for what is assumed).
@@ -6,71 +6,80 @@ follows from its name and the datum that it takes (see `basis` for what is assum
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
 
 from ....core.errors import SourceError
-from ....core.program.move import MoveJ
-from ....core.program.speed import Speed
-from ....core.program.target import JointTarget
-from ....core.robot.joint import ExternalRole
-from .basis import plain
-from .frames import frame_of
+from .basis import Basis, plain
+from .data import Data
 from .scope import Scope
-from .terms import Call, Name
-from .values import Choice, Struct, Unknown, Value, find_unknown, shown
+from .terms import Call
+from .values import Choice, Struct, Unknown, Value, shown
 
-if TYPE_CHECKING:
-    from .interpreter import Interpreter
-
-Function = Callable[["Inline", Call, list[Value | None], Scope], Value]
+Function = Callable[[Call, list[Value | None], Scope], Value]
+"""A function's value, of a call and its arguments; None is an argument left out."""
 
 
-class Inline:
+class InlineForms:
     """The functions.
 
     Args:
-        run: the program run.
+        basis: sets what they set.
+        data: of the program.
     """
 
-    def __init__(self, run: Interpreter) -> None:
-        self.run = run
+    def __init__(self, basis: Basis, data: Data) -> None:
+        self._basis = basis
+        self._data = data
 
-    def value(self, call: Call, scope: Scope) -> Value | None:
-        """The value of a call; None if the function is none of these."""
-        function = _FUNCTIONS.get(call.name)
-        if function is None:
-            return None
-        evaluate = self.run.evaluator.evaluate
-        arguments = [None if a is None else evaluate(a, scope) for a in call.arguments]
-        return function(self, call, arguments, scope)
+    def functions(self) -> Mapping[str, Function]:
+        """By lower-case name."""
+        return {
+            "svel_joint": self.velocity_joint,
+            "sacc_joint": self.acceleration_joint,
+            "svel_cp": self.velocity_path,
+            "sacc_cp": self.acceleration_path,
+            "sapo": self.zone_path,
+            "sapo_ptp": self.zone_joint,
+            "stool": self.tool,
+            "stool2": self.tool,
+            "sbase": self.base,
+            "sload": self.load,
+            "sipo_mode": self.mode,
+            "sori_typ": self.orientation,
+            "scirc_typ": self.circle,
+            "sjerk": self.jerk,
+            "sgear_jerk": self.jerk,
+            "k_offs": self.base_offset,
+            "varstate": self.state,
+            **dict.fromkeys(_NOTHING, self.nothing),
+        }
 
     # ------------------------------------------------------------------ spline forms
 
     def velocity_joint(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SVEL_JOINT(percent)``: for all axes, though it stands at axis 1."""
         value = self._first(call, arguments)
-        self.run.basis.all_axes("$vel_axis", value)
+        self._basis.all_axes("$vel_axis", value)
         return value
 
     def acceleration_joint(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SACC_JOINT(PDAT)``"""
         value = self._fields(call, arguments).get("acc", 100.0)
-        self.run.basis.all_axes("$acc_axis", value)
+        self._basis.all_axes("$acc_axis", value)
         return value
 
     def velocity_path(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SVEL_CP(v, , LDAT)``: turning goes at the splines' own default."""
-        speed = self.run.basis.path_limit(self._first(call, arguments), call.span)
-        turning = plain(self.run.basis.default("DEF_VEL_ORIS"))
+        speed = self._basis.path_limit(self._first(call, arguments), call.span)
+        turning = plain(self._basis.default("DEF_VEL_ORIS"))
         return Struct("", {"cp": speed, "ori1": turning, "ori2": turning})
 
     def acceleration_path(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SACC_CP(LDAT)``: its AXIS_ACC counts, for the path too."""
         fields = self._fields(call, arguments)
         percent = fields.get("axis_acc", fields.get("acc"))
-        turning = self.run.basis.share(percent, "DEF_ACC_ORIS")
-        path = self.run.basis.share(percent, "DEF_ACC_CP")
+        turning = self._basis.share(percent, "DEF_ACC_ORIS")
+        path = self._basis.share(percent, "DEF_ACC_CP")
         return Struct("", {"cp": path, "ori1": turning, "ori2": turning})
 
     def zone_path(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
@@ -91,19 +100,19 @@ class Inline:
     def tool(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``STOOL2(FDAT)``, ``STOOL(number)``"""
         value = self._number(call, arguments, "tool_no")
-        index = self.run.basis.index(value, "the number of a tool", call.span)
-        return self.run.basis.frame("tool_data", index, call.span)
+        index = self._basis.index(value, "the number of a tool", call.span)
+        return self._basis.frame("tool_data", index, call.span)
 
     def base(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SBASE(number)``"""
         value = self._number(call, arguments, "base_no")
-        index = self.run.basis.index(value, "the number of a base", call.span)
-        return self.run.basis.frame("base_data", index, call.span)
+        index = self._basis.index(value, "the number of a base", call.span)
+        return self._basis.frame("base_data", index, call.span)
 
     def load(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SLOAD(number)``"""
         value = self._number(call, arguments, "tool_no")
-        return self.run.basis.load(self.run.basis.index(value, "the number of a load", call.span))
+        return self._basis.load(self._basis.index(value, "the number of a load", call.span))
 
     def mode(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SIPO_MODE(#BASE)``"""
@@ -124,40 +133,6 @@ class Inline:
         """``SJERK(LDAT)``, ``SGEAR_JERK(PDAT)``: not emulated."""
         return 100.0
 
-    # ----------------------------------------------------------------- coupled bases
-
-    def coupled(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
-        """``EK(root, type, offset)``: a base on the robot's table.
-
-        Raises:
-            SourceError: the robot has no table, or several that this may mean.
-        """
-        robot = self.run.robot
-        tables = (
-            []
-            if robot is None
-            else [axis.name for axis in robot.external_axes if axis.role is ExternalRole.TABLE]
-        )
-        if robot is not None:
-            carriers = {axis.carried_by for axis in robot.external_axes}
-            tables = [name for name in tables if name not in carriers]
-        if len(tables) != 1:
-            have = "no robot is named" if robot is None else f"the robot has {len(tables)} tables"
-            raise SourceError(
-                f"{call.text} couples the base to an external kinematic system, but {have}: name "
-                "a robot whose external axes hold the one table that is meant",
-                call.span,
-            )
-        offset = arguments[2] if len(arguments) > 2 else None
-        made = offset.copy() if isinstance(offset, Struct) else Struct("frame")
-        made.moved_by = tables[0]
-        self.run.note_once(
-            "EK",
-            f"{call.text}: the base is on {tables[0]}, at its place in the robot's cell",
-            call.span,
-        )
-        return made
-
     def base_offset(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``K_OFFS(number)``"""
         return self.base(call, arguments, scope)
@@ -166,7 +141,7 @@ class Inline:
         """``VARSTATE("name")``: whether a datum has a value; not known of one that no file at
         hand declares."""
         name = arguments[0] if arguments else None
-        cell = self.run.data.find(name.lower(), scope) if isinstance(name, str) else None
+        cell = self._data.find(name.lower(), scope) if isinstance(name, str) else None
         if cell is None:
             return Unknown(f"{call.text} of what is declared in no file at hand", call.span)
         return Choice("declared" if cell.value is None else "initialized")
@@ -174,52 +149,6 @@ class Inline:
     def nothing(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """A value that motion does not depend on."""
         return 0
-
-    # -------------------------------------------------------------------- kinematics
-
-    def forward(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
-        """``FORWARD(axes, error)``: the pose of ``$TOOL`` in ``$BASE``."""
-        robot, axes = self.run.robot, arguments[0] if arguments else None
-        if robot is None or not isinstance(axes, Struct):
-            return Unknown(f"the value of {call.text} (name the robot)", call.span)
-        placement = self.run.placements.current(call.span)
-        found = self.run.targets.joints(axes, call.span)
-        assert isinstance(found.target, JointTarget)
-        from ....core.motion.standing import Standing
-        from ..configuration import label
-
-        standing = Standing(robot, label, found.target)
-        made = frame_of(standing.pose(placement.tool, placement.work_object), "e6pos")
-        self._no_error(call, scope)
-        return made
-
-    def inverse(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
-        """``INVERSE(position, near, error)``"""
-        run = self.run
-        position = arguments[0] if arguments else None
-        if run.robot is None or not isinstance(position, Struct):
-            return Unknown(f"the value of {call.text} (name the robot)", call.span)
-        placement = run.placements.current(call.span)
-        found = run.targets.pose(position, placement, True, False, call.span)
-        near = arguments[1] if len(arguments) > 1 else None
-        start = None
-        if isinstance(near, Struct) and find_unknown(near) is None:
-            joints = run.targets.joints(near, call.span).target
-            from ....core.motion.standing import Standing
-            from ..configuration import label
-
-            assert isinstance(joints, JointTarget)
-            start = Standing(run.robot, label, joints).joints()
-        move = MoveJ(found.target, Speed(), tool=placement.tool, work_object=placement.work_object)
-        q = run.position.solve(move, start, call.span)
-        self._no_error(call, scope)
-        return run.position.axis_struct(q)
-
-    def _no_error(self, call: Call, scope: Scope) -> None:
-        """The last argument takes the number of an error: none."""
-        last = call.arguments[-1] if call.arguments else None
-        if isinstance(last, Name) and len(call.arguments) > 1:
-            self.run.evaluator.assign(last, 0, scope, call.span)
 
     # --------------------------------------------------------------------- arguments
 
@@ -248,35 +177,8 @@ class Inline:
         return value.fields.get(component) if isinstance(value, Struct) else value
 
 
-_FUNCTIONS: dict[str, Function] = {
-    "svel_joint": Inline.velocity_joint,
-    "sacc_joint": Inline.acceleration_joint,
-    "svel_cp": Inline.velocity_path,
-    "sacc_cp": Inline.acceleration_path,
-    "sapo": Inline.zone_path,
-    "sapo_ptp": Inline.zone_joint,
-    "stool": Inline.tool,
-    "stool2": Inline.tool,
-    "sbase": Inline.base,
-    "sload": Inline.load,
-    "sipo_mode": Inline.mode,
-    "sori_typ": Inline.orientation,
-    "scirc_typ": Inline.circle,
-    "sjerk": Inline.jerk,
-    "sgear_jerk": Inline.jerk,
-    "use_cm_pro_values": Inline.nothing,
-    "s_exax_ign": Inline.nothing,
-    "s_exax_ign2": Inline.nothing,
-    "scirc_m": Inline.nothing,
-    "k_name": Inline.nothing,
-    "k_shift": Inline.nothing,
-    "sps": Inline.nothing,
-    "ek": Inline.coupled,
-    "eb": Inline.coupled,
-    "k_root": Inline.nothing,
-    "k_type": Inline.nothing,
-    "k_offs": Inline.base_offset,
-    "forward": Inline.forward,
-    "inverse": Inline.inverse,
-    "varstate": Inline.state,
-}
+_NOTHING = (
+    *("use_cm_pro_values", "s_exax_ign", "s_exax_ign2", "scirc_m", "k_name", "k_shift", "sps"),
+    *("k_root", "k_type"),
+)
+"""Functions whose values motion does not depend on."""

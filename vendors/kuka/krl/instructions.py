@@ -70,8 +70,6 @@ _REFUSED: tuple[tuple[str, str], ...] = (
         "targets of PTP, LIN and CIRC",
     ),
 )
-ASYNCHRONOUS = frozenset({"asyptp", "asycont", "asystop", "asycancel"})
-"""First words of statements that drive axes beside the program: ``ASYPTP {E1 30}``."""
 
 
 def _compiled(pattern: str) -> re.Pattern[str]:

@@ -9,41 +9,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from importlib import resources
 
 from ....core.errors import Note, SourceError
 from ....core.source.reading import Files
 from ....core.source.text import SourceText
 from .parser import parse
-from .scope import Cell
-from .syntax import DataList, Routine, Unit
+from .scope import Module
+from .syntax import Routine, Unit
 
 CONFIG = "$config"
 SHIPPED = "flyby:config.dat"
 """Name of the configuration that comes with this package, for spans."""
 _GLOBAL_ROUTINE = re.compile(r"(?im)^[ \t]*global[ \t]+def(?:fct[ \t]+\S+)?[ \t]+([\w$]+)")
 _GLOBAL_DATA = re.compile(r"(?im)^[ \t]*(?:decl[ \t]+)?(?:const[ \t]+)?global[ \t]+(?!def)")
-
-
-@dataclass(eq=False)
-class Module:
-    """A ``.src`` with its ``.dat``.
-
-    Args:
-        stem: file name without folder and suffix, lower case.
-        routines: of the file, by lower-case name.
-        lists: data lists, not yet declared.
-        cells: data, once declared.
-        shared: names of the data that are declared GLOBAL.
-    """
-
-    stem: str
-    routines: dict[str, Routine] = field(default_factory=dict)
-    lists: list[DataList] = field(default_factory=list)
-    cells: dict[str, Cell] = field(default_factory=dict)
-    shared: set[str] = field(default_factory=set)
-    declared: bool = False
 
 
 def stem_of(name: str) -> str:
@@ -95,6 +74,10 @@ class Library:
                     self.notes.append(Note(f"{name} cannot be read and is left out: {error}"))
         return self._modules.get(stem)
 
+    def home(self, stem: str) -> Module:
+        """A module that has been read."""
+        return self._modules[stem]
+
     def _main_module(self, main: str) -> Module:
         stem = stem_of(main)
         module = self._modules[stem] = Module(stem)
@@ -139,7 +122,7 @@ class Library:
         if users is not None:
             modules.append(users)
         text = resources.files(__package__).joinpath("../data/config.dat").read_text("utf-8")
-        shipped = Module(SHIPPED)
+        shipped = self._modules[SHIPPED] = Module(SHIPPED)
         self._add(shipped, parse(SourceText(text, SHIPPED)))
         self.texts[SHIPPED] = text
         return [*modules, shipped]

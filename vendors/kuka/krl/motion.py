@@ -6,9 +6,8 @@ sets system variables for one motion. A motion to ``$POS_ACT`` or ``$AXIS_ACT`` 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from ....core.errors import InputError, SourceError, Span
 from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Opaque
@@ -18,31 +17,23 @@ from ....core.program.tool import Load, Tool, WorkObject
 from ....core.program.zone import Zone
 from ....core.source.provenance import Part
 from .arcs import beyond
+from .data import Data
+from .evaluator import Evaluator
 from .frames import frame_of, pose_of
+from .output import Output, Parts
 from .placement import Placement
+from .placements import Placements
+from .position import Position
 from .provenance import KrlSource, LeafSource, Sources
-from .scope import Scope
-from .settings import Set
+from .scope import Cell, Scope
+from .settings import Set, Settings
 from .syntax import Motion
-from .system import POSITION
-from .targets import AXIS_NUMBERS, POSE_NUMBERS, Found, is_axes
+from .system import MOTION, POSITION
+from .targets import AXIS_NUMBERS, POSE_NUMBERS, Found, Targets, is_axes
 from .terms import Expression, Flat, Name
+from .triggers import Triggers
 from .types import AXES, FRAME_FIELDS, POSES, KrlTypeError, convert
-from .values import Struct, Unknown, Value, shown
-
-if TYPE_CHECKING:
-    from .interpreter import Interpreter
-
-
-@dataclass(frozen=True, slots=True)
-class Parts:
-    """The parts of a move before all reads of the run are known."""
-
-    statement: Span
-    target: Part
-    speed: Part
-    zone: Part
-    via: Part | None = None
+from .values import Pending, Struct, Unknown, Value, copied, shown
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,25 +49,69 @@ class MotionReader:
     """Reads motion instructions.
 
     Args:
-        run: the program run that they belong to.
+        data: of the program.
+        evaluator: for targets.
+        placements: tool and base in force.
+        settings: speeds and zones in force.
+        targets: makes targets of positions and axis values.
+        position: follows the robot.
+        triggers: what happens on the way.
+        output: takes the moves.
+        changed: is told that system variables have other values now.
     """
 
-    def __init__(self, run: Interpreter) -> None:
-        self.run = run
+    def __init__(
+        self,
+        data: Data,
+        evaluator: Evaluator,
+        placements: Placements,
+        settings: Settings,
+        targets: Targets,
+        position: Position,
+        triggers: Triggers,
+        output: Output,
+        changed: Callable[[], None],
+    ) -> None:
+        self._data = data
+        self._evaluator = evaluator
+        self._placements = placements
+        self._settings = settings
+        self._targets = targets
+        self._position = position
+        self._triggers = triggers
+        self._output = output
+        self._changed = changed
         self._literals: dict[tuple[int, bool, bool], Found] = {}
 
     def read(self, motion: Motion, scope: Scope) -> None:
-        """Carry out one instruction.
+        """Carry out one instruction, with what follows ``WITH`` set for it alone.
 
         Raises:
             SourceError: it cannot be emulated, or a value is not known.
         """
+        if not motion.settings:
+            self._drive(motion, scope)
+            return
+        system = self._data.system
+        saved = {name: copied(_held(system[name])) for name in MOTION}
+        try:
+            for setting in motion.settings:
+                value = self._evaluator.evaluate(setting.value, scope)
+                self._evaluator.assign(setting.target, value, scope, setting.span)
+            self._changed()
+            self._drive(motion, scope)
+        finally:
+            for name, value in saved.items():
+                system[name].value = value
+            self._changed()
+
+    def _drive(self, motion: Motion, scope: Scope) -> None:
         word = motion.word.removesuffix("_rel")
         joint, arc = word.endswith("ptp"), word.endswith("circ")
         if not arc and self._goes_nowhere(motion, scope):
             self._stay(motion, joint)
             return
-        placement = self.run.placements.current(motion.span)
+        placement = self._placements.current(motion.span)
         start = None if joint else self._start(placement, motion)
         if arc:
             self._arc(motion, scope, placement, start)
@@ -90,7 +125,7 @@ class MotionReader:
             found = self._constant_orientation(found, start, placement, motion)
         common = self._common(motion, joint, placement)
         kind = MoveJ if joint else MoveL
-        move: Move = kind(found.target, *_fields(common), events=self.run.take_events())
+        move: Move = kind(found.target, *_fields(common), events=self._triggers.taken())
         self._emit(motion, move, found, common)
 
     # --------------------------------------------------------------------- one kind each
@@ -102,13 +137,13 @@ class MotionReader:
             return False
         if target.name in POSITION:
             return True
-        cell = self.run.data.find(target.name, scope)
+        cell = self._data.find(target.name, scope)
         value = None if cell is None else cell.value
         if not isinstance(value, Unknown) or value.here is None:
             return False
         moves, asked_in = value.here
-        return moves == self.run.move_index and (
-            asked_in is None or asked_in == self.run.placements.current(motion.span)
+        return moves == self._output.move_index and (
+            asked_in is None or asked_in == self._placements.current(motion.span)
         )
 
     def _stay(self, motion: Motion, joint: bool) -> None:
@@ -116,14 +151,14 @@ class MotionReader:
 
         It is kept so that it goes nowhere wherever it is written, whatever the datum holds there.
         """
-        run, at = self.run, motion.targets[-1].span
-        text, target = run.text(motion.span), run.text(at)
+        at = motion.targets[-1].span
+        text, target = self._output.text(motion.span), self._output.text(at)
         if target.lower() not in POSITION:
             place = "$AXIS_ACT" if joint else "$POS_ACT"
             begin = at.start - motion.span.start
             text = text[:begin] + place + text[begin + len(target) :]
-        run.emit(Opaque(text, not motion.approximation, motion.span))
-        run.note_once(
+        self._output.emit(Opaque(text, not motion.approximation, motion.span))
+        self._output.note_once(
             "stays",
             f"{motion.word.upper()} {target} goes to where the robot is: kept, no move",
             motion.span,
@@ -155,7 +190,7 @@ class MotionReader:
             *_fields(common),
             via=via,
             orientation=self._arc_orientation(motion),
-            events=self.run.take_events(),
+            events=self._triggers.taken(),
         )
         self._emit(motion, move, found, common, via_part)
 
@@ -169,7 +204,7 @@ class MotionReader:
         target: PoseTarget,
     ) -> tuple[PoseTarget, PoseTarget]:
         """``CA``: the auxiliary and the end point of the arc that is really driven."""
-        degrees = self.run.evaluator.number(angle, scope, "CA")
+        degrees = self._evaluator.number(angle, scope, "CA")
         if not isinstance(start, Struct):
             reason = start.reason if isinstance(start, Unknown) else "where the robot stands"
             raise SourceError(f"an arc of angle CA depends on {reason}", motion.span)
@@ -180,16 +215,16 @@ class MotionReader:
         return replace(via, pose=middle), replace(target, pose=end)
 
     def _arc_orientation(self, motion: Motion) -> ArcOrientation:
-        kind = self.run.settings.choice("$circ_type", motion.span)
+        kind = self._settings.choice("$circ_type", motion.span)
         return ArcOrientation.FOLLOWS_ARC if kind == "path" else ArcOrientation.FIXED_FRAME
 
     def _constant_orientation(
         self, found: Found, start: Struct | Unknown | None, placement: Placement, motion: Motion
     ) -> Found:
         """``$ORI_TYPE``: ``#CONSTANT`` keeps the orientation of the start point."""
-        kind = self.run.settings.choice("$ori_type", motion.span)
+        kind = self._settings.choice("$ori_type", motion.span)
         if kind == "joint":
-            self.run.note_once(
+            self._output.note_once(
                 "#JOINT",
                 "$ORI_TYPE=#JOINT turns the wrist's axes evenly, which is not emulated: the "
                 "orientation goes the shortest way (#VAR)",
@@ -212,9 +247,9 @@ class MotionReader:
 
     def _start(self, placement: Placement, motion: Motion) -> Struct | Unknown | None:
         """Where the motion begins, if that is needed to know where it goes."""
-        constant = self.run.settings.choice("$ori_type", motion.span) == "constant"
+        constant = self._settings.choice("$ori_type", motion.span) == "constant"
         if constant or motion.angle is not None:
-            return self.run.position.pose(placement, motion.span)
+            return self._position.pose(placement, motion.span)
         return None
 
     # -------------------------------------------------------------------------- parts
@@ -231,14 +266,14 @@ class MotionReader:
         key = (id(expression), joint, via)
         if key in self._literals:
             return self._literals[key]
-        run, span = self.run, expression.span
+        span = expression.span
         value = self._value(motion, expression, scope)
         if motion.word.endswith("_rel"):
             return self._relative(motion, value, placement, via, span)
         if is_axes(value):
-            found = run.targets.joints(value, span)
+            found = self._targets.joints(value, span)
         else:
-            found = run.targets.pose(value, placement, joint, via, span)
+            found = self._targets.pose(value, placement, joint, via, span)
         if found.filled:
             self._depends_on_last()
         elif isinstance(expression, Flat):
@@ -246,15 +281,15 @@ class MotionReader:
         return found
 
     def _value(self, motion: Motion, expression: Expression, scope: Scope) -> Struct:
-        run, span = self.run, expression.span
-        run.evaluator.reader = run.move_index
-        value = run.evaluator.evaluate(expression, scope)
-        run.evaluator.reader = -1
+        span = expression.span
+        self._evaluator.reader = self._output.move_index
+        value = self._evaluator.evaluate(expression, scope)
+        self._evaluator.reader = -1
         what = f"the target of {motion.word.upper()}"
         if isinstance(value, Unknown):
-            if isinstance(expression, Name) and run.data.find(expression.name, scope) is None:
-                raise run.evaluator.undeclared(expression, scope, "point")
-            run.evaluator.check_known(value, what, span)
+            if isinstance(expression, Name) and self._data.find(expression.name, scope) is None:
+                raise self._evaluator.undeclared(expression, scope, "point")
+            self._evaluator.check_known(value, what, span)
         if not isinstance(value, Struct):
             raise SourceError(f"{what} is a position or axis values, not {shown(value)}", span)
         if value.type == "":
@@ -265,7 +300,7 @@ class MotionReader:
 
     def _typed(self, value: Struct, kind: str, span: Span) -> Struct:
         """An aggregate without a type as what its components make it."""
-        types = self.run.data.types
+        types = self._data.types
         if value.fields.keys() <= types[kind].keys():
             # `Targets` wants numbers, and says so.
             return Struct(kind, value.fields, value.label, value.shipped, value.moved_by)
@@ -280,14 +315,13 @@ class MotionReader:
         self, motion: Motion, value: Struct, placement: Placement, via: bool, span: Span
     ) -> Found:
         """The present target and a step."""
-        run = self.run
-        run.evaluator.check_known(value, f"the target of {motion.word.upper()}", span)
-        run.evaluator.reader = run.move_index
-        run.evaluator.note_reads(value)
-        run.evaluator.reader = -1
+        self._evaluator.check_known(value, f"the target of {motion.word.upper()}", span)
+        self._evaluator.reader = self._output.move_index
+        self._evaluator.note_reads(value)
+        self._evaluator.reader = -1
         self._depends_on_last()
         axes = is_axes(value)
-        present = run.position.axes(span) if axes else run.position.pose(placement, span)
+        present = self._position.axes(span) if axes else self._position.pose(placement, span)
         if isinstance(present, Unknown):
             raise SourceError(f"{motion.word.upper()} goes on from {present.reason}", span)
         summed = dict(present.fields)
@@ -297,7 +331,7 @@ class MotionReader:
             if step is not None:
                 summed[name] = _sum(summed.get(name, 0.0), step)
         if axes:
-            return run.targets.joints(Struct("e6axis", summed), span)
+            return self._targets.joints(Struct("e6axis", summed), span)
         if motion.frame == "tool":
             summed.update(frame_of(pose_of(present.fields) @ pose_of(value.fields)).fields)
         elif any(value.fields.get(name, 0) != 0 for name in "abc"):
@@ -314,23 +348,21 @@ class MotionReader:
             if name in value.fields:
                 summed[name] = value.fields[name]
         joint = "ptp" in motion.word
-        found = run.targets.pose(Struct("e6pos", summed), placement, joint, via, span)
+        found = self._targets.pose(Struct("e6pos", summed), placement, joint, via, span)
         return replace(found, sources=Sources(()))
 
     def _depends_on_last(self) -> None:
         """The last target's numbers are read by the move that comes now as well."""
-        run = self.run
-        if run.parts:
-            self._read_by_expression(run.parts[-1].target.sources)
+        if self._output.parts:
+            self._read_by_expression(self._output.parts[-1].target.sources)
 
     def _read_by_expression(self, sources: Iterable[object]) -> None:
-        run = self.run
         for source in sources:
             if source is not None:
-                run.evaluator.reads.by_expression(source, run.move_index)  # type: ignore[arg-type]
+                self._evaluator.reads.by_expression(source, self._output.move_index)  # type: ignore[arg-type]
 
     def _common(self, motion: Motion, joint: bool, placement: Placement) -> _Common:
-        settings = self.run.settings
+        settings = self._settings
         span = motion.span
         speed = settings.joint_speed(span) if joint else settings.path_speed(span)
         spline = motion.word.startswith("s")
@@ -338,7 +370,7 @@ class MotionReader:
         return _Common(placement, speed, zone)
 
     def _part(self, span: Span, sources: Sources, predefined: str | None = None) -> Part:
-        reads, index = self.run.evaluator.reads, self.run.move_index
+        reads, index = self._evaluator.reads, self._output.move_index
         for source in sources.distinct():
             reads.by_move(source, index)
             # A number may be read alone here and with its aggregate by another move.
@@ -361,9 +393,15 @@ class MotionReader:
             via,
         )
         if isinstance(found.target, PoseTarget):
-            self.run.placements.remark_unset(motion.span)
-        self.run.emit_move(move, parts)
-        self.run.position.moved(move, motion.span, found.complete, common.placement)
+            self._placements.remark_unset(motion.span)
+        self._output.emit_move(move, parts)
+        self._position.moved(move, motion.span, found.complete, common.placement)
+
+
+def _held(cell: Cell) -> Value:
+    value = cell.value
+    assert value is not None and not isinstance(value, Pending)
+    return value
 
 
 def _fields(common: _Common) -> tuple[Speed, Zone, Tool, WorkObject, Load | None]:

@@ -6,10 +6,11 @@ What nothing sets is answered by the user, or is an `Unknown`.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from ....core.errors import SourceError, Span
-from ....core.source.answers import Answer
+from ....core.source.answers import Answer, Course
+from .advance_run import AdvanceRun
 from .data import Data
 from .frames import null_frame
 from .scope import Cell, Scope
@@ -18,9 +19,6 @@ from .terms import Expression, Name
 from .types import PREDEFINED, KrlTypeError, convert
 from .values import Array, Choice, Pending, Struct, Unknown, Value, copied, shown, unplaced
 
-if TYPE_CHECKING:
-    from .evaluator import Evaluator
-
 Position = Callable[[str, Span], Value]
 Path = tuple[str | tuple[int, ...], ...]
 _LONGEST_ARRAY = 100_000
@@ -28,19 +26,42 @@ _WIDEST = 32
 """Bits of a ``SIGNAL``."""
 
 
+class Expressions(Protocol):
+    """Evaluates expressions in a scope."""
+
+    def evaluate(self, expression: Expression, scope: Scope, datum: str | None = None) -> Value:
+        """The value; ``datum`` is what a literal becomes the value of."""
+        ...
+
+    def number(self, expression: Expression, scope: Scope, use: str) -> float:
+        """A known number; ``use`` says in messages what needs it."""
+        ...
+
+
 class Names:
     """Reads data.
 
     Args:
-        evaluator: for indices and initial values.
+        expressions: for indices and initial values.
         data: where names are found.
+        course: answers what only the controller knows.
         position: where the robot is: ``pose`` or ``axes``.
+        advance: is stopped by reading some system variables.
     """
 
-    def __init__(self, evaluator: Evaluator, data: Data, position: Position) -> None:
-        self._evaluator = evaluator
+    def __init__(
+        self,
+        expressions: Expressions,
+        data: Data,
+        course: Course,
+        position: Position,
+        advance: AdvanceRun,
+    ) -> None:
+        self._expressions = expressions
         self._data = data
+        self._course = course
         self._position = position
+        self._advance = advance
 
     def value(self, node: Name, scope: Scope) -> Value:
         """The value of a datum or of a part of it.
@@ -50,7 +71,7 @@ class Names:
         """
         position = POSITION.get(node.name)
         if node.name in STOPS_WHEN_READ:
-            self._evaluator.stopped = True
+            self._advance.stopped = True
         if node.name in OUTPUTS:
             return self._output(node, scope)
         if node.name in NEVER_KNOWN:
@@ -98,7 +119,7 @@ class Names:
         """What the program has set it to; a user's answers in turn come first."""
         path = self.path(node, scope)
         held = None
-        if not self._evaluator.course.changing(spelled(node.text, path)):
+        if not self._course.changing(spelled(node.text, path)):
             held = self._data.outputs.value(spelled(OUTPUTS[node.name], path))
         return self._undeclared(node, path) if held is None else held
 
@@ -108,9 +129,9 @@ class Names:
         assert cell.signal is not None
         first, last = cell.signal
         if first.name in STOPS_WHEN_READ:
-            self._evaluator.stopped = True
+            self._advance.stopped = True
         value: Value | None = None
-        if first.name in OUTPUTS and not self._evaluator.course.changing(node.text):
+        if first.name in OUTPUTS and not self._course.changing(node.text):
             value = self._whole(first, last, scope, self._data.outputs.value)
         if value is None:
             value = self._answer(node, ())
@@ -227,7 +248,7 @@ class Names:
         Raises:
             SourceError: it is none.
         """
-        value = self._evaluator.number(expression, scope, "an index")
+        value = self._expressions.number(expression, scope, "an index")
         if value != int(value):
             raise SourceError(f"an index is a whole number, not {value:g}", expression.span)
         return int(value)
@@ -240,8 +261,8 @@ class Names:
         return cell.value
 
     def _initial(self, pending: Pending, type_name: str, label: str, shipped: bool) -> Value:
-        scope = Scope("a data list", pending.home)
-        value = self._evaluator.evaluate(pending.expression, scope, label)
+        scope = Scope("a data list", self._data.library.home(pending.home))
+        value = self._expressions.evaluate(pending.expression, scope, label)
         if shipped:
             value = unplaced(value)
         return self.converted(value, type_name, label, shipped, pending.expression.span)
@@ -261,10 +282,10 @@ class Names:
         return made
 
     def _answer(self, node: Name, path: Path) -> Value | None:
-        answers = self._evaluator.course.answers
+        answers = self._course.answers
         if not answers.values and not answers.sequences:
             return None
-        answer = self._evaluator.course.value(spelled(node.text, path))
+        answer = self._course.value(spelled(node.text, path))
         return None if answer is None else self.answered(answer)
 
     def answered(self, answer: Answer) -> Value:

@@ -5,20 +5,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from ....core.errors import SourceError
 from ....core.source.text import SourceText
 from .control import inner_blocks
 from .cursor import Cursor
+from .data import Data
 from .lexer import tokenize
+from .names import Names
 from .scope import Scope
 from .statements import parse_statement
 from .syntax import Assign, Block, Invoke, Statement
 from .terms import Call, Name
-
-if TYPE_CHECKING:
-    from .interpreter import Interpreter
 
 _HANDLER = re.compile(r"\bDO\s+(.+)", re.IGNORECASE | re.DOTALL)
 _PRIORITY = re.compile(r"\bPRIO\s*=.*", re.IGNORECASE | re.DOTALL)
@@ -31,16 +29,18 @@ class OutputWrites:
     """Follows such writes.
 
     Args:
-        run: the program run.
+        data: of the program, with what its outputs hold.
+        names: finds the outputs that a name stands for.
     """
 
-    def __init__(self, run: Interpreter) -> None:
-        self._run = run
+    def __init__(self, data: Data, names: Names) -> None:
+        self._data = data
+        self._names = names
         self._coming: list[Written] = []
 
     def pulsed(self, call: Call, scope: Scope) -> None:
         """``PULSE($OUT[1],TRUE,0.5)``, or another call that may write outputs."""
-        self._run.data.outputs.forget(self._by_call(call, scope, set()))
+        self._data.outputs.forget(self._by_call(call, scope, set()))
 
     def triggered(self, action: str, scope: Scope) -> None:
         """A TRIGGER will carry an action out, on the way of the next motion."""
@@ -50,13 +50,13 @@ class OutputWrites:
         """A motion has been read, with what was laid on its way."""
         coming, self._coming = self._coming, []
         for written in coming:
-            self._run.data.outputs.forget(written)
+            self._data.outputs.forget(written)
 
     def interrupted(self, text: str, scope: Scope) -> None:
         """``INTERRUPT DECL 3 WHEN … DO routine()``: its routine may run at any time."""
         handler = _HANDLER.search(text)
         if handler is not None:
-            self._run.data.outputs.share(self._by_action(handler[1], scope))
+            self._data.outputs.share(self._by_action(handler[1], scope))
 
     def written(self, block: Block, scope: Scope) -> Written:
         """The outputs that a block, and what it calls, may write."""
@@ -100,15 +100,15 @@ class OutputWrites:
         if call.name == "pulse":
             first = call.arguments[0] if call.arguments else None
             return self._named(first, scope) if isinstance(first, Name) else None
-        found = self._run.library.routine(call.name, scope.module)
+        found = self._data.library.routine(call.name, scope.module)
         if found is None:
             return None
         routine, module = found
-        self._run.data.declare_module(module)
+        self._data.declare_module(module)
         return self._by_block(routine.body, Scope(routine.text, module), reached)
 
     def _named(self, target: Name, scope: Scope) -> Written:
         try:
-            return set(self._run.evaluator.names.outputs(target, scope))
+            return set(self._names.outputs(target, scope))
         except SourceError:  # an index that only the run knows
             return None

@@ -33,9 +33,9 @@ from ....core.errors import Note, SourceError, Span, UnknownNameError
 from ....core.program.program import Program
 from ....core.source.collection import collection_paused
 from ....core.source.reading import Files, ReadOptions
-from ..language import COMPANIONS
 from .interpreter import Interpreter
 from .library import Library, suffix_of
+from .suffixes import COMPANIONS
 from .syntax import Routine
 
 

@@ -5,14 +5,11 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from ....core.errors import Span
+from .syntax import DataList, Routine
 from .terms import Name
 from .values import Pending, Value
-
-if TYPE_CHECKING:
-    from .library import Module
 
 
 @dataclass(eq=False, slots=True)
@@ -36,6 +33,26 @@ class Cell:
     signal: tuple[Name, Name | None] | None = None
     shipped: bool = False
     assigned: bool = False
+
+
+@dataclass(eq=False)
+class Module:
+    """A ``.src`` with its ``.dat``.
+
+    Args:
+        stem: file name without folder and suffix, lower case.
+        routines: of the file, by lower-case name.
+        lists: data lists, not yet declared.
+        cells: data, once declared.
+        shared: names of the data that are declared GLOBAL.
+    """
+
+    stem: str
+    routines: dict[str, Routine] = field(default_factory=dict)
+    lists: list[DataList] = field(default_factory=list)
+    cells: dict[str, Cell] = field(default_factory=dict)
+    shared: set[str] = field(default_factory=set)
+    declared: bool = False
 
 
 @dataclass(eq=False, slots=True)

@@ -8,7 +8,6 @@ from ....core.errors import Span
 from .cursor import Cursor
 from .declarations import parse_declaration, parse_enum, parse_signal, parse_struc
 from .expressions import parse_expression, parse_name, parse_name_or_call
-from .instructions import ASYNCHRONOUS
 from .lexer import END, ENUM, NAME, NEWLINE, words
 from .syntax import (
     Assign,
@@ -40,6 +39,8 @@ from .terms import Call, Expression
 CLOSING = words("else endif endfor endwhile until endloop case default endswitch end endfct enddat")
 APPROXIMATIONS = frozenset({"c_ptp", "c_dis", "c_ori", "c_vel", "c_spl"})
 MOTIONS = words("ptp ptp_rel lin lin_rel circ circ_rel sptp sptp_rel slin slin_rel scirc scirc_rel")
+ASYNCHRONOUS = frozenset({"asyptp", "asycont", "asystop", "asycancel"})
+"""First words of statements that drive axes beside the program: ``ASYPTP {E1 30}``."""
 ARCS = frozenset({"circ", "circ_rel", "scirc", "scirc_rel"})
 
 

@@ -11,15 +11,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from ....core.errors import SourceError, Span
 from ....core.source.text import SourceText
+from .placement import Placement
 from .terms import Expression
-
-if TYPE_CHECKING:
-    from .library import Module
-    from .placement import Placement
 
 
 class Root:
@@ -176,11 +172,11 @@ class Pending:
 
     Args:
         expression: gives the value.
-        home: the module whose names it uses.
+        home: stem of the module whose names it uses.
     """
 
     expression: Expression
-    home: Module
+    home: str
 
 
 Value = bool | int | float | str | Choice | Struct | Array | Unknown
