@@ -336,7 +336,8 @@ def motion_layers(files: Iterable[Path]) -> dict[str, MotionLayer]:
     """What is known of how single robots are driven, each read when it is asked for.
 
     Args:
-        files: TOML files (`core.motion.model`); a robot is called as its file, without suffix.
+        files: TOML files (see `flyby.core.motion.model`); a robot is called as its
+            file, without suffix.
     """
     return {path.stem: _layer(path) for path in sorted(files)}
 

@@ -1,8 +1,9 @@
 """Compiled, verified enclosures of q(σ) where inverse kinematics makes it.
 
-About the configuration at an interval's middle a tube is found that q(σ) does not leave
-(`flyby.core.motion.branch`). It holds one branch of inverse kinematics: configurations at the
-interval's ends that are found in it are that branch's own, and neighbouring intervals join up.
+About the configuration at an interval's middle a tube is found that q(σ) does not leave (see
+`flyby.core.motion.branch`). It holds one branch of inverse kinematics:
+configurations at the interval's ends that are found in it are that branch's own, and neighbouring
+intervals join up.
 Second and third derivatives follow from J q'' = A − J̇ q' and one derivative more.
 
 All derivatives here are by t = (σ − σ_m) / half in [−1, 1].

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from .between import BETWEEN, row_between
 from .controller import Run
 from .limits import CENTRIPETAL, PathLimits
-from .stamping import CEILING, NEXT
+from .stamping_kernels import CEILING, NEXT
 from .superposed import ZONE
 
 STOP, CORNER = "stop", "corner"

@@ -1,7 +1,8 @@
 """Compiled bounds of a curve's derivatives on an interval of σ.
 
-A curve is v(s(σ)), see `flyby.core.motion.curves`. On [s_a, s_b] the derivatives of v by s are
-bounded from its Taylor expansion about a point within, those of s by σ from the rational map
+A curve is v(s(σ)), see `flyby.core.motion.curves`. On [s_a, s_b] the derivatives
+of v by s are bounded from its Taylor expansion about a point within, those of s by σ from the
+rational map
 
     F(s) = (s² + d₀ s (1 − s)) / (1 + e s (1 − s)),    e = d₀ + d₁ − 2,
     F'(s) = (d₀ (1 − s)² + 2 s (1 − s) + d₁ s²) / (1 + e s (1 − s))² > 0,

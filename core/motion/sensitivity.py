@@ -19,8 +19,9 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from .path import Path
+from .reach import Reach
 from .segments import JOINT_SEGMENT
-from .zones import POSITION, STOP, Reach
+from .zones import POSITION, STOP
 
 _GRID, _ZOOMS = 41, 3
 """Shares that are looked at, and how often more closely."""

@@ -35,8 +35,6 @@ from numpy.typing import NDArray
 from ..arrays import FloatArray, IntArray
 from ..errors import InputError, MotionError
 from . import stamping_kernels as kernels
-from .stamping_kernels import CEILING as CEILING
-from .stamping_kernels import NEXT as NEXT
 
 # A boundary speed may miss what is possible by rounding.
 BOUNDARY_TOLERANCE = 1e-9

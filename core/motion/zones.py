@@ -20,8 +20,7 @@ from ..program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction, 
 from ..robot.chain import Chain
 from .joint_lines import first_exit, tcp_apart
 from .model import MotionModel, OrientationZone, Overlap, Pace, Space
-from .reach import Part, least
-from .reach import Reach as Reach
+from .reach import Part, Reach, least
 from .segments import ARC_SEGMENT, JOINT_SEGMENT, EndsGradient, Segments, SegmentsGradient
 from .sharp_corners import share_kept
 

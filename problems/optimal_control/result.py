@@ -111,7 +111,7 @@ class Optimum:
 
 
 def energy_of(task: Task, motion: Motion, consumption: Consumption = SQUARED_TORQUE) -> float:
-    """What all axes consume together, as `core.motion.energy` has it of a program."""
+    """What all axes consume together, as `flyby.core.motion.energy` has it of a program."""
     weights, torque, rate = _driven(task, motion)
     return float(weights @ consumption.total(consumption.powers(torque, rate)))
 

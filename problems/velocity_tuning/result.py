@@ -20,7 +20,7 @@ class Way(StrEnum):
     """How a motion was found."""
 
     SWEEPS = "sweeps"
-    """One sweep back and one forth (`core.motion.stamping`)."""
+    """One sweep back and one forth (`flyby.core.motion.stamping`)."""
     CONVEX = "convex"
     """One second-order cone program."""
     SEQUENTIAL = "sequential"

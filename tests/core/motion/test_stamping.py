@@ -10,7 +10,6 @@ from scipy.optimize import linprog
 
 from flyby.core.errors import InputError
 from flyby.core.motion.stamping import (
-    CEILING,
     Limits,
     Stamp,
     StampingError,
@@ -18,7 +17,7 @@ from flyby.core.motion.stamping import (
     joint_limits,
     stamp,
 )
-from flyby.core.motion.stamping_kernels import SLOWDOWN
+from flyby.core.motion.stamping_kernels import CEILING, SLOWDOWN
 
 RATES = ("a", "b", "lower", "upper")
 
