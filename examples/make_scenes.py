@@ -95,7 +95,7 @@ def write_meshes(scene: Scene, folder: Path) -> None:
 
 
 def cell_text(scene: Scene, meshes: str) -> str:
-    """The cell file; see ``docs/cell.md``."""
+    """The cell file; see ``docs/reference/cell.md``."""
     cell = scene.cell
     lines = [
         "# Written by examples/make_scenes.py.",

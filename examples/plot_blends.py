@@ -1,6 +1,6 @@
-"""Draws docs/blends.png: one corner in the blends that `flyby` knows, and how fast each is driven.
+"""Draws docs/pictures/blends.png: one corner in each blend, and how fast.
 
-Run it as ``python examples/plot_blends.py docs/blends.png``.
+Run it as ``python examples/plot_blends.py docs/pictures/blends.png``.
 """
 
 from __future__ import annotations

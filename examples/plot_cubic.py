@@ -1,10 +1,10 @@
-"""Draws docs/cubic.png: the cubic problem solved by SQP (above) and by a log barrier (below).
+"""Draws docs/pictures/cubic.png: the cubic problem by SQP (above), by a log barrier (below).
 
 After figures 2.3 and 2.4 of the thesis that `flyby.problems.textbook` names. Above: some
 iterations, each with the constraints' linearisations there (dotted) and the step that follows.
 Below: level curves of the barrier function for falling weights, with the minimisers so far.
 
-Run it as ``python examples/plot_cubic.py docs/cubic.png``.
+Run it as ``python examples/plot_cubic.py docs/pictures/cubic.png``.
 """
 
 from __future__ import annotations

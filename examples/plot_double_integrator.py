@@ -1,11 +1,11 @@
-"""Draws docs/double_integrator.png: minimum time from (4, 1) to rest, discretised and exact.
+"""Draws docs/pictures/double_integrator.png: least time from (4, 1) to rest.
 
 After figures 2.5 and 2.6 of the thesis that `flyby.problems.textbook` names. Left: 40 nodes in the
 thesis's discretisation over the exact solution. Middle: the same in the plane of place and speed,
 with the curve on which the force changes its sign. Right: how both discretisations' times approach
 the exact one.
 
-Run it as ``python examples/plot_double_integrator.py docs/double_integrator.png``.
+Run it as ``python examples/plot_double_integrator.py docs/pictures/double_integrator.png``.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/optimal_control.md: joints, speeds and torques against their limits,
+"""Draws the pictures of docs/guides/free_motion.md: joints, speeds and torques against limits,
 and the TCP's trace in the cell.
 
     python examples/plot_optimal_control.py [FOLDER]

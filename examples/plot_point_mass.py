@@ -1,4 +1,4 @@
-"""Draws docs/point_mass.png: the point mass in the maze, jumped, guided, and proven.
+"""Draws docs/pictures/point_mass.png: the point mass in the maze, jumped, guided, and proven.
 
 After figures 3.5 and 3.6 of the thesis that `flyby.problems.textbook` names. Above: circles avoided
 at the nodes only, from the straight line (dotted): whatever the number of nodes, the wall is passed
@@ -6,7 +6,7 @@ between two of them. Below: the thesis's remedy, a guess along a free way (dotte
 hold all along each interval. "Proven free" is to a depth of 1e-4. A cross marks where the proof
 found the motion deeper in a circle.
 
-Run it as ``python examples/plot_point_mass.py docs/point_mass.png``.
+Run it as ``python examples/plot_point_mass.py docs/pictures/point_mass.png``.
 """
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def load_cell(path: str | Path, registry: Registry) -> Cell:
-    """Read a cell file; see ``docs/cell.md`` for its keys.
+    """Read a cell file; see ``docs/reference/cell.md`` for its keys.
 
     Args:
         path: the TOML file; meshes are named relative to it.

@@ -1,6 +1,6 @@
 """Proof that a driven program keeps a clearance, between samples too.
 
-See docs/certificate.md for what is proven and how.
+See docs/reference/certificate.md for what is proven and how.
 """
 
 from __future__ import annotations

@@ -74,7 +74,7 @@ def translate(
     target: tuple[Vendor, Robot],
     options: TranslationOptions | None = None,
 ) -> Translation:
-    """A program for another robot, by the rules of ``docs/translation.md``.
+    """A program for another robot, by the rules of ``docs/guides/translation.md``.
 
     Args:
         program: for the source robot.

@@ -4,7 +4,7 @@ stood in the way.
 After S. Björkenstam, D. Gleeson, R. Bohlin, J. S. Carlson and B. Lennartson, "Energy Efficient and
 Collision Free Motion of Industrial Robots using Optimal Control" (CASE 2013), and D. Gleeson,
 "Trajectory Optimization including Robot Controller Emulation" (thesis, Chalmers 2025), chapters 2
-and 3. What it does and what it reaches stands in docs/optimal_control.md.
+and 3. What it does and what it reaches stands in docs/guides/free_motion.md.
 """
 
 from .audit import Audit

@@ -4,7 +4,7 @@ It poses what `flyby.problems.waypoints` solves through the emulator in another 
 nonlinear program over path parameters, durations, via points, radii, lengths of legs and positions
 of the TCP (D. Gleeson et al., "Towards Energy Optimization using Trajectory Smoothing and
 Automatic Code Generation for Robotic Assembly", Procedia CIRP 44 (2016), equations 2 to 8). What
-was mended in the equations, and how the two compare, stands in docs/transcription.md.
+was mended in the equations, and how the two compare, stands in docs/measurements/transcription.md.
 """
 
 from .guess import initial_guess

@@ -155,7 +155,7 @@ def test_a_program_without_a_log_is_asked_for_it(flyby: Flyby) -> None:
 
 
 def test_options_are_documented(flyby: Flyby) -> None:
-    text = (ROOT / "docs" / "cli.md").read_text("utf-8")
+    text = (ROOT / "docs" / "reference" / "cli.md").read_text("utf-8")
     section = text[text.index("## flyby compare") : text.index("## Answers")]
     for option in ("--columns", "--start", "--plot", "--json", "--force", "--cell", "--entry"):
         assert option in section

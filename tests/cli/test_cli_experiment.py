@@ -168,7 +168,7 @@ def test_a_cell_and_a_posture_are_taken(flyby: Flyby, tmp_path: Path) -> None:
 
 
 def test_options_are_documented() -> None:
-    text = (ROOT / "docs" / "cli.md").read_text("utf-8")
+    text = (ROOT / "docs" / "reference" / "cli.md").read_text("utf-8")
     section = text[text.index("## flyby experiment") : text.index("## flyby compare")]
     import re
 

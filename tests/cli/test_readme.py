@@ -12,7 +12,7 @@ from typer.testing import Result
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text("utf-8")
-DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 
 def test_the_python_example_runs(
@@ -67,13 +67,17 @@ def test_there_is_one_test_command_for_ci() -> None:
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
 def test_links_lead_somewhere(document: Path) -> None:
-    links = re.findall(r"\]\(([^)#:]+)\)", document.read_text("utf-8"))
-    for link in links:
-        assert (document.parent / link).exists(), link
+    for link, anchor in re.findall(r"\]\(([^)#:]*)#?([^)#:]*)\)", document.read_text("utf-8")):
+        page = document.parent / link if link else document
+        assert page.exists(), link
+        if anchor:
+            headings = re.findall(r"(?m)^#+ (.*)$", page.read_text("utf-8"))
+            anchors = [re.sub(r"[^\w\- ]", "", text.lower()).replace(" ", "-") for text in headings]
+            assert anchor in anchors, f"{link}#{anchor}"
 
 
 def test_the_command_line_is_documented(flyby: Callable[..., Result]) -> None:
-    text = (ROOT / "docs" / "cli.md").read_text("utf-8")
+    text = (ROOT / "docs" / "reference" / "cli.md").read_text("utf-8")
     for command in (
         "emulate",
         "check",

@@ -10,16 +10,18 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SNIPPETS = {
     f"{page}-{k}": text
-    for page in ("optimal_control", "velocity_tuning", "energy")
+    for page in ("free_motion", "velocity_tuning", "energy")
     for k, text in enumerate(
-        re.findall(r"```python\n(.*?)```", (ROOT / f"docs/{page}.md").read_text("utf-8"), re.DOTALL)
+        re.findall(
+            r"```python\n(.*?)```", (ROOT / f"docs/guides/{page}.md").read_text("utf-8"), re.DOTALL
+        )
     )
 }
 
 
 def test_every_page_shows_something() -> None:
     assert {name.split("-")[0] for name in SNIPPETS} == {
-        "optimal_control",
+        "free_motion",
         "velocity_tuning",
         "energy",
     }

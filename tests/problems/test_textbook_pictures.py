@@ -1,4 +1,4 @@
-"""The textbook problems' pictures can be drawn, and are shown in docs/sqp.md."""
+"""The textbook problems' pictures can be drawn, and are shown in docs/reference/sqp.md."""
 
 from __future__ import annotations
 
@@ -20,5 +20,7 @@ def test_the_picture_can_be_drawn(name: str, tmp_path: Path) -> None:
     example = runpy.run_path(str(ROOT / "examples" / f"plot_{name}.py"))
     example["main"](str(picture), **ARGUMENTS[name])
     assert picture.read_bytes()[:4] == b"\x89PNG"
-    assert f"({name}.png)" in (ROOT / "docs" / "sqp.md").read_text("utf-8")
-    assert (ROOT / "docs" / f"{name}.png").exists()
+    assert f"pictures/{name}.png)" in (ROOT / "docs" / "measurements" / "solver.md").read_text(
+        "utf-8"
+    )
+    assert (ROOT / "docs" / "pictures" / f"{name}.png").exists()

@@ -1,4 +1,4 @@
-"""docs/motion.md says what the code and the vendors' files say."""
+"""docs/reference/motion.md says what the code and the vendors' files say."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from flyby.core.motion.model import LineTurn, OrientationZone, Overlap, Pace
 from flyby.core.registry import find_vendor
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "motion.md").read_text("utf-8")
+PAGE = (ROOT / "docs" / "reference" / "motion.md").read_text("utf-8")
 ROWS = {
     "blend of the TCP": "blend.tcp.kind",
     "blend of joints": "blend.joint.kind",
@@ -82,4 +82,4 @@ def test_the_figure_can_be_drawn(tmp_path: Path) -> None:
     script = ROOT / "examples" / "plot_blends.py"
     subprocess.run([sys.executable, str(script), str(tmp_path / "blends.png")], check=True)
     assert (tmp_path / "blends.png").read_bytes()[:4] == b"\x89PNG"
-    assert "blends.png" in PAGE and (ROOT / "docs" / "blends.png").exists()
+    assert "blends.png" in PAGE and (ROOT / "docs" / "pictures" / "blends.png").exists()

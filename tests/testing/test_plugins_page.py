@@ -1,4 +1,4 @@
-"""Every block of docs/plugins.md is executed, in its order, as one plugin."""
+"""Every block of docs/guides/plugins.md is executed, in its order, as one plugin."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from flyby.core.registry import Registry
 from flyby.testing.conformance import VendorConformance
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "plugins.md").read_text("utf-8")
+PAGE = (ROOT / "docs" / "guides" / "plugins.md").read_text("utf-8")
 
 
 def blocks(language: str) -> list[str]:
@@ -31,7 +31,7 @@ def page() -> ModuleType:
     module = ModuleType("flyby_acme")
     module.__file__ = str(ROOT / "examples" / "fourth_vendor" / "page.py")
     for block in blocks("python"):
-        exec(compile(block, "docs/plugins.md", "exec"), vars(module))
+        exec(compile(block, "docs/guides/plugins.md", "exec"), vars(module))
     return module
 
 

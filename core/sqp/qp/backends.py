@@ -1,6 +1,6 @@
 """The back ends by name.
 
-Clarabel is the default: see docs/sqp.md for the measurements behind it.
+Clarabel is the default: see docs/reference/sqp.md for the measurements behind it.
 """
 
 from __future__ import annotations

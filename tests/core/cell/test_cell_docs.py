@@ -10,7 +10,7 @@ import trimesh
 from flyby.core.cell.file import load_cell
 from flyby.core.registry import installed
 
-PAGE = Path(__file__).parents[3] / "docs" / "cell.md"
+PAGE = Path(__file__).parents[3] / "docs" / "reference" / "cell.md"
 
 
 def test_the_documented_cell_can_be_read(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-PAGE = Path(__file__).parents[3] / "docs" / "collision.md"
+PAGE = Path(__file__).parents[3] / "docs" / "reference" / "collision.md"
 CELL = """
 robot = "ur/ur5"
 

@@ -1,4 +1,4 @@
-"""docs/check.md lists the rules that there are."""
+"""docs/guides/check.md lists the rules that there are."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 from flyby.core.lint.check import rules
 
-PAGE = (Path(__file__).parents[3] / "docs" / "check.md").read_text("utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "guides" / "check.md").read_text("utf-8")
 
 
 def test_the_page_lists_every_rule_as_it_is() -> None:

@@ -1,4 +1,4 @@
-"""Each rule of docs/translation.md by a small program."""
+"""Each rule of docs/guides/translation.md by a small program."""
 
 from __future__ import annotations
 
