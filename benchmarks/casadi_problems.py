@@ -13,7 +13,7 @@ from banded import BLOCK, EFFORT, RIPPLE, STATES, WAVES, Banded
 
 from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP
-from flyby.problems.textbook import Avoidance, DoubleIntegrator, PointMass, Scheme
+from flyby.validation.textbook import Avoidance, DoubleIntegrator, PointMass, Scheme
 
 Expressions = dict[str, Any]
 

@@ -15,11 +15,11 @@ from collections.abc import Iterator
 
 from report import Figure, cpu_seconds, main
 
-from flyby.core.collision.certificate import certify, certify_stretch, scenes_of
+from flyby.core.collision.proof.certificate import certify, certify_stretch, scenes_of
 from flyby.core.program.zone import Radius
-from flyby.problems.scenes.clutter import clutter_100
-from flyby.problems.scenes.scene import with_zone
-from flyby.problems.scenes.two_joints import two_joints
+from flyby.validation.scenes.clutter import clutter_100
+from flyby.validation.scenes.scene import with_zone
+from flyby.validation.scenes.two_joints import two_joints
 
 CASES = {"two-joints": two_joints, "clutter-100": clutter_100}
 ZONE = 0.01

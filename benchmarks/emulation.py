@@ -21,8 +21,8 @@ from pathlib import Path
 import numpy as np
 from report import Figure, cpu_seconds, main
 
-from flyby.core.motion.controller import Controller
-from flyby.core.motion.derivatives import Derivatives
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.gradients.derivatives import Derivatives
 from flyby.core.program.move import Move, MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -40,7 +40,7 @@ HALF = np.array([0.3, 0.5, 0.3])
 TILT = 0.25  # rad from straight down
 SECONDS = """
 import time; begin = time.perf_counter()
-import flyby.core.motion.controller
+import flyby.core.motion.emulator.controller
 imported = time.perf_counter() - begin
 import sys; sys.path.insert(0, {folder!r})
 import emulation

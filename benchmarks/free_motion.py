@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from flyby.core.arrays import FloatArray
-from flyby.core.collision.scene import CollisionScene
+from flyby.core.collision.scene.scene.scene import CollisionScene
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.robot.inertia import carried_inertia
-from flyby.problems.optimal_control import Surroundings, Task
-from flyby.problems.scenes.scene import Scene
+from flyby.problems.free_motion.optimal_control import Surroundings, Task
+from flyby.validation.scenes.scene import Scene
 
 Question = tuple[Task, Surroundings, list[FloatArray]]
 """A task, what to keep clear of, and the corners of a free path on its only leg."""

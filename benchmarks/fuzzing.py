@@ -27,9 +27,9 @@ from typing import Any
 
 from flyby.core.errors import FlybyError
 from flyby.core.program.program import Program
-from flyby.core.source.patching import reading_of
+from flyby.core.source.patch.edits import reading_of
 from flyby.core.source.reading import Reading
-from flyby.core.source.text import SourceFile, decode
+from flyby.core.source.text.files.files import SourceFile, decode
 from flyby.testing.hostile import HUGE, NUMBER, ODD, OPENERS
 
 SECONDS = 1.0

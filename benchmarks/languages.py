@@ -29,13 +29,13 @@ from fuzzing import Seeds, failures, told
 from report import Figure, cpu_seconds, main
 
 from flyby.core.errors import FlybyError
-from flyby.core.motion.controller import Controller
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import Opaque
 from flyby.core.program.program import Program
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.model import Robot
-from flyby.core.source.answers import Answers, load_answers
-from flyby.core.source.patching import TOLERANCE, difference, reading_of
+from flyby.core.source.execution.answers import Answers, load_answers
+from flyby.core.source.patch.edits import TOLERANCE, difference, reading_of
 from flyby.core.vendor import Sources, Vendor
 
 TESTS = Path(__file__).parents[1] / "tests"

@@ -29,13 +29,13 @@ from free_motion import Question, configurations, questions
 from ipopt import Ipopt
 from report import Figure, main
 
-from flyby.core.collision.certificate import scenes_of
-from flyby.core.motion.consumption import SQUARED_TORQUE
+from flyby.core.collision.proof.certificate import scenes_of
+from flyby.core.motion.model.motion_model.consumption import SQUARED_TORQUE
 from flyby.core.program.target import JointTarget
 from flyby.core.registry import find_robot
 from flyby.core.robot.inertia import carried_inertia
 from flyby.core.sqp import solve
-from flyby.problems.optimal_control import (
+from flyby.problems.free_motion.optimal_control import (
     ControlLimits,
     Effort,
     Objective,
@@ -46,16 +46,19 @@ from flyby.problems.optimal_control import (
     energy_of,
     optimize,
 )
-from flyby.problems.optimal_control.limits import Limits
-from flyby.problems.optimal_control.sample_rows import EnergyTerm
-from flyby.problems.optimal_control.sampled import Plant, TorqueField
-from flyby.problems.optimal_control.scheme import Scheme
-from flyby.problems.optimal_control.start import Polyline, first_guess
-from flyby.problems.optimal_control.transcription import Bounds, Transcription
-from flyby.problems.planning.plan import PlanningOptions, plan_path
-from flyby.problems.scenes.clutter import clutter
-from flyby.problems.scenes.stud_welding import stud_welding
-from flyby.problems.scenes.two_joints import two_joints
+from flyby.problems.free_motion.optimal_control.motion.first_guess import Polyline, first_guess
+from flyby.problems.free_motion.optimal_control.motion.scheme import Scheme
+from flyby.problems.free_motion.optimal_control.task.limits import Limits
+from flyby.problems.free_motion.optimal_control.task.sampled import Plant, TorqueField
+from flyby.problems.free_motion.optimal_control.transcription.sample_rows import EnergyTerm
+from flyby.problems.free_motion.optimal_control.transcription.transcription import (
+    Bounds,
+    Transcription,
+)
+from flyby.problems.free_motion.planning.plan import PlanningOptions, plan_path
+from flyby.validation.scenes.clutter import clutter
+from flyby.validation.scenes.stud_welding import stud_welding
+from flyby.validation.scenes.two_joints import two_joints
 
 CASES = ("2dof", "stud", "6dof-clutter", "6dof-clutter-speeds", "6dof-free", "6dof-free-energy")
 

@@ -35,23 +35,23 @@ from flyby.core.cell.cell import Cell
 from flyby.core.program.tool import WorkObject
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
-from flyby.problems.paint.coat import Coat
-from flyby.problems.paint.deposition import Deposition
+from flyby.problems.paint.coating.coat import Coat
+from flyby.problems.paint.coating.deposition import Deposition
 from flyby.problems.paint.executable.execute import execute
 from flyby.problems.paint.executable.station import Station
 from flyby.problems.paint.executable.writing import DriveOptions
-from flyby.problems.paint.fender import fender
-from flyby.problems.paint.footprint import Footprint, ring
 from flyby.problems.paint.initial.curve import initial_curve
 from flyby.problems.paint.initial.plan import SweepPlan
-from flyby.problems.paint.optimize import optimize
-from flyby.problems.paint.optimize_options import OuterLoop, PaintLimits
 from flyby.problems.paint.painting import Judge, Painting, Stage, Wishes, paint
-from flyby.problems.paint.part import Part
-from flyby.problems.paint.reference import Reference
-from flyby.problems.paint.speeds import best_speeds
-from flyby.problems.paint.surfaces import plate, saddle, sloped, wavy
-from flyby.problems.paint.trajectory import PaintTrajectory
+from flyby.problems.paint.spray.footprint import Footprint, ring
+from flyby.problems.paint.spray.trajectory import PaintTrajectory
+from flyby.problems.paint.surface.part import Part
+from flyby.problems.paint.thickness.optimize import optimize
+from flyby.problems.paint.thickness.options import OuterLoop, PaintLimits
+from flyby.problems.paint.thickness.reference import Reference
+from flyby.problems.paint.thickness.speeds import best_speeds
+from flyby.validation.surfaces.fender import fender
+from flyby.validation.surfaces.sheets import plate, saddle, sloped, wavy
 
 TARGET, MICRON, MILLILITRE = 50e-6, 1e-6, 1e-6
 PLAN = SweepPlan(0.18)

@@ -16,21 +16,21 @@ from report import Figure
 
 from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP
-from flyby.problems.paint.coat import coat
-from flyby.problems.paint.deposition import Deposition
-from flyby.problems.paint.footprint import ring
+from flyby.problems.paint.coating.coat import coat
+from flyby.problems.paint.coating.deposition import Deposition
 from flyby.problems.paint.initial.curve import initial_curve
 from flyby.problems.paint.initial.plan import SweepPlan
-from flyby.problems.paint.optimize import optimize
-from flyby.problems.paint.optimize_constraints import PaintConstraints
-from flyby.problems.paint.optimize_objective import PaintObjective
-from flyby.problems.paint.optimize_options import OuterLoop, PaintLimits, PaintWeights
-from flyby.problems.paint.optimize_round import TOLERANCE, Candidate, Round
-from flyby.problems.paint.optimize_variables import Variables
-from flyby.problems.paint.reference import Reference
-from flyby.problems.paint.robust import NO_ERRORS, scenarios
-from flyby.problems.paint.surfaces import plate
-from flyby.problems.paint.trajectory import PaintTrajectory
+from flyby.problems.paint.spray.footprint import ring
+from flyby.problems.paint.spray.trajectory import PaintTrajectory
+from flyby.problems.paint.thickness.constraints import PaintConstraints
+from flyby.problems.paint.thickness.objective import PaintObjective
+from flyby.problems.paint.thickness.optimize import optimize
+from flyby.problems.paint.thickness.options import OuterLoop, PaintLimits, PaintWeights
+from flyby.problems.paint.thickness.reference import Reference
+from flyby.problems.paint.thickness.robust import NO_ERRORS, scenarios
+from flyby.problems.paint.thickness.round import TOLERANCE, Candidate, Round
+from flyby.problems.paint.thickness.variables import Variables
+from flyby.validation.surfaces.sheets import plate
 
 TARGET, DISTANCE = 50e-6, 0.25
 MICRON, MILLI, MEGA = 1e-6, 1e-3, 1e6

@@ -6,7 +6,7 @@ Energy is ∫ Σ τ² dt. Weights are those of time: 1 for time alone, 0 for ene
 as shares of what the baseline takes. The baseline is the papers': the program as a path planner
 gives it, piecewise linear with a stop at every via point, passed as fast as the joints can.
 
-``2dof`` and ``stud`` are reference scenes of `flyby.problems.scenes` with blends of second order;
+``2dof`` and ``stud`` are reference scenes of `flyby.validation.scenes` with blends of second order;
 figures of ``stud`` are sums over its 24 motions.
 
 - ``baseline_time_s``, and ``baseline_energy``, N² m² s.
@@ -48,21 +48,17 @@ from free_motion import questions
 from report import Figure, main
 
 from flyby.core.arrays import FloatArray
-from flyby.core.collision.certificate import certify, scenes_of
-from flyby.core.motion.controller import Controller
+from flyby.core.collision.proof.certificate import certify, scenes_of
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_vendor
-from flyby.problems.energy import Front, Goal, Point, Scope, Task, optimize_energy, pareto
-from flyby.problems.optimal_control import Effort as FreeEffort
-from flyby.problems.optimal_control import Objective as FreeObjective
-from flyby.problems.optimal_control import Optimum, energy_of, optimize
-from flyby.problems.optimal_control import Task as FreeTask
-from flyby.problems.scenes.scene import SECOND_ORDER_BLENDS, UNHURRIED, Scene, with_zone
-from flyby.problems.scenes.stud_welding import stud_welding
-from flyby.problems.scenes.two_joints import two_joints
-from flyby.problems.velocity_tuning import (
+from flyby.problems.free_motion.optimal_control import Effort as FreeEffort
+from flyby.problems.free_motion.optimal_control import Objective as FreeObjective
+from flyby.problems.free_motion.optimal_control import Optimum, energy_of, optimize
+from flyby.problems.free_motion.optimal_control import Task as FreeTask
+from flyby.problems.free_motion.velocity_tuning import (
     Drive,
     FixedPath,
     Objective,
@@ -71,10 +67,14 @@ from flyby.problems.velocity_tuning import (
     tune_by_cones,
     tune_by_sweeps,
 )
-from flyby.problems.velocity_tuning import Task as TuningTask
-from flyby.problems.waypoints import Effort, optimize_waypoints
-from flyby.problems.waypoints import Task as Wishes
-from flyby.problems.zones.points import passable_stops
+from flyby.problems.free_motion.velocity_tuning import Task as TuningTask
+from flyby.problems.improve.energy import Front, Goal, Point, Scope, Task, optimize_energy, pareto
+from flyby.problems.improve.waypoints import Effort, optimize_waypoints
+from flyby.problems.improve.waypoints import Task as Wishes
+from flyby.problems.improve.zones.points import passable_stops
+from flyby.validation.scenes.scene import SECOND_ORDER_BLENDS, UNHURRIED, Scene, with_zone
+from flyby.validation.scenes.stud_welding import stud_welding
+from flyby.validation.scenes.two_joints import two_joints
 
 SCENES: dict[str, Callable[[], Scene]] = {"2dof": two_joints, "stud": stud_welding}
 WEIGHTS = (1.0, 0.5, 0.0)

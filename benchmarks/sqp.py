@@ -49,7 +49,7 @@ from report import Figure, main
 
 from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, BackendKind, Result, solve
-from flyby.problems.textbook import (
+from flyby.validation.textbook import (
     CUBIC_START,
     GARDEN,
     Avoidance,

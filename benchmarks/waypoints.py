@@ -4,7 +4,7 @@
 
 Without ``--case`` all of them, which takes some minutes.
 
-``2dof``, ``stud`` and ``clutter`` are the reference scenes of `flyby.problems.scenes` with blends
+``2dof``, ``stud`` and ``clutter`` are the reference scenes of `flyby.validation.scenes` with blends
 of second order, ``2dof-parabola`` and ``stud-with-panel`` the same with parabolas and with the
 panel as an obstacle. Times of a scene with several programs are sums.
 
@@ -21,7 +21,7 @@ panel as an obstacle. Times of a scene with several programs are sums.
 ``clearance_mm``, ``cpu_s`` (one process), and ``via_points``, beside ``via_points_given``.
 
 ``2dof-transcription`` holds the search through the emulator, from one start and in one process,
-against IPOPT on the papers' transcription of the same problem (`flyby.problems.transcription`).
+against IPOPT on the papers' transcription of the same problem (`flyby.validation.transcription`).
 
 - ``time_s``: of the motion found; IPOPT's as its own transcription says.
 - ``emulated_time_s``: by one emulator, densely sampled.
@@ -54,23 +54,29 @@ from ipopt import Ipopt, IpoptResult
 from report import Figure, main
 
 from flyby.core.arrays import FloatArray
-from flyby.core.collision.certificate import certify, scenes_of
-from flyby.core.motion.model import MotionModel
-from flyby.core.motion.pieces import Sampling
+from flyby.core.collision.proof.certificate import certify, scenes_of
+from flyby.core.motion.geometry.pieces import Sampling
+from flyby.core.motion.model.motion_model.motion_model import MotionModel
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.sqp import NLP
-from flyby.problems.scenes.clutter import clutter, clutter_100
-from flyby.problems.scenes.scene import PARABOLAS, SECOND_ORDER, SECOND_ORDER_BLENDS, Scene
-from flyby.problems.scenes.stud_welding import stud_welding, stud_welding_with_panel
-from flyby.problems.scenes.two_joints import two_joints
-from flyby.problems.solution import Solution, measure
-from flyby.problems.transcription import Grid, Optimum, optimize
-from flyby.problems.transcription import Task as TranscriptionTask
-from flyby.problems.waypoints import Effort, Task, ViaCount, optimize_waypoints, optimize_zones
-from flyby.problems.zones.maximize import maximize_zones
-from flyby.problems.zones.options import ZoneOptions
-from flyby.problems.zones.points import passable_stops
+from flyby.problems.improve.solution import Solution, measure
+from flyby.problems.improve.waypoints import (
+    Effort,
+    Task,
+    ViaCount,
+    optimize_waypoints,
+    optimize_zones,
+)
+from flyby.problems.improve.zones.maximize import maximize_zones
+from flyby.problems.improve.zones.options import ZoneOptions
+from flyby.problems.improve.zones.points import passable_stops
+from flyby.validation.scenes.clutter import clutter, clutter_100
+from flyby.validation.scenes.scene import PARABOLAS, SECOND_ORDER, SECOND_ORDER_BLENDS, Scene
+from flyby.validation.scenes.stud_welding import stud_welding, stud_welding_with_panel
+from flyby.validation.scenes.two_joints import two_joints
+from flyby.validation.transcription import Grid, Optimum, optimize
+from flyby.validation.transcription import Task as TranscriptionTask
 
 SCENES: dict[str, tuple[Callable[[], Scene], MotionModel]] = {
     "2dof": (two_joints, SECOND_ORDER_BLENDS),

@@ -26,7 +26,7 @@ from .options import (
 from .outputs import check_outputs, check_plot_name, write_all
 
 if TYPE_CHECKING:
-    from ..core.motion.model import ArcTurn
+    from ..core.motion.model.motion_model import ArcTurn
     from ..core.program.target import JointTarget
     from ..core.robot.model import Robot
     from ..core.vendor import Vendor
@@ -127,7 +127,7 @@ def _compare(
     vendor: Vendor, robot: Robot, run: LoggedRun, start: JointTarget | None
 ) -> tuple[Prediction, TimeScale | None]:
     """The log beside its emulation, and what alone explains its times."""
-    from ..core.motion.controller import Controller
+    from ..core.motion.emulator.controller import Controller
     from ..identification.logs import clean
     from ..identification.prediction import predict
     from ..identification.time_scale import time_scale

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..core.errors import Note
     from ..core.source.reading import Files
     from ..core.vendor import Vendor
-    from ..problems.solution import Solution
+    from ..problems.improve.solution import Solution
 
 Made = TypeVar("Made", bound="Solution")
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core.source.text import SourceFile
+from ..core.source.text.files import SourceFile
 from .patching import Patching
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..core.errors import InputError
-from ..core.source.options import OpaqueStyle
+from ..core.source.write.options import OpaqueStyle
 from .console import print_json, print_rich, progress
 from .loading import Source, robot_of, start_of
 from .options import (
@@ -28,7 +28,7 @@ from .options import (
 from .outputs import check_outputs, check_plot_name, write_all
 
 if TYPE_CHECKING:
-    from ..core.motion.controller import Run
+    from ..core.motion.emulator.controller import Run
     from ..core.program.program import Program
     from ..core.program.target import JointTarget
     from ..core.robot.model import Robot
@@ -125,7 +125,7 @@ def _options(style: OpaqueStyle | None) -> dict[str, str]:
 def _run(
     vendor: Vendor, robot: Robot, program: Program, start: JointTarget | None, period: float | None
 ) -> Run:
-    from ..core.motion.controller import Controller
+    from ..core.motion.emulator.controller import Controller
 
     return Controller(vendor, robot).run(program, start, period)
 

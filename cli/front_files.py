@@ -45,7 +45,7 @@ class FrontFiles:
         Raises:
             FlybyError: the language cannot say what the program holds.
         """
-        from ..core.source.patching import reading_of
+        from ..core.source.patch.edits import reading_of
 
         try:
             files = self._vendor.patch(program, self._robot, _OWN)
@@ -98,7 +98,7 @@ class FrontFiles:
 
     def _set(self, changed: Files) -> dict[str, bytes]:
         """The files of the original, of which some have changed, that run alone."""
-        from ..core.source.patching import reading_of, runnable_set
+        from ..core.source.patch.edits import reading_of, runnable_set
         from ..core.source.reading import named_apart
 
         reading = reading_of(self._original)

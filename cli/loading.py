@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..core.program.target import JointTarget
     from ..core.program.tool import Tool
     from ..core.robot.model import Robot
-    from ..core.source.answers import Answers
+    from ..core.source.execution.answers import Answers
     from ..core.vendor import Vendor
 
 
@@ -70,7 +70,7 @@ class Source:
     def _answers(self) -> Answers | None:
         if self.answers is None:
             return None
-        from ..core.source.answers import load_answers
+        from ..core.source.execution.answers import load_answers
 
         return load_answers(self.answers)
 

@@ -48,12 +48,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from ..core.cell.cell import Cell
-    from ..core.motion.controller import Controller
+    from ..core.motion.emulator.controller import Controller
     from ..core.program.move import Move
     from ..core.program.program import Program
     from ..core.program.zone import Zone
-    from ..problems.solution import Moved, Solution
-    from ..problems.waypoints import Effort, Progress, Task
+    from ..problems.improve.solution import Moved, Solution
+    from ..problems.improve.waypoints import Effort, Progress, Task
 
 COLUMNS = (
     ("move", "right"),
@@ -145,7 +145,7 @@ def optimize(
             f"--vendor {other}: its code goes beside the program's own: name a folder by --out"
         )
     with progress("reading the program") as say:
-        from ..core.motion.controller import Controller
+        from ..core.motion.emulator.controller import Controller
 
         vendor, arm = robot_of(robot, cell, motion)
         parsed = source.read(vendor, arm)
@@ -213,7 +213,7 @@ def _optimized(
     zones_only: bool,
     say: Callable[[str], None],
 ) -> Solution:
-    from ..problems.waypoints import optimize_waypoints, optimize_zones
+    from ..problems.improve.waypoints import optimize_waypoints, optimize_zones
 
     def report(state: Progress) -> None:
         gained = "" if state.best == 1.0 else f", best so far {100 * state.best:.1f} %"

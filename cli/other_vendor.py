@@ -15,7 +15,7 @@ from .translation import carried
 if TYPE_CHECKING:
     from ..core.program.program import Program
     from ..core.vendor import Sources
-    from ..problems.solution import Solution
+    from ..problems.improve.solution import Solution
     from .translation import Party
 
 

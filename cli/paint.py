@@ -27,12 +27,12 @@ from .paint_report import pictures_of, report_json, tell
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
-    from ..problems.paint.coat import Coat
+    from ..problems.paint.coating.coat import Coat
     from ..problems.paint.executable.execute import Executable
     from ..problems.paint.executable.station import Station
     from ..problems.paint.executable.writing import DriveOptions
     from ..problems.paint.painting import Painting
-    from ..problems.paint.part import Part
+    from ..problems.paint.surface.part import Part
 
 PICTURES = ("thickness.png", "curve.png", "histogram.png", "strokes.png")
 FINEST = 0.06
@@ -130,10 +130,10 @@ def paint(
     if station is not None:
         check_signals(drive, station)
     with progress("reading the part") as say:
-        from ..problems.paint.footprint_file import load_footprint
-        from ..problems.paint.loading import load_part
         from ..problems.paint.painting import Wishes
         from ..problems.paint.painting import paint as find
+        from ..problems.paint.spray.footprint_file import load_footprint
+        from ..problems.paint.surface.loading import load_part
 
         source = load_footprint(footprint)
         gun = source.footprint
@@ -189,7 +189,7 @@ def _sized(
     finest: float,
 ) -> Part:
     """The part, fine enough; coarse first, so that wrong units are told before it is cut up."""
-    from ..problems.paint.loading import PLAUSIBLE_SIZE
+    from ..problems.paint.surface.loading import PLAUSIBLE_SIZE
 
     shape = load(file, units, view, longest_edge=1e6)
     doubts = [n for n in shape.notes if "numbers are probably" in n.message]

@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from ..core.program.tool import Tool, WorkObject
     from ..problems.paint.executable.station import Station
     from ..problems.paint.executable.writing import DriveOptions
-    from ..problems.paint.footprint import Footprint
     from ..problems.paint.initial.plan import SweepPlan
-    from ..problems.paint.optimize_options import PaintLimits
-    from ..problems.paint.part import Part
-    from ..problems.paint.robust import PaintErrors
+    from ..problems.paint.spray.footprint import Footprint
+    from ..problems.paint.surface.part import Part
+    from ..problems.paint.thickness.options import PaintLimits
+    from ..problems.paint.thickness.robust import PaintErrors
 
 Choice = TypeVar("Choice", bound=StrEnum)
 _LENGTH = re.compile(r"\s*([0-9.eE+-]+)\s*(um|µm|μm|mm)\s*")
@@ -120,7 +120,7 @@ def limits_of(distance: float, speed: str, tilt: float, deviation: float) -> Pai
     Raises:
         InputError: naming the option.
     """
-    from ..problems.paint.optimize_options import PaintLimits
+    from ..problems.paint.thickness.options import PaintLimits
 
     found = values.numbers(speed, "--speed")
     if len(found) != 2 or not 0.0 < found[0] < found[1]:
@@ -158,8 +158,8 @@ def region_of(
         InputError: naming the option.
     """
     from ..problems.paint.initial.raster import view_of
-    from ..problems.paint.region import facing as facing_triangles
-    from ..problems.paint.region import within_box
+    from ..problems.paint.surface.region import facing as facing_triangles
+    from ..problems.paint.surface.region import within_box
 
     triangles = part.vertices, part.faces
     chosen = part.painted_faces
@@ -197,7 +197,7 @@ def errors_of(text: str | None) -> PaintErrors:
     Raises:
         InputError: they are not two numbers from 0 on.
     """
-    from ..problems.paint.robust import NO_ERRORS, PaintErrors
+    from ..problems.paint.thickness.robust import NO_ERRORS, PaintErrors
 
     if text is None:
         return NO_ERRORS
@@ -267,7 +267,7 @@ def drive_of(
         InputError: naming the option.
     """
     from ..problems.paint.executable.writing import DriveOptions
-    from ..problems.paint.gun import GunSignals
+    from ..problems.paint.spray.signals import GunSignals
 
     numbers: Sequence[tuple[str, float]] = (("--zone", zone), ("--run", run_in), ("--delay", delay))
     for option, value in numbers:
@@ -285,7 +285,7 @@ def check_signals(drive: DriveOptions, station: Station) -> None:
     Raises:
         InputError: as `gun.output_words`.
     """
-    from ..problems.paint.gun import output_words
+    from ..problems.paint.spray.signals import output_words
 
     if drive.signals is not None:
         output_words(drive.signals, station.vendor)

@@ -11,10 +11,10 @@ from .places import note_json
 
 if TYPE_CHECKING:
     from ..core.errors import Note
-    from ..problems.paint.coat import Coat
+    from ..problems.paint.coating.coat import Coat
     from ..problems.paint.executable.execute import Executable
-    from ..problems.paint.footprint_file import FootprintSource
     from ..problems.paint.painting import Painting
+    from ..problems.paint.spray.footprint_file import FootprintSource
 
 COLUMNS = (
     ("", "left"),
@@ -54,7 +54,7 @@ def pictures_of(
     import numpy as np
 
     from ..drawing.coat import Curve, Painted, draw_curve, draw_map, draw_spread, draw_strokes
-    from ..problems.paint.strokes import section
+    from ..problems.paint.spray.strokes import section
 
     part, judge = painting.judge.part, painting.judge
     coats = coats_of(painting, made)

@@ -40,12 +40,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from ..core.cell.cell import Cell
-    from ..core.motion.consumption import Consumption
+    from ..core.motion.model.consumption import Consumption
     from ..core.program.program import Program
     from ..core.robot.model import Robot
     from ..core.vendor import Vendor
-    from ..problems.energy import Front, Point, Progress, Scope
-    from ..problems.waypoints import Task as Wishes
+    from ..problems.improve.energy import Front, Point, Progress, Scope
+    from ..problems.improve.waypoints import Task as Wishes
 
 
 def pareto(
@@ -100,9 +100,9 @@ def pareto(
     scope = _scope(change, cell)
     effort = effort_of(starts, None, seed)
     with progress("reading the program") as say:
-        from ..core.motion.controller import Controller
-        from ..problems.energy import Task as EnergyTask
-        from ..problems.energy import pareto as find
+        from ..core.motion.emulator.controller import Controller
+        from ..problems.improve.energy import Task as EnergyTask
+        from ..problems.improve.energy import pareto as find
 
         vendor, arm = robot_of(robot, cell, motion)
         where = _cell(cell)
@@ -139,7 +139,7 @@ def pareto(
 
 
 def _scope(text: str, cell: Path | None) -> Scope:
-    from ..problems.energy import Scope
+    from ..problems.improve.energy import Scope
 
     try:
         return Scope(text) if cell is not None else Scope.SPEEDS
@@ -198,8 +198,8 @@ def _wishes(
 
 
 def _consumption(motors: Path | None, robot: Robot) -> Consumption:
-    from ..core.motion.consumption import SQUARED_TORQUE
-    from ..core.motion.motors_file import load_motors
+    from ..core.motion.model.consumption import SQUARED_TORQUE
+    from ..core.motion.model.motors_file import load_motors
 
     if motors is None:
         return SQUARED_TORQUE

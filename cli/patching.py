@@ -38,7 +38,7 @@ class Patching:
         Raises:
             FlybyError: a change has no place in the text.
         """
-        from ..core.source.patching import reading_of
+        from ..core.source.patch.edits import reading_of
 
         self.files = self._vendor.patch(program, self._robot, self._options)
         return reading_of(program).again(self.files)
@@ -94,7 +94,7 @@ class Places:
             InputError: one of them must not be written, cannot be encoded, or has changed since
                 it was read; then none is.
         """
-        from ..core.source.patching import reading_of, runnable_set
+        from ..core.source.patch.edits import reading_of, runnable_set
         from ..core.source.reading import named_apart
 
         if not self.anywhere:
@@ -115,8 +115,8 @@ class Places:
 
 def _check_unchanged(paths: Iterable[Path], read: Files) -> None:
     """Refuse to write over what somebody has saved since the files were read."""
-    from ..core.input_files import read_bytes
-    from ..core.source.text import LARGEST_FILE
+    from ..core.files.reading import read_bytes
+    from ..core.source.text.files import LARGEST_FILE
 
     for path in paths:
         try:

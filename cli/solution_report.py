@@ -11,7 +11,7 @@ from .places import note_json
 
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell
-    from ..problems.solution import Row, Solution
+    from ..problems.improve.solution import Row, Solution
 
 _FIGURES = (("", "left"), ("unit", "left"), ("before", "right"), ("after", "right"), ("%", "right"))
 

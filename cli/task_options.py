@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from ..core.program.program import Program
     from ..core.program.target import JointTarget
     from ..core.vendor import Vendor
-    from ..problems.rounding import Rounding
-    from ..problems.waypoints import Effort, PointLimit, Task, ViaCount
+    from ..problems.improve.rounding import Rounding
+    from ..problems.improve.waypoints import Effort, PointLimit, Task, ViaCount
 
 ALL = "all"
 
@@ -41,8 +41,8 @@ def task_of(
     Raises:
         InputError: naming the option.
     """
-    from ..problems.waypoints import Free, Task
-    from ..problems.zones.sizes import pattern_for
+    from ..problems.improve.waypoints import Free, Task
+    from ..problems.improve.zones.sizes import pattern_for
 
     by_move, for_all = _limits(program, limits)
     kept = [move_index(program, text, "--keep") for text in keep if text.isdecimal()]
@@ -71,7 +71,7 @@ def effort_of(starts: int | None, generations: int | None, seed: int) -> Effort:
     Raises:
         InputError: a number out of its range.
     """
-    from ..problems.waypoints import Effort
+    from ..problems.improve.waypoints import Effort
 
     for option, value, least in (
         ("--starts", starts, 1),
@@ -111,7 +111,7 @@ def rounding_of(vendor: Vendor, predefined: bool) -> Rounding:
     Raises:
         InputError: the vendor has no zones of its own.
     """
-    from ..problems.rounding import Rounding
+    from ..problems.improve.rounding import Rounding
 
     known = () if vendor.speaks is None or not predefined else vendor.speaks.zones()
     if predefined and not known:
@@ -151,7 +151,7 @@ def _tilt(degrees: float) -> float:
 
 
 def _vias(text: str) -> ViaCount:
-    from ..problems.waypoints import ViaCount
+    from ..problems.improve.waypoints import ViaCount
 
     try:
         return ViaCount(text)
@@ -179,7 +179,7 @@ def freed_stops(program: Program, free: Sequence[str], kept: Collection[int]) ->
     Raises:
         InputError: naming the option.
     """
-    from ..problems.zones.points import passable_stops
+    from ..problems.improve.zones.points import passable_stops
 
     if ALL in free:
         return [i for i in passable_stops(program) if i not in kept]
@@ -212,7 +212,7 @@ def _limits(
 
 
 def _limit(how: str, text: str) -> PointLimit:
-    from ..problems.waypoints import Box, Cone, Fixed, Free
+    from ..problems.improve.waypoints import Box, Cone, Fixed, Free
 
     kind, _, sizes = how.partition(":")
     option = f"--limit {text}"

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from ..core.errors import InputError
-from ..core.tables import LARGEST
+from ..core.files.tables import LARGEST
 
 if TYPE_CHECKING:
     from ..core.robot.model import Robot

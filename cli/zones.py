@@ -41,9 +41,9 @@ if TYPE_CHECKING:
     from ..core.program.program import Program
     from ..core.program.zone import Zone
     from ..core.vendor import Vendor
-    from ..problems.zones.maximize import ZoneSolution
-    from ..problems.zones.options import ZoneOptions
-    from ..problems.zones.table import ZoneChange
+    from ..problems.improve.zones.changes import ZoneChange
+    from ..problems.improve.zones.maximize import ZoneSolution
+    from ..problems.improve.zones.options import ZoneOptions
 
 COLUMNS = (
     ("move", "right"),
@@ -94,8 +94,8 @@ def zones(
     places = Places(out, in_place, source.inputs(cell, motion), force)
     places.check()
     with progress("reading the program") as say:
-        from ..core.motion.controller import Controller
-        from ..problems.zones.maximize import maximize_zones
+        from ..core.motion.emulator.controller import Controller
+        from ..problems.improve.zones.maximize import maximize_zones
 
         vendor, arm = robot_of(robot, cell, motion)
         parsed = source.read(vendor, arm)
@@ -124,8 +124,8 @@ def _options(
     own: bool,
     start: str | None,
 ) -> ZoneOptions:
-    from ..problems.zones.options import ZoneOptions
-    from ..problems.zones.sizes import pattern_for
+    from ..problems.improve.zones.options import ZoneOptions
+    from ..problems.improve.zones.sizes import pattern_for
 
     kept = [move_index(program, str(number), "--keep") for number in keep or []]
     return ZoneOptions(

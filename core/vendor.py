@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .dialect import Dialect
-    from .motion.model import MotionModel
+    from .motion.model.motion_model import MotionModel
     from .program.program import Program
     from .program.target import Configuration, JointTarget
     from .robot.model import Robot
-    from .source.answers import Answers
+    from .source.execution.answers import Answers
     from .source.reading import Files, ReadOptions
 
 NAME = re.compile(r"[a-z0-9][a-z0-9_.-]*")
@@ -171,7 +171,7 @@ class Vendor:
         Raises:
             InputError: the file cannot be read, states nonsense, or is another robot's.
         """
-        from .motion.model import load_motion_model
+        from .motion.model.motion_model import load_motion_model
 
         model = load_motion_model(file, self.motion_of(robot), robot.name)
         own = robot.name.removeprefix(f"{self.name}/")
@@ -208,7 +208,7 @@ class Vendor:
         Raises:
             InputError: the vendor has no reader.
         """
-        from .input_files import settle
+        from .files.reading import settle
 
         reader = self._part(self.reader, "reader")
         others = tuple(others)
@@ -236,7 +236,7 @@ class Vendor:
         sources = writer.write(said, robot, options or {})
         wording = None if self.speaks is None else self.speaks.wording
         if wording is not None and (options or {}).get("opaque") != "comment":
-            from .source.kept import check_kept
+            from .source.write.kept import check_kept
 
             check_kept(said, sources, wording)
         self._check_alone(said, robot, sources)
@@ -276,12 +276,12 @@ class Vendor:
         self, program: Program, robot: Robot, sources: Sources, waits: bool = True
     ) -> None:
         if self.reader is not None:
-            from .written import check_alone
+            from .read_back import check_alone
 
             check_alone(program, robot, sources, self.reader, self.suffixes, waits)
 
     def _approached(self, program: Program, robot: Robot) -> Program:
-        from .approach import with_approach
+        from .source.write.approach import with_approach
 
         return with_approach(program, self.speaks, robot)
 
@@ -315,7 +315,7 @@ def _read_options(
     others: Iterable[str | Path] = (),
     start: JointTarget | None = None,
 ) -> ReadOptions:
-    from .source.answers import Answers
+    from .source.execution.answers import Answers
     from .source.reading import ReadOptions
 
     return ReadOptions(
@@ -336,7 +336,7 @@ def motion_layers(files: Iterable[Path]) -> dict[str, MotionLayer]:
     """What is known of how single robots are driven, each read when it is asked for.
 
     Args:
-        files: TOML files (see `flyby.core.motion.model`); a robot is called as its
+        files: TOML files (see `flyby.core.motion.model.motion_model`); a robot is called as its
             file, without suffix.
     """
     return {path.stem: _layer(path) for path in sorted(files)}
@@ -344,7 +344,7 @@ def motion_layers(files: Iterable[Path]) -> dict[str, MotionLayer]:
 
 def _layer(path: Path) -> MotionLayer:
     def lay(base: MotionModel) -> MotionModel:
-        from .motion.model import load_motion_model
+        from .motion.model.motion_model import load_motion_model
 
         return load_motion_model(path, base)
 
@@ -355,7 +355,7 @@ def lazy_motion(path: Path) -> Callable[[], MotionModel]:
     """The motion model of a TOML file, read when it is asked for."""
 
     def load() -> MotionModel:
-        from .motion.model import load_motion_model
+        from .motion.model.motion_model import load_motion_model
 
         return load_motion_model(path)
 

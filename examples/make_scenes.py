@@ -4,7 +4,7 @@
 
 Then, say, ``flyby optimize FOLDER/two_joints.mod --cell FOLDER/two_joints.toml``. A cell file names
 a robot of the catalogue, with the catalogue's limits and shapes; the two scenes on the arm of
-`flyby.problems.scenes.arm` have others, and so other times than these files.
+`flyby.validation.scenes.arm` have others, and so other times than these files.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from flyby.core.program.zone import Radius
 from flyby.core.registry import find_vendor
 from flyby.core.robot.shape import Box, Capsule, Cylinder, Sphere
 from flyby.core.spatial.pose import Pose
-from flyby.problems.scenes.clutter import clutter, clutter_100
-from flyby.problems.scenes.scene import Scene, with_zone
-from flyby.problems.scenes.stud_welding import stud_welding, stud_welding_with_panel
-from flyby.problems.scenes.two_joints import two_joints
+from flyby.validation.scenes.clutter import clutter, clutter_100
+from flyby.validation.scenes.scene import Scene, with_zone
+from flyby.validation.scenes.stud_welding import stud_welding, stud_welding_with_panel
+from flyby.validation.scenes.two_joints import two_joints
 
 SCENES: tuple[Callable[[], Scene], ...] = (
     two_joints,

@@ -1,6 +1,6 @@
 """Draws docs/pictures/cubic.png: the cubic problem by SQP (above), by a log barrier (below).
 
-After figures 2.3 and 2.4 of the thesis that `flyby.problems.textbook` names. Above: some
+After figures 2.3 and 2.4 of the thesis that `flyby.validation.textbook` names. Above: some
 iterations, each with the constraints' linearisations there (dotted) and the step that follows.
 Below: level curves of the barrier function for falling weights, with the minimisers so far.
 
@@ -15,8 +15,8 @@ import matplotlib
 import numpy as np
 
 from flyby.core.sqp import solve
-from flyby.problems.textbook import CUBIC_OPTIMUM, CUBIC_START, barrier_path, cubic
-from flyby.problems.textbook.cubic import barrier, constraints, jacobian, objective
+from flyby.validation.textbook import CUBIC_OPTIMUM, CUBIC_START, barrier_path, cubic
+from flyby.validation.textbook.cubic import barrier, constraints, jacobian, objective
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt

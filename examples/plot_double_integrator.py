@@ -1,6 +1,7 @@
 """Draws docs/pictures/double_integrator.png: least time from (4, 1) to rest.
 
-After figures 2.5 and 2.6 of the thesis that `flyby.problems.textbook` names. Left: 40 nodes in the
+After figures 2.5 and 2.6 of the thesis that `validation.textbook` names. Left: 40 nodes in
+the
 thesis's discretisation over the exact solution. Middle: the same in the plane of place and speed,
 with the curve on which the force changes its sign. Right: how both discretisations' times approach
 the exact one.
@@ -16,7 +17,7 @@ import matplotlib
 import numpy as np
 
 from flyby.core.sqp import solve
-from flyby.problems.textbook import DoubleIntegrator, Scheme, minimum_time
+from flyby.validation.textbook import DoubleIntegrator, Scheme, minimum_time
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt

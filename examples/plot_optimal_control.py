@@ -16,11 +16,11 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from flyby.core.collision.scene import CollisionScene
+from flyby.core.collision.scene.scene.scene import CollisionScene
 from flyby.core.program.target import JointTarget
 from flyby.core.registry import find_robot
 from flyby.core.robot.inertia import carried_inertia
-from flyby.problems.optimal_control import (
+from flyby.problems.free_motion.optimal_control import (
     ControlLimits,
     Effort,
     Objective,
@@ -29,8 +29,8 @@ from flyby.problems.optimal_control import (
     Task,
     optimize,
 )
-from flyby.problems.optimal_control.result import sampled_trajectory
-from flyby.problems.scenes.two_joints import BOX_LOWER, BOX_UPPER, two_joints
+from flyby.problems.free_motion.optimal_control.motion.result import sampled_trajectory
+from flyby.validation.scenes.two_joints import BOX_LOWER, BOX_UPPER, two_joints
 
 SAMPLES = 800
 TORQUE = (3000.0, 6000.0, 2500.0, 600.0, 500.0, 200.0)

@@ -1,10 +1,10 @@
 """Draws docs/pictures/point_mass.png: the point mass in the maze, jumped, guided, and proven.
 
-After figures 3.5 and 3.6 of the thesis that `flyby.problems.textbook` names. Above: circles avoided
-at the nodes only, from the straight line (dotted): whatever the number of nodes, the wall is passed
-between two of them. Below: the thesis's remedy, a guess along a free way (dotted); and rows that
-hold all along each interval. "Proven free" is to a depth of 1e-4. A cross marks where the proof
-found the motion deeper in a circle.
+After figures 3.5 and 3.6 of the thesis that `validation.textbook` names. Above: circles
+avoided at the nodes only, from the straight line (dotted): whatever the number of nodes, the
+wall is passed between two of them. Below: the thesis's remedy, a guess along a free way
+(dotted); and rows that hold all along each interval. "Proven free" is to a depth of 1e-4. A
+cross marks where the proof found the motion deeper in a circle.
 
 Run it as ``python examples/plot_point_mass.py docs/pictures/point_mass.png``.
 """
@@ -18,7 +18,7 @@ import matplotlib
 import numpy as np
 
 from flyby.core.sqp import solve
-from flyby.problems.textbook import MAZE, Avoidance, PointMass, Scene, prove_free
+from flyby.validation.textbook import MAZE, Avoidance, PointMass, Scene, prove_free
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..core.arrays import FloatArray, IntArray
 from ..core.errors import InputError
-from ..core.motion.trajectory import Trajectory
+from ..core.motion.command.trajectory import Trajectory
 from ..core.robot.model import Robot
 from .belonging import check_axes, check_coverage, check_path, check_time
 from .logs.cleaning import CleanLog

@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from ..core.arrays import FloatArray
 from ..core.errors import InputError
-from ..core.motion.trajectory import Trajectory
+from ..core.motion.command.trajectory import Trajectory
 from ..core.robot.model import Robot
 from .logs.cleaning import CleanLog
 from .matching import Match

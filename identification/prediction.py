@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from ..core.errors import FlybyError, InputError
-from ..core.motion.controller import Controller, Run
-from ..core.motion.model import ArcTurn
+from ..core.motion.emulator.controller import Controller, Run
+from ..core.motion.model.motion_model import ArcTurn
 from ..core.program.move import MoveC
 from ..core.program.program import Program
 from ..core.program.target import JointTarget

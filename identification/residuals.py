@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..core.arrays import FloatArray
-from ..core.motion.trajectory import Trajectory
+from ..core.motion.command.trajectory import Trajectory
 from ..core.program.tool import FLANGE, Tool
 from ..core.robot.joint import JointKind
 from ..core.robot.model import Robot

@@ -24,7 +24,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.arrays import FloatArray, IntArray
-from ..core.motion.trajectory import Trajectory
+from ..core.motion.command.trajectory import Trajectory
 from .alignment import Alignment
 from .logs.cleaning import CleanLog
 

@@ -14,7 +14,7 @@ from enum import StrEnum
 from scipy.optimize import brentq
 
 from ..core.errors import FlybyError
-from ..core.motion.controller import Controller
+from ..core.motion.emulator.controller import Controller
 from .prediction import PERIOD, Prediction, predict
 
 LEAST = 0.003

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.arrays import FloatArray, IntArray
-from ..core.motion.controller import Run
-from ..core.motion.model import LineTurn, MotionModel, Overlap
-from ..core.motion.swivel import swivel
+from ..core.motion.emulator.controller import Run
+from ..core.motion.geometry.swivel import swivel
+from ..core.motion.model.motion_model import LineTurn, MotionModel, Overlap
 from ..core.program.move import Move, MoveC, MoveJ
 from ..core.program.program import Program
 from ..core.program.speed import Speed

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from ..files.tables import Table, per
 from ..robot.catalogue import UNITS, read_shape
 from ..robot.joint import Joint
 from ..robot.model import Robot
 from ..robot.shape import LinkShape
 from ..spatial.pose import IDENTITY, Pose
-from ..tables import Table, per
 
 BASE = "base"
 

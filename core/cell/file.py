@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import InputError, UnknownNameError
-from ..pose_table import pose_at
+from ..files.tables import ANGLE, LENGTH, Table, per
 from ..program.tool import FLANGE, WORLD, Tool, WorkObject
 from ..robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from ..robot.model import Robot
-from ..tables import ANGLE, LENGTH, Table, per
+from ..robot.pose_table import pose_at
 from .arm import read_arm
 from .cell import Cell, Obstacle
 from .geometry import Geometry

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..errors import InputError
-from ..pose_table import read_vector
+from ..files.tables import LENGTH, Table
 from ..program.tool import Load
+from ..robot.pose_table import read_vector
 from ..robot.shape import Box, Capsule, Cylinder, Shape, Sphere
 from ..spatial.pose import Pose
-from ..tables import LENGTH, Table
 from .geometry import MESH_UNITS, Geometry, Mesh
 
 SHAPES: dict[str, tuple[int, Callable[[tuple[float, ...]], Shape]]] = {

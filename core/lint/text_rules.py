@@ -14,7 +14,7 @@ from pathlib import PurePath
 from ..dialect import Pitfall, Wording
 from ..program.program import Program
 from ..source.reading import Reading
-from ..source.text import SourceText, unbroken
+from ..source.text.files import SourceText, unbroken
 from .finding import Hit, ProgramSubject
 
 

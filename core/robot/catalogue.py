@@ -70,13 +70,13 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import InputError
-from ..pose_table import pose_at, read_pose
+from ..files.tables import ANGLE, LENGTH, Table
 from ..spatial.pose import IDENTITY, Pose
 from ..spatial.rotation import matrix_from_rotation_vector
-from ..tables import ANGLE, LENGTH, Table
 from .inertia import Inertia
 from .joint import Joint, JointKind
 from .model import Robot
+from .pose_table import pose_at, read_pose
 from .shape import Box, Capsule, Cylinder, LinkShape, Shape, Sphere
 
 TRUST = ("published", "identified", "measured", "computed", "assumed", "unknown")

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError, UnknownNameError
-from ..input_files import read_bytes
+from ..files.reading import read_bytes
 from ..spatial.pose import IDENTITY, Pose
 from .inertia import Inertia
 from .joint import Joint, JointKind

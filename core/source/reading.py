@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
-from .answers import Answers
-from .limits import Executed, Limits
-from .text import SourceFile, stray_return
+from .execution.answers import Answers
+from .execution.limits import Executed, Limits
+from .text.files import SourceFile, stray_return
 
 if TYPE_CHECKING:
     from ..program.program import Program

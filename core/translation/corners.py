@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from ..arrays import FloatArray
 from ..dialect import Dialect
-from ..motion.model import Overlap
-from ..motion.path import OverlapError, Path, Route
-from ..motion.segments import JOINT_SEGMENT
-from ..motion.zones import POSITION, STOP, TURNING
+from ..motion.geometry.segments import JOINT_SEGMENT
+from ..motion.geometry.zones import POSITION, STOP, TURNING
+from ..motion.model.motion_model import Overlap
+from ..motion.path.path import OverlapError, Path, Route
 from ..program.program import Program
 from ..program.zone import FINE, Angle, ContourFraction, Radius, Zone
 from ..robot.chain_kernels import poses

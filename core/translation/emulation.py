@@ -9,13 +9,13 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import MotionError
-from ..motion.controller import Controller
-from ..motion.limits import interval_samples
-from ..motion.model import MotionModel
-from ..motion.path import OverlapError, Path, Route, build_path
-from ..motion.pieces import Sampling
-from ..motion.route import RouteFinder
-from ..motion.timing import Timing
+from ..motion.emulator.controller import Controller
+from ..motion.geometry.pieces import Sampling
+from ..motion.model.motion_model import MotionModel
+from ..motion.path.path import OverlapError, Path, Route, build_path
+from ..motion.path.route import RouteFinder
+from ..motion.timing.limits import interval_samples
+from ..motion.timing.timing import Timing
 from ..program.program import Program
 from ..program.target import JointTarget
 from ..robot.model import Robot

@@ -12,8 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import FloatArray
-from ..motion.path import Route
-from ..motion.segments import Segments, make_segments
+from ..motion.geometry.segments import Segments, make_segments
+from ..motion.path.path import Route
 from ..program.move import MoveL
 from ..program.program import Program
 from ..program.target import PoseTarget

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..dialect import Dialect, MoveWords
-from ..motion.path import Path
+from ..motion.path.path import Path
 from ..program.move import Move, MoveJ
 from ..program.program import Program
 from ..program.speed import Speed

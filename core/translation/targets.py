@@ -10,8 +10,8 @@ import numpy as np
 from ..arrays import FloatArray
 from ..dialect import Dialect
 from ..errors import MotionError
-from ..motion.configurations import ConfigurationFinder, located
-from ..motion.path import Path, Route
+from ..motion.path.configurations import ConfigurationFinder, located
+from ..motion.path.path import Path, Route
 from ..program.move import Move, MoveC, MoveJ
 from ..program.program import Program
 from ..program.speed import Speed

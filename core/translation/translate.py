@@ -9,10 +9,10 @@ import numpy as np
 
 from ..dialect import Dialect
 from ..errors import Note, Span
-from ..motion.controller import Controller
-from ..motion.model import Overlap
-from ..motion.path import Path, Route
-from ..motion.segments import make_segments
+from ..motion.emulator.controller import Controller
+from ..motion.geometry.segments import make_segments
+from ..motion.model.motion_model import Overlap
+from ..motion.path.path import Path, Route
 from ..program.event import Event
 from ..program.move import ArcOrientation, MoveC, MoveJ, MoveL, Opaque, Statement, Wait
 from ..program.program import Program

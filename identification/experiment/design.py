@@ -11,16 +11,16 @@ import numpy as np
 
 from ...core.cell.cell import Cell
 from ...core.cell.floor import FLOOR, LIFT
-from ...core.collision.certificate import certify, scenes_of
-from ...core.collision.scene import CollisionScene
-from ...core.collision.verdict import Certificate
+from ...core.collision.proof.certificate import certify, scenes_of
+from ...core.collision.proof.verdict import Certificate
+from ...core.collision.scene.scene import CollisionScene
 from ...core.errors import FlybyError, InputError
-from ...core.motion.controller import Controller, Run
+from ...core.motion.emulator.controller import Controller, Run
 from ...core.program.move import Move, MoveC
 from ...core.program.program import Program
 from ...core.program.target import JointTarget, PoseTarget
 from ...core.program.zone import FINE
-from ...core.source.patching import difference
+from ...core.source.patch.edits import difference
 from ...core.vendor import Sources, Vendor
 from .candidates import Family
 from .checking import Refused, check

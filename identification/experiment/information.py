@@ -23,13 +23,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core.arrays import FloatArray
-from ...core.motion.blend import Blend
-from ...core.motion.controller import Controller
-from ...core.motion.elasticity import RIGID
-from ...core.motion.model import MotionModel
-from ...core.motion.path import Path
-from ...core.motion.ramped import stamped_motion
-from ...core.motion.timing import Timing
+from ...core.motion.command.elasticity import RIGID
+from ...core.motion.command.ramps import stamped_motion
+from ...core.motion.emulator.controller import Controller
+from ...core.motion.model.blend import Blend
+from ...core.motion.model.motion_model import MotionModel
+from ...core.motion.path.path import Path
+from ...core.motion.timing.timing import Timing
 from ...core.program.move import Move, MoveC, MoveJ, MoveL
 from ...core.program.program import Program
 from ...core.program.target import JointTarget

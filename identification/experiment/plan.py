@@ -10,9 +10,9 @@ from enum import StrEnum
 import numpy as np
 
 from ...core.arrays import FloatArray
-from ...core.collision.verdict import Certificate
+from ...core.collision.proof.verdict import Certificate
 from ...core.errors import InputError
-from ...core.motion.controller import Run
+from ...core.motion.emulator.controller import Run
 from ...core.program.program import Program
 from ...core.program.tool import FLANGE, Tool
 from ...core.robot.model import Robot

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from ...core.arrays import FloatArray
 from ...core.errors import FlybyError
-from ...core.motion.model import MotionModel
+from ...core.motion.model.motion_model import MotionModel
 from .emulation import Nuisance, Rows, RunEmulator
 from .parameters import ParameterSet
 from .runs import PreparedRun

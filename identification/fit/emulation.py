@@ -13,12 +13,12 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from ...core.arrays import FloatArray
-from ...core.motion.controller import Controller
-from ...core.motion.elasticity import RIGID
-from ...core.motion.model import MotionModel
-from ...core.motion.path import Path
-from ...core.motion.ramped import stamped_motion
-from ...core.motion.smoothing import Motion, Smoothing, States
+from ...core.motion.command.elasticity import RIGID
+from ...core.motion.command.ramps import stamped_motion
+from ...core.motion.command.smoothing import Motion, Smoothing, States
+from ...core.motion.emulator.controller import Controller
+from ...core.motion.model.motion_model import MotionModel
+from ...core.motion.path.path import Path
 from ..matching import Match, match
 from ..prediction import PERIOD, start_of
 from .keys import with_value

@@ -18,11 +18,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from ...core.motion.elasticity import Carried, Coupled
-from ...core.motion.model import MotionModel
-from ...core.motion.provenance import FitRecord, Provenance, provenance_text
-from ...core.motion.torque import Borne
-from ...core.toml_text import key_text, string_text, value_text
+from ...core.files.toml_text import key_text, string_text, value_text
+from ...core.motion.command.elasticity import Carried, Coupled
+from ...core.motion.model.motion_model import MotionModel
+from ...core.motion.model.provenance import FitRecord, Provenance, provenance_text
+from ...core.motion.timing.torque import Borne
 from .fitting import Fit
 from .intervals import CONFIDENCE, Interval
 from .keys import field_of, figure_of, steps_of

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.errors import FlybyError, InputError
-from ...core.motion.model import ArcTurn, MotionModel
+from ...core.motion.model.motion_model import ArcTurn, MotionModel
 from .clocks import timed, told
 from .crew import Crew
 from .emulation import Nuisance, Rows

@@ -15,7 +15,7 @@ from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ...core.errors import InputError
-from ...core.motion.model import MotionModel
+from ...core.motion.model.motion_model import MotionModel
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance

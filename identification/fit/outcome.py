@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ...core.motion.model import MotionModel
+from ...core.motion.model.motion_model import MotionModel
 from ..prediction import Prediction, predict
 from .emulation import Nuisance
 from .fitting import Fit

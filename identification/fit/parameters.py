@@ -11,7 +11,7 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.errors import InputError
-from ...core.motion.model import MotionModel
+from ...core.motion.model.motion_model import MotionModel
 from ...core.robot.model import Robot
 from .keys import nothing, value_of, with_value
 

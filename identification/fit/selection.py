@@ -15,7 +15,7 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.errors import FlybyError, InputError
-from ...core.motion.model import MotionModel
+from ...core.motion.model.motion_model import MotionModel
 from ...core.program.zone import Radius
 from .crew import Crew
 from .emulation import Nuisance

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...core.errors import FlybyError
-from ...core.motion.controller import Controller
+from ...core.motion.emulator.controller import Controller
 from ...core.program.program import Program
 from ...core.program.zone import Radius
 from ..logs.cleaning import CleanLog

@@ -15,7 +15,7 @@ from scipy.ndimage import maximum_filter1d, median_filter
 
 from ...core.arrays import BoolArray, FloatArray, IntArray
 from ...core.errors import InputError
-from ...core.motion.trajectory import sample_times
+from ...core.motion.command.trajectory import sample_times
 from .run import LoggedRun
 
 HOLE = 3.0

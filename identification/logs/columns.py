@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError
-from ...core.input_files import read_toml
+from ...core.files.reading import read_toml
 from .samples import Samples, in_order
 from .table import Table
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.errors import InputError
-from ...core.input_files import read_json
+from ...core.files.reading import read_json
 from ...core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from ...core.program.program import Program
 from ...core.program.speed import Speed

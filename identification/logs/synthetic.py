@@ -11,7 +11,7 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.errors import InputError
-from ...core.motion.controller import Controller
+from ...core.motion.emulator.controller import Controller
 from ...core.program.program import Program
 from .run import LoggedRun
 

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 from ...core.errors import InputError
-from ...core.input_files import read_bytes
+from ...core.files.reading import read_bytes
 
 MOST_BYTES = 200_000_000
 """Six joints for three hours at 250 Hz; reading them takes some ten times as much memory."""

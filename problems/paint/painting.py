@@ -11,22 +11,22 @@ import numpy as np
 
 from ...core.arrays import BoolArray
 from ...core.errors import InputError, Note
-from .coat import Coat, coat
-from .deposition import Deposition
-from .footprint import Footprint
+from .coating.coat import Coat, coat
+from .coating.deposition import Deposition
+from .coating.reach import check_reach
+from .coating.sight import sight
 from .initial.curve import InitialCurve, initial_curve
 from .initial.plan import SweepPlan
-from .optimize import optimize
-from .optimize_options import OuterLoop, PaintLimits, PaintWeights
-from .optimize_round import Progress
-from .part import Part
-from .reach import check_reach
-from .reference import Reference
-from .resolution import coarsened
-from .robust import NO_ERRORS, PaintErrors
-from .sight import sight
-from .speeds import SpeedSolution, best_speeds
-from .trajectory import PaintTrajectory
+from .spray.footprint import Footprint
+from .spray.trajectory import PaintTrajectory
+from .surface.part import Part
+from .surface.resolution import coarsened
+from .thickness.optimize import optimize
+from .thickness.options import OuterLoop, PaintLimits, PaintWeights
+from .thickness.reference import Reference
+from .thickness.robust import NO_ERRORS, PaintErrors
+from .thickness.round import Progress
+from .thickness.speeds import SpeedSolution, best_speeds
 
 POINTS = 2600
 """Of the part, on which it is optimised."""

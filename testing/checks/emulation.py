@@ -17,12 +17,12 @@ from hypothesis import strategies as st
 
 from ...core.arrays import FloatArray
 from ...core.errors import MotionError
-from ...core.motion.controller import Controller, Run
-from ...core.motion.derivatives import Derivatives
-from ...core.motion.model import LineTurn, MotionModel
-from ...core.motion.pieces import Sampling
-from ...core.motion.tcp_walk import JOINED
-from ...core.motion.trajectory import Trajectory
+from ...core.motion.command.trajectory import Trajectory
+from ...core.motion.emulator.controller import Controller, Run
+from ...core.motion.geometry.pieces import Sampling
+from ...core.motion.gradients.derivatives import Derivatives
+from ...core.motion.model.motion_model import LineTurn, MotionModel
+from ...core.motion.path.tcp_walk import JOINED
 from ...core.program.move import Move, MoveC, MoveJ, MoveL, Wait
 from ...core.program.program import Program
 from ...core.program.speed import Speed

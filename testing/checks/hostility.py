@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from ...core.errors import FlybyError, SourceError
 from ...core.program.program import Program
-from ...core.source.patching import difference
+from ...core.source.patch.edits import difference
 from ...core.source.reading import Reading
 from ..hostile import SIGNS, hostile_texts, hostile_variants
 from .subject import EXAMPLES, PROGRAM_EXAMPLES, Subject

@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ...core.approach import with_approach
 from ...core.errors import FlybyError, InputError
 from ...core.program.program import Program
 from ...core.robot.model import Robot
-from ...core.source.patching import difference
+from ...core.source.patch.edits import difference
+from ...core.source.write.approach import with_approach
 from ...core.vendor import LANGUAGE_PARTS, Sources, Vendor
 from .subject import PROGRAM_EXAMPLES, Subject
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...core.motion.model import MotionModel
+from ...core.motion.model.motion_model import MotionModel
 from .subject import Subject
 
 

@@ -17,10 +17,10 @@ from ...core.program.origin import MoveOrigin, Origin, Ownership
 from ...core.program.program import Program
 from ...core.program.target import JointTarget, Target
 from ...core.program.zone import Fine, Radius, Zone
-from ...core.source.bystanders import bystanders
-from ...core.source.patching import difference, reading_of
+from ...core.source.not_executed.search import bystanders
+from ...core.source.patch.edits import difference, reading_of
 from ...core.source.reading import Files, Reading, ReadOptions
-from ...core.source.text import SourceFile
+from ...core.source.text.files import SourceFile
 from .subject import PROGRAM_EXAMPLES, Subject
 
 _BESIDE = "beside"

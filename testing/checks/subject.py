@@ -19,7 +19,7 @@ from ...core.program.tool import Load, Tool, WorkObject
 from ...core.program.zone import Zone
 from ...core.registry import find_vendor
 from ...core.robot.model import Robot
-from ...core.source.patching import TOLERANCE
+from ...core.source.patch.edits import TOLERANCE
 from ...core.vendor import Sources, Vendor
 from ..strategies import (
     OfKind,

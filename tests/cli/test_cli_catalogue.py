@@ -122,7 +122,7 @@ def test_emulating_imports_matplotlib_only_for_plots() -> None:
     code = (
         "import sys\n"
         "import flyby.cli.emulate, flyby.cli.report, flyby.cli.report_text\n"
-        "import flyby.core.motion.controller\n"
+        "import flyby.core.motion.emulator.controller\n"
         "print(sorted({'matplotlib', 'trimesh', 'yourdfpy'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from typer.testing import Result
 
-from flyby.core.motion.trajectory import Trajectory
+from flyby.core.motion.command.trajectory import Trajectory
 from flyby.core.registry import find_vendor
 
 ROOT = Path(__file__).parents[2]

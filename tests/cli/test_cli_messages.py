@@ -7,9 +7,9 @@ from pathlib import Path
 
 from typer.testing import Result
 
-from flyby.vendors.abb.configuration import AbbConfiguration
-from flyby.vendors.kuka.configuration import KukaConfiguration
-from flyby.vendors.ur.configuration import UrConfiguration
+from flyby.vendors.abb.motion.configuration import AbbConfiguration
+from flyby.vendors.kuka.motion.configuration import KukaConfiguration
+from flyby.vendors.ur.motion.configuration import UrConfiguration
 
 ROBOT = "abb/irb6640-180-255"
 Flyby = Callable[..., Result]

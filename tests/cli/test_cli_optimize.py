@@ -14,8 +14,8 @@ from typer.testing import Result
 from flyby.cli.emission import Emission
 from flyby.cli.installed import registry
 from flyby.core.cell.file import load_cell
-from flyby.core.collision.certificate import certify, scenes_of
-from flyby.core.motion.controller import Controller
+from flyby.core.collision.proof.certificate import certify, scenes_of
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_robot, find_vendor
 

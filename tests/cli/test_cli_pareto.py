@@ -12,7 +12,7 @@ import pytest
 from typer.testing import Result
 
 from flyby.cli import pareto as pareto_command
-from flyby.core.motion.controller import Controller
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.registry import find_robot, find_vendor
 
 ROBOT = "abb/irb6640-180-255"

@@ -13,11 +13,11 @@ import trimesh
 from typer.testing import Result
 
 from flyby.cli.patching import Places
-from flyby.core.collision.verdict import Verdict
+from flyby.core.collision.proof.verdict import Verdict
 from flyby.core.errors import InputError
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.reading import Reading
-from flyby.core.source.text import SourceFile
+from flyby.core.source.text.files.files import SourceFile
 
 from .box_program import CELL, module
 
@@ -139,7 +139,7 @@ def test_what_is_kept_and_freed_at_once_is_refused(flyby: Flyby, cell: Path, tmp
 def test_what_is_not_proven_is_not_written_unless_by_name(
     flyby: Flyby, cell: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    import flyby.problems.zones.maximize as module
+    import flyby.problems.improve.zones.maximize as module
 
     certify = module.certify
 

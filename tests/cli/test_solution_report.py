@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from flyby.cli.solution_report import percent
-from flyby.problems.solution import Row
+from flyby.problems.improve.solution import Row
 
 
 @pytest.mark.parametrize(

@@ -12,10 +12,10 @@ from flyby.core.program.zone import Radius
 from flyby.core.robot.shape import Box, Capsule, Cylinder, Sphere
 from flyby.drawing.cell import draw_cell, make_cell_figure
 from flyby.drawing.solids import obstacle_triangles, robot_triangles, skeleton, triangles
-from flyby.problems.scenes.clutter_layout import thing
-from flyby.problems.scenes.scene import Scene, with_zone
-from flyby.problems.scenes.stud_welding import stud_welding_with_panel
-from flyby.problems.scenes.two_joints import two_joints
+from flyby.validation.scenes.clutter_layout import thing
+from flyby.validation.scenes.scene import Scene, with_zone
+from flyby.validation.scenes.stud_welding import stud_welding_with_panel
+from flyby.validation.scenes.two_joints import two_joints
 
 SHAPES = [Box((0.3, 0.2, 0.1)), Sphere(0.2), Capsule(0.1, 0.4), Cylinder(0.1, 0.4)]
 

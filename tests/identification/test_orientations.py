@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from flyby.core.motion.controller import Controller
-from flyby.core.motion.model import MotionModel
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.model.motion_model.motion_model import MotionModel
 from flyby.core.program.move import MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from flyby.core.errors import InputError
-from flyby.core.motion.controller import Controller
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.logs import clean, load_run
 from flyby.identification.prediction import Prediction, predict

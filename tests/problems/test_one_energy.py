@@ -7,10 +7,15 @@ from functools import cache
 import numpy as np
 import pytest
 
-from flyby.core.motion.consumption import SQUARED_TORQUE, Consumption, Motors, SquaredTorque
-from flyby.core.motion.controller import Controller
-from flyby.core.motion.energy import energy_by_joint
-from flyby.core.motion.timing import Timing
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.model.motion_model.consumption import (
+    SQUARED_TORQUE,
+    Consumption,
+    Motors,
+    SquaredTorque,
+)
+from flyby.core.motion.timing.timing.energy import energy_by_joint
+from flyby.core.motion.timing.timing.timing import Timing
 from flyby.core.program.move import MoveJ
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -20,8 +25,8 @@ from flyby.core.program.zone import FINE
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.inertia import carried_inertia
 from flyby.core.spatial.pose import IDENTITY
-from flyby.problems import optimal_control as free
-from flyby.problems.velocity_tuning import FixedPath, Objective, Task, Tuned, Way
+from flyby.problems.free_motion import optimal_control as free
+from flyby.problems.free_motion.velocity_tuning import FixedPath, Objective, Task, Tuned, Way
 
 TOOL = Tool("gun", IDENTITY, Load(60.0, (0.1, 0.0, 0.2)))
 START, END = np.radians([0, -10, 0, 0, 30, 0]), np.radians([0, 45, 25, 0, 30, 0])

@@ -10,11 +10,11 @@ import pytest
 from hypothesis import strategies as st
 from hypothesis.errors import Unsatisfiable
 
-from flyby.core.motion.blend import Blend
-from flyby.core.motion.controller import Controller, Run
-from flyby.core.motion.derivatives import Derivatives
-from flyby.core.motion.model import MotionModel
-from flyby.core.motion.pieces import Sampling
+from flyby.core.motion.emulator.controller import Controller, Run
+from flyby.core.motion.geometry.pieces import Sampling
+from flyby.core.motion.gradients.derivatives import Derivatives
+from flyby.core.motion.model.motion_model.blend import Blend
+from flyby.core.motion.model.motion_model.motion_model import MotionModel
 from flyby.core.program.program import Program
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_vendor

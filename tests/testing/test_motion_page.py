@@ -9,8 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from flyby.core.motion.blend import Blend
-from flyby.core.motion.model import LineTurn, OrientationZone, Overlap, Pace
+from flyby.core.motion.model.motion_model.blend import Blend
+from flyby.core.motion.model.motion_model.motion_model import (
+    LineTurn,
+    OrientationZone,
+    Overlap,
+    Pace,
+)
 from flyby.core.registry import find_vendor
 
 ROOT = Path(__file__).parents[2]

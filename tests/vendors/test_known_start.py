@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from flyby.cli.main import app
 from flyby.core.errors import SourceError
-from flyby.core.motion.controller import Controller
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.target import JointTarget
 from flyby.core.registry import find_robot, find_vendor
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from flyby.core.registry import find_robot, find_vendor
-from flyby.vendors.abb.rapid.flow import Flow as RapidFlow
-from flyby.vendors.kuka.krl import flow as krl
+from flyby.vendors.abb.run.analysis import Flow as RapidFlow
+from flyby.vendors.kuka.run import flow as krl
 
 PASSES = 300
 RAPID = f"""MODULE m

@@ -91,7 +91,7 @@ _MOVE = MoveWords((Radius,), _SPEEDS, frozenset({"tcp"}))
 
 def _zones() -> tuple[Radius, ...]:
     """z0 to z200; imported late, since it takes time."""
-    from .rapid.predefined import ZONES, zone
+    from .values.predefined import ZONES, zone
 
     found = (zone(name) for name in ZONES)
     return tuple(one for one in found if isinstance(one, Radius))

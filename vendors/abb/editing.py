@@ -17,10 +17,10 @@ class RapidPatcher:
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         """See `flyby.core.vendor.Patcher.patch`."""
-        from ...core.source.options import PatchOptions
-        from ...core.source.patching import reading_of
-        from .rapid.convert import axis_kinds
-        from .rapid.patcher import patch
+        from ...core.source.patch.edits import reading_of
+        from ...core.source.write.options import PatchOptions
+        from .motion.targets import axis_kinds
+        from .patch.patcher import patch
 
         # The files are read again as they were read, be it without a robot.
         kinds = axis_kinds(reading_of(program).options.robot)
@@ -32,8 +32,8 @@ class RapidRecorder:
 
     def record(self, program: Program, robot: Robot, period: float) -> Sources:
         """See `flyby.core.vendor.Recorder.record`."""
-        from .rapid.convert import axis_kinds
-        from .rapid.options import RapidOptions
-        from .rapid.recorder import record
+        from .motion.targets import axis_kinds
+        from .record import record
+        from .write.options import RapidOptions
 
         return record(program, RapidOptions(external_axes=axis_kinds(robot) or ()), period)

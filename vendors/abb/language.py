@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from ...core.robot.model import Robot
     from ...core.source.reading import ReadOptions
     from ...core.vendor import Sources
-    from .rapid.options import RapidOptions
+    from .write.options import RapidOptions
 
 SUFFIXES = (".mod", ".modx", ".prg", ".sys", ".sysx", ".pgf")
 
@@ -21,27 +21,27 @@ class Rapid:
 
     def read(self, text: str, file: str, options: ReadOptions) -> Program:
         """See `flyby.core.vendor.Reader.read`."""
-        from .rapid.reader import read
+        from .run.reader import read
 
         return read(text, file, options)
 
     def read_file(self, path: Path, options: ReadOptions) -> Program:
         """See `flyby.core.vendor.Reader.read_file`."""
-        from .rapid.reader import read_file
+        from .run.reader import read_file
 
         return read_file(path, options)
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `flyby.core.vendor.Writer.write`."""
-        from .rapid.writer import RapidWriter
+        from .write.writer import RapidWriter
 
         return RapidWriter(_options(robot, options)).write(program)
 
 
 def _options(robot: Robot, options: Mapping[str, str]) -> RapidOptions:
-    from ...core.source.options import OpaqueStyle, check_names, choice
-    from .rapid.convert import axis_kinds
-    from .rapid.options import RapidOptions, ZoneStyle
+    from ...core.source.write.options import OpaqueStyle, check_names, choice
+    from .motion.targets import axis_kinds
+    from .write.options import RapidOptions, ZoneStyle
 
     check_names(options, ("zones", "opaque"), "RAPID writer")
     return RapidOptions(

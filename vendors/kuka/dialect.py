@@ -18,7 +18,7 @@ from ...core.dialect import (
     Wording,
 )
 from ...core.program.zone import Angle, ContourFraction, Radius
-from .unsaid import unsaid
+from .settings_in_force import unsaid
 
 _NAME = r"[^\W\d][\w$]*"
 _DECLARED = rf"{_NAME}(?:[ \t]*\[[^\]\r\n]*\])?"

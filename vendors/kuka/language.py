@@ -19,8 +19,8 @@ class Krl:
     def read(self, text: str, file: str, options: ReadOptions) -> Program:
         """See `flyby.core.vendor.Reader.read`."""
         from ...core.source.reading import read_with
-        from ...core.source.text import SourceFile, decode
-        from .krl.reader import read_sources
+        from ...core.source.text.files import SourceFile, decode
+        from .run.reader import read_sources
 
         decoded, codec = decode(text, file)
         files = {file: SourceFile(file, decoded, codec)}
@@ -29,25 +29,25 @@ class Krl:
     def read_file(self, path: Path, options: ReadOptions) -> Program:
         """See `flyby.core.vendor.Reader.read_file`."""
         from ...core.source.reading import read_with
-        from .krl.collect import collect
-        from .krl.reader import read_sources
+        from .run.files import collect
+        from .run.reader import read_sources
 
         return read_with(collect(path, options.others), str(path), options, read_sources)
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `flyby.core.vendor.Writer.write`."""
-        from .krl.writer import write
+        from .write.writer import write
 
         return write(program, robot, options)
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         """See `flyby.core.vendor.Patcher.patch`."""
-        from .krl.patcher import patch
+        from .patch.patcher import patch
 
         return patch(program, robot, options)
 
     def record(self, program: Program, robot: Robot, period: float) -> Sources:
         """See `flyby.core.vendor.Recorder.record`."""
-        from .krl.recorder import record
+        from .record import record
 
         return record(program, robot, period)

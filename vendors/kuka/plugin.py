@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from ...core.hookspec import VendorRegister, hookimpl
 from ...core.vendor import Vendor, lazy_motion, lazy_robots, motion_layers
 from .dialect import KRL
-from .krl.suffixes import COMPANIONS, PROGRAMS
 from .language import Krl
+from .run.suffixes import COMPANIONS, PROGRAMS
 
 if TYPE_CHECKING:
     import numpy as np
@@ -23,7 +23,7 @@ SUNRISE = "the LBR iiwa is programmed in Java (KUKA Sunrise), not in KRL"
 
 
 def _label(robot: Robot, q: NDArray[np.float64]) -> Configuration | None:
-    from .configuration import label
+    from .motion.configuration import label
 
     return label(robot, q)
 

@@ -27,7 +27,7 @@ def _routines(text: str) -> Iterator[RoutineText]:
 
 
 def _named(text: str) -> Iterator[tuple[str, Mention]]:
-    from .urscript.mentions import mentions
+    from .syntax.defined_names import mentions
 
     return mentions(text)
 

@@ -20,30 +20,30 @@ class UrScript:
 
     def read(self, text: str, file: str, options: ReadOptions) -> Program:
         """See `flyby.core.vendor.Reader.read`."""
-        from .urscript.reader import read
+        from .run.reader import read
 
         return read(text, file, options)
 
     def read_file(self, path: Path, options: ReadOptions) -> Program:
         """See `flyby.core.vendor.Reader.read_file`."""
-        from .urscript.reader import read_file
+        from .run.reader import read_file
 
         return read_file(path, options)
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `flyby.core.vendor.Writer.write`."""
-        from .urscript.writer import write
+        from .write.writer import write
 
         return write(program, robot, options)
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         """See `flyby.core.vendor.Patcher.patch`."""
-        from .urscript.patcher import patch
+        from .patch.patcher import patch
 
         return patch(program, robot, options)
 
     def record(self, program: Program, robot: Robot, period: float) -> Sources:
         """See `flyby.core.vendor.Recorder.record`."""
-        from .urscript.recorder import record
+        from .record import record
 
         return record(program, robot, period)

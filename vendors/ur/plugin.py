@@ -21,7 +21,7 @@ DATA = Path(__file__).parent / "data"
 
 
 def _label(robot: Robot, q: NDArray[np.float64]) -> Configuration | None:
-    from .configuration import label
+    from .motion.configuration import label
 
     return label(robot, q)
 

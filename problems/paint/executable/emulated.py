@@ -9,10 +9,10 @@ from scipy import sparse
 
 from ....core.arrays import FloatArray, IntArray
 from ....core.errors import Note
-from ....core.motion.controller import Controller, Run
+from ....core.motion.emulator.controller import Controller, Run
 from ....core.program.program import Program
 from ....core.spatial.rotation import matrix_from_quaternion
-from ..trajectory import PaintTrajectory
+from ..spray.trajectory import PaintTrajectory
 from .station import Station
 
 PERIOD = 0.02

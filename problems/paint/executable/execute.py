@@ -8,18 +8,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....core.arrays import FloatArray
-from ....core.collision.certificate import certify, scenes_of
-from ....core.collision.scene import CollisionScene
-from ....core.collision.verdict import CONTACT, Certificate
+from ....core.collision.proof.certificate import certify, scenes_of
+from ....core.collision.proof.verdict import CONTACT, Certificate
+from ....core.collision.scene.scene import CollisionScene
 from ....core.errors import Note
-from ....core.motion.controller import Controller
+from ....core.motion.emulator.controller import Controller
 from ....core.program.program import Program
-from ...solution import scene_notes
-from ..coat import Coat
-from ..deposition import Deposition
+from ...improve.solution import scene_notes
+from ..coating.coat import Coat
+from ..coating.deposition import Deposition
 from ..painting import Painting, Stage
-from ..part import Part
-from ..trajectory import PaintTrajectory
+from ..spray.trajectory import PaintTrajectory
+from ..surface.part import Part
 from .emulated import Driven, drive
 from .feedback import Execution, Progress, drive_evenly, judged
 from .lag import lag_notes

@@ -15,11 +15,11 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from ....core.arrays import BoolArray, FloatArray
-from ....core.motion.controller import Controller
+from ....core.motion.emulator.controller import Controller
 from ....core.program.program import Program
-from ..coat import Coat, coat
-from ..deposition import Deposition
-from ..trajectory import PaintTrajectory
+from ..coating.coat import Coat, coat
+from ..coating.deposition import Deposition
+from ..spray.trajectory import PaintTrajectory
 from .emulated import Driven, drive
 from .spin import Posture
 from .station import Station

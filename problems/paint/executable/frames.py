@@ -6,7 +6,7 @@ import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.spatial.rotation import matrix_from_rotation_vector
-from ..trajectory import PaintTrajectory
+from ..spray.trajectory import PaintTrajectory
 
 
 def gun_frames(trajectory: PaintTrajectory) -> FloatArray:

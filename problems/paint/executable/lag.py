@@ -6,8 +6,8 @@ import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.errors import Note
-from ..coat import Coat
-from ..trajectory import PaintTrajectory
+from ..coating.coat import Coat
+from ..spray.trajectory import PaintTrajectory
 from .stretch import Stretch, describe
 
 WORSE = 0.01

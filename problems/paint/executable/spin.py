@@ -21,7 +21,7 @@ from ....core.robot.inverse import UnreachableError
 from ....core.robot.model import Robot
 from ....core.robot.tracking import track
 from ....core.robot.work_chain import work_chain
-from ..trajectory import PaintTrajectory
+from ..spray.trajectory import PaintTrajectory
 from .frames import gun_frames, turned
 from .station import Station
 from .stretch import Stretch, unreachable

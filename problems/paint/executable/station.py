@@ -17,7 +17,7 @@ from ....core.program.tool import WORLD, Load, Tool, WorkObject
 from ....core.program.zone import Radius
 from ....core.spatial.pose import IDENTITY, Pose
 from ....core.vendor import Vendor
-from ..part import Part
+from ..surface.part import Part
 
 PLAIN_GUN = Tool(
     "gun",

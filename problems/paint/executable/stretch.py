@@ -11,7 +11,7 @@ from ....core.arrays import FloatArray
 from ....core.errors import MotionError
 from ....core.robot.inverse import UnreachableError
 from ....core.robot.model import Robot
-from ..trajectory import PaintTrajectory
+from ..spray.trajectory import PaintTrajectory
 from .station import Station
 
 

@@ -7,16 +7,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....core.approach import approach_speed
 from ....core.errors import InputError
 from ....core.program.event import Event, EventAnchor
 from ....core.program.move import MoveJ, MoveL, Statement
 from ....core.program.program import Program
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.zone import FINE
+from ....core.source.write.approach import approach_speed
 from ....core.spatial.pose import Pose
-from ..gun import GunSignals, gun_events
-from ..trajectory import PaintTrajectory
+from ..spray.signals import GunSignals, gun_events
+from ..spray.trajectory import PaintTrajectory
 from .spin import Posture
 from .station import Station
 

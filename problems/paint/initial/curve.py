@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from ....core.arrays import BoolArray, FloatArray
 from ....core.errors import InputError, Note
-from ..footprint import Footprint
-from ..part import Part
-from ..trajectory import PaintTrajectory
+from ..spray.footprint import Footprint
+from ..spray.trajectory import PaintTrajectory
+from ..surface.part import Part
 from .fan import fan_across
 from .guide import Guide
 from .plan import Coats, Gun, Method, SweepPlan

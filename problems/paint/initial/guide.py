@@ -10,9 +10,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ....core.arrays import BoolArray, FloatArray, IntArray
-from ..mesh_repair import face_normals
-from ..part import Part
-from ..rays_tree import build_tree
+from ..surface.mesh_repair import face_normals
+from ..surface.part import Part
+from ..surface.rays.tree import build_tree
 from .guide_kernels import find_edges_along, meet_lines
 
 STEPS = 16

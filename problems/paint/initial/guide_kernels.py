@@ -8,8 +8,8 @@ import numpy as np
 from numba import njit
 
 from ....core.arrays import BoolArray, FloatArray, IntArray
-from ..rays_bvh import trace
-from ..rays_tree import DEPTH, Tree
+from ..surface.rays.bvh import trace
+from ..surface.rays.tree import DEPTH, Tree
 
 
 @njit(cache=True, error_model="numpy", nogil=True)

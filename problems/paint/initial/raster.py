@@ -10,7 +10,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from ....core.arrays import FloatArray
 from ....core.errors import InputError
-from ..part import Part
+from ..surface.part import Part
 from .guide import Guide
 from .plan import SweepPlan
 from .projection import Frames

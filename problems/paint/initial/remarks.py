@@ -8,8 +8,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ....core.errors import Note
-from ..footprint import Footprint
-from ..part import Part
+from ..spray.footprint import Footprint
+from ..surface.part import Part
 from .plan import Method, SweepPlan
 from .spacing import Ripple, predicted_ripple, spacings, stroke_radius
 from .sweep import Sweep

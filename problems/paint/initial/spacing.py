@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ....core.arrays import FloatArray
-from ..footprint import Footprint
-from ..strokes import section, spread
+from ..spray.footprint import Footprint
+from ..spray.strokes import section, spread
 from .sweep import Sweep
 
 PLACES = 400

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Cell
 from flyby.core.cell.geometry import Mesh
-from flyby.core.collision.engine import Places
-from flyby.core.collision.solid import Polytope, Solid, TriangleMesh
+from flyby.core.collision.distance.engine import Places
+from flyby.core.collision.distance.solid import Polytope, Solid, TriangleMesh
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from flyby.core.robot.model import Robot
 from flyby.core.robot.shape import Box, Capsule, Cylinder, LinkShape, Sphere
@@ -41,7 +41,7 @@ def places(draw: st.DrawFn, count: int = 2) -> Places:
 
 @st.composite
 def polytopes(draw: st.DrawFn) -> Polytope:
-    from flyby.core.collision.convex import hull
+    from flyby.core.collision.distance.convex import hull
 
     rng = np.random.default_rng(draw(st.integers(0, 10**6)))
     return hull(rng.uniform(-0.4, 0.4, (draw(st.integers(6, 24)), 3)))

@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 
 from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry
-from flyby.core.collision import strays
-from flyby.core.collision.certificate import TOLERANCE, certify, certify_stretch, scenes_of
-from flyby.core.collision.verdict import Certificate, Verdict
+from flyby.core.collision.deviation import bounds as strays
+from flyby.core.collision.proof.certificate import TOLERANCE, certify, certify_stretch, scenes_of
+from flyby.core.collision.proof.verdict import Certificate, Verdict
 from flyby.core.errors import InputError, MotionError
-from flyby.core.motion.controller import Controller, Run
-from flyby.core.motion.elasticity import Elasticity
-from flyby.core.motion.model import MotionModel
-from flyby.core.motion.pieces import Sampling
+from flyby.core.motion.command.elasticity import Elasticity
+from flyby.core.motion.emulator.controller import Controller, Run
+from flyby.core.motion.geometry.pieces import Sampling
+from flyby.core.motion.model.motion_model.motion_model import MotionModel
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

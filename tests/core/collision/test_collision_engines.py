@@ -10,13 +10,13 @@ import trimesh
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from flyby.core.collision.closed_form import hulls_of, measure
-from flyby.core.collision.coal_engine import CoalEngine
-from flyby.core.collision.containment import Nesting
-from flyby.core.collision.distances import Distances
-from flyby.core.collision.engine import Places, Witness
-from flyby.core.collision.fcl_engine import FclEngine
-from flyby.core.collision.solid import Solid, core_radius, extent
+from flyby.core.collision.distance.answers import Distances
+from flyby.core.collision.distance.closed_form import hulls_of, measure
+from flyby.core.collision.distance.coal_engine import CoalEngine
+from flyby.core.collision.distance.containment import Nesting
+from flyby.core.collision.distance.engine import Places, Witness
+from flyby.core.collision.distance.fcl_engine import FclEngine
+from flyby.core.collision.distance.solid import Solid, core_radius, extent
 from flyby.core.robot.shape import Box, Capsule, Cylinder, Sphere
 
 from .conftest import (

@@ -8,15 +8,15 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from flyby.core.arrays import FloatArray
-from flyby.core.collision.enclosure import Enclosure, Intervals
+from flyby.core.collision.proof.enclosure import Enclosure, Intervals
 from flyby.core.errors import MotionError
-from flyby.core.motion.blend import PARABOLA, TANGENT_ARC, Blend
-from flyby.core.motion.controller import Controller
-from flyby.core.motion.curves import parameter_jet
-from flyby.core.motion.model import MotionModel
-from flyby.core.motion.path import Path
-from flyby.core.motion.pieces import Sampling
-from flyby.core.motion.zones import POSITION
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.geometry.curves import parameter_jet
+from flyby.core.motion.geometry.pieces import Sampling
+from flyby.core.motion.geometry.zones import POSITION
+from flyby.core.motion.model.motion_model.blend import PARABOLA, TANGENT_ARC, Blend
+from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.path.path.path import Path
 from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

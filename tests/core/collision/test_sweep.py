@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Obstacle
 from flyby.core.cell.geometry import Geometry
-from flyby.core.collision.boxes import Boxes
-from flyby.core.collision.items import Items, Sweeps
-from flyby.core.collision.scene import CollisionScene
-from flyby.core.collision.strays import Strays, stretches
-from flyby.core.collision.sweep import sweep
+from flyby.core.collision.deviation.bounds import Strays, stretches
+from flyby.core.collision.proof.boxes import Boxes
+from flyby.core.collision.proof.items import Items, Sweeps
+from flyby.core.collision.proof.sweep import sweep
+from flyby.core.collision.scene.scene.scene import CollisionScene
 from flyby.core.program.tool import Tool
 from flyby.core.robot.shape import Box, Capsule, Sphere
 from flyby.core.spatial.pose import Pose

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
 from flyby.core.program.zone import Radius
-from flyby.core.source.patching import alike
-from flyby.vendors.abb.rapid import predefined
+from flyby.core.source.patch.edits import alike
+from flyby.vendors.abb.values import predefined
 
 RADII = st.floats(1e-4, 0.3)
 PARTS = ("tcp", "reorientation", "external", "angle", "external_linear", "external_angular")

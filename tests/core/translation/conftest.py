@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import strategies as st
 
-from flyby.core.motion.controller import Controller, Run
+from flyby.core.motion.emulator.controller import Controller, Run
 from flyby.core.program.move import Move, MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 
 from flyby.core.errors import MotionError
-from flyby.core.motion.controller import Controller
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.registry import find_robot, find_vendor
-from flyby.core.source.answers import load_answers
+from flyby.core.source.execution.answers import load_answers
 from flyby.core.spatial.pose import Pose
 from flyby.core.translation.translate import TranslationOptions, translate
 

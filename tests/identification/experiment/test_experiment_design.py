@@ -13,10 +13,10 @@ import pytest
 from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.floor import bare_cell
 from flyby.core.cell.geometry import Geometry
-from flyby.core.collision.certificate import certify, scenes_of
+from flyby.core.collision.proof.certificate import certify, scenes_of
 from flyby.core.dialect import MoveWords
 from flyby.core.errors import InputError
-from flyby.core.motion.controller import Controller
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
@@ -25,7 +25,7 @@ from flyby.core.program.zone import ContourFraction
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint
 from flyby.core.robot.shape import Box
-from flyby.core.source.patching import difference
+from flyby.core.source.patch.edits import difference
 from flyby.core.spatial.pose import Pose
 from flyby.identification.experiment import postures
 from flyby.identification.experiment.design import _unlabelled, design, main_file

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from flyby.core.motion.controller import Controller
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.target import JointTarget
 from flyby.core.program.tool import FLANGE
 from flyby.core.registry import find_robot, find_vendor

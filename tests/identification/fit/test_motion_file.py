@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from flyby.core.errors import InputError
-from flyby.core.motion.blend import Blend
-from flyby.core.motion.elasticity import Carried, Coupled, Elasticity
-from flyby.core.motion.model import (
+from flyby.core.motion.command.elasticity import Carried, Coupled, Elasticity
+from flyby.core.motion.model.motion_model.blend import Blend
+from flyby.core.motion.model.motion_model.motion_model import (
     ArcTurn,
     DurationRule,
     LineTurn,
@@ -22,7 +22,7 @@ from flyby.core.motion.model import (
     Space,
     load_motion_model,
 )
-from flyby.core.motion.torque import Borne, Torque
+from flyby.core.motion.timing.timing.torque import Borne, Torque
 from flyby.identification.fit import (
     Fit,
     Interval,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from flyby.problems.paint.deposition import Deposition
-from flyby.problems.paint.footprint import Footprint, ring
-from flyby.problems.paint.samples import SurfaceSamples
-from flyby.problems.paint.trajectory import PaintTrajectory
+from flyby.problems.paint.coating.deposition import Deposition
+from flyby.problems.paint.spray.footprint import Footprint, ring
+from flyby.problems.paint.spray.trajectory import PaintTrajectory
+from flyby.problems.paint.surface.samples import SurfaceSamples
 
 TARGET = 50e-6
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.problems.paint.coat import Coat, coat
+from flyby.problems.paint.coating.coat import Coat, coat
 
 from .paint_cases import TARGET, plate_case
 

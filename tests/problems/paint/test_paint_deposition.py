@@ -14,10 +14,10 @@ from scipy.integrate import quad
 
 from flyby.core.errors import InputError
 from flyby.core.spatial.pose import Pose
-from flyby.problems.paint.deposition import Deposition
-from flyby.problems.paint.footprint import ring
-from flyby.problems.paint.samples import SurfaceSamples
-from flyby.problems.paint.trajectory import PaintTrajectory
+from flyby.problems.paint.coating.deposition import Deposition
+from flyby.problems.paint.spray.footprint import ring
+from flyby.problems.paint.spray.trajectory import PaintTrajectory
+from flyby.problems.paint.surface.samples import SurfaceSamples
 
 from .paint_cases import bumpy, fan_footprint, plate, sweeps, wandering
 

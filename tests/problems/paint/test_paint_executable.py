@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 
 from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Cell
-from flyby.core.collision.scene import CollisionScene
+from flyby.core.collision.scene.scene.scene import CollisionScene
 from flyby.core.errors import InputError, MotionError
-from flyby.core.motion.controller import Controller
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import MoveJ
 from flyby.core.program.tool import WORLD, Tool, WorkObject
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
-from flyby.problems.paint.coat import Coat, coat
+from flyby.problems.paint.coating.coat import Coat, coat
 from flyby.problems.paint.executable.emulated import Driven, drive
 from flyby.problems.paint.executable.feedback import drive_evenly
 from flyby.problems.paint.executable.frames import gun_frames, turned
@@ -28,9 +28,9 @@ from flyby.problems.paint.executable.lag import lag_notes
 from flyby.problems.paint.executable.spin import Posture, choose_posture
 from flyby.problems.paint.executable.station import PLAIN_GUN, Station
 from flyby.problems.paint.executable.writing import DriveOptions, paint_program, with_run_in
-from flyby.problems.paint.gun import GunSignals
-from flyby.problems.paint.part import Part
-from flyby.problems.paint.trajectory import PaintTrajectory
+from flyby.problems.paint.spray.signals import GunSignals
+from flyby.problems.paint.spray.trajectory import PaintTrajectory
+from flyby.problems.paint.surface.part import Part
 
 from .paint_cases import TARGET, plate_case, wandering
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from flyby.core.errors import InputError
-from flyby.problems.paint.footprint import Footprint, ring
+from flyby.problems.paint.spray.footprint import Footprint, ring
 
 from .paint_cases import fan_footprint
 

@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.problems.paint.deposition import Deposition
-from flyby.problems.paint.footprint import Footprint, ring
-from flyby.problems.paint.footprint_fit import fit_footprint
-from flyby.problems.paint.samples import SurfaceSamples
-from flyby.problems.paint.strokes import Stroke, section
-from flyby.problems.paint.trajectory import PaintTrajectory
+from flyby.problems.paint.coating.deposition import Deposition
+from flyby.problems.paint.spray.footprint import Footprint, ring
+from flyby.problems.paint.spray.footprint_fit import fit_footprint
+from flyby.problems.paint.spray.strokes import Stroke, section
+from flyby.problems.paint.spray.trajectory import PaintTrajectory
+from flyby.problems.paint.surface.samples import SurfaceSamples
 
 from .paint_cases import fan_footprint
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
 from flyby.core.registry import find_vendor
-from flyby.problems.paint.gun import GunSignals, gun_events
-from flyby.problems.paint.trajectory import PaintTrajectory
+from flyby.problems.paint.spray.signals import GunSignals, gun_events
+from flyby.problems.paint.spray.trajectory import PaintTrajectory
 
 
 def line(flow: list[float]) -> PaintTrajectory:

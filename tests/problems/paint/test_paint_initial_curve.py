@@ -13,15 +13,15 @@ from hypothesis import strategies as st
 from flyby.core.errors import InputError
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
-from flyby.problems.paint.deposition import Deposition
-from flyby.problems.paint.fender import ARCH_RADIUS, fender
-from flyby.problems.paint.footprint import ring
+from flyby.problems.paint.coating.deposition import Deposition
 from flyby.problems.paint.initial.curve import InitialCurve, initial_curve
 from flyby.problems.paint.initial.plan import Coats, Gun, Method, SweepPlan
 from flyby.problems.paint.initial.spacing import predicted_ripple, spacings
-from flyby.problems.paint.part import Part
-from flyby.problems.paint.surfaces import grid_faces, plate, saddle, sloped, wavy
-from flyby.problems.paint.trajectory import PaintTrajectory
+from flyby.problems.paint.spray.footprint import ring
+from flyby.problems.paint.spray.trajectory import PaintTrajectory
+from flyby.problems.paint.surface.part import Part
+from flyby.validation.surfaces.fender import ARCH_RADIUS, fender
+from flyby.validation.surfaces.sheets import grid_faces, plate, saddle, sloped, wavy
 
 X = (1.0, 0.0, 0.0)
 DOWN = (0.0, 0.0, -1.0)
@@ -260,7 +260,7 @@ def test_the_predicted_ripple_is_that_of_long_strokes(
 def test_what_lies_round_a_corner_is_told() -> None:
     import trimesh
 
-    from flyby.problems.paint.loading import make_part
+    from flyby.problems.paint.surface.loading import make_part
 
     box = trimesh.creation.box((0.8, 0.6, 0.5))
     part = make_part(np.array(box.vertices), np.array(box.faces), view=DOWN)

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from flyby.core.arrays import FloatArray, IntArray
 from flyby.core.errors import InputError
-from flyby.problems.paint.mesh_repair import face_normals, find_edges, repair
-from flyby.problems.paint.surfaces import saddle, wavy
+from flyby.problems.paint.surface.mesh_repair import face_normals, find_edges, repair
+from flyby.validation.surfaces.sheets import saddle, wavy
 
 
 def area(vertices: FloatArray, faces: IntArray) -> float:

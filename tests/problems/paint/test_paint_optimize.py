@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from flyby.core.sqp import Status
-from flyby.problems.paint.coat import coat
-from flyby.problems.paint.deposition import Deposition
-from flyby.problems.paint.optimize import PaintSolution, optimize
-from flyby.problems.paint.optimize_options import OuterLoop, PaintLimits, PaintWeights
-from flyby.problems.paint.reference import Reference
-from flyby.problems.paint.robust import PaintErrors, scenarios
-from flyby.problems.paint.trajectory import PaintTrajectory
+from flyby.problems.paint.coating.coat import coat
+from flyby.problems.paint.coating.deposition import Deposition
+from flyby.problems.paint.spray.trajectory import PaintTrajectory
+from flyby.problems.paint.thickness.optimize import PaintSolution, optimize
+from flyby.problems.paint.thickness.options import OuterLoop, PaintLimits, PaintWeights
+from flyby.problems.paint.thickness.reference import Reference
+from flyby.problems.paint.thickness.robust import PaintErrors, scenarios
 
 from .paint_cases import TARGET, plate, plate_case
 

@@ -10,14 +10,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.problems.paint.deposition import Deposition
-from flyby.problems.paint.footprint import ring
-from flyby.problems.paint.optimize_constraints import PaintConstraints
-from flyby.problems.paint.optimize_objective import PaintObjective, Scenario
-from flyby.problems.paint.optimize_options import OuterLoop, PaintLimits, PaintWeights
-from flyby.problems.paint.optimize_variables import Variables
-from flyby.problems.paint.reference import Reference
-from flyby.problems.paint.robust import PaintErrors, scenarios
+from flyby.problems.paint.coating.deposition import Deposition
+from flyby.problems.paint.spray.footprint import ring
+from flyby.problems.paint.thickness.constraints import PaintConstraints
+from flyby.problems.paint.thickness.objective import PaintObjective, Scenario
+from flyby.problems.paint.thickness.options import OuterLoop, PaintLimits, PaintWeights
+from flyby.problems.paint.thickness.reference import Reference
+from flyby.problems.paint.thickness.robust import PaintErrors, scenarios
+from flyby.problems.paint.thickness.variables import Variables
 
 from .paint_cases import TARGET, bumpy, wandering
 

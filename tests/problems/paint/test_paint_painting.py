@@ -13,19 +13,19 @@ from flyby.core.errors import InputError
 from flyby.core.program.tool import WorkObject
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
+from flyby.problems.paint.coating.sight import sight
 from flyby.problems.paint.executable.execute import execute
 from flyby.problems.paint.executable.station import Station
 from flyby.problems.paint.executable.writing import DriveOptions
-from flyby.problems.paint.footprint import Footprint, ring
-from flyby.problems.paint.footprint_file import load_footprint
 from flyby.problems.paint.initial.plan import SweepPlan
-from flyby.problems.paint.optimize_options import OuterLoop
 from flyby.problems.paint.painting import Judge, Painting, Stage, Wishes, paint
-from flyby.problems.paint.part import Part
-from flyby.problems.paint.sight import sight
-from flyby.problems.paint.strokes import section
-from flyby.problems.paint.surfaces import plate, saddle
-from flyby.problems.paint.trajectory import PaintTrajectory
+from flyby.problems.paint.spray.footprint import Footprint, ring
+from flyby.problems.paint.spray.footprint_file import load_footprint
+from flyby.problems.paint.spray.strokes import section
+from flyby.problems.paint.spray.trajectory import PaintTrajectory
+from flyby.problems.paint.surface.part import Part
+from flyby.problems.paint.thickness.options import OuterLoop
+from flyby.validation.surfaces.sheets import plate, saddle
 
 TARGET = 50e-6
 BELL = ring(0.25).scaled(2e-5)

@@ -15,15 +15,15 @@ from numpy.typing import NDArray
 from flyby.core.arrays import FloatArray
 from flyby.core.errors import InputError
 from flyby.core.spatial.pose import Pose
-from flyby.problems.paint import fender as fenders
-from flyby.problems.paint.fender import fender
-from flyby.problems.paint.loading import load_part, make_part
-from flyby.problems.paint.mesh_repair import face_normals, find_edges
-from flyby.problems.paint.part import Part
-from flyby.problems.paint.rays import RayEngine, make_rays
-from flyby.problems.paint.region import facing, grown_from, seen_from, within_box
-from flyby.problems.paint.resolution import coarsened, refined
-from flyby.problems.paint.surfaces import plate, saddle, scanned, sloped, wavy
+from flyby.problems.paint.surface.loading import load_part, make_part
+from flyby.problems.paint.surface.mesh_repair import face_normals, find_edges
+from flyby.problems.paint.surface.part import Part
+from flyby.problems.paint.surface.rays.rays import RayEngine, make_rays
+from flyby.problems.paint.surface.region import facing, grown_from, seen_from, within_box
+from flyby.problems.paint.surface.resolution import coarsened, refined
+from flyby.validation.surfaces import fender as fenders
+from flyby.validation.surfaces.fender import fender
+from flyby.validation.surfaces.sheets import plate, saddle, scanned, sloped, wavy
 
 DOWN = (0.0, 0.0, -1.0)
 

@@ -13,8 +13,8 @@ from flyby.core.arrays import FloatArray
 from flyby.problems.paint.initial.guide import Guide
 from flyby.problems.paint.initial.plan import SweepPlan
 from flyby.problems.paint.initial.projection import Frames, Projector, cluster_mean
-from flyby.problems.paint.part import Part
-from flyby.problems.paint.surfaces import grid_faces, plate, saddle, scanned
+from flyby.problems.paint.surface.part import Part
+from flyby.validation.surfaces.sheets import grid_faces, plate, saddle, scanned
 
 DOWN = np.array([0.0, 0.0, -1.0])
 

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
 from flyby.core.errors import InputError
-from flyby.problems.paint.coat import coat
-from flyby.problems.paint.deposition import Deposition
-from flyby.problems.paint.footprint import ring
-from flyby.problems.paint.speeds import best_speeds
-from flyby.problems.paint.trajectory import PaintTrajectory
+from flyby.problems.paint.coating.coat import coat
+from flyby.problems.paint.coating.deposition import Deposition
+from flyby.problems.paint.spray.footprint import ring
+from flyby.problems.paint.spray.trajectory import PaintTrajectory
+from flyby.problems.paint.thickness.speeds import best_speeds
 
 from .paint_cases import TARGET, bumpy, plate_case, wandering
 

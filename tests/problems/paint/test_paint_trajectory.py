@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
 from flyby.core.spatial.pose import Pose
-from flyby.problems.paint.trajectory import PaintTrajectory
+from flyby.problems.paint.spray.trajectory import PaintTrajectory
 
 from .paint_cases import wandering
 

@@ -9,8 +9,8 @@ from flyby.core.errors import InputError
 from flyby.core.program.target import Configuration
 from flyby.core.registry import find_vendor
 from flyby.core.robot.model import Robot
-from flyby.vendors.abb.configuration import AbbConfiguration, label
-from flyby.vendors.ur.configuration import UrConfiguration
+from flyby.vendors.abb.motion.configuration import AbbConfiguration, label
+from flyby.vendors.ur.motion.configuration import UrConfiguration
 
 ABB = find_vendor("abb")
 IRB6640 = ABB.robot("irb6640-180-255")

@@ -12,17 +12,17 @@ from typing import Any
 import pytest
 
 from flyby.core.errors import FlybyError, SourceError, Span
-from flyby.core.motion.controller import Controller
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import Move
 from flyby.core.program.origin import MoveOrigin, Ownership
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_robot, find_vendor
-from flyby.core.source.answers import load_answers
-from flyby.core.source.patching import difference
+from flyby.core.source.execution.answers import load_answers
+from flyby.core.source.patch.edits import difference
 from flyby.core.source.reading import Files, Reading
-from flyby.vendors.abb.rapid import predefined
+from flyby.vendors.abb.values import predefined
 
 ROOT = Path(__file__).parents[2] / "corpus" / "rapid"
 PROGRAMS: dict[str, dict[str, Any]] = {

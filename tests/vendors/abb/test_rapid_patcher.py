@@ -13,17 +13,17 @@ from flyby.core.program.move import Move, MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import FINE, ContourFraction, Radius
-from flyby.core.source.options import PatchOptions, Sharing
-from flyby.core.source.patching import difference
+from flyby.core.source.patch.edits import difference
 from flyby.core.source.reading import ReadOptions, read_with
-from flyby.core.source.text import SourceFile, decode
+from flyby.core.source.text.files.files import SourceFile, decode
+from flyby.core.source.write.options import PatchOptions, Sharing
 from flyby.testing import strategies as given_by
-from flyby.vendors.abb.configuration import AbbConfiguration
-from flyby.vendors.abb.rapid import predefined
-from flyby.vendors.abb.rapid.options import RapidOptions
-from flyby.vendors.abb.rapid.patcher import patch
-from flyby.vendors.abb.rapid.reader import read_sources
-from flyby.vendors.abb.rapid.writer import write
+from flyby.vendors.abb.motion.configuration import AbbConfiguration
+from flyby.vendors.abb.patch.patcher import patch
+from flyby.vendors.abb.run.reader import read_sources
+from flyby.vendors.abb.values import predefined
+from flyby.vendors.abb.write.options import RapidOptions
+from flyby.vendors.abb.write.writer import write
 
 OWN = PatchOptions(Sharing.OWN, Sharing.OWN)
 REFUSE = PatchOptions()

@@ -6,10 +6,10 @@ import pytest
 
 from flyby.core.errors import SourceError
 from flyby.core.program.move import Opaque
-from flyby.core.source.answers import Answers, load_answers
-from flyby.core.source.limits import Limits
+from flyby.core.source.execution.answers import Answers, load_answers
+from flyby.core.source.execution.limits import Limits
 from flyby.core.source.reading import ReadOptions
-from flyby.vendors.abb.rapid.reader import read
+from flyby.vendors.abb.run.reader import read
 
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 P = f"[[500,0,600],[0,0,1,0],[0,0,0,0],{UNUSED}]"

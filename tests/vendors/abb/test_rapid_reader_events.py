@@ -13,9 +13,9 @@ from flyby.core.program.event import Event, EventAnchor
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.origin import Ownership
 from flyby.core.program.zone import FINE
-from flyby.core.source.answers import Answers
+from flyby.core.source.execution.answers import Answers
 from flyby.core.source.reading import ReadOptions
-from flyby.vendors.abb.rapid.reader import read
+from flyby.vendors.abb.run.reader import read
 
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 P = f"[[500,0,600],[0,0,1,0],[0,0,0,0],{UNUSED}]"

@@ -12,9 +12,9 @@ from flyby.core.errors import FlybyError, SourceError
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.origin import Ownership
 from flyby.core.program.program import Program
-from flyby.core.source.limits import Limits
+from flyby.core.source.execution.limits import Limits
 from flyby.core.source.reading import ReadOptions
-from flyby.vendors.abb.rapid.reader import read
+from flyby.vendors.abb.run.reader import read
 
 MESSY = (
     r"""%%%

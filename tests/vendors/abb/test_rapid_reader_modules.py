@@ -8,8 +8,8 @@ import pytest
 
 from flyby.core.errors import InputError, SourceError
 from flyby.core.source.reading import Reading, ReadOptions
-from flyby.core.source.text import SourceFile
-from flyby.vendors.abb.rapid.reader import read, read_file, read_sources
+from flyby.core.source.text.files.files import SourceFile
+from flyby.vendors.abb.run.reader import read, read_file, read_sources
 
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 

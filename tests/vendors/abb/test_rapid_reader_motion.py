@@ -13,9 +13,9 @@ from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.spatial.pose import Pose
-from flyby.vendors.abb.configuration import AbbConfiguration
-from flyby.vendors.abb.rapid import predefined
-from flyby.vendors.abb.rapid.reader import read
+from flyby.vendors.abb.motion.configuration import AbbConfiguration
+from flyby.vendors.abb.run.reader import read
+from flyby.vendors.abb.values import predefined
 
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 P = f"[[500,-100,600],[0,0,1,0],[-1,0,1,2],{UNUSED}]"

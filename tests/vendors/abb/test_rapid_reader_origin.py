@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from flyby.core.program.origin import Ownership
-from flyby.vendors.abb.rapid.reader import read
+from flyby.vendors.abb.run.reader import read
 
 OWNED, SHARED, DERIVED = Ownership.OWNED, Ownership.SHARED, Ownership.DERIVED
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"

@@ -8,9 +8,9 @@ import pytest
 
 from flyby.core.errors import InputError, SourceError
 from flyby.core.program.move import Opaque, Wait
-from flyby.core.source.limits import Limits
+from flyby.core.source.execution.limits import Limits
 from flyby.core.source.reading import ReadOptions
-from flyby.vendors.abb.rapid.reader import read, read_file
+from flyby.vendors.abb.run.reader import read, read_file
 
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 P = f"[[500,0,600],[0,0,1,0],[0,0,0,0],{UNUSED}]"

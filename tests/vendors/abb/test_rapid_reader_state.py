@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import SourceError
 from flyby.core.registry import find_robot
-from flyby.core.source.answers import Answers
+from flyby.core.source.execution.answers import Answers
 from flyby.core.source.reading import ReadOptions
-from flyby.vendors.abb.rapid.reader import read
+from flyby.vendors.abb.run.reader import read
 
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 P = f"[[500,0,600],[0,0,1,0],[0,0,0,0],{UNUSED}]"

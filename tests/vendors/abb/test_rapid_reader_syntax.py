@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from flyby.core.errors import SourceError
-from flyby.core.source.text import SourceText, decode
-from flyby.vendors.abb.rapid.lexer import END, number_value, string_value, tokenize
-from flyby.vendors.abb.rapid.parser import parse
-from flyby.vendors.abb.rapid.reader import read
-from flyby.vendors.abb.rapid.syntax import Assign, If, Number, Operation, Unary
+from flyby.core.source.text.files.files import SourceText, decode
+from flyby.vendors.abb.run.reader import read
+from flyby.vendors.abb.syntax.lexer import END, number_value, string_value, tokenize
+from flyby.vendors.abb.syntax.parser import parse
+from flyby.vendors.abb.syntax.tree import Assign, If, Number, Operation, Unary
 
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 P = f"[[500,0,600],[0,0,1,0],[0,0,0,0],{UNUSED}]"

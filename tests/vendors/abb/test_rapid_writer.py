@@ -16,19 +16,19 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Load, Tool, WorkObject
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction, Zone
-from flyby.core.source.names import Names
-from flyby.core.source.options import OpaqueStyle
+from flyby.core.source.text.files.names import Names
+from flyby.core.source.write.options import OpaqueStyle
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import arc_angle
-from flyby.vendors.abb.configuration import AbbConfiguration
-from flyby.vendors.abb.rapid import predefined
-from flyby.vendors.abb.rapid.formatting import MAX_NAME, NAME_RULES
-from flyby.vendors.abb.rapid.literals import MM
-from flyby.vendors.abb.rapid.numbers import number
-from flyby.vendors.abb.rapid.operands import predefined_within
-from flyby.vendors.abb.rapid.options import RapidOptions, ZoneStyle
-from flyby.vendors.abb.rapid.reader import read
-from flyby.vendors.abb.rapid.writer import RapidWriter, write
+from flyby.vendors.abb.motion.configuration import AbbConfiguration
+from flyby.vendors.abb.run.reader import read
+from flyby.vendors.abb.values import predefined
+from flyby.vendors.abb.values.records import MM
+from flyby.vendors.abb.write.formatting import MAX_NAME, NAME_RULES
+from flyby.vendors.abb.write.numbers import number
+from flyby.vendors.abb.write.operands import predefined_within
+from flyby.vendors.abb.write.options import RapidOptions, ZoneStyle
+from flyby.vendors.abb.write.writer import RapidWriter, write
 
 OPTIONS = RapidOptions()
 DOWN = (0.0, 0.0, 1.0, 0.0)

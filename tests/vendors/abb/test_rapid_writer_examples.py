@@ -11,10 +11,10 @@ from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_vendor
-from flyby.vendors.abb.configuration import label
-from flyby.vendors.abb.rapid.options import RapidOptions, ZoneStyle
-from flyby.vendors.abb.rapid.reader import read, read_file
-from flyby.vendors.abb.rapid.writer import write
+from flyby.vendors.abb.motion.configuration import label
+from flyby.vendors.abb.run.reader import read, read_file
+from flyby.vendors.abb.write.options import RapidOptions, ZoneStyle
+from flyby.vendors.abb.write.writer import write
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 MODULES = sorted(EXAMPLES.glob("*.mod"))

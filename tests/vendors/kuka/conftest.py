@@ -7,10 +7,10 @@ from collections.abc import Callable
 import pytest
 
 from flyby.core.program.program import Program
-from flyby.core.source.answers import Answers
+from flyby.core.source.execution.answers import Answers
 from flyby.core.source.reading import ReadOptions, read_with
-from flyby.core.source.text import SourceFile
-from flyby.vendors.kuka.krl.reader import read_sources
+from flyby.core.source.text.files.files import SourceFile
+from flyby.vendors.kuka.run.reader import read_sources
 
 ReadKrl = Callable[..., Program]
 

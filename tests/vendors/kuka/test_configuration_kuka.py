@@ -11,8 +11,8 @@ from flyby.core.errors import InputError
 from flyby.core.program.target import Configuration
 from flyby.core.registry import find_vendor
 from flyby.core.robot.model import Robot
-from flyby.vendors.kuka.configuration import KukaConfiguration, label
-from flyby.vendors.ur.configuration import UrConfiguration
+from flyby.vendors.kuka.motion.configuration import KukaConfiguration, label
+from flyby.vendors.ur.motion.configuration import UrConfiguration
 
 KUKA = find_vendor("kuka")
 KR30 = KUKA.robot("kr30-3")

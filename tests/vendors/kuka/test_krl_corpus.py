@@ -9,16 +9,16 @@ from pathlib import Path
 import pytest
 
 from flyby.core.errors import FlybyError, SourceError
-from flyby.core.motion.controller import Controller
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import Move, MoveJ
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget, Target
 from flyby.core.program.zone import Angle, ContourFraction, Radius
 from flyby.core.registry import find_vendor
 from flyby.core.robot.model import Robot
-from flyby.core.source.patching import difference, reading_of
+from flyby.core.source.patch.edits import difference, reading_of
 from flyby.core.source.reading import Files
-from flyby.core.source.text import SourceFile
+from flyby.core.source.text.files.files import SourceFile
 
 CORPUS = Path(__file__).parents[2] / "corpus" / "krl"
 INDEX = tomllib.loads((CORPUS / "index.toml").read_text("utf-8"))["program"]

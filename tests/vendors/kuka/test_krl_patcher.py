@@ -15,8 +15,8 @@ from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius
 from flyby.core.registry import find_vendor
-from flyby.core.source.patching import difference, reading_of
-from flyby.vendors.kuka.configuration import KukaConfiguration
+from flyby.core.source.patch.edits import difference, reading_of
+from flyby.vendors.kuka.motion.configuration import KukaConfiguration
 
 KUKA = find_vendor("kuka")
 ROBOT = KUKA.robot("kr30-3")

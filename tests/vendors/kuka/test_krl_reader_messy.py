@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from flyby.core.errors import FlybyError, SourceError
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.source.reading import ReadOptions
-from flyby.core.source.text import SourceText
-from flyby.vendors.kuka.krl.lexer import END, tokenize
+from flyby.core.source.text.files.files import SourceText
 from flyby.vendors.kuka.language import Krl
+from flyby.vendors.kuka.syntax.lexer import END, tokenize
 
 MESSY = """\ufeff&ACCESS RVP1
 &REL 73

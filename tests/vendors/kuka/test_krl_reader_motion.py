@@ -20,10 +20,10 @@ from flyby.core.program.tool import FLANGE, WORLD
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from flyby.core.spatial.pose import IDENTITY, Pose
-from flyby.vendors.kuka.configuration import KukaConfiguration
-from flyby.vendors.kuka.krl.angles import quaternion
-from flyby.vendors.kuka.krl.arcs import beyond
+from flyby.vendors.kuka.motion.arcs import beyond
+from flyby.vendors.kuka.motion.configuration import KukaConfiguration
 from flyby.vendors.kuka.plugin import DATA
+from flyby.vendors.kuka.values.angles import quaternion
 
 SET = """$VEL_AXIS[1]=50
 FOR i=1 TO 6
@@ -260,9 +260,9 @@ def test_geometric_operator(krl):
 
 @given(st.lists(st.floats(-180, 180), min_size=12, max_size=12))
 def test_geometric_operator_chains_frames(numbers):
-    from flyby.vendors.kuka.krl.frames import frame_of, pose_of
-    from flyby.vendors.kuka.krl.operators import apply
-    from flyby.vendors.kuka.krl.values import Struct
+    from flyby.vendors.kuka.values.frames import frame_of, pose_of
+    from flyby.vendors.kuka.values.operators import apply
+    from flyby.vendors.kuka.values.values import Struct
 
     first, second = (
         Struct("frame", dict(zip("xyzabc", n, strict=True))) for n in (numbers[:6], numbers[6:])

@@ -9,11 +9,11 @@ import pytest
 from flyby.core.errors import InputError, SourceError
 from flyby.core.program.move import Opaque, Wait
 from flyby.core.registry import find_vendor
-from flyby.core.source.answers import Answers, key
-from flyby.core.source.limits import Limits
+from flyby.core.source.execution.answers import Answers, key
+from flyby.core.source.execution.limits import Limits
 from flyby.core.source.reading import ReadOptions
-from flyby.vendors.kuka.krl import writer
 from flyby.vendors.kuka.language import Krl
+from flyby.vendors.kuka.write import writer
 
 INIT = "$TOOL=$NULLFRAME\n$BASE=$NULLFRAME\nBAS(#INITMOV,0)\n"
 POSE = "{X %s,Y 0,Z 0,A 0,B 0,C 0}"

@@ -12,9 +12,9 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import ContourFraction, Radius
 from flyby.core.registry import find_vendor
-from flyby.core.source.patching import difference
+from flyby.core.source.patch.edits import difference
 from flyby.core.spatial.pose import Pose
-from flyby.vendors.kuka.krl.recorder import LOG, record
+from flyby.vendors.kuka.record import LOG, record
 
 KUKA = find_vendor("kuka")
 ROBOT = KUKA.robot("kr30-3")

@@ -19,15 +19,15 @@ from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Load, Tool, WorkObject
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction, Zone
 from flyby.core.registry import find_vendor
-from flyby.core.source.names import Names
+from flyby.core.source.text.files.names import Names
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_quaternion
-from flyby.vendors.abb.configuration import AbbConfiguration
-from flyby.vendors.kuka.configuration import KukaConfiguration
-from flyby.vendors.kuka.krl.angles import angles, quaternion, written_angles
-from flyby.vendors.kuka.krl.naming import MAX_NAME, NAME_RULES
-from flyby.vendors.kuka.krl.numbers import number
-from flyby.vendors.kuka.krl.writer import write
+from flyby.vendors.abb.motion.configuration import AbbConfiguration
+from flyby.vendors.kuka.motion.configuration import KukaConfiguration
+from flyby.vendors.kuka.syntax.names import MAX_NAME, NAME_RULES
+from flyby.vendors.kuka.values.angles import angles, quaternion, written_angles
+from flyby.vendors.kuka.write.numbers import number
+from flyby.vendors.kuka.write.writer import write
 
 KUKA = find_vendor("kuka")
 ROBOT = KUKA.robot("kr30-3")

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from flyby.core.errors import InputError
 from flyby.core.program.target import Configuration
 from flyby.core.registry import find_vendor
-from flyby.vendors.ur.configuration import UrConfiguration, label
+from flyby.vendors.ur.motion.configuration import UrConfiguration, label
 
 UR5E = find_vendor("ur").robot("ur5e")
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from flyby.core.errors import MotionError
-from flyby.core.motion.controller import Controller
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import Move, MoveC, Opaque
 from flyby.core.program.origin import Origin, Ownership
 from flyby.core.program.program import Program
@@ -17,7 +17,7 @@ from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_vendor
 from flyby.core.robot.model import Robot
-from flyby.core.source.patching import difference
+from flyby.core.source.patch.edits import difference
 from flyby.core.source.reading import Reading
 from flyby.core.spatial.pose import Pose
 

@@ -8,10 +8,10 @@ from flyby.core.errors import SourceError
 from flyby.core.program.move import Opaque, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
-from flyby.core.source.answers import Answer, Answers, key
-from flyby.core.source.limits import Limits
+from flyby.core.source.execution.answers import Answer, Answers, key
+from flyby.core.source.execution.limits import Limits
 from flyby.core.source.reading import ReadOptions
-from flyby.vendors.ur.urscript.reader import read
+from flyby.vendors.ur.run.reader import read
 
 GO = "movej([{}, 0, 0, 0, 0, 0])"
 

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from flyby.core.errors import SourceError
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.spatial.pose import Pose
-from flyby.vendors.ur.urscript.poses import (
+from flyby.vendors.ur.run.reader import read
+from flyby.vendors.ur.values.poses import (
     interpolate_pose,
     pose_add,
     pose_inv,
@@ -21,8 +22,7 @@ from flyby.vendors.ur.urscript.poses import (
     rpy2rotvec,
     value_of,
 )
-from flyby.vendors.ur.urscript.reader import read
-from flyby.vendors.ur.urscript.values import UrPose
+from flyby.vendors.ur.values.values import UrPose
 
 
 def value(expression: str, before: str = "") -> float:

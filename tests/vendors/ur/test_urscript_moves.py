@@ -17,9 +17,9 @@ from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_vendor
 from flyby.core.source.reading import ReadOptions
 from flyby.core.spatial.pose import Pose
-from flyby.vendors.ur.configuration import UrConfiguration
-from flyby.vendors.ur.urscript.poses import quaternion_of, rotation_vector_of
-from flyby.vendors.ur.urscript.reader import read
+from flyby.vendors.ur.motion.configuration import UrConfiguration
+from flyby.vendors.ur.run.reader import read
+from flyby.vendors.ur.values.poses import quaternion_of, rotation_vector_of
 
 UR5E = find_vendor("ur").robot("ur5e")
 DOWN = "0, 3.14159, 0"

@@ -19,12 +19,12 @@ from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Tool
 from flyby.core.program.zone import FINE, Angle, Radius
 from flyby.core.registry import find_vendor
-from flyby.core.source.patching import difference
+from flyby.core.source.patch.edits import difference
 from flyby.core.spatial.pose import Pose
-from flyby.vendors.ur.configuration import UrConfiguration
-from flyby.vendors.ur.urscript.patcher import patch
-from flyby.vendors.ur.urscript.poses import quaternion_of
-from flyby.vendors.ur.urscript.reader import read
+from flyby.vendors.ur.motion.configuration import UrConfiguration
+from flyby.vendors.ur.patch.patcher import patch
+from flyby.vendors.ur.run.reader import read
+from flyby.vendors.ur.values.poses import quaternion_of
 
 UR5E = find_vendor("ur").robot("ur5e")
 Change = Callable[[Move], Move]

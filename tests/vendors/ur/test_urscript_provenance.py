@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from flyby.core.errors import Span
 from flyby.core.program.move import MoveC
 from flyby.core.program.origin import MoveOrigin, Origin, Ownership
-from flyby.vendors.ur.urscript.reader import read
+from flyby.vendors.ur.run.reader import read
 
 OWNED, SHARED, DERIVED = Ownership.OWNED, Ownership.SHARED, Ownership.DERIVED
 

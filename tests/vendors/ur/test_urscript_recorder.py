@@ -14,10 +14,10 @@ from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Load, Tool
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_vendor
-from flyby.core.source.patching import difference
+from flyby.core.source.patch.edits import difference
 from flyby.core.spatial.pose import Pose
-from flyby.vendors.ur.urscript.reader import read
-from flyby.vendors.ur.urscript.recorder import record
+from flyby.vendors.ur.record import record
+from flyby.vendors.ur.run.reader import read
 
 UR = find_vendor("ur")
 UR5E, UR5 = UR.robot("ur5e"), UR.robot("ur5")

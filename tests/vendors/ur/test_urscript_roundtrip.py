@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flyby.core.motion.controller import Controller
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -14,15 +14,15 @@ from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import FLANGE, Load, Tool, WorkObject
 from flyby.core.program.zone import FINE, Radius, Zone
 from flyby.core.registry import find_vendor
-from flyby.core.source.patching import difference
+from flyby.core.source.patch.edits import difference
 from flyby.core.source.reading import ReadOptions
 from flyby.core.spatial.pose import Pose
-from flyby.vendors.ur.configuration import UrConfiguration
-from flyby.vendors.ur.urscript.arcs import carried_along
-from flyby.vendors.ur.urscript.poses import quaternion_of, rotation_vector_of
-from flyby.vendors.ur.urscript.reader import read
-from flyby.vendors.ur.urscript.rotations import lasting_rotation_vector, nearest_rotation_vector
-from flyby.vendors.ur.urscript.writer import write
+from flyby.vendors.ur.motion.arcs import carried_along
+from flyby.vendors.ur.motion.configuration import UrConfiguration
+from flyby.vendors.ur.run.reader import read
+from flyby.vendors.ur.values.poses import quaternion_of, rotation_vector_of
+from flyby.vendors.ur.values.rotations import lasting_rotation_vector, nearest_rotation_vector
+from flyby.vendors.ur.write.writer import write
 
 VENDOR = find_vendor("ur")
 UR5E, UR10E = VENDOR.robot("ur5e"), VENDOR.robot("ur10e")

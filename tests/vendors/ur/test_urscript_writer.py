@@ -20,13 +20,13 @@ from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedF
 from flyby.core.registry import find_vendor
 from flyby.core.robot.inertia import carried_inertia
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
-from flyby.core.source.names import Names
+from flyby.core.source.text.files.names import Names
 from flyby.core.spatial.pose import Pose
-from flyby.vendors.ur.configuration import UrConfiguration
-from flyby.vendors.ur.urscript.formatting import number
-from flyby.vendors.ur.urscript.payloads import payload
-from flyby.vendors.ur.urscript.reserved import NAME_RULES, RESERVED
-from flyby.vendors.ur.urscript.writer import write
+from flyby.vendors.ur.motion.configuration import UrConfiguration
+from flyby.vendors.ur.syntax.names import NAME_RULES, RESERVED
+from flyby.vendors.ur.write.formatting import number
+from flyby.vendors.ur.write.payload import payload
+from flyby.vendors.ur.write.writer import write
 
 UR5E = find_vendor("ur").robot("ur5e")
 UR10E = find_vendor("ur").robot("ur10e")

@@ -1,0 +1,1 @@
+"""How far motions leave their path at most: bounds that proofs rest on."""

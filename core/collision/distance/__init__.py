@@ -1,0 +1,1 @@
+"""Solids, and how far they are apart: closed forms and the libraries behind one interface."""

@@ -1,0 +1,1 @@
+"""What the controller commands in time: ramps, smoothing, leads of elastic joints, samples."""

@@ -1,0 +1,212 @@
+"""What a controller does to its commanded joints in time: moving averages, one after the other.
+
+A moving average of length w takes the mean of the last w seconds. The kernel of the whole cascade
+is symmetric about the middle of the window W = Σ w and has weight one, so that, beside the stamped
+motion there,
+
+- velocities and accelerations stay within what bounded them before;
+- a joint with accelerations within ±a strays at most a Σ w² / 24: half the kernel's variance, by
+  Taylor's formula;
+- jerk stays within 2 a / w for the longest w.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from ...arrays import FloatArray
+
+States = tuple[FloatArray, FloatArray, FloatArray]
+
+_FINEST, _COARSEST = 2.5e-4, 1e-3
+"""s between the knots that stand for a motion averaged once: a 32nd of the shortest average,
+within these."""
+
+
+def window_for_jerk(jerk: float) -> float:
+    """Window in s that holds a jerk limit given as a multiple of acceleration per second.
+
+    A mean over T of accelerations within ±a changes by at most 2 a / T per second.
+    """
+    return 2.0 / jerk
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion that rests before its first knot and after its last, cubic between knots.
+
+    Args:
+        t: (S,) s, increasing.
+        q, dq: (S, N), positions and velocities.
+    """
+
+    t: FloatArray
+    q: FloatArray
+    dq: FloatArray
+
+    def at(self, t: FloatArray) -> States:
+        """Positions, velocities and accelerations (T, N) at times (T,) that do not decrease."""
+        out = _empty(len(t), self.q.shape[1])
+        _interpolate(self.t, self.q, self.dq, t, *out)
+        return out
+
+    def averaged(self, window: float, t: FloatArray) -> States:
+        """The same of the mean over the last ``window`` > 0 seconds."""
+        out = _empty(len(t), self.q.shape[1])
+        _average(self.t, self.q, self.dq, _areas(self.t, self.q, self.dq), window, t, *out)
+        return out
+
+
+@dataclass(frozen=True)
+class Smoothing:
+    """A cascade of moving averages over all joints.
+
+    Args:
+        widths: s, all above zero; their order makes no difference.
+    """
+
+    widths: tuple[float, ...] = ()
+
+    @property
+    def window(self) -> float:
+        """Length in s of what the command at one time depends on."""
+        return sum(self.widths)
+
+    @property
+    def stray(self) -> float:
+        """s²; times a bound of a joint's acceleration, how far it strays from the stamp."""
+        return sum(width**2 for width in self.widths) / 24.0
+
+    def lengthened_to(self, width: float) -> Smoothing:
+        """The same with its longest moving average at least this long."""
+        widths = sorted(self.widths) or [0.0]
+        return Smoothing((*widths[:-1], max(widths[-1], width)))
+
+    def command(self, motion: Motion, t: FloatArray) -> States:
+        """The smoothed motion.
+
+        Args:
+            motion: what was stamped.
+            t: (T,) s, not decreasing.
+
+        Returns:
+            Positions, velocities and accelerations (T, N).
+        """
+        if not self.widths:
+            return motion.at(t)
+        step = float(np.clip(min(self.widths) / 32, _FINEST, _COARSEST))
+        # The longest last: what the others leave is then resolved best.
+        *first, last = sorted(self.widths)
+        for width in first:
+            motion = averaged(motion, width, step)
+        return motion.averaged(last, t)
+
+    def by_width(self, motion: Motion, t: FloatArray) -> FloatArray:
+        """Derivative (K, T, N) of the smoothed positions with respect to each of the K widths.
+
+        With f what the other averages make of the motion, that of the mean over [t − w, t] is
+        (f(t − w) − mean) / w. A longer average also delays the command, by half of what it is
+        longer.
+        """
+        command = self.command(motion, t)[0]
+        out = np.empty((len(self.widths), *command.shape))
+        for k, width in enumerate(self.widths):
+            others = Smoothing((*self.widths[:k], *self.widths[k + 1 :]))
+            out[k] = (others.command(motion, t - width)[0] - command) / width
+        return out
+
+
+def averaged(motion: Motion, window: float, step: float) -> Motion:
+    """The mean over the last ``window`` seconds of a motion, by knots about ``step`` apart."""
+    begin, end = motion.t[0], motion.t[-1] + window
+    t = np.linspace(begin, end, int(np.ceil((end - begin) / step)) + 1)
+    q, dq, _ = motion.averaged(window, t)
+    return Motion(t, q, dq)
+
+
+def _empty(count: int, size: int) -> States:
+    return np.empty((count, size)), np.empty((count, size)), np.empty((count, size))
+
+
+@njit(cache=True, error_model="numpy")
+def _areas(t: FloatArray, q: FloatArray, dq: FloatArray) -> FloatArray:
+    """(S, N), ∫ (q − q₀) dt from the first knot."""
+    out = np.zeros(q.shape)
+    for k in range(t.size - 1):
+        h = t[k + 1] - t[k]
+        for j in range(q.shape[1]):
+            mean = 0.5 * (q[k, j] + q[k + 1, j]) - q[0, j]
+            out[k + 1, j] = out[k, j] + h * (mean + h / 12 * (dq[k, j] - dq[k + 1, j]))
+    return out
+
+
+@njit(cache=True, error_model="numpy")
+def _forward(t: FloatArray, at: float, k: int) -> int:
+    """The last interval that begins at or before a time, from one that does; -1 before all."""
+    while k + 1 < t.size and t[k + 1] <= at:
+        k += 1
+    return k
+
+
+@njit(cache=True, error_model="numpy")
+def _cubic(
+    t: FloatArray, q: FloatArray, dq: FloatArray, k: int, at: float, j: int
+) -> tuple[float, float, float, float]:
+    """∫ (q − q₀) dt from knot k, q, q̇ and q̈ of joint j at a time in interval k."""
+    if k < 0:
+        return 0.0, q[0, j], 0.0, 0.0
+    rest = q[k, j] - q[0, j]
+    tau = at - t[k]
+    if k + 1 >= t.size:
+        return tau * rest, q[k, j], 0.0, 0.0
+    h = t[k + 1] - t[k]
+    z = tau / h
+    v0, v1, d = h * dq[k, j], h * dq[k + 1, j], q[k + 1, j] - q[k, j]
+    c2, c3 = 3 * d - 2 * v0 - v1, v0 + v1 - 2 * d
+    area = tau * (rest + z * (v0 / 2 + z * (c2 / 3 + z * c3 / 4)))
+    position = q[k, j] + z * (v0 + z * (c2 + z * c3))
+    return area, position, (v0 + z * (2 * c2 + z * 3 * c3)) / h, (2 * c2 + 6 * z * c3) / h**2
+
+
+@njit(cache=True, error_model="numpy")
+def _interpolate(
+    t: FloatArray,
+    q: FloatArray,
+    dq: FloatArray,
+    at: FloatArray,
+    position: FloatArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+) -> None:
+    k = -1
+    for i in range(at.size):
+        k = _forward(t, at[i], k)
+        for j in range(q.shape[1]):
+            _, position[i, j], velocity[i, j], acceleration[i, j] = _cubic(t, q, dq, k, at[i], j)
+
+
+@njit(cache=True, error_model="numpy")
+def _average(
+    t: FloatArray,
+    q: FloatArray,
+    dq: FloatArray,
+    area: FloatArray,
+    window: float,
+    at: FloatArray,
+    position: FloatArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+) -> None:
+    now = then = -1
+    for i in range(at.size):
+        now, then = _forward(t, at[i], now), _forward(t, at[i] - window, then)
+        for j in range(q.shape[1]):
+            a1, q1, v1, _ = _cubic(t, q, dq, now, at[i], j)
+            a0, q0, v0, _ = _cubic(t, q, dq, then, at[i] - window, j)
+            whole = area[max(now, 0), j] - area[max(then, 0), j]
+            position[i, j] = q[0, j] + (whole + a1 - a0) / window
+            velocity[i, j] = (q1 - q0) / window
+            acceleration[i, j] = (v1 - v0) / window

@@ -1,0 +1,410 @@
+"""The emulator: drives a program as a vendor's controller would."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...arrays import FloatArray, IntArray
+from ...errors import MotionError, Note
+from ...program.move import Move
+from ...program.program import Program
+from ...program.target import JointTarget
+from ...robot.chain_kernels import poses
+from ...robot.inertia import Inertia
+from ...robot.joint import JointKind
+from ...robot.model import Robot
+from ...spatial.rotation import quaternion_from_matrix
+from ...vendor import Vendor
+from ..command.links_and_motors import driven, stretches
+from ..command.smoothing import Smoothing
+from ..command.trajectory import Trajectory, sample_times
+from ..geometry.pieces import Sampling
+from ..model.consumption import SQUARED_TORQUE, Consumption
+from ..model.motion_model import DurationRule, MotionModel
+from ..path.path import OverlapError, Path, build_path
+from ..path.route import RouteFinder
+from ..timing.arc_length import ArcLength
+from ..timing.energy import Energy, energy
+from ..timing.limits import SegmentLimits
+from ..timing.programmed_durations import hold_durations, stamp_in_thirds, stamp_path
+from ..timing.rests import InPosition
+from ..timing.start_ramp import SUDDEN, StartRamp
+from ..timing.timing import Settling, Timing
+from ..timing.torque import WITHOUT_LIMIT, Shares
+from .limit_violations import excesses, torque_excesses
+
+_SKIPS = 10_000
+_LIMIT_SLACK = 1e-6
+"""rad or m by which a path may pass a joint limit: rounding of programmed values."""
+_OTHER_TARGET = "choose another configuration or move the target"
+_DEGREES = 180 / np.pi
+
+
+@dataclass(frozen=True)
+class Run:
+    """Everything that came of driving a program.
+
+    Args:
+        program: what was driven.
+        path: its geometry.
+        timing: its stamp, before any smoothing in time.
+        trajectory: what the links do, and the motors, sampled at the controller's period.
+        notes: the program's own and all that was found on the way.
+    """
+
+    program: Program
+    path: Path
+    timing: Timing
+    trajectory: Trajectory
+    notes: tuple[Note, ...]
+
+    @property
+    def duration(self) -> float:
+        """Cycle time in s: from the first motion to rest after the last, waits included."""
+        return self.trajectory.duration
+
+
+class Controller:
+    """Emulates one vendor's controller for one robot.
+
+    Args:
+        vendor: whose configurations and rules apply.
+        robot: the robot, with its external axes.
+        model: the motion model; None for the vendor's own of this robot.
+        sampling: how densely paths are sampled; None for what the model's accuracy calls for.
+    """
+
+    def __init__(
+        self,
+        vendor: Vendor,
+        robot: Robot,
+        model: MotionModel | None = None,
+        sampling: Sampling | None = None,
+    ) -> None:
+        self._vendor = vendor
+        self.robot = robot
+        self.model = vendor.motion_of(robot) if model is None else model
+        self.sampling = _sampling(self.model) if sampling is None else sampling
+        arcs = None if vendor.speaks is None else vendor.speaks.arcs
+        turns = self.model.line_turn, self.model.arc_turn
+        self._routes = RouteFinder(robot, vendor.label, *turns, arcs)
+
+    def with_model(self, model: MotionModel) -> Controller:
+        """The same controller, driving otherwise."""
+        return Controller(self._vendor, self.robot, model, self.sampling)
+
+    def run(
+        self,
+        program: Program,
+        start: JointTarget | None = None,
+        period: float | None = None,
+        override: float = 1.0,
+    ) -> Run:
+        """Plan, stamp and sample a program.
+
+        Args:
+            program: what to drive.
+            start: where the robot stands; None for the program's own start, else its first target.
+            period: s between samples; None for the controller's own.
+            override: share of all speeds, as an operator sets it; see `stamp_slower`.
+
+        Raises:
+            MotionError: the program cannot be driven; the message names the move.
+        """
+        path = self.plan(program, start)
+        timing = self.stamp(program, path)
+        if override != 1.0:
+            timing = self.stamp_slower(program, timing, override)
+        trajectory = self.sample(program, timing, period)
+        notes = (
+            *program.notes,
+            *path.notes,
+            *self._duration_notes(program, timing),
+            *self._jerk_notes(program),
+            *self._excess_notes(program, timing, trajectory),
+        )
+        return Run(program, path, timing, trajectory, notes)
+
+    def plan(self, program: Program, start: JointTarget | None = None) -> Path:
+        """The geometry of a program's path.
+
+        Raises:
+            MotionError: the program cannot be driven; the message names the move.
+        """
+        skipped: list[int] = []
+        notes: list[Note] = []
+        for _ in range(_SKIPS):
+            route = self._routes.find(program, start, skipped)
+            if not route.moves:
+                raise _located(_goes_nowhere(skipped), program)
+            try:
+                path = build_path(route, self.model, self.sampling)
+            except OverlapError as overlap:
+                for corner in overlap.corners:
+                    move = route.moves[corner]
+                    skipped.append(move)
+                    notes.append(
+                        Note(
+                            "its blend overlaps a neighbouring one: this waypoint is left out",
+                            move,
+                        )
+                    )
+                continue
+            except MotionError as error:
+                raise _located(error, program) from error
+            self._check_limits(program, path, start)
+            return replace(path, notes=(*notes, *path.notes))
+        raise MotionError("the blends of this program overlap beyond remedy")
+
+    def stamp(self, program: Program, path: Path) -> Timing:
+        """When the robot is where on a path.
+
+        Raises:
+            MotionError: the limits do not let it move.
+        """
+        moves = self._moves(program, path)
+        limits = SegmentLimits.of(
+            self.robot, self.model, [move.speed for move in moves], path.segments
+        )
+        timed = [k for k, move in enumerate(moves) if move.speed.duration is not None]
+        settling = self._settling(program, path)
+        try:
+            along = ArcLength.of(path, self.robot.limits.acceleration)
+            shares = self._shares(along)
+            if not timed:
+                return stamp_path(path, along, limits, shares, settling)
+            wanted = np.array([moves[k].speed.duration for k in timed], dtype=float)
+            if self.model.duration is DurationRule.THIRDS:
+                timing = stamp_in_thirds(path, along, limits, shares, settling, timed, wanted)
+            else:
+                timing = stamp_path(path, along, limits, shares, settling)
+            return hold_durations(timing, timed, wanted, settling)
+        except MotionError as error:
+            raise _located(error, program) from error
+
+    def stamp_slower(self, program: Program, timing: Timing, share: float) -> Timing:
+        """The timing of the same path at a share of its speeds; accelerations are as they were.
+
+        Args:
+            program: that was stamped.
+            timing: of its path.
+            share: of all limits of speed, those included that hold programmed durations.
+        """
+        segments = range(len(timing.path.route.moves))
+        limits = timing.limits.with_velocities_scaled(segments, share)
+        settling = self._settling(program, timing.path)
+        known = timing.path_limits
+        return stamp_path(timing.path, timing.along, limits, known.shares, settling, known)
+
+    def _shares(self, along: ArcLength) -> Shares | None:
+        """What shares of the torques' limits the path takes, if the model has any."""
+        if self.model.torque == WITHOUT_LIMIT:
+            return None
+        return self.model.torque.along(self.robot, *along.states[:3])
+
+    def sample(self, program: Program, timing: Timing, period: float | None = None) -> Trajectory:
+        """The motion of links and motors, smoothed in time where the vendor does, each period."""
+        period = self.model.period if period is None else period
+        smoothing = self.smoothing(program, timing.path)
+        t = sample_times(0.0, timing.duration, period)
+        path, found = timing.path, driven(self.robot, self.model.elasticity, smoothing, timing, t)
+        last = len(path.route.moves) - 1
+        segment = np.searchsorted(path.layout.waypoint, found.sigma, "right") - 1
+        segment = np.clip(segment, 0, last)
+        tcp = self._tcp(self._moves(program, path), segment, t, found.links[0])
+        moves = np.array(path.route.moves, dtype=np.int64)[segment]
+        return Trajectory(t, *found.links, *tcp, found.sigma, moves, found.lead)
+
+    def energy(
+        self, program: Program, timing: Timing, consumption: Consumption = SQUARED_TORQUE
+    ) -> Energy:
+        """The energy of a stamped path, before smoothing; see `energy` and what it raises."""
+        return energy(self.robot, timing, self.loads(program, timing.path), consumption)
+
+    def loads(self, program: Program, path: Path) -> list[Inertia | None]:
+        """What the flange carries on each segment: tool and payload."""
+        known: dict[object, Inertia | None] = {}
+        found = []
+        for move in self._moves(program, path):
+            key = move.tool, move.load
+            if key not in known:
+                known[key] = _carried(move)
+            found.append(known[key])
+        return found
+
+    def _moves(self, program: Program, path: Path) -> list[Move]:
+        return [program.moves[i] for i in path.route.moves]
+
+    def smoothing(self, program: Program, path: Path) -> Smoothing:
+        """What is done to the commanded joints in time: as the gentlest move's jerk needs it."""
+        gentlest = min(move.speed.jerk_fraction for move in self._moves(program, path))
+        return self.model.smoothing_at(gentlest)
+
+    def smoothing_window(self, program: Program, path: Path) -> float:
+        """Length in s of what one smoothed sample depends on."""
+        return self.smoothing(program, path).window
+
+    def _settling(self, program: Program, path: Path) -> Settling:
+        window = self.smoothing_window(program, path)
+        gentlest = min(move.speed.jerk_fraction for move in self._moves(program, path))
+        ramp = self.model.ramp_at(gentlest)
+        window += ramp
+        wait = self.model.settling
+        stop = window if wait is None else min(wait, window)
+        start = StartRamp(self.model.start_ramp)
+        return Settling(stop, window, ramp, start, self._in_position(window))
+
+    def _in_position(self, averaged: float) -> InPosition | None:
+        """What ends waits at stops early, where commands are averaged over so many seconds."""
+        near, time = self.model.in_position, self.model.in_position_time
+        return None if near == 0.0 else InPosition(near, averaged if time is None else time)
+
+    def _tcp(
+        self, moves: Sequence[Move], segment: IntArray, t: FloatArray, q: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """TCP in the world; of a stationary tool, in the work object."""
+        position, quaternion = np.empty((len(q), 3)), np.empty((len(q), 4))
+        chains = [self._routes.world_chain(move.tool, move.work_object) for move in moves]
+        index = {id(chain): chain for chain in chains}
+        owner = np.array([id(chain) for chain in chains])[segment]
+        for part in stretches(t):
+            for key in np.unique(owner[part]):
+                rows = part.start + np.flatnonzero(owner[part] == key)
+                rotation, position[rows] = poses(index[key], np.ascontiguousarray(q[rows]))
+                quaternion[rows] = quaternion_from_matrix(rotation)
+        return position, quaternion
+
+    def _check_limits(self, program: Program, path: Path, stated: JointTarget | None) -> None:
+        """Refuse a path that passes a joint limit, at the first place where it does."""
+        limits = self.robot.limits
+        start = path.route.ends.q[0, 0]
+        beyond = np.maximum(limits.lower - start, start - limits.upper)
+        if beyond.max() > _LIMIT_SLACK:
+            told = stated or program.start
+            remedy = _OTHER_TARGET if told is None else "start within the limits"
+            raise MotionError("the start: " + self._excess(int(np.argmax(beyond)), start, remedy))
+        beyond = np.maximum(limits.lower - path.q, path.q - limits.upper)
+        samples = np.flatnonzero(beyond.max(axis=1) > _LIMIT_SLACK)
+        if not len(samples):
+            return
+        moves = path.sample_moves()
+        move = int(moves[samples[0]])
+        samples = samples[moves[samples] == move]
+        row, axis = np.unravel_index(np.argmax(beyond[samples]), beyond[samples].shape)
+        raise _located(MotionError(self._excess(int(axis), path.q[samples[row]]), move), program)
+
+    def _excess(self, axis: int, q: FloatArray, remedy: str = _OTHER_TARGET) -> str:
+        limits = self.robot.limits
+        joints = [*self.robot.joints, *(external.joint for external in self.robot.external_axes)]
+        unit, factor = ("mm", 1e3) if joints[axis].kind is JointKind.PRISMATIC else ("°", _DEGREES)
+        bound = limits.lower[axis] if q[axis] < limits.lower[axis] else limits.upper[axis]
+        return (
+            f"joint {self.robot.axis_names[axis]} would stand at {factor * q[axis]:.2f} {unit}, "
+            f"beyond its limit of {factor * bound:.2f} {unit}; {remedy}"
+        )
+
+    def _excess_notes(self, program: Program, timing: Timing, trajectory: Trajectory) -> list[Note]:
+        """Moves on which the motion as stamped passes what is programmed or the robot's limits."""
+        path, names = timing.path, self.robot.axis_names
+        speeds = [move.speed for move in self._moves(program, path)]
+        limits = timing.limits
+        if any(speed.duration is not None for speed in speeds):
+            # What holds a time is no limit that would matter.
+            limits = SegmentLimits.of(self.robot, self.model, speeds, path.segments)
+        notes = excesses(timing, limits, names)
+        if self.model.torque == WITHOUT_LIMIT:
+            return notes
+        return notes + torque_excesses(self._torques_taken(timing, trajectory), names)
+
+    def _torques_taken(self, timing: Timing, trajectory: Trajectory) -> FloatArray:
+        """(M, L), the greatest shares of limits of torque on each move.
+
+        Where servos lag or time comes up to speed, those of the motion as stamped.
+        """
+        stamped = any(self.model.elasticity.lag) or timing.ramp > 0.0 or timing.start != SUDDEN
+        torque = self.model.torque
+        taken = np.zeros((int(trajectory.move.max()) + 1, len(torque.own)))
+        for part in stretches(trajectory.t):
+            states = trajectory.q[part], trajectory.dq[part], trajectory.ddq[part]
+            if stamped:
+                states = timing.states_at(trajectory.t[part])[:3]
+            np.maximum.at(taken, trajectory.move[part], torque.taken(self.robot, *states))
+        return taken
+
+    def _jerk_notes(self, program: Program) -> list[Note]:
+        if self.model.jerk is not None or self.model.ramp > 0.0:
+            return []
+        for index, move in enumerate(program.moves):
+            if move.speed.jerk_fraction < 1.0:
+                return [
+                    Note(
+                        "a reduced jerk (AccSet ramp) is programmed from here on; this motion "
+                        "model states no jerk, so it is emulated without",
+                        index,
+                    )
+                ]
+        return []
+
+    def _duration_notes(self, program: Program, timing: Timing) -> list[Note]:
+        notes = []
+        moves = self._moves(program, timing.path)
+        for k, spent in enumerate(timing.segment_durations()):
+            wanted = moves[k].speed.duration
+            if wanted is not None and abs(spent - wanted) > 1e-3 * wanted:
+                notes.append(
+                    Note(
+                        f"programmed to take {wanted:g} s, but the robot needs {spent:.4g} s",
+                        timing.path.route.moves[k],
+                    )
+                )
+        return notes
+
+
+def _sampling(model: MotionModel) -> Sampling:
+    """What is known of times calls for speeds that are resolved; the rest is as before."""
+    if model.torque != WITHOUT_LIMIT:
+        return Sampling(step=0.01, approach=6)
+    return Sampling() if model.start_ramp == 0.0 else Sampling(step=0.01, joint=0.02)
+
+
+def _goes_nowhere(left_out: Sequence[int]) -> MotionError:
+    if left_out:
+        return MotionError(
+            "its blend overlaps a neighbouring one, so that the controller leaves the waypoint "
+            "out, and nothing is left that goes anywhere: make the blend smaller, or a stop",
+            min(left_out),
+        )
+    return MotionError(
+        "the program goes nowhere: this and every other move ends where the robot stands; let it "
+        "begin elsewhere",
+        0,
+    )
+
+
+def _located(error: MotionError, program: Program) -> MotionError:
+    """The same error with the move's place in the source."""
+    if error.move is None or error.span is not None:
+        return error
+    origin = program.moves[error.move].origin
+    if origin is None:
+        return error
+    return MotionError(error.message, error.move, origin.statement)
+
+
+def _carried(move: Move) -> Inertia | None:
+    """The tool's load and the payload as one body in the flange's frame."""
+    bodies = []
+    if move.tool.robot_held and move.tool.load is not None:
+        bodies.append(Inertia.of_load(move.tool.load))
+    if move.load is not None:
+        frame = move.tool.tcp if move.tool.robot_held else move.work_object.pose
+        bodies.append(Inertia.of_load(move.load, frame))
+    if not bodies:
+        return None
+    total = bodies[0]
+    for body in bodies[1:]:
+        total = total + body
+    return total

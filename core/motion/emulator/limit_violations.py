@@ -1,0 +1,174 @@
+"""Notes on moves whose motion passes a limit between samples of the path."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from numba import njit
+
+from ...arrays import FloatArray, IntArray
+from ...errors import Note
+from ...robot.chain import Chain
+from ...robot.chain_kernels import motion
+from ..geometry.quintic import basis, bends, slopes
+from ..path.tcp_samples import States
+from ..timing.limits import SegmentLimits, interval_samples
+from ..timing.timing import Timing
+
+_EXCESS = 1.004
+"""Share of a limit from which on it is reported: between the places looked at, 1.005 at most."""
+_CLOSE = 0.8
+"""Share below which peaks between the places looked at are none that pass a limit."""
+_NEAR_SINGULAR = 0.01
+"""Conditioning below which a singular configuration is what makes joints turn so unevenly."""
+_PLACES = np.linspace(0.05, 0.95, 10)
+"""Where intervals are looked at: at their ends the limits hold."""
+_VALUE, _SLOPE, _BEND = basis(_PLACES), slopes(_PLACES), bends(_PLACES)
+
+
+def excesses(timing: Timing, limits: SegmentLimits, axis_names: Sequence[str]) -> list[Note]:
+    """Moves that pass a limit of velocity or acceleration, each with the one it passes most.
+
+    Args:
+        timing: the motion as stamped.
+        limits: of the path's segments, as programmed.
+        axis_names: of the N axes.
+    """
+    path, owner = timing.path, timing.interval_segments
+    left = interval_samples(path.pieces)
+    most, row = np.zeros(len(owner)), np.full(len(owner), -1)
+    chains = path.route.chains
+    turns = np.flatnonzero([a is not b for a, b in pairwise(chains)]) + 1
+    edges = np.searchsorted(owner, np.concatenate([[0], turns, [len(chains)]]))
+    for first, last in pairwise(edges):
+        _shares(
+            chains[owner[first]],
+            timing.along.states,
+            timing.along.spacing,
+            timing.stamp.x,
+            np.arange(first, last),
+            left,
+            owner,
+            limits.velocity,
+            limits.acceleration,
+            most,
+            row,
+        )
+    names = [f"velocity of joint {name}" for name in axis_names]
+    names += ["speed of the TCP", "rate of turn of the tool"]
+    names += [f"acceleration of joint {name}" for name in axis_names]
+    notes = []
+    for segment in np.unique(owner[most > _EXCESS]):
+        own = np.flatnonzero(owner == segment)
+        k = int(own[np.argmax(most[own])])
+        notes.append(
+            Note(
+                f"{names[row[k]]} reaches {100 * most[k]:.1f} % of its limit between samples of "
+                f"the path, {_why(timing, k)}; treat the timing of this move with care",
+                path.route.moves[int(segment)],
+            )
+        )
+    return notes
+
+
+def torque_excesses(share: FloatArray, axis_names: Sequence[str]) -> list[Note]:
+    """Moves on which a torque passes its limit, by the greatest shares on each, (M, L)."""
+    notes = []
+    for move in np.flatnonzero(share.max(axis=1) > _EXCESS):
+        axis = int(np.argmax(share[move]))
+        notes.append(
+            Note(
+                f"torque of joint {axis_names[axis]} reaches {100 * share[move, axis]:.1f} % of "
+                "its limit between samples of the path; treat the timing of this move with care",
+                int(move),
+            )
+        )
+    return notes
+
+
+def _why(timing: Timing, k: int) -> str:
+    """What makes rates change so much within an interval."""
+    path = timing.path
+    left = interval_samples(path.pieces)[k]
+    piece = path.pieces.sample_pieces[left]
+    if path.conditioning[left : left + 2].min() < _NEAR_SINGULAR:
+        return "near a singular configuration"
+    middle = 0.5 * (path.pieces.edge[piece] + path.pieces.edge[piece + 1])
+    extent, at = path.layout.extent, path.layout.waypoint[1:-1, None]
+    inside = (at - extent[:, :, 0] < middle) & (middle < at + extent[:, :, 1])
+    if inside.any():
+        return "in a zone"
+    return "where joints turn unevenly along the line"
+
+
+@njit(cache=True, error_model="numpy")
+def _shares(
+    chain: Chain,
+    states: States,
+    spacing: FloatArray,
+    x: FloatArray,
+    intervals: IntArray,
+    left: IntArray,
+    owner: IntArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    most: FloatArray,
+    row: IntArray,
+) -> None:
+    """Write the greatest share of a limit that is taken within each of some intervals, and whose:
+    N velocities of joints, of the TCP, of the tool's turn, N accelerations of joints."""
+    axes = states.q.shape[1]
+    q, dq, ddq = np.empty(axes), np.empty(axes), np.empty(axes)
+    twist, change = np.empty(6), np.empty(6)
+    share = np.zeros((2 * axes + 2, _PLACES.size))
+    for k in intervals:
+        s, h, g = left[k], spacing[k], owner[k]
+        u = (x[k + 1] - x[k]) / (2 * h)
+        bounded = velocity[g, axes] < np.inf or velocity[g, axes + 1] < np.inf
+        share[axes : axes + 2] = 0.0
+        for m in range(_PLACES.size):
+            square = x[k] + _PLACES[m] * (x[k + 1] - x[k])
+            pace = np.sqrt(square)
+            for j in range(axes):
+                q[j] = slope = bend = 0.0
+                for n in range(2):
+                    p = states.q[s + n, j]
+                    v, a = h * states.dq[s + n, j], h * h * states.ddq[s + n, j]
+                    c = 3 * n
+                    q[j] += _VALUE[m, c] * p + _VALUE[m, c + 1] * v + _VALUE[m, c + 2] * a
+                    slope += _SLOPE[m, c] * p + _SLOPE[m, c + 1] * v + _SLOPE[m, c + 2] * a
+                    bend += _BEND[m, c] * p + _BEND[m, c + 1] * v + _BEND[m, c + 2] * a
+                slope, bend = slope / h, bend / (h * h)
+                dq[j] = slope * pace
+                share[j, m] = abs(dq[j]) / velocity[g, j]
+                share[axes + 2 + j, m] = abs(slope * u + bend * square) / acceleration[g, j]
+            if not bounded:
+                continue
+            motion(chain, q, dq, ddq, twist, change)
+            for part in range(2):
+                rate = 0.0
+                for i in range(3 * part, 3 * part + 3):
+                    rate += twist[i] * twist[i]
+                share[axes + part, m] = np.sqrt(rate) / velocity[g, axes + part]
+        for j in range(2 * axes + 2):
+            peak = _peak(share, j)
+            if peak > most[k]:
+                most[k], row[k] = peak, j
+
+
+@njit(cache=True, error_model="numpy")
+def _peak(share: FloatArray, j: int) -> float:
+    """The greatest of a row's values at places evenly apart, and of the parabolas through three."""
+    peak = 0.0
+    for m in range(share.shape[1]):
+        peak = max(peak, share[j, m])
+    if peak < _CLOSE:
+        return peak
+    for m in range(1, share.shape[1] - 1):
+        before, here, behind = share[j, m - 1], share[j, m], share[j, m + 1]
+        bend = 2.0 * here - before - behind
+        if here >= before and here >= behind and bend > 0.0:
+            peak = max(peak, here + (behind - before) ** 2 / (8.0 * bend))
+    return peak

@@ -1,0 +1,64 @@
+"""What a run did, move by move: lengths, greatest speeds, how far its zones reach."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ...robot.chain_kernels import poses
+from ..geometry.zones import POSITION
+from ..geometry.zones import STOP as STOP_CORNER
+from ..path.path import Path
+from ..timing.limits import interval_samples
+from .controller import Run
+
+
+def lengths_and_speeds(run: Run) -> tuple[FloatArray, FloatArray]:
+    """Length of the TCP's path (M,) m and its greatest speed (M,) m/s on each segment.
+
+    Lengths are the trapezoidal rule with its end correction: ∫f ≈ h (f₀ + f₁) / 2 + h² (f₀' −
+    f₁') / 12.
+    """
+    states, stamp, segment = run.timing.along.states, run.timing.stamp, run.timing.interval_segments
+    left = interval_samples(run.path.pieces)
+    spacing = run.timing.along.spacing
+    velocity, acceleration = states.v[:, :3], states.a[:, :3]
+    rate = np.linalg.norm(velocity, axis=1)
+    moving = np.where(rate > 0.0, rate, 1.0)
+    change = np.sum(velocity * acceleration, axis=1) / moving
+    pieces = 0.5 * spacing * (rate[left] + rate[left + 1])
+    pieces += spacing**2 / 12 * (change[left] - change[left + 1])
+    speed = np.maximum(rate[left] * np.sqrt(stamp.x[:-1]), rate[left + 1] * np.sqrt(stamp.x[1:]))
+    count = len(run.path.route.moves)
+    lengths, tops = np.zeros(count), np.zeros(count)
+    np.add.at(lengths, segment, pieces)
+    np.maximum.at(tops, segment, speed)
+    return lengths, tops
+
+
+def zone_reaches(path: Path) -> list[tuple[float, float]]:
+    """How far, m, from the waypoint at its end each segment's zone begins and ends."""
+    layout = path.layout
+    found = []
+    for i, kind in enumerate(layout.corners.kind):
+        if kind == STOP_CORNER:
+            found.append((0.0, 0.0))
+            continue
+        before, after = layout.extent[i, POSITION]
+        at = layout.waypoint[i + 1]
+        entry = _distance(path, i, at - before, i)
+        found.append((entry, _distance(path, i + 1, at + after, i)))
+    return [*found, (0.0, 0.0)]
+
+
+def _distance(path: Path, segment: int, sigma: float, corner: int) -> float:
+    """m from the waypoint of a corner to the TCP at σ, in the work object of a segment."""
+    route = path.route
+    near = 1 if segment == corner else 0
+    piece = int(np.argmin(np.abs(path.pieces.edge - sigma)))
+    first = path.pieces.first_sample
+    # At a boundary two samples stand for one configuration; the last one ends the piece before.
+    sample = int(first[piece]) if piece < len(first) - 1 else int(first[piece]) - 1
+    rows = np.stack([route.ends.q[segment, near], path.q[sample]])
+    _, position = poses(route.chains[segment], np.ascontiguousarray(rows))
+    return float(np.linalg.norm(position[1] - position[0]))

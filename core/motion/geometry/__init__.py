@@ -1,0 +1,1 @@
+"""Where a path runs in closed form: segments, zones, and the curves of every channel over σ."""

@@ -1,0 +1,147 @@
+"""The joint-space curves of a whole path: joint moves, and corners blended in joint space.
+
+A corner is blended in joint space between two joint moves, between a joint move and a move of
+the TCP, and where tool or work object change. Each leg enters by configuration and derivatives
+at the zone's edge: a joint line's own, or those of inverse kinematics on the TCP's path.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ..model.motion_model import MotionModel
+from .curves import POLYNOMIAL, Curves
+from .layout import (
+    Layout,
+    LayoutGradient,
+    blend_slopes,
+    blend_windows,
+    pull_blend_windows,
+    pull_segment_windows,
+    segment_windows,
+)
+from .segments import JOINT_SEGMENT, EndsGradient, SegmentsGradient
+from .tcp_curves import BlendGradient
+from .zones import JOINT_CORNER, POSITION
+
+
+@dataclass
+class Edges:
+    """Joint states at the edges of the corners blended in joint space; or their gradient.
+
+    Args:
+        q, dq, ddq: (M − 1, 2, N), at entry and exit, with respect to σ.
+    """
+
+    q: FloatArray
+    dq: FloatArray
+    ddq: FloatArray
+
+    @classmethod
+    def of_joint_legs(cls, layout: Layout) -> Edges:
+        """Edges on the joint lines; those on other legs are zero."""
+        ends, s = layout.segments.ends, layout.segments
+        reach = layout.corners.reach[:, POSITION]
+        rate = s.delta_q / np.where(s.scale > 0, s.scale, 1.0)[:, None]
+        joint = (ends.kind == JOINT_SEGMENT)[:, None]
+        entry = ends.q[:-1, 1] - reach[:, :1] * s.delta_q[:-1]
+        leave = ends.q[1:, 0] + reach[:, 1:] * s.delta_q[1:]
+        q = np.stack([np.where(joint[:-1], entry, 0.0), np.where(joint[1:], leave, 0.0)], 1)
+        dq = np.stack([np.where(joint[:-1], rate[:-1], 0.0), np.where(joint[1:], rate[1:], 0.0)], 1)
+        return cls(q, dq, np.zeros_like(q))
+
+    @classmethod
+    def zeros_like(cls, edges: Edges) -> Edges:
+        """A gradient to add to."""
+        return cls(*(np.zeros_like(edges.q) for _ in range(3)))
+
+
+def pull_joint_legs(
+    layout: Layout,
+    bar: Edges,
+    reach_bar: FloatArray,
+    segments_bar: SegmentsGradient,
+    ends_bar: EndsGradient,
+) -> None:
+    """Reverse of `Edges.of_joint_legs`."""
+    s = layout.segments
+    reach = layout.corners.reach[:, POSITION]
+    for side, which, near, sign in ((0, slice(None, -1), 1, -1.0), (1, slice(1, None), 0, 1.0)):
+        live = (layout.corners.kind == JOINT_CORNER) & (s.ends.kind[which] == JOINT_SEGMENT)
+        q_bar = np.where(live[:, None], bar.q[:, side], 0.0)
+        dq_bar = np.where(live[:, None], bar.dq[:, side], 0.0)
+        step, scale = s.delta_q[which], np.where(s.scale[which] > 0, s.scale[which], 1.0)[:, None]
+        ends_bar.q[which, near] += q_bar
+        reach_bar[:, POSITION, side] += sign * np.sum(q_bar * step, 1)
+        segments_bar.delta_q[which] += sign * reach[:, side : side + 1] * q_bar + dq_bar / scale
+        segments_bar.scale[which] -= np.sum(dq_bar * step, 1) / scale[:, 0] ** 2
+
+
+def make_joint_curves(layout: Layout, model: MotionModel, edges: Edges) -> Curves:
+    """2 M − 1 curves: the joint moves', and from M on the corners'."""
+    s = layout.segments
+    count = len(s.scale)
+    curves = Curves.empty(2 * count - 1, s.delta_q.shape[1], model.joint.coefficients)
+    joint = (s.ends.kind == JOINT_SEGMENT)[:, None]
+    curves.control[:count, 0] = np.where(joint, s.ends.q[:, 0], 0.0)
+    curves.control[:count, 1] = s.delta_q
+    curves.kind[count:] = POLYNOMIAL
+    before, after = layout.extent[:, POSITION, :1], layout.extent[:, POSITION, 1:]
+    entry, leave = before * edges.dq[:, 0], after * edges.dq[:, 1]
+    curves.control[count:, 0] = edges.q[:, 0]
+    curves.control[count:, 1] = entry
+    curves.control[count:, 2] = leave
+    curves.control[count:, 3] = edges.q[:, 1] - edges.q[:, 0] - entry - leave
+    if model.joint.meets_curvature:
+        curves.control[count:, 4] = before**2 * edges.ddq[:, 0]
+        curves.control[count:, 5] = after**2 * edges.ddq[:, 1]
+    curves.window[:count] = segment_windows(layout)
+    curves.window[count:] = blend_windows(layout, POSITION, blend_slopes(model.joint, count - 1))
+    return curves
+
+
+def pull_joint_curves(
+    layout: Layout,
+    model: MotionModel,
+    edges: Edges,
+    bar: Curves,
+    layout_bar: LayoutGradient,
+    segments_bar: SegmentsGradient,
+    ends_bar: EndsGradient,
+    blend_bar: BlendGradient,
+) -> Edges:
+    """Reverse of `make_joint_curves`; returns the edges' gradient."""
+    s = layout.segments
+    count = len(s.scale)
+    dead = layout.corners.kind != JOINT_CORNER
+    bar.control[count:][dead] = 0.0
+    bar.window[count:][dead] = 0.0
+    tcp = s.ends.kind != JOINT_SEGMENT
+    bar.control[:count][tcp] = 0.0
+    bar.window[:count][tcp] = 0.0
+    ends_bar.q[:, 0] += bar.control[:count, 0]
+    segments_bar.delta_q += bar.control[:count, 1]
+    pull_segment_windows(bar.window[:count], layout_bar, segments_bar)
+    slopes = blend_slopes(model.joint, count - 1)
+    slopes_bar = pull_blend_windows(layout, POSITION, slopes, bar.window[count:], layout_bar)
+    blend_bar.slopes += slopes_bar.sum(0)
+    blend_bar.coefficients += bar.coefficients
+    out = Edges.zeros_like(edges)
+    close = bar.control[count:, 3]
+    before, after = layout.extent[:, POSITION, :1], layout.extent[:, POSITION, 1:]
+    out.q[:, 0] += bar.control[count:, 0] - close
+    out.q[:, 1] += close
+    for side, extent, first, second in ((0, before, 1, 4), (1, after, 2, 5)):
+        rate_bar = bar.control[count:, first] - close
+        out.dq[:, side] += extent * rate_bar
+        layout_bar.extent[:, POSITION, side] += np.sum(rate_bar * edges.dq[:, side], 1)
+        if model.joint.meets_curvature:
+            bend_bar = bar.control[count:, second]
+            out.ddq[:, side] += extent**2 * bend_bar
+            layout_bar.extent[:, POSITION, side] += np.sum(
+                2 * extent * bend_bar * edges.ddq[:, side], 1
+            )
+    return out

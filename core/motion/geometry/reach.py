@@ -1,0 +1,38 @@
+"""Numbers with sparse derivatives: how far a zone reaches, and what that was made from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ...arrays import FloatArray
+
+Part = tuple[str, int, float | FloatArray]
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """A number and its sparse derivatives: (name of a quantity, its index, derivative)."""
+
+    value: float
+    parts: tuple[Part, ...] = ()
+
+    def __mul__(self, other: Reach) -> Reach:
+        parts = [(n, i, p * other.value) for n, i, p in self.parts]
+        parts += [(n, i, p * self.value) for n, i, p in other.parts]
+        return Reach(self.value * other.value, tuple(parts))
+
+    def __add__(self, other: Reach) -> Reach:
+        return Reach(self.value + other.value, self.parts + other.parts)
+
+    def mapped(self, value: float, slope: float) -> Reach:
+        """A function of it, with that value and that derivative."""
+        return Reach(value, tuple((n, i, p * slope) for n, i, p in self.parts))
+
+    def inverse(self) -> Reach:
+        """1 / self."""
+        return self.mapped(1.0 / self.value, -1.0 / self.value**2)
+
+
+def least(*reaches: Reach) -> Reach:
+    """The smallest of some."""
+    return min(reaches, key=lambda reach: reach.value)

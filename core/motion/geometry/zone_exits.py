@@ -1,0 +1,128 @@
+"""How far the TCP gets from a waypoint along a joint line: what ends a zone of a joint move."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from ...arrays import FloatArray
+from ...robot.chain import Chain
+from ...robot.chain_kernels import jacobian, pose
+
+
+@njit(cache=True, error_model="numpy")
+def first_exit(
+    chain: Chain, q_wp: FloatArray, q_other: FloatArray, radius: float, limit: float
+) -> float:
+    """The smallest share of a joint line at which the TCP is ``radius`` from where it began.
+
+    A bound on the TCP's speed makes each step of the search safe down to steps of 1e-4 of the
+    line; bisection then finds the exit to rounding.
+
+    Args:
+        chain: the kinematics.
+        q_wp, q_other: (N,), the waypoint and the line's other end.
+        radius: m.
+        limit: share at which the search ends.
+
+    Returns:
+        The share, or -1 if the TCP stays inside up to ``limit``.
+    """
+    size = q_wp.size
+    R, p0, p, q = np.empty((3, 3)), np.empty(3), np.empty(3), np.empty(size)
+    pose(chain, q_wp, R, p0)
+    arm, fastest = 0.0, 0.0
+    # No joint carries the TCP further than the chain's links and slides are long together.
+    for i in range(3):
+        arm += chain.end_translation[i] ** 2
+    arm = math.sqrt(arm)
+    for k in range(chain.joint.size - 1, -1, -1):
+        j = chain.joint[k]
+        change = abs(q_other[j] - q_wp[j])
+        if chain.prismatic[k]:
+            arm += max(abs(q_wp[j]), abs(q_other[j]))
+            fastest += change
+        else:
+            fastest += change * arm
+        square = 0.0
+        for i in range(3):
+            square += chain.translation[k, i] ** 2
+        arm += math.sqrt(square)
+    if fastest == 0.0:
+        return -1.0
+    low, share, gap = 0.0, 0.0, radius
+    while gap > 0.0:
+        if share >= limit:
+            return -1.0
+        low = share
+        share = min(limit, share + max(gap / fastest, 1e-4))
+        gap = radius - _distance(chain, q_wp, q_other, share, q, R, p, p0)
+        if share >= limit and gap > 0.0:
+            return -1.0
+    high = share
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        gap = radius - _distance(chain, q_wp, q_other, middle, q, R, p, p0)
+        if gap > 0.0:
+            low = middle
+        else:
+            high = middle
+        if high - low < 1e-15:
+            break
+    return 0.5 * (low + high)
+
+
+@njit(cache=True, error_model="numpy")
+def _distance(
+    chain: Chain,
+    q_wp: FloatArray,
+    q_other: FloatArray,
+    share: float,
+    q: FloatArray,
+    R: FloatArray,
+    p: FloatArray,
+    p0: FloatArray,
+) -> float:
+    for j in range(q.size):
+        q[j] = (1 - share) * q_wp[j] + share * q_other[j]
+    pose(chain, q, R, p)
+    square = 0.0
+    for i in range(3):
+        square += (p[i] - p0[i]) ** 2
+    return math.sqrt(square)
+
+
+@njit(cache=True, error_model="numpy")
+def tcp_apart(
+    chain: Chain, q_wp: FloatArray, q_other: FloatArray, share: float
+) -> tuple[float, FloatArray, FloatArray]:
+    """How far the TCP is from the waypoint at a share of a joint line, and how fast that changes.
+
+    Args:
+        chain: the kinematics.
+        q_wp, q_other: (N,), the waypoint and the line's other end.
+        share: of the line.
+
+    Returns:
+        The distance, m, and its derivatives (N,) with respect to the joints there and at the
+        waypoint; zero where the distance is.
+    """
+    size = q_wp.size
+    q = (1 - share) * q_wp + share * q_other
+    R, p, J = np.empty((3, 3)), np.empty(3), np.empty((6, size))
+    p_wp, J_wp = np.empty(3), np.empty((6, size))
+    jacobian(chain, q_wp, R, p_wp, J_wp)
+    jacobian(chain, q, R, p, J)
+    square = 0.0
+    for i in range(3):
+        square += (p[i] - p_wp[i]) ** 2
+    distance = math.sqrt(square)
+    pull, pull_wp = np.zeros(size), np.zeros(size)
+    if distance > 0.0:
+        for j in range(size):
+            for i in range(3):
+                pull[j] += (p[i] - p_wp[i]) / distance * J[i, j]
+                pull_wp[j] += (p[i] - p_wp[i]) / distance * J_wp[i, j]
+    return distance, pull, pull_wp

@@ -1,0 +1,421 @@
+"""How far each zone reaches along the segments on either side of its waypoint.
+
+A reach is a fraction of its segment, seen from the waypoint. It comes with its derivatives with
+respect to what it was made from, so that the reverse pass need not decide again which rule of
+the vendor was active.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import FloatArray
+from ...errors import MotionError, Note
+from ...program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction, Zone
+from ...robot.chain import Chain
+from ..model.motion_model import MotionModel, OrientationZone, Overlap, Pace, Space
+from .reach import Part, Reach, least
+from .segments import ARC_SEGMENT, JOINT_SEGMENT, EndsGradient, Segments, SegmentsGradient
+from .sharp_corners import share_kept
+from .zone_exits import first_exit, tcp_apart
+
+STOP, TCP_CORNER, JOINT_CORNER = 0, 1, 2
+POSITION, TURNING, PRESCRIBED = 0, 1, 2
+_STILL = 1e-7
+"""m of TCP path below which a move counts as pure reorientation."""
+_NOTHING = 1e-9
+"""A reach below is no zone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """How much larger the zones at a place could be before the vendor's rules cut them.
+
+    Args:
+        left: in m, or as a share of a segment; below zero where a rule cuts.
+        corner: index of the corner.
+    """
+
+    left: Reach
+    corner: int
+
+
+@dataclass
+class Corners:
+    """The zones at the M − 1 inner waypoints of M segments.
+
+    Args:
+        kind: (M − 1,) `STOP`, `TCP_CORNER` or `JOINT_CORNER`.
+        reach: (M − 1, 3, 2) of position, turning and prescribed axes; into the segment before
+            and the one after the waypoint.
+        sources: the same with derivatives.
+        overlapping: corners to be left out under `Overlap.SKIP`, because their zones overlap.
+        notes: zones cut short and refused.
+    """
+
+    kind: NDArray[np.int64]
+    reach: FloatArray
+    sources: list[tuple[tuple[Reach, Reach], ...]]
+    overlapping: tuple[int, ...] = ()
+    notes: list[Note] = field(default_factory=list)
+
+
+@dataclass
+class ZoneGradient:
+    """Gradient with respect to the radii and shares of the zones, by corner."""
+
+    tcp: FloatArray
+    reorientation: FloatArray
+    external: FloatArray
+    angle: FloatArray
+
+    @classmethod
+    def zeros(cls, count: int) -> ZoneGradient:
+        """A gradient to add to."""
+        return cls(*(np.zeros(count) for _ in range(4)))
+
+
+class ZonePlanner:
+    """Applies a vendor's zone rules to the corners of a path.
+
+    Args:
+        segments: the M segments.
+        chains: the chain of each segment.
+        model: the vendor's rules.
+        moves: index in the program of the move of each segment, for messages.
+    """
+
+    def __init__(
+        self,
+        segments: Segments,
+        chains: Sequence[Chain],
+        model: MotionModel,
+        moves: Sequence[int],
+    ) -> None:
+        self._segments = segments
+        self._chains = chains
+        self._model = model
+        self._moves = moves
+        self._notes: list[Note] = []
+
+    def corners(self, zones: Sequence[Zone]) -> Corners:
+        """The corners at the inner waypoints.
+
+        Args:
+            zones: M − 1 zones; `Fine` where the robot stops for whatever reason.
+
+        Raises:
+            MotionError: a kind of zone that cannot be emulated, naming the move.
+        """
+        self._notes = []
+        wanted = [self._reaches(i, zone) for i, zone in enumerate(zones)]
+        overlapping: tuple[int, ...] = ()
+        if self._model.overlap is Overlap.SHRINK:
+            wanted = self._shrunk(wanted)
+        elif self._model.overlap is Overlap.SKIP:
+            overlapping = self._overlapping(wanted)
+        wanted = [self._sharpened(i, pairs) for i, pairs in enumerate(wanted)]
+        kind = np.zeros(len(zones), dtype=np.int64)
+        reach = np.zeros((len(zones), 3, 2))
+        for i, pairs in enumerate(wanted):
+            reach[i] = [[pair[0].value, pair[1].value] for pair in pairs]
+            if reach[i, POSITION].min() > _NOTHING:
+                kind[i] = self._kind(i)
+        return Corners(kind, reach, wanted, overlapping, self._notes)
+
+    def rooms(self, zones: Sequence[Zone]) -> list[Room]:
+        """What room the vendor's rules on neighbouring zones leave.
+
+        Where none is below zero no zone is cut, shrunk or left out, and radii do what they say.
+
+        Args:
+            zones: as in `corners`.
+        """
+        if self._model.overlap is Overlap.HALF:
+            return [room for i, zone in enumerate(zones) for room in self._halves(i, zone)]
+        wanted = [self._reaches(i, zone)[POSITION] for i, zone in enumerate(zones)]
+        return [room for k in range(len(wanted) + 1) for room in self._shares(k, wanted)]
+
+    def _halves(self, i: int, zone: Zone) -> list[Room]:
+        """Half way to each neighbour, less the radius (m)."""
+        if not isinstance(zone, Radius) or self._stops(i):
+            return []
+        halves = [self._half(segment, i) for segment in (i, i + 1)]
+        less = Reach(-zone.tcp, (("tcp", i, -1.0),))
+        return [Room(half + less, i) for half in halves if half is not None]
+
+    def _shares(self, segment: int, wanted: Sequence[tuple[Reach, Reach]]) -> list[Room]:
+        """What two zones leave of the segment between them, as a share of it."""
+        parts = []
+        if segment > 0:
+            parts.append(wanted[segment - 1][1])
+        if segment < len(wanted):
+            parts.append(wanted[segment][0])
+        if all(part.value == 0.0 for part in parts):
+            return []
+        room = Reach(1.0)
+        for part in parts:
+            room = room + part * Reach(-1.0)
+        return [Room(room, min(segment, len(wanted) - 1))]
+
+    def _kind(self, i: int) -> int:
+        kinds = self._segments.ends.kind[i : i + 2]
+        same_chain = self._chains[i] is self._chains[i + 1]
+        mixed = same_chain and (kinds == JOINT_SEGMENT).sum() == 1
+        if mixed and self._model.mixed_space is Space.TCP:
+            raise MotionError(
+                "a corner between a joint move and a move of the TCP, blended in TCP space, is not "
+                'emulated; set zone.mixed_space = "joint" in the motion model',
+                self._moves[i],
+            )
+        return TCP_CORNER if same_chain and (kinds != JOINT_SEGMENT).all() else JOINT_CORNER
+
+    def _reaches(self, i: int, zone: Zone) -> tuple[tuple[Reach, Reach], ...]:
+        """Reaches of position, turning and prescribed axes before the rules on overlap."""
+        if isinstance(zone, Fine) or self._stops(i):
+            return ((Reach(0.0), Reach(0.0)),) * 3
+        if isinstance(zone, SpeedFraction):
+            raise MotionError(
+                "a zone by speed (C_VEL) needs timing before geometry, which is not emulated; "
+                "use a distance (C_DIS)",
+                self._moves[i],
+            )
+        if isinstance(zone, ContourFraction):
+            half = self._model.neighbour_fraction
+            share = Reach(zone.fraction * half, (("tcp", i, half),))
+            return ((share, share),) * 3
+        if isinstance(zone, Angle):
+            pair = (self._by_angle(i, zone.angle, i), self._by_angle(i + 1, zone.angle, i))
+            return (pair,) * 3
+        tcp = self._by_radius(i, zone, zone.tcp, "tcp")
+        if self._model.orientation_zone is OrientationZone.TCP or self._kind(i) == JOINT_CORNER:
+            return (tcp,) * 3
+        turning = external = tcp
+        if zone.reorientation > zone.tcp:
+            turning = self._by_radius(i, zone, zone.reorientation, "reorientation")
+        if zone.external > zone.tcp and self._segments.delta_prescribed.shape[1] > 0:
+            external = self._by_radius(i, zone, zone.external, "external")
+        return tcp, turning, external
+
+    def _stops(self, i: int) -> bool:
+        """Whether the vendor makes no zone between a TCP move and a pure reorientation."""
+        if not self._model.stops_at_pure_reorientation:
+            return False
+        kinds = self._segments.ends.kind[i : i + 2]
+        lengths = self._segments.length[i : i + 2]
+        if (kinds == JOINT_SEGMENT).any() or (lengths < _STILL).sum() != 1:
+            return False
+        self._note(i, "no zone between a move of the TCP and a pure reorientation: it stops here")
+        return True
+
+    def _note(self, i: int, message: str) -> None:
+        self._notes.append(Note(message, self._moves[i]))
+
+    def _by_angle(self, segment: int, angle: float, corner: int) -> Reach:
+        """Reach of a zone given as an angle (rad) of the tool's turn."""
+        limit = Reach(self._model.neighbour_fraction)
+        turn = float(self._segments.turn[segment])
+        if self._segments.ends.kind[segment] == JOINT_SEGMENT:
+            raise MotionError(
+                "a zone by orientation next to a joint move is not emulated; use a distance",
+                self._moves[corner],
+            )
+        if turn <= angle * 1e-12 or turn == 0.0:
+            return limit
+        parts: tuple[Part, ...] = (
+            ("angle", corner, 1.0 / turn),
+            ("turn", segment, -angle / turn**2),
+        )
+        return least(Reach(angle / turn, parts), limit)
+
+    def _by_radius(self, i: int, zone: Radius, radius: float, name: str) -> tuple[Reach, Reach]:
+        """Reaches of a sphere of ``radius`` m round waypoint i, the same on both sides."""
+        size = Reach(radius, ((name, i, 1.0),))
+        if self._model.overlap is Overlap.HALF:
+            for segment in (i, i + 1):
+                half = self._half(segment, i)
+                if half is not None and half.value < size.value * (1 - 1e-9):
+                    size = half
+            if name == "tcp" and size.value < radius * (1 - 1e-9):
+                self._note(
+                    i,
+                    f"zone of {1e3 * radius:g} mm cut to {1e3 * size.value:.4g} mm: it may reach "
+                    "no further than half way to a neighbouring point",
+                )
+        return self._exit(i, i, size, zone), self._exit(i + 1, i, size, zone)
+
+    def _half(self, segment: int, corner: int) -> Reach | None:
+        """TCP distance of the point half way from the waypoint; None where the TCP stands still."""
+        s, share = self._segments, self._model.neighbour_fraction
+        kind = s.ends.kind[segment]
+        if kind == JOINT_SEGMENT:
+            return self._joint_half(segment, corner)
+        if s.length[segment] < _STILL:
+            return None
+        length = float(s.length[segment])
+        if kind != ARC_SEGMENT:
+            return Reach(share * length, (("length", segment, share),))
+        swept = float(s.angle[segment])
+        r = length / swept
+        sine, cosine = math.sin(0.5 * share * swept), math.cos(0.5 * share * swept)
+        parts: tuple[Part, ...] = (
+            ("length", segment, 2 * sine / swept),
+            ("arc", segment, -2 * r * sine / swept + share * r * cosine),
+        )
+        return Reach(2 * r * sine, parts)
+
+    def _joint_half(self, segment: int, corner: int) -> Reach | None:
+        share = self._model.neighbour_fraction
+        near, far = (1, 0) if segment == corner else (0, 1)
+        q_wp, q_other = self._segments.ends.q[segment, near], self._segments.ends.q[segment, far]
+        distance, pull, pull_wp = tcp_apart(self._chains[segment], q_wp, q_other, share)
+        if distance < _STILL:
+            return None
+        parts: tuple[Part, ...] = (
+            (f"q{near}", segment, (1 - share) * pull - pull_wp),
+            (f"q{far}", segment, share * pull),
+        )
+        return Reach(distance, parts)
+
+    def _exit(self, segment: int, corner: int, size: Reach, zone: Radius) -> Reach:
+        """Share of a segment inside the sphere round the waypoint of ``corner``."""
+        s = self._segments
+        limit = Reach(
+            self._model.neighbour_fraction if self._model.overlap is Overlap.HALF else 1.0
+        )
+        if s.ends.kind[segment] == JOINT_SEGMENT:
+            return self._joint_exit(segment, corner, size, limit)
+        length = float(s.length[segment])
+        if length < _STILL:
+            return self._by_angle(segment, zone.angle, corner)
+        if s.ends.kind[segment] != ARC_SEGMENT:
+            share = size * Reach(length, (("length", segment, 1.0),)).inverse()
+            return least(share, limit)
+        swept = float(s.angle[segment])
+        r = length / swept
+        if size.value >= 2 * r:
+            return limit
+        half = math.asin(0.5 * size.value / r)
+        slope = 1.0 / (swept * r * math.cos(half))
+        parts: list[Part] = [(n, k, p * slope) for n, k, p in size.parts]
+        parts.append(("length", segment, -slope * size.value / length))
+        parts.append(("arc", segment, slope * size.value / swept - 2 * half / swept**2))
+        return least(Reach(2 * half / swept, tuple(parts)), limit)
+
+    def _joint_exit(self, segment: int, corner: int, size: Reach, limit: Reach) -> Reach:
+        """First exit from the sphere on a joint line; derivatives by the implicit function."""
+        chain = self._chains[segment]
+        near, far = (1, 0) if segment == corner else (0, 1)
+        q_wp, q_other = self._segments.ends.q[segment, near], self._segments.ends.q[segment, far]
+        share = first_exit(chain, q_wp, q_other, size.value, limit.value)
+        if share < 0.0:
+            return limit
+        _, pull, pull_wp = tcp_apart(chain, q_wp, q_other, share)
+        speed = float(pull @ (q_other - q_wp))
+        if speed <= 0.0:
+            return Reach(share)
+        parts: list[Part] = [(n, k, g / speed) for n, k, g in size.parts]
+        parts.append((f"q{near}", segment, -((1 - share) * pull - pull_wp) / speed))
+        parts.append((f"q{far}", segment, -share * pull / speed))
+        return Reach(share, tuple(parts))
+
+    def _sharpened(
+        self, i: int, pairs: tuple[tuple[Reach, Reach], ...]
+    ) -> tuple[tuple[Reach, Reach], ...]:
+        """A zone made smaller where its corner is too sharp for the speed; see `sharp_corners`."""
+        model, s = self._model, self._segments
+        superposed = model.tcp.kind == "arc" and model.pace is Pace.SUPERPOSED
+        if not superposed or model.centripetal is None or pairs[POSITION][0].value <= _NOTHING:
+            return pairs
+        if self._kind(i) != TCP_CORNER:
+            return pairs
+        kept = share_kept(s, i, pairs[POSITION][0], model.tcp_acceleration, model.centripetal)
+        if kept is None:
+            return pairs
+        radius = 1e3 * pairs[POSITION][0].value * s.length[i]
+        self._note(
+            i,
+            f"blend of {radius:.4g} mm made {kept.value * radius:.4g} mm: its corner is too sharp "
+            "for the speed",
+        )
+        return tuple((before * kept, after * kept) for before, after in pairs)
+
+    def _shrunk(
+        self, wanted: list[tuple[tuple[Reach, Reach], ...]]
+    ) -> list[tuple[tuple[Reach, Reach], ...]]:
+        """Both zones on a segment shrink in proportion until they touch."""
+        factors = [Reach(1.0) for _ in wanted]
+        for segment in range(1, len(wanted)):
+            total = wanted[segment - 1][POSITION][1] + wanted[segment][POSITION][0]
+            if total.value > 1.0:
+                factor = total.inverse()
+                factors[segment - 1] = least(factors[segment - 1], factor)
+                factors[segment] = least(factors[segment], factor)
+        for i, factor in enumerate(factors):
+            if factor.value < 1.0 - 1e-9:
+                self._note(i, f"overlapping blend shrunk to {100 * factor.value:.4g} %")
+        return [
+            tuple((before * f, after * f) for before, after in pairs)
+            for pairs, f in zip(wanted, factors, strict=True)
+        ]
+
+    def _overlapping(self, wanted: list[tuple[tuple[Reach, Reach], ...]]) -> tuple[int, ...]:
+        """Corners to leave out; no two neighbours, as leaving one out changes the other."""
+        found: list[int] = []
+        for segment in range(len(wanted) + 1):
+            before = wanted[segment - 1][POSITION][1].value if segment > 0 else 0.0
+            after = wanted[segment][POSITION][0].value if segment < len(wanted) else 0.0
+            outermost = segment in (0, len(wanted)) and before + after >= 1.0
+            if not (before + after > 1.0 + 1e-9 or outermost):
+                continue
+            corner = min(segment, len(wanted) - 1)
+            if found and corner - found[-1] < 2:
+                continue
+            if (self._segments.ends.kind[corner : corner + 2] == ARC_SEGMENT).any():
+                raise MotionError(
+                    "its blend overlaps a neighbouring one next to an arc, which cannot be left "
+                    "out; make the blend radius smaller",
+                    self._moves[corner],
+                )
+            found.append(corner)
+        return tuple(found)
+
+
+def pull_corners(
+    corners: Corners,
+    reach_bar: FloatArray,
+    segments_bar: SegmentsGradient,
+    ends_bar: EndsGradient,
+    zones_bar: ZoneGradient,
+) -> None:
+    """Reverse of `ZonePlanner.corners`: carry the gradient (M − 1, 3, 2) of the reaches back."""
+    targets: dict[str, FloatArray] = {
+        "length": segments_bar.length,
+        "angle": zones_bar.angle,
+        "arc": segments_bar.angle,
+        "turn": segments_bar.turn,
+        "q0": ends_bar.q[:, 0],
+        "q1": ends_bar.q[:, 1],
+        "tcp": zones_bar.tcp,
+        "reorientation": zones_bar.reorientation,
+        "external": zones_bar.external,
+        "position0": ends_bar.position[:, 0],
+        "position1": ends_bar.position[:, 1],
+        "speed": ends_bar.speed,
+        "acceleration": ends_bar.acceleration,
+    }
+    for i, pairs in enumerate(corners.sources):
+        if corners.kind[i] == STOP:
+            continue
+        for channel, pair in enumerate(pairs):
+            for side, reach in enumerate(pair):
+                bar = reach_bar[i, channel, side]
+                if bar == 0.0:
+                    continue
+                for name, index, part in reach.parts:
+                    targets[name][index] += bar * part

@@ -1,0 +1,155 @@
+"""Reverse of `path`: a gradient with respect to samples, carried back to the route."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ..geometry.joint_curves import Edges, pull_joint_curves, pull_joint_legs
+from ..geometry.layout import LayoutGradient, pull_layout
+from ..geometry.segments import EndsGradient, SegmentsGradient, pull_segments
+from ..geometry.tcp_curves import BlendGradient, pull_tcp_curves
+from ..geometry.zones import POSITION, ZoneGradient, pull_corners
+from ..path.joint_samples import pull_joint
+from ..path.path import Path, edge_runs, stretches
+from ..path.tcp_samples import Samples, States, TcpCurves, pull_tcp
+
+
+@dataclass
+class RouteGradient:
+    """Gradient with respect to a route and to the blend laws."""
+
+    ends: EndsGradient
+    zones: ZoneGradient
+    tcp: BlendGradient
+    joint: BlendGradient
+    orientation: BlendGradient = field(repr=False)
+
+
+def pull_path(
+    path: Path,
+    states_bar: States,
+    sigma_bar: FloatArray,
+    turn_bar: tuple[FloatArray, FloatArray],
+) -> RouteGradient:
+    """Carry a gradient with respect to the samples back to the route.
+
+    Args:
+        path: the path.
+        states_bar: gradient with respect to ``path.states``; used up.
+        sigma_bar: (S,), gradient with respect to σ of the samples where it enters directly (the
+            spacing of intervals); added to.
+        turn_bar: (M, 3) each, gradients with respect to the turns a and b of segments where they
+            enter directly (limits of their parts).
+    """
+    route, layout, pieces = path.route, path.layout, path.pieces
+    model = path.model
+    layout_bar = LayoutGradient.zeros(layout)
+    segments_bar = SegmentsGradient.zeros(layout.segments)
+    segments_bar.turn_a += turn_bar[0]
+    segments_bar.turn_b += turn_bar[1]
+    reach_bar = np.zeros_like(layout.corners.reach)
+    gradient = RouteGradient(
+        EndsGradient.zeros(route.ends),
+        ZoneGradient.zeros(len(route.zones)),
+        BlendGradient.zeros(model.tcp),
+        BlendGradient.zeros(model.joint),
+        BlendGradient.zeros(model.orientation),
+    )
+    joint_bar = path.joint.zeros_like()
+    curves = path.tcp.curves
+    tcp_bar = TcpCurves(
+        curves.position.zeros_like(),
+        curves.turning.zeros_like(),
+        np.zeros_like(curves.reference),
+        curves.prescribed.zeros_like(),
+    )
+    sample_piece = pieces.sample_pieces
+    for stretch in stretches(route, layout, pieces):
+        rows = slice(stretch.start, stretch.stop)
+        view, view_bar = (s.rows(rows.start, rows.stop) for s in (path.states, states_bar))
+        curve = pieces.curve[sample_piece[rows]]
+        if stretch.joint_space:
+            index = np.ascontiguousarray(curve[:, POSITION])
+            pull_joint(
+                stretch.chain,
+                path.joint,
+                index,
+                path.sigma[rows],
+                view,
+                view_bar,
+                joint_bar,
+                sigma_bar[rows],
+            )
+            continue
+        position, turning, prescribed = (np.ascontiguousarray(c) for c in curve.T)
+        samples = Samples(path.sigma[rows], position, turning, prescribed)
+        pull_tcp(
+            stretch.chain,
+            route.solved,
+            route.prescribed,
+            curves,
+            samples,
+            view,
+            view_bar,
+            tcp_bar,
+            sigma_bar[rows],
+        )
+    pieces.pull_sigma(sigma_bar, layout_bar)
+    edges_bar = pull_joint_curves(
+        layout,
+        model,
+        path.edges,
+        joint_bar,
+        layout_bar,
+        segments_bar,
+        gradient.ends,
+        gradient.joint,
+    )
+    pull_joint_legs(layout, edges_bar, reach_bar, segments_bar, gradient.ends)
+    _pull_edges(path, edges_bar, tcp_bar, layout_bar)
+    pull_tcp_curves(
+        path.tcp,
+        tcp_bar,
+        layout_bar,
+        reach_bar,
+        segments_bar,
+        gradient.ends,
+        gradient.tcp,
+        gradient.orientation,
+    )
+    reach_bar += pull_layout(layout, layout_bar, segments_bar)
+    pull_corners(layout.corners, reach_bar, segments_bar, gradient.ends, gradient.zones)
+    pull_segments(layout.segments, segments_bar, gradient.ends)
+    return gradient
+
+
+def _pull_edges(path: Path, bar: Edges, tcp_bar: TcpCurves, layout_bar: LayoutGradient) -> None:
+    """Reverse of the edges that inverse kinematics found on TCP legs."""
+    route, layout = path.route, path.layout
+    for run in edge_runs(route, layout):
+        last = run.samples.last()
+        at = run.corner, run.side
+        size = len(run.seed)
+        states = States.zeros(1, size)
+        states.q[0], states.dq[0] = path.edges.q[at], path.edges.dq[at]
+        states.ddq[0] = path.edges.ddq[at]
+        states_bar = States.zeros(1, size)
+        states_bar.q[0], states_bar.dq[0], states_bar.ddq[0] = bar.q[at], bar.dq[at], bar.ddq[at]
+        sigma_bar = np.zeros(1)
+        pull_tcp(
+            run.chain,
+            route.solved,
+            route.prescribed,
+            path.tcp.curves,
+            last,
+            states,
+            states_bar,
+            tcp_bar,
+            sigma_bar,
+        )
+        layout_bar.waypoint[run.corner + 1] += sigma_bar[0]
+        sign = -1.0 if run.side == 0 else 1.0
+        layout_bar.extent[run.corner, POSITION, run.side] += sign * sigma_bar[0]

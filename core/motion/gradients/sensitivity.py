@@ -1,0 +1,223 @@
+"""Places on a path that keep their meaning while its waypoints and zones change, and how the
+configurations there change: forward derivatives of all of them at once.
+
+A place is a share of the straight part of a segment, or of the stretch inside a zone. On paths of
+joint moves alone q is linear in the waypoints and in how far the zones reach,
+
+    straight part   q = q₀ + (ρ_out + λ (1 − ρ_out − ρ_in)) Δq
+    zone            q = q_wp − ρ_in Δq₀ (1 − f(s)) + ρ_out Δq₁ g(s)     (see `blend`)
+
+so that the derivatives follow from those of ρ, which `zones.Reach` brings along. On other paths
+places are found between the path's samples, and there is no derivative.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import FloatArray, IntArray
+from ..geometry.reach import Reach
+from ..geometry.segments import JOINT_SEGMENT
+from ..geometry.zones import POSITION, STOP
+from ..path.path import Path
+
+_GRID, _ZOOMS = 41, 3
+"""Shares that are looked at, and how often more closely."""
+
+
+@dataclass(frozen=True)
+class Places:
+    """L places on a path of M segments.
+
+    Args:
+        part: (L,), k for the straight part of segment k, M + i for the zone at inner waypoint i.
+        share: (L,), from 0 at the part's beginning to 1 at its end.
+    """
+
+    part: IntArray
+    share: FloatArray
+
+    def with_more(self, others: Places) -> Places:
+        """These, then others."""
+        return Places(
+            np.concatenate([self.part, others.part]), np.concatenate([self.share, others.share])
+        )
+
+
+@dataclass(frozen=True)
+class Directions:
+    """K directions in which a path changes.
+
+    Args:
+        waypoints: (M + 1, N, K), of the configurations at the waypoints.
+        radii: (M − 1, K), of the zones' TCP radii (shares for `ContourFraction`).
+    """
+
+    waypoints: FloatArray
+    radii: FloatArray
+
+
+def has_tangents(path: Path) -> bool:
+    """Whether `tangents` knows the path: joint moves alone."""
+    return bool((path.segments.ends.kind == JOINT_SEGMENT).all())
+
+
+def sigma_of(path: Path, places: Places) -> FloatArray:
+    """(L,), σ of the places."""
+    begin, end = _parts(path)
+    return np.asarray(begin[places.part] + places.share * (end - begin)[places.part])
+
+
+def place_near(path: Path, sigma: float, q: FloatArray) -> Places:
+    """The place on a path nearest to a configuration (N,), in the part that σ lies in."""
+    begin, end = _parts(path)
+    inside = (begin <= sigma) & (sigma <= end)
+    part = int(np.argmax(inside)) if inside.any() else int(np.argmin(np.abs(begin - sigma)))
+    lower, upper = 0.0, 1.0
+    for _ in range(_ZOOMS):
+        shares = np.linspace(lower, upper, _GRID)
+        places = Places(np.full(_GRID, part), shares)
+        k = int(np.argmin(np.linalg.norm(configurations(path, places) - q, axis=1)))
+        lower, upper = shares[max(k - 1, 0)], shares[min(k + 1, _GRID - 1)]
+    return Places(np.array([part]), shares[k : k + 1])
+
+
+def configurations(path: Path, places: Places) -> FloatArray:
+    """(L, N), the configurations at the places."""
+    if not has_tangents(path):
+        return _between_samples(path, sigma_of(path, places))
+    base, entering, leaving = _weights(path, places)
+    waypoints = _waypoints(path)
+    before, after = _neighbours(path, places)
+    reach = _reach(path, places)
+    steps = np.diff(waypoints, axis=0)
+    q = waypoints[base]
+    q = q + (reach[:, 0] * entering)[:, None] * steps[before]
+    return np.asarray(q + (reach[:, 1] * leaving)[:, None] * steps[after])
+
+
+def tangents(path: Path, places: Places, directions: Directions) -> FloatArray:
+    """(L, N, K), how the configurations at the places change along each direction.
+
+    Raises:
+        ValueError: the path has moves of the TCP.
+    """
+    if not has_tangents(path):
+        raise ValueError("tangents are known for paths of joint moves alone")
+    base, entering, leaving = _weights(path, places)
+    steps = np.diff(_waypoints(path), axis=0)
+    steps_dot = np.diff(directions.waypoints, axis=0)
+    before, after = _neighbours(path, places)
+    reach, reach_dot = _reach(path, places), _reach_dots(path, places, directions)
+    out = directions.waypoints[base].copy()
+    for side, weight, segment in ((0, entering, before), (1, leaving, after)):
+        out += (reach[:, side] * weight)[:, None, None] * steps_dot[segment]
+        out += (weight[:, None] * steps[segment])[:, :, None] * reach_dot[:, side][:, None, :]
+    return np.asarray(out)
+
+
+def reach_tangent(reach: Reach, directions: Directions) -> FloatArray:
+    """(K,), how a reach, or the room between zones, on a path of joint moves changes."""
+    total = np.zeros(directions.radii.shape[1])
+    for name, index, part in reach.parts:
+        if name == "tcp":
+            total += part * directions.radii[index]
+        elif name in ("q0", "q1"):
+            total += np.asarray(part) @ directions.waypoints[index + int(name[1])]
+        else:
+            raise ValueError(f"no tangent is known of {name}")
+    return total
+
+
+def _waypoints(path: Path) -> FloatArray:
+    q = path.segments.ends.q
+    return np.concatenate([q[:1, 0], q[:, 1]])
+
+
+def _parts(path: Path) -> tuple[FloatArray, FloatArray]:
+    """σ at beginning and end of all parts, (2 M − 1,) each."""
+    waypoint, extent = path.layout.waypoint, path.layout.extent[:, POSITION]
+    before, after = np.append(extent[:, 0], 0.0), np.insert(extent[:, 1], 0, 0.0)
+    begin = np.concatenate([waypoint[:-1] + after, waypoint[1:-1] - extent[:, 0]])
+    end = np.concatenate([waypoint[1:] - before, waypoint[1:-1] + extent[:, 1]])
+    return begin, np.maximum(begin, end)
+
+
+def _neighbours(path: Path, places: Places) -> tuple[IntArray, IntArray]:
+    """The segments before and after each place; twice its own for a straight part."""
+    count = len(path.segments.scale)
+    zone = places.part >= count
+    corner = places.part - count
+    return np.where(zone, corner, places.part), np.where(zone, corner + 1, places.part)
+
+
+def _weights(path: Path, places: Places) -> tuple[IntArray, FloatArray, FloatArray]:
+    """q = waypoint[base] + ρ₀ w₀ Δq_before + ρ₁ w₁ Δq_after, and so for straight parts too.
+
+    There ρ₀ = 1 − ρ_out − ρ_in counts with λ, and ρ₁ = ρ_out with 1; see `_reach`.
+    """
+    count = len(path.segments.scale)
+    zone = places.part >= count
+    basis = path.model.joint.coefficients
+    powers = places.share[:, None] ** np.arange(basis.shape[1])
+    f, g = powers @ basis[1], powers @ basis[2]
+    base = np.where(zone, places.part - count + 1, places.part)
+    return base, np.where(zone, f - 1.0, places.share), np.where(zone, g, 1.0)
+
+
+def _reach(path: Path, places: Places) -> FloatArray:
+    """(L, 2), ρ₀ and ρ₁ of `_weights`."""
+    return _combined(path, places, _live(path))
+
+
+def _live(path: Path) -> FloatArray:
+    """(M − 1, 2), how far each zone reaches; 0 at stops."""
+    corners = path.corners
+    return np.where((corners.kind == STOP)[:, None], 0.0, corners.reach[:, POSITION])
+
+
+def _combined(path: Path, places: Places, reach: FloatArray, whole: float = 1.0) -> FloatArray:
+    """ρ₀ and ρ₁ from the zones' reaches, (M − 1, 2, ...) → (L, 2, ...)."""
+    count = len(path.segments.scale)
+    zone = places.part >= count
+    none = np.zeros((1, *reach.shape[2:]))
+    arriving = np.concatenate([reach[:, 0], none])
+    leaving = np.concatenate([none, reach[:, 1]])
+    straight = whole - arriving - leaving
+    segment = np.where(zone, 0, places.part)
+    out = np.stack([straight[segment], leaving[segment]], 1)
+    corner = (places.part - count)[zone]
+    out[zone] = reach[corner]
+    return out
+
+
+def _reach_dots(path: Path, places: Places, directions: Directions) -> FloatArray:
+    """(L, 2, K), derivatives of ρ₀ and ρ₁."""
+    corners, size = path.corners, directions.radii.shape[1]
+    dots = np.zeros((len(corners.kind), 2, size))
+    for i, pairs in enumerate(corners.sources):
+        if corners.kind[i] != STOP:
+            dots[i] = [reach_tangent(reach, directions) for reach in pairs[POSITION]]
+    return _combined(path, places, dots, 0.0)
+
+
+def _between_samples(path: Path, sigma: FloatArray) -> FloatArray:
+    """Configurations (L, N) at σ (L,): the quintics that meet values and two derivatives."""
+    at = np.clip(np.searchsorted(path.sigma, sigma, side="right") - 1, 0, len(path.sigma) - 2)
+    length = path.sigma[at + 1] - path.sigma[at]
+    z = (sigma - path.sigma[at]) / np.where(length > 0, length, 1.0)
+    z = np.clip(z, 0.0, 1.0)[:, None]
+    L = length[:, None]
+    q0, dq0, ddq0 = (array[at] for array in path.states[:3])
+    q1, dq1, ddq1 = (array[at + 1] for array in path.states[:3])
+    z3, z4, z5 = z**3, z**4, z**5
+    return np.asarray(
+        q0 * (1 - 10 * z3 + 15 * z4 - 6 * z5)
+        + L * dq0 * (z - 6 * z3 + 8 * z4 - 3 * z5)
+        + L**2 * ddq0 * (0.5 * z**2 - 1.5 * z3 + 1.5 * z4 - 0.5 * z5)
+        + q1 * (10 * z3 - 15 * z4 + 6 * z5)
+        + L * dq1 * (-4 * z3 + 7 * z4 - 3 * z5)
+        + L**2 * ddq1 * (0.5 * z3 - z4 + 0.5 * z5)
+    )

@@ -1,0 +1,1 @@
+"""Waypoints and whole paths: configurations, and curves sampled through inverse kinematics."""

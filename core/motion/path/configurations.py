@@ -1,0 +1,237 @@
+"""Finds the configurations of a program's targets.
+
+Along joint moves the configuration of a pose target is chosen among all solutions of inverse
+kinematics; what a move of the TCP arrives with is held against the programmed one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ...errors import InputError, MotionError
+from ...program.move import Move
+from ...program.target import Configuration, JointTarget, PoseTarget
+from ...robot.assembly import assemble
+from ...robot.chain_kernels import pose
+from ...robot.inverse import UnreachableError
+from ...robot.joint import JointKind
+from ...robot.model import Robot
+from ...robot.tracking import track
+from ...spatial.pose import Pose
+
+Label = Callable[[Robot, FloatArray], Configuration | None]
+
+_MATCH = 1e-9
+_SAME = 1e-9
+_REDUNDANT = 2
+"""The third axis of a seven-axis arm moves linearly along moves of the TCP (as KUKA's E1 does)."""
+
+
+def located(move: Move, index: int, message: str) -> MotionError:
+    """An error of a move, with its place in the source."""
+    span = None if move.origin is None else move.origin.statement
+    return MotionError(message, index, span)
+
+
+class ConfigurationFinder:
+    """Configurations of one robot under one vendor's labels.
+
+    Args:
+        robot: the robot.
+        label: the vendor's label of a configuration; None where vendors have none.
+
+    Attributes:
+        solved: indices of the axes that inverse kinematics solves for along moves of the TCP;
+            six if the arm can follow them.
+        prescribed: indices of the others: external axes, and the redundant one of seven.
+    """
+
+    def __init__(self, robot: Robot, label: Label) -> None:
+        self._robot = robot
+        self._label = label
+        redundant = [_REDUNDANT] if robot.arm_size == 7 else []
+        arm = range(robot.arm_size)
+        self.solved = np.array([j for j in arm if j not in redundant], dtype=np.int64)
+        self.prescribed = np.array([*redundant, *range(len(arm), robot.size)], dtype=np.int64)
+        self.redundant = bool(redundant)
+        self._full_turn = np.array(
+            [2 * np.pi if j.kind is JointKind.REVOLUTE else 0.0 for j in robot.joints]
+        )
+
+    def rest(self) -> FloatArray:
+        """All axes at zero, or at the limit nearest to it."""
+        limits = self._robot.limits
+        return np.asarray(np.clip(np.zeros(self._robot.size), limits.lower, limits.upper))
+
+    def joints(self, target: JointTarget, before: FloatArray) -> FloatArray:
+        """The configuration of a joint target; axes that it does not name keep their values.
+
+        Raises:
+            InputError: it has another number of joints than the arm, or more external axes than
+                the robot.
+        """
+        if len(target.joints) != self._robot.arm_size:
+            raise InputError(
+                f"a joint target has {len(target.joints)} values, {self._robot.name} has "
+                f"{self._robot.arm_size} joints"
+            )
+        q = before.copy()
+        q[: self._robot.arm_size] = target.joints
+        return self.external(target.external, q)
+
+    def external(self, values: Sequence[float], before: FloatArray) -> FloatArray:
+        """A configuration with external axes set to the values that are given.
+
+        Raises:
+            InputError: there are more values than axes.
+        """
+        arm = self._robot.arm_size
+        if len(values) > self._robot.size - arm:
+            raise InputError(
+                f"a target names {len(values)} external axes, {self._robot.name} has "
+                f"{self._robot.size - arm}"
+            )
+        q = before.copy()
+        q[arm : arm + len(values)] = values
+        return q
+
+    def choose(self, move: Move, index: int, before: FloatArray) -> FloatArray:
+        """The configuration of a joint move's pose target.
+
+        Of the solutions with the programmed configuration, the one nearest to ``before``. A
+        seven-axis arm keeps its third axis.
+
+        Raises:
+            MotionError: the pose is out of reach (with the third axis kept), or contradicts the
+                programmed configuration.
+        """
+        target = move.target
+        assert isinstance(target, PoseTarget)
+        q = self.external(target.external, before)
+        arm = self._robot.arm_size
+        flange = self.flange(move, target.pose, q)
+        try:
+            found = [s.q for s in self._robot.inverse(flange, tuple(map(float, q[arm:])))]
+        except UnreachableError as error:
+            raise located(move, index, f"target cannot be reached: {error}") from error
+        if self.redundant:
+            turned = self._with_third_kept(found, flange, q)
+            if not turned:
+                name, value = self._robot.axis_names[_REDUNDANT], np.degrees(q[_REDUNDANT])
+                raise located(
+                    move,
+                    index,
+                    f"target cannot be reached with the third axis, {name}, kept at "
+                    f"{value:.4g}°: turn it first by a joint target",
+                )
+        elif target.configuration is None:
+            turned = [self._nearest_turn(solution, before[:arm]) for solution in found]
+        else:
+            turned = [t for solution in found for t in self._robot.turns(solution)]
+        options = np.tile(q, (len(turned), 1))
+        options[:, :arm] = turned
+        return self._pick(move, index, target.configuration, options, before)
+
+    def _with_third_kept(
+        self, samples: Sequence[FloatArray], flange: Pose, q: FloatArray
+    ) -> list[FloatArray]:
+        """Configurations (n,) of a seven-axis arm at a pose, within limits, third axis as in q.
+
+        Args:
+            samples: some of the arm's configurations at the pose.
+            flange: in the world.
+            q: (N,), the arm's present configuration and the target's external axes.
+        """
+        arm = self._robot.arm_size
+        matrix = flange.matrix()
+        R, p = np.ascontiguousarray(matrix[:3, :3]), np.ascontiguousarray(matrix[:3, 3])
+        kept: list[FloatArray] = []
+        for sample in (q[:arm], *samples):
+            guess = q.copy()
+            guess[:arm] = sample
+            guess[_REDUNDANT] = q[_REDUNDANT]
+            converged, _, _ = track(self._robot.chain, guess, R, p, self.solved, guess)
+            if converged:
+                turns = self._robot.turns(guess[:arm])
+                kept += [t for t in turns if abs(t[_REDUNDANT] - q[_REDUNDANT]) < _SAME]
+        return kept
+
+    def _nearest_turn(self, q: FloatArray, before: FloatArray) -> FloatArray:
+        """Of the arm's configurations whole turns away from q, the one nearest to ``before``."""
+        limits = self._robot.limits
+        turned = q + self._full_turn * np.round((before - q) / (2 * np.pi))
+        if (turned < limits.lower[: len(q)]).any() or (turned > limits.upper[: len(q)]).any():
+            options = self._robot.turns(q)
+            turned = options[np.argmin(np.abs(options - before).sum(axis=1))]
+        return np.asarray(turned)
+
+    def _pick(
+        self,
+        move: Move,
+        index: int,
+        wanted: Configuration | None,
+        options: FloatArray,
+        before: FloatArray,
+    ) -> FloatArray:
+        distance = np.abs(options - before).sum(axis=1)
+        if wanted is None:
+            return np.asarray(options[np.argmin(distance)])
+        labels = [self._label(self._robot, q) for q in options]
+        if self.redundant and all(name is None for name in labels):
+            return np.asarray(options[np.argmin(distance)])
+        misses = [math.inf if name is None else wanted.mismatch(name) for name in labels]
+        best = min(range(len(options)), key=lambda k: (misses[k], distance[k]))
+        if wanted.exact and misses[best] > _MATCH:
+            known = ", ".join(sorted({str(name) for name in labels}))
+            raise located(
+                move,
+                index,
+                f"configuration {wanted} contradicts the pose; the robot reaches it with {known}",
+            )
+        return np.asarray(options[best])
+
+    def check_arrival(self, move: Move, index: int, arrived: FloatArray) -> None:
+        """Hold the end of a move of the TCP against its programmed configuration.
+
+        Raises:
+            MotionError: the arm arrives with another one.
+        """
+        wanted = move.target.configuration if isinstance(move.target, PoseTarget) else None
+        if wanted is None or not wanted.exact:
+            return
+        label = self._label(self._robot, arrived)
+        if label is not None and wanted.mismatch(label) > _MATCH:
+            raise located(
+                move,
+                index,
+                f"configuration {wanted} contradicts the path: the arm arrives with {label}; "
+                "use a joint move, or programme the configuration it arrives with",
+            )
+
+    def why_unreachable(self, move: Move, near: FloatArray) -> str | None:
+        """What keeps a move's target out of reach; None if nothing does."""
+        if not isinstance(move.target, PoseTarget):
+            return None
+        q = self.external(move.target.external, near)
+        external = tuple(map(float, q[self._robot.arm_size :]))
+        try:
+            self._robot.inverse(self.flange(move, move.target.pose, q), external)
+        except UnreachableError as error:
+            return str(error)
+        return None
+
+    def flange(self, move: Move, target: Pose, q: FloatArray) -> Pose:
+        """The flange in the world that puts the TCP on a target in the work object."""
+        tool, work_object = move.tool, move.work_object
+        if work_object.robot_held:
+            return tool.tcp @ target.inverse() @ work_object.pose.inverse()
+        if work_object.moved_by is None:
+            return work_object.pose @ target @ tool.tcp.inverse()
+        stages = self._robot.frame_stages(work_object.moved_by)
+        carrier = np.eye(4)
+        pose(assemble([*stages, work_object.pose]), q, carrier[:3, :3], carrier[:3, 3])
+        return Pose.from_matrix(carrier) @ target @ tool.tcp.inverse()

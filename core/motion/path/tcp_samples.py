@@ -1,0 +1,342 @@
+"""Compiled sampling of TCP-space pieces through inverse kinematics, and its reverse.
+
+At a sample the curves give the TCP's pose X, velocity V and acceleration A with respect to σ and
+the prescribed axes (external ones, and the redundant joint of a seven-axis arm). The six other
+joints follow from T(q) = X by Newton's method from a guess (see `tcp_walk`), and
+
+    J q' = V,    J q'' + J̇ q' = A.
+
+In reverse, w₂ = J⁻ᵀ q̄'' goes to A and −w₂ · (J q'' + J̇ q') is differentiated by q and q', then
+w₁ = J⁻ᵀ q̄' likewise, and w₀ = J⁻ᵀ q̄ arrives at X.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from ...arrays import FloatArray, IntArray
+from ...robot.chain import Chain
+from ...robot.chain_kernels import acceleration_gradient, jacobian, motion, velocity_gradient
+from ...robot.lean import lean
+from ...robot.linear import factor, solve, solve_transposed
+from ...robot.tracking import pose_error
+from ..geometry.curves import Curves, evaluate, pull
+from ..geometry.orientation_curves import orientation, pull_orientation
+
+_ITERATIONS = 30
+CONVERGED = 1e-9
+"""m and rad of pose error below which Newton's method has converged."""
+_LONGEST_STEP = 0.3
+SINGULAR = 1e-8
+"""Ratio of pivots of the Jacobian below which a sample counts as singular."""
+
+
+class TcpCurves(NamedTuple):
+    """The curves of TCP-space motion, one set for a whole path.
+
+    Args:
+        position: D = 3, m in the work object.
+        turning: D = 6, the rotation vectors A and B of `turning`.
+        reference: (P, 3, 3), R_ref of each turning curve.
+        prescribed: D = number of prescribed axes.
+    """
+
+    position: Curves
+    turning: Curves
+    reference: FloatArray
+    prescribed: Curves
+
+
+class Samples(NamedTuple):
+    """Where a path is sampled: σ and, for each channel, which curve is evaluated there (S,)."""
+
+    sigma: FloatArray
+    position: IntArray
+    turning: IntArray
+    prescribed: IntArray
+
+    def last(self) -> Samples:
+        """The last sample alone."""
+        return Samples(self.sigma[-1:], self.position[-1:], self.turning[-1:], self.prescribed[-1:])
+
+
+class States(NamedTuple):
+    """A path's samples.
+
+    Args:
+        q, dq, ddq: (S, N), configuration and derivatives with respect to σ.
+        v, a: (S, 6), the TCP's linear and angular velocity and acceleration in the work object,
+            with respect to σ.
+    """
+
+    q: FloatArray
+    dq: FloatArray
+    ddq: FloatArray
+    v: FloatArray
+    a: FloatArray
+
+    @staticmethod
+    def zeros(count: int, size: int) -> States:
+        """``count`` samples of N = ``size`` axes."""
+        q, dq, ddq = (np.zeros((count, size)) for _ in range(3))
+        return States(q, dq, ddq, np.zeros((count, 6)), np.zeros((count, 6)))
+
+    def rows(self, start: int, stop: int) -> States:
+        """A view of some samples."""
+        return States(*(array[start:stop] for array in self))
+
+
+class Scratch(NamedTuple):
+    """Arrays that the kernels reuse from sample to sample."""
+
+    basis: FloatArray
+    value: FloatArray
+    turns: FloatArray
+    carried: FloatArray
+    turning: FloatArray
+    goal_R: FloatArray
+    R: FloatArray
+    p: FloatArray
+    error: FloatArray
+    J: FloatArray
+    square: FloatArray
+    order: IntArray
+    bias_v: FloatArray
+    bias_a: FloatArray
+    rhs: FloatArray
+    zero: FloatArray
+
+
+@njit(cache=True, error_model="numpy")
+def make_scratch(size: int, prescribed: int) -> Scratch:
+    """Scratch for N = ``size`` axes, some of them prescribed."""
+    return Scratch(
+        np.empty((6, 4)),
+        np.empty((3, 3)),
+        np.empty((3, 6)),
+        np.empty((3, prescribed)),
+        np.empty((3, 3, 3)),
+        np.empty((3, 3)),
+        np.empty((3, 3)),
+        np.empty(3),
+        np.empty(6),
+        np.empty((6, size)),
+        np.empty((6, 6)),
+        np.empty(6, dtype=np.int64),
+        np.empty(6),
+        np.empty(6),
+        np.empty(6),
+        np.zeros(size),
+    )
+
+
+@lean
+def approach(
+    chain: Chain,
+    solved: IntArray,
+    goal_R: FloatArray,
+    goal_p: FloatArray,
+    q: FloatArray,
+    work: Scratch,
+) -> tuple[float, float]:
+    """Newton's method from q (N,) to the pose; only the axes ``solved`` (6,) move.
+
+    Returns:
+        The last error (m and rad) before the final correction, and the conditioning (smallest
+        over largest pivot) of the Jacobian, whose factors stand in ``work``.
+    """
+    J, square, order, error = work.J, work.square, work.order, work.error
+    best = np.inf
+    for _ in range(_ITERATIONS):
+        jacobian(chain, q, work.R, work.p, J)
+        best = pose_error(goal_R, goal_p, work.R, work.p, error)
+        for i in range(6):
+            for j in range(6):
+                square[i, j] = J[i, solved[j]]
+        smallest, largest = factor(square, order)
+        conditioning = smallest / largest
+        if conditioning < SINGULAR:
+            return best, conditioning
+        solve(square, order, error)
+        longest = 0.0
+        for j in range(6):
+            longest = max(longest, abs(error[j]))
+        scale = min(1.0, _LONGEST_STEP / longest) if longest > 0.0 else 1.0
+        for j in range(6):
+            q[solved[j]] += scale * error[j]
+        if best < CONVERGED:
+            return best, conditioning
+    return best, conditioning
+
+
+@lean
+def state_at(
+    chain: Chain,
+    solved: IntArray,
+    prescribed: IntArray,
+    curves: TcpCurves,
+    samples: Samples,
+    k: int,
+    sigma: float,
+    states: States,
+    row: int,
+    work: Scratch,
+) -> tuple[float, float]:
+    """Write the state at ``sigma`` on the curves of sample k into ``row``, whose q is a guess.
+
+    Returns:
+        What Newton's method says (see `approach`).
+    """
+    evaluate(curves.position, samples.position[k], sigma, work.basis, work.value)
+    evaluate(curves.turning, samples.turning[k], sigma, work.basis, work.turns)
+    if prescribed.size > 0:
+        evaluate(curves.prescribed, samples.prescribed[k], sigma, work.basis, work.carried)
+    reference = curves.reference[samples.turning[k]]
+    omega, alpha = orientation(reference, work.turns, work.turning, work.goal_R)
+    q, dq, ddq = states.q[row], states.dq[row], states.ddq[row]
+    for j in range(prescribed.size):
+        q[prescribed[j]] = work.carried[0, j]
+    error, pivots = approach(chain, solved, work.goal_R, work.value[0], q, work)
+    if not (error < CONVERGED and pivots >= SINGULAR):
+        return error, pivots
+    v, a = states.v[row], states.a[row]
+    for i in range(3):
+        v[i], v[3 + i] = work.value[1, i], omega[i]
+        a[i], a[3 + i] = work.value[2, i], alpha[i]
+    _rates(work.J, work.square, work.order, solved, prescribed, work.carried[1], v, dq, work.rhs)
+    motion(chain, q, dq, work.zero, work.bias_v, work.bias_a)
+    for i in range(6):
+        work.bias_a[i] = a[i] - work.bias_a[i]
+    _rates(
+        work.J,
+        work.square,
+        work.order,
+        solved,
+        prescribed,
+        work.carried[2],
+        work.bias_a,
+        ddq,
+        work.rhs,
+    )
+    return error, pivots
+
+
+@lean
+def _rates(
+    J: FloatArray,
+    square: FloatArray,
+    order: IntArray,
+    solved: IntArray,
+    prescribed: IntArray,
+    given: FloatArray,
+    twist: FloatArray,
+    rates: FloatArray,
+    rhs: FloatArray,
+) -> None:
+    """Write the rates (N,) with J rates = twist and the prescribed ones given."""
+    rates[:] = 0.0
+    for j in range(prescribed.size):
+        rates[prescribed[j]] = given[j]
+    for i in range(6):
+        rhs[i] = twist[i]
+        for j in range(prescribed.size):
+            rhs[i] -= J[i, prescribed[j]] * given[j]
+    solve(square, order, rhs)
+    for j in range(6):
+        rates[solved[j]] = rhs[j]
+
+
+@njit(cache=True, error_model="numpy")
+def _push(
+    J: FloatArray,
+    square: FloatArray,
+    order: IntArray,
+    solved: IntArray,
+    prescribed: IntArray,
+    bar: FloatArray,
+    w: FloatArray,
+    given_bar: FloatArray,
+) -> None:
+    """Reverse of `_rates`: w = J⁻ᵀ of the solved part, and the prescribed rates' gradient."""
+    for j in range(6):
+        w[j] = bar[solved[j]]
+    solve_transposed(square, order, w)
+    for j in range(prescribed.size):
+        given_bar[j] = bar[prescribed[j]]
+        for i in range(6):
+            given_bar[j] -= J[i, prescribed[j]] * w[i]
+
+
+@njit(cache=True, error_model="numpy")
+def pull_tcp(
+    chain: Chain,
+    solved: IntArray,
+    prescribed: IntArray,
+    curves: TcpCurves,
+    samples: Samples,
+    states: States,
+    states_bar: States,
+    gradient: TcpCurves,
+    sigma_bar: FloatArray,
+) -> None:
+    """Reverse of `state_at` at each of the samples.
+
+    Args:
+        chain, solved, prescribed, curves: as there.
+        samples, states: the samples, and what stands there.
+        states_bar: gradient with respect to the states; used as scratch.
+        gradient: added to; its ``reference`` (P, 3, 3) gets in its first row the gradient of a
+            left turn of each R_ref.
+        sigma_bar: (S,), added to.
+    """
+    basis, value_bar = np.empty((6, 4)), np.empty((3, 3))
+    turns, turns_bar = np.empty((3, 6)), np.empty((3, 6))
+    carried_bar, scratch = np.empty((3, prescribed.size)), np.empty((3, 3, 3))
+    size = states.q.shape[1]
+    R, p, J = np.empty((3, 3)), np.empty(3), np.empty((6, size))
+    square, order = np.empty((6, 6)), np.empty(6, dtype=np.int64)
+    w = np.empty((3, 6))
+    for k in range(samples.sigma.size):
+        q, dq, ddq = states.q[k], states.dq[k], states.ddq[k]
+        q_bar, dq_bar, ddq_bar = states_bar.q[k], states_bar.dq[k], states_bar.ddq[k]
+        jacobian(chain, q, R, p, J)
+        for i in range(6):
+            for j in range(6):
+                square[i, j] = J[i, solved[j]]
+        factor(square, order)
+        _push(J, square, order, solved, prescribed, ddq_bar, w[2], carried_bar[2])
+        acceleration_gradient(chain, q, dq, ddq, -w[2], q_bar, dq_bar)
+        _push(J, square, order, solved, prescribed, dq_bar, w[1], carried_bar[1])
+        velocity_gradient(chain, q, dq, -w[1], q_bar)
+        _push(J, square, order, solved, prescribed, q_bar, w[0], carried_bar[0])
+        for i in range(6):
+            w[1, i] += states_bar.v[k, i]
+            w[2, i] += states_bar.a[k, i]
+        for order_ in range(3):
+            for i in range(3):
+                value_bar[order_, i] = w[order_, i]
+        sigma = samples.sigma[k]
+        t = samples.turning[k]
+        sigma_bar[k] += pull(
+            curves.position, samples.position[k], sigma, basis, value_bar, gradient.position
+        )
+        sigma_bar[k] += pull(
+            curves.prescribed, samples.prescribed[k], sigma, basis, carried_bar, gradient.prescribed
+        )
+        evaluate(curves.turning, t, sigma, basis, turns)
+        turns_bar[:, :] = 0.0
+        turned = pull_orientation(
+            curves.reference[t],
+            turns,
+            (w[0, 3], w[0, 4], w[0, 5]),
+            (w[1, 3], w[1, 4], w[1, 5]),
+            (w[2, 3], w[2, 4], w[2, 5]),
+            scratch,
+            turns_bar,
+        )
+        for i in range(3):
+            gradient.reference[t, 0, i] += turned[i]
+        sigma_bar[k] += pull(curves.turning, t, sigma, basis, turns_bar, gradient.turning)

@@ -1,0 +1,321 @@
+"""A path's samples over a parameter ℓ that runs evenly in zones.
+
+With a blend law that is flat at its ends (α' = 0), σ runs very unevenly along the curve: through
+the middle of a zone two to three times as fast as at its edges. Stamping takes σ̇² to be linear
+between samples and would lose time there. So it is ℓ that is stamped,
+
+    dℓ/dσ = w(σ) = n(σ) / d(σ),    n² = |x'|² + ε²,
+
+with x' the joints' rate (each joint in units of its acceleration limit) where the corner is blended
+in joint space, the TCP's where it is blended in TCP space, and d(σ) linear between the values of n
+at the zone's edges. Elsewhere, and at the edges, ℓ runs as σ does. ε keeps ℓ regular where a
+blend turns back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from ...arrays import FloatArray, IntArray
+from ..geometry.layout import flat_corners
+from ..geometry.zones import JOINT_CORNER, POSITION
+from ..path.path import Path, zone_pieces
+from ..path.tcp_samples import States
+from .limits import interval_samples
+
+_FLOOR = 0.01
+"""ε² as a share of the mean of |x'|² at a zone's two edges."""
+_TURNING = 0.1
+"""m that a turn of the tool by one rad counts."""
+_LEAST = 0.2
+"""Share of the trapezium rule below which the corrected length of an interval is not trusted."""
+
+
+@dataclass(frozen=True)
+class ArcLength:
+    """The samples of a path with respect to ℓ.
+
+    Args:
+        states: (S,) samples; derivatives are with respect to ℓ.
+        rate: (S,), dℓ/dσ.
+        spacing: (K,), ℓ of each interval.
+        zones: (Z, 3), of each zone its first and its last sample, and whether it is blended in
+            joint space.
+        weights: (N,), what the square of each axis's rate counts in joint space.
+    """
+
+    states: States
+    rate: FloatArray
+    spacing: FloatArray
+    zones: IntArray
+    weights: FloatArray
+
+    @classmethod
+    def of(cls, path: Path, acceleration: FloatArray) -> ArcLength:
+        """The samples of a path.
+
+        Args:
+            path: the path.
+            acceleration: (N,) rad/s² or m/s², the axes' limits.
+        """
+        zones, weights = _zones(path), 1.0 / acceleration**2
+        count = len(path.sigma)
+        rate, change = np.ones(count), np.zeros(count)
+        states = States(path.states.q, *(array.copy() for array in path.states[1:]))
+        _even(path.states, path.sigma, zones, weights, rate, change, states)
+        left = interval_samples(path.pieces)
+        spacing = np.empty(len(left))
+        _measure(path.sigma, left, rate, change, spacing)
+        return cls(states, rate, spacing, zones, weights)
+
+    def pull(
+        self, path: Path, bar: States, spacing_bar: FloatArray, sigma_bar: FloatArray
+    ) -> States:
+        """Reverse of `of`: the gradient with respect to ``path.states``.
+
+        Args:
+            path: the path.
+            bar: gradient with respect to ``states``; used up.
+            spacing_bar: (K,).
+            sigma_bar: (S,), added to.
+        """
+        count = len(path.sigma)
+        rate, change = np.ones(count), np.zeros(count)
+        scratch = States(*(np.empty_like(array) for array in path.states))
+        _even(path.states, path.sigma, self.zones, self.weights, rate, change, scratch)
+        rate_bar, change_bar = np.zeros(count), np.zeros(count)
+        _pull_measure(
+            path.sigma,
+            interval_samples(path.pieces),
+            rate,
+            change,
+            spacing_bar,
+            sigma_bar,
+            rate_bar,
+            change_bar,
+        )
+        _pull_even(
+            path.states,
+            path.sigma,
+            self.zones,
+            self.weights,
+            rate,
+            change,
+            bar,
+            rate_bar,
+            change_bar,
+            sigma_bar,
+        )
+        return bar
+
+
+def _zones(path: Path) -> IntArray:
+    """Samples and space of every zone that has an extent and whose law is flat at its ends."""
+    pieces, layout, model = path.pieces, path.layout, path.model
+    live = np.flatnonzero(flat_corners(layout, model))
+    extent = layout.extent[live, POSITION]
+    live = live[(extent > 0).all(axis=1)]
+    first, _, last = zone_pieces(path, live).T
+    joint = layout.corners.kind[live] == JOINT_CORNER
+    samples = pieces.first_sample
+    return np.stack([samples[first], samples[last + 1] - 1, joint], -1).astype(np.int64)
+
+
+@njit(cache=True, error_model="numpy")
+def _square(states: States, k: int, joint: int, weights: FloatArray) -> tuple[float, float]:
+    """|x'|² and x' · x'' of sample k."""
+    square = mixed = 0.0
+    if joint:
+        for j in range(weights.size):
+            square += weights[j] * states.dq[k, j] ** 2
+            mixed += weights[j] * states.dq[k, j] * states.ddq[k, j]
+        return square, mixed
+    for i in range(6):
+        weight = 1.0 if i < 3 else _TURNING**2
+        square += weight * states.v[k, i] ** 2
+        mixed += weight * states.v[k, i] * states.a[k, i]
+    return square, mixed
+
+
+@njit(cache=True, error_model="numpy")
+def _ends(
+    states: States, first: int, last: int, joint: int, weights: FloatArray
+) -> tuple[float, float, float]:
+    """ε² of a zone, and n at its two edges."""
+    begin, _ = _square(states, first, joint, weights)
+    end, _ = _square(states, last, joint, weights)
+    floor = 0.5 * _FLOOR * (begin + end)
+    return floor, np.sqrt(begin + floor), np.sqrt(end + floor)
+
+
+@njit(cache=True, error_model="numpy")
+def _even(
+    states: States,
+    sigma: FloatArray,
+    zones: IntArray,
+    weights: FloatArray,
+    rate: FloatArray,
+    change: FloatArray,
+    out: States,
+) -> None:
+    """Write w and dw/dσ of the samples in zones, and their derivatives with respect to ℓ."""
+    for z in range(zones.shape[0]):
+        first, last, joint = zones[z]
+        floor, n0, n1 = _ends(states, first, last, joint, weights)
+        length = sigma[last] - sigma[first]
+        if not (n0 > 0.0 and n1 > 0.0 and length > 0.0):
+            continue
+        slope = (n1 - n0) / length
+        for k in range(first, last + 1):
+            square, mixed = _square(states, k, joint, weights)
+            n = np.sqrt(square + floor)
+            d = n0 + slope * (sigma[k] - sigma[first])
+            w = n / d
+            turn = mixed / (n * d) - n * slope / d**2
+            rate[k], change[k] = w, turn
+            for j in range(weights.size):
+                out.dq[k, j] = states.dq[k, j] / w
+                out.ddq[k, j] = (states.ddq[k, j] - states.dq[k, j] * turn / w) / w**2
+            for i in range(6):
+                out.v[k, i] = states.v[k, i] / w
+                out.a[k, i] = (states.a[k, i] - states.v[k, i] * turn / w) / w**2
+
+
+@njit(cache=True, error_model="numpy")
+def _measure(
+    sigma: FloatArray, left: IntArray, rate: FloatArray, change: FloatArray, spacing: FloatArray
+) -> None:
+    """Write ℓ of the intervals: the trapezium rule with its end correction."""
+    for i in range(left.size):
+        k = left[i]
+        h = sigma[k + 1] - sigma[k]
+        plain = 0.5 * h * (rate[k] + rate[k + 1])
+        corrected = plain + h * h / 12 * (change[k] - change[k + 1])
+        spacing[i] = corrected if corrected > _LEAST * plain else plain
+
+
+@njit(cache=True, error_model="numpy")
+def _pull_measure(
+    sigma: FloatArray,
+    left: IntArray,
+    rate: FloatArray,
+    change: FloatArray,
+    spacing_bar: FloatArray,
+    sigma_bar: FloatArray,
+    rate_bar: FloatArray,
+    change_bar: FloatArray,
+) -> None:
+    """Reverse of `_measure`."""
+    for i in range(left.size):
+        k, bar = left[i], spacing_bar[i]
+        h = sigma[k + 1] - sigma[k]
+        plain = 0.5 * h * (rate[k] + rate[k + 1])
+        turned = change[k] - change[k + 1]
+        h_bar = 0.5 * bar * (rate[k] + rate[k + 1])
+        if plain + h * h / 12 * turned > _LEAST * plain:
+            h_bar += bar * h / 6 * turned
+            change_bar[k] += bar * h * h / 12
+            change_bar[k + 1] -= bar * h * h / 12
+        rate_bar[k] += 0.5 * bar * h
+        rate_bar[k + 1] += 0.5 * bar * h
+        sigma_bar[k + 1] += h_bar
+        sigma_bar[k] -= h_bar
+
+
+@njit(cache=True, error_model="numpy")
+def _pull_square(
+    states: States,
+    k: int,
+    joint: int,
+    weights: FloatArray,
+    square_bar: float,
+    mixed_bar: float,
+    bar: States,
+) -> None:
+    """Reverse of `_square`."""
+    if joint:
+        for j in range(weights.size):
+            one, two = states.dq[k, j], states.ddq[k, j]
+            bar.dq[k, j] += weights[j] * (2 * one * square_bar + two * mixed_bar)
+            bar.ddq[k, j] += weights[j] * one * mixed_bar
+        return
+    for i in range(6):
+        weight = 1.0 if i < 3 else _TURNING**2
+        one, two = states.v[k, i], states.a[k, i]
+        bar.v[k, i] += weight * (2 * one * square_bar + two * mixed_bar)
+        bar.a[k, i] += weight * one * mixed_bar
+
+
+@njit(cache=True, error_model="numpy")
+def _pull_rates(
+    first: FloatArray,
+    second: FloatArray,
+    w: float,
+    turn: float,
+    by_one: FloatArray,
+    by_two: FloatArray,
+) -> tuple[float, float]:
+    """Reverse of the derivatives with respect to ℓ, in place; gradients of w and dw/dσ."""
+    w_bar = turn_bar = 0.0
+    for j in range(first.size):
+        one, two = by_one[j], by_two[j]
+        w_bar -= one * first[j] / w**2
+        w_bar += two * (-2 * second[j] / w**3 + 3 * first[j] * turn / w**4)
+        turn_bar -= two * first[j] / w**3
+        by_one[j] = one / w - two * turn / w**3
+        by_two[j] = two / w**2
+    return w_bar, turn_bar
+
+
+@njit(cache=True, error_model="numpy")
+def _pull_even(
+    states: States,
+    sigma: FloatArray,
+    zones: IntArray,
+    weights: FloatArray,
+    rate: FloatArray,
+    change: FloatArray,
+    bar: States,
+    rate_bar: FloatArray,
+    change_bar: FloatArray,
+    sigma_bar: FloatArray,
+) -> None:
+    """Reverse of `_even`; ``bar`` becomes the gradient of the path's own samples."""
+    for z in range(zones.shape[0]):
+        first, last, joint = zones[z]
+        floor, n0, n1 = _ends(states, first, last, joint, weights)
+        length = sigma[last] - sigma[first]
+        if not (n0 > 0.0 and n1 > 0.0 and length > 0.0):
+            continue
+        slope = (n1 - n0) / length
+        floor_bar = n0_bar = slope_bar = begin_bar = 0.0
+        for k in range(first, last + 1):
+            w, turn = rate[k], change[k]
+            a, b = _pull_rates(states.dq[k], states.ddq[k], w, turn, bar.dq[k], bar.ddq[k])
+            c, e = _pull_rates(states.v[k], states.a[k], w, turn, bar.v[k], bar.a[k])
+            w_bar, turn_bar = rate_bar[k] + a + c, change_bar[k] + b + e
+            square, mixed = _square(states, k, joint, weights)
+            n = np.sqrt(square + floor)
+            d = n0 + slope * (sigma[k] - sigma[first])
+            n_bar = w_bar / d - turn_bar * (mixed / (n * n * d) + slope / d**2)
+            d_bar = -w_bar * n / d**2
+            d_bar += turn_bar * (2 * n * slope / d**3 - mixed / (n * d**2))
+            slope_bar += d_bar * (sigma[k] - sigma[first]) - turn_bar * n / d**2
+            n0_bar += d_bar
+            sigma_bar[k] += d_bar * slope
+            begin_bar -= d_bar * slope
+            floor_bar += 0.5 * n_bar / n
+            _pull_square(states, k, joint, weights, 0.5 * n_bar / n, turn_bar / (n * d), bar)
+        n1_bar = slope_bar / length
+        n0_bar -= slope_bar / length
+        sigma_bar[last] -= slope_bar * slope / length
+        sigma_bar[first] += begin_bar + slope_bar * slope / length
+        begin, end = 0.5 * n0_bar / n0, 0.5 * n1_bar / n1
+        floor_bar += begin + end
+        begin += 0.5 * _FLOOR * floor_bar
+        end += 0.5 * _FLOOR * floor_bar
+        _pull_square(states, first, joint, weights, begin, 0.0, bar)
+        _pull_square(states, last, joint, weights, end, 0.0, bar)

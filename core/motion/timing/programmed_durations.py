@@ -1,0 +1,156 @@
+"""Stamps paths on which some moves are programmed to take a time."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ...errors import MotionError
+from ..geometry.segments import JOINT_SEGMENT, TURN_LENGTH, Segments
+from ..path.path import Path
+from .arc_length import ArcLength
+from .limits import PathLimits, SegmentLimits, path_limits
+from .stamping import StampingError, stamp
+from .superposed_legs import superposed_zones
+from .timing import Settling, Timing
+from .torque import Shares
+
+_DURATION_ROUNDS = 60
+_DURATION_MET = 1e-6
+_THIRDS_ROUNDS = 4
+_MOST_OFF = 0.05
+"""Share of a time by which it is aimed beside it: more is no matter of samples."""
+
+
+def stamp_path(
+    path: Path,
+    along: ArcLength,
+    limits: SegmentLimits,
+    shares: Shares | None,
+    settling: Settling,
+    known: PathLimits | None = None,
+) -> Timing:
+    """The fastest timing of a path within its limits; ``known`` ones but for velocities, if any.
+
+    Raises:
+        MotionError: the limits leave a move no speed.
+    """
+    zones = superposed_zones(path)
+    made = path_limits(along.states, along.spacing, path.pieces, limits, zones, shares, known)
+    try:
+        found = stamp(made.rows)
+    except StampingError as error:
+        knot = min(error.knot, len(made.rows.spacing) - 1)
+        piece = int(np.searchsorted(path.pieces.first_interval, knot, "right")) - 1
+        move = path.route.moves[int(path.pieces.segment[piece])]
+        raise MotionError(f"the limits leave it no speed: {error.message}", move) from error
+    return Timing.of(path, limits, along, made, found, settling)
+
+
+def stamp_in_thirds(
+    path: Path,
+    along: ArcLength,
+    limits: SegmentLimits,
+    shares: Shares | None,
+    settling: Settling,
+    timed: list[int],
+    wanted: FloatArray,
+) -> Timing:
+    """The timing in which timed segments are driven in thirds of their time; see `in_thirds`.
+
+    A stamp reaches its greatest speed at a sample and not between two: what this costs, and it is
+    a per cent on coarse paths, is taken off the times that are aimed at.
+    """
+    aim = wanted
+    for _ in range(_THIRDS_ROUNDS):
+        thirds = in_thirds(limits, path.layout.segments, timed, aim)
+        timing = stamp_path(path, along, thirds, shares, settling)
+        share = wanted / timing.segment_durations()[timed]
+        if (np.abs(share - 1.0) <= _DURATION_MET).all():
+            break
+        aim = np.clip(aim * share, (1 - _MOST_OFF) * wanted, (1 + _MOST_OFF) * wanted)
+    return timing
+
+
+def in_thirds(
+    limits: SegmentLimits, segments: Segments, timed: list[int], wanted: FloatArray
+) -> SegmentLimits:
+    """Limits within which timed segments from stop to stop are driven in thirds of their time.
+
+    Over the way D in the time T that is a speed of up to 3/2 D/T and an acceleration of 9/2 D/T².
+    They bound what goes furthest: a joint of a joint move, else the TCP or the tool's turn.
+
+    Args:
+        limits: otherwise.
+        segments: all of the path.
+        timed: those with a time.
+        wanted: their times, s.
+    """
+    velocity, acceleration = limits.velocity.copy(), limits.acceleration.copy()
+    for k, time in zip(timed, wanted, strict=True):
+        row, way = _furthest(segments, k)
+        if way > 0.0:
+            velocity[k, row] = min(velocity[k, row], 1.5 * way / time)
+            acceleration[k, row] = min(acceleration[k, row], 4.5 * way / time**2)
+    return replace(limits, velocity=velocity, acceleration=acceleration)
+
+
+def _furthest(segments: Segments, k: int) -> tuple[int, float]:
+    """Which row of the limits belongs to what goes furthest on a segment, and how far it goes."""
+    ends, size = segments.ends, segments.ends.q.shape[2]
+    if ends.kind[k] == JOINT_SEGMENT:
+        change = np.abs(ends.q[k, 1] - ends.q[k, 0])
+        row = int(np.argmax(change))
+        return row, float(change[row])
+    turn = float(segments.turn[k])
+    length = float(segments.length[k])
+    return (size, length) if length >= TURN_LENGTH * turn else (size + 1, turn)
+
+
+def hold_durations(
+    timing: Timing, timed: list[int], wanted: FloatArray, settling: Settling
+) -> Timing:
+    """Slow segments down until they take the time that was programmed.
+
+    Velocities of the segment are scaled in common; a time too short for the robot stays unmet.
+    """
+    factor = np.ones(len(timed))
+    limits = _finite(timing, timed)
+    shares = timing.path_limits.shares
+    current = stamp_path(timing.path, timing.along, limits, shares, settling)
+    for _ in range(_DURATION_ROUNDS):
+        spent = current.segment_durations()[timed]
+        slow = spent < wanted * (1 - _DURATION_MET)
+        fast = (spent > wanted * (1 + _DURATION_MET)) & (factor < 1.0)
+        if not (slow | fast).any():
+            break
+        factor = np.where(slow | fast, np.minimum(1.0, factor * spent / wanted), factor)
+        scaled = limits
+        for segment, share in zip(timed, factor, strict=True):
+            scaled = scaled.with_velocities_scaled([segment], float(share))
+        current = stamp_path(timing.path, timing.along, scaled, shares, settling)
+    return current
+
+
+def _finite(timing: Timing, timed: list[int]) -> SegmentLimits:
+    """Limits in which each timed segment may go just as fast as it does without its time."""
+    velocity = timing.limits.velocity.copy()
+    path, stamped, states = timing.path, timing.stamp, timing.along.states
+    rate = np.sqrt(np.maximum(stamped.x[:-1], stamped.x[1:]))
+    top = np.zeros(len(path.route.moves))
+    np.maximum.at(top, timing.interval_segments, rate)
+    sample_segment = path.pieces.segment[path.pieces.sample_pieces]
+    speeds = np.concatenate(
+        [
+            np.abs(states.dq),
+            np.linalg.norm(states.v[:, :3], axis=1)[:, None],
+            np.linalg.norm(states.v[:, 3:], axis=1)[:, None],
+        ],
+        axis=1,
+    )
+    for k in timed:
+        reached = speeds[sample_segment == k].max(axis=0) * top[k]
+        velocity[k] = np.minimum(velocity[k], np.maximum(reached, 1e-12))
+    return replace(timing.limits, velocity=velocity)

@@ -1,0 +1,242 @@
+"""A stamped path: when the robot is where, waits included."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from ...arrays import FloatArray, IntArray
+from ..path.path import Path
+from ..path.tcp_samples import States
+from .arc_length import ArcLength
+from .limits import PathLimits, SegmentLimits, interval_samples
+from .rests import InPosition, Rests
+from .stamping import Stamp
+from .start_ramp import SUDDEN, StartRamp
+
+_ROUNDING = 1e-12
+"""s, by which times may be off."""
+
+
+@dataclass(frozen=True)
+class Settling:
+    """How long the stamped motion rests for what follows it in time.
+
+    Args:
+        stop: s, at each stop on the way, at most.
+        end: s, after the last.
+        ramp: s, of this what the place on the path is averaged over.
+        start: how time comes up to speed when the motion begins.
+        in_position: what is waited for at stops on the way; None waits for all of ``stop``.
+    """
+
+    stop: float = 0.0
+    end: float = 0.0
+    ramp: float = 0.0
+    start: StartRamp = SUDDEN
+    in_position: InPosition | None = None
+
+
+@dataclass(frozen=True)
+class Timing:
+    """The stamp of a path.
+
+    Args:
+        path: the geometry.
+        limits: of the segments.
+        along: the samples with respect to ℓ, the parameter that was stamped.
+        path_limits: what was stamped.
+        stamp: x = (dℓ/dt)² and times without waits.
+        begin: (K,) s, when each interval is entered, waits included.
+        end: (K,) s, when it is left.
+        duration: s, of everything, settling at the end included.
+        rests: at stops on the way, beside programmed waits.
+        ramp: s, what the place on the path is averaged over afterwards; see `ramped.ramped`.
+        start: how the controller's time comes up to speed; `begin`, `end` and `states_at` are
+            without, see `driven_at`.
+        lag: s by which the commanded joints pass a place on the path later, as they are averaged
+            over time: half of what they take to settle.
+    """
+
+    path: Path
+    limits: SegmentLimits
+    along: ArcLength
+    path_limits: PathLimits
+    stamp: Stamp
+    begin: FloatArray
+    end: FloatArray
+    duration: float
+    rests: Rests
+    ramp: float = 0.0
+    start: StartRamp = SUDDEN
+    lag: float = 0.0
+
+    @classmethod
+    def of(
+        cls,
+        path: Path,
+        limits: SegmentLimits,
+        along: ArcLength,
+        path_limits: PathLimits,
+        stamp: Stamp,
+        settling: Settling = Settling(),
+    ) -> Timing:
+        """The timing of a stamp on a path.
+
+        Args:
+            path, limits, along, path_limits, stamp: what was stamped.
+            settling: rests that smoothing in time needs.
+        """
+        pieces = path.pieces
+        waypoint_edge = np.flatnonzero(pieces.source[:, 1] < 0)
+        first = pieces.first_interval
+        wait = np.zeros(first[-1] + 1)
+        wait[first[waypoint_edge]] = path.route.dwell[pieces.source[waypoint_edge, 0]]
+        rests = Rests.of(path, along, stamp, settling.stop, settling.in_position)
+        wait[rests.knot] += rests.length
+        wait[-1] += settling.end
+        # A wait at a knot comes before the interval that leaves it.
+        delay = np.cumsum(wait)
+        begin, end = stamp.t[:-1] + delay[:-1], stamp.t[1:] + delay[:-1]
+        start = settling.start.begun_at(float(begin[0]))
+        duration = float(stamp.t[-1] + delay[-1]) + start.delay
+        return cls(
+            path,
+            limits,
+            along,
+            path_limits,
+            stamp,
+            begin,
+            end,
+            duration,
+            rests,
+            settling.ramp,
+            start,
+            0.5 * settling.end,
+        )
+
+    @property
+    def interval_segments(self) -> IntArray:
+        """(K,), the segment of each interval."""
+        pieces = self.path.pieces
+        return np.repeat(pieces.segment, pieces.intervals)
+
+    def waits(self, rests: FloatArray) -> FloatArray:
+        """(K - 1,) s, how long the path rests behind each interval but the last.
+
+        Programmed waits included, and with other rests (S,) s than it has.
+        """
+        wait = self.begin[1:] - self.end[:-1]
+        other = self.rests.length != rests
+        knot = self.rests.knot[other]
+        left = wait[knot - 1] - (self.rests.length - rests)[other]
+        # Beginnings and ends are sums, in which what is left of nothing is rounding.
+        wait[knot - 1] = np.where(left > _ROUNDING, left, 0.0)
+        return wait
+
+    def segment_durations(self) -> FloatArray:
+        """(M,) s, time spent on each segment between its waypoints, waits left out."""
+        spent = np.zeros(len(self.path.route.moves))
+        np.add.at(spent, self.interval_segments, self.end - self.begin)
+        return spent
+
+    def begins(self) -> FloatArray:
+        """(M,) s, when the commanded joints enter each segment."""
+        first = np.searchsorted(self.interval_segments, np.arange(len(self.path.route.moves)))
+        entered = self.start.driven(self.begin[first])
+        return np.concatenate([entered[:1], entered[1:] + self.lag])
+
+    def settled_durations(self) -> FloatArray:
+        """(M,) s, what each segment takes of the cycle time: settling included, not waits."""
+        left = np.append(self.begins(), self.duration)
+        return np.diff(left) - self.path.route.dwell[1:]
+
+    def states_at(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Configuration, velocity and acceleration (T, N) and σ (T,) at times t (T,) in s.
+
+        Between samples the path is the quintic in ℓ that meets both samples' derivatives.
+        """
+        size = self.path.q.shape[1]
+        q, dq, ddq = (np.empty((len(t), size)) for _ in range(3))
+        sigma = np.empty(len(t))
+        interval = np.clip(np.searchsorted(self.begin, t, side="right") - 1, 0, None)
+        _drive(
+            np.ascontiguousarray(t),
+            interval,
+            self.begin,
+            self.end,
+            interval_samples(self.path.pieces),
+            self.path.sigma,
+            self.along.rate,
+            self.along.spacing,
+            self.stamp.x,
+            self.along.states,
+            q,
+            dq,
+            ddq,
+            sigma,
+        )
+        return q, dq, ddq, sigma
+
+    def driven_at(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """`states_at`, with time that comes up to speed when the motion begins."""
+        if self.start == SUDDEN:
+            return self.states_at(t)
+        stamped, rate, growth = self.start.stamped(t)
+        q, dq, ddq, sigma = self.states_at(stamped)
+        rate, growth = rate[:, None], growth[:, None]
+        return q, rate * dq, rate**2 * ddq + growth * dq, sigma
+
+
+@njit(cache=True, error_model="numpy")
+def _drive(
+    t: FloatArray,
+    interval: IntArray,
+    begin: FloatArray,
+    end: FloatArray,
+    left: IntArray,
+    sigma: FloatArray,
+    ratio: FloatArray,
+    spacing: FloatArray,
+    x: FloatArray,
+    states: States,
+    q: FloatArray,
+    dq: FloatArray,
+    ddq: FloatArray,
+    at: FloatArray,
+) -> None:
+    for i in range(t.size):
+        k = interval[i]
+        s = left[k]
+        length = spacing[k]
+        u = (x[k + 1] - x[k]) / (2 * length)
+        tau = min(max(t[i] - begin[k], 0.0), end[k] - begin[k])
+        rate = np.sqrt(x[k]) + u * tau
+        # From the nearer end, so that arrival at a stop is exact.
+        if 2 * tau <= end[k] - begin[k]:
+            step = tau * (np.sqrt(x[k]) + 0.5 * u * tau)
+        else:
+            left_over = end[k] - begin[k] - tau
+            step = length - left_over * (np.sqrt(x[k + 1]) - 0.5 * u * left_over)
+        z = min(max(step / length, 0.0), 1.0)
+        moving = begin[k] <= t[i] <= end[k]
+        # σ over z is the cubic with the slopes of dσ/dℓ = 1 / ratio at both samples.
+        rise = sigma[s + 1] - sigma[s]
+        lead, tail = length / ratio[s] - rise, rise - length / ratio[s + 1]
+        at[i] = sigma[s] + z * (rise + (1 - z) * ((1 - z) * lead + z * tail))
+        for j in range(q.shape[1]):
+            p0, v0, a0 = states.q[s, j], length * states.dq[s, j], length**2 * states.ddq[s, j]
+            p1, v1 = states.q[s + 1, j], length * states.dq[s + 1, j]
+            a1 = length**2 * states.ddq[s + 1, j]
+            d = p1 - p0
+            c3 = 10 * d - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1
+            c4 = -15 * d + 8 * v0 + 7 * v1 + 1.5 * a0 - a1
+            c5 = 6 * d - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1
+            q[i, j] = p0 + z * (v0 + z * (0.5 * a0 + z * (c3 + z * (c4 + z * c5))))
+            slope = v0 + z * (a0 + z * (3 * c3 + z * (4 * c4 + z * 5 * c5)))
+            bend = a0 + z * (6 * c3 + z * (12 * c4 + z * 20 * c5))
+            slope, bend = slope / length, bend / length**2
+            dq[i, j] = slope * rate if moving else 0.0
+            ddq[i, j] = bend * rate * rate + slope * u if moving else 0.0

@@ -1,0 +1,1 @@
+"""How a program is executed where the running controller is not at hand."""

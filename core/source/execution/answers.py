@@ -1,0 +1,230 @@
+"""What a program asks of the world: signals, operators, clocks; answered from a file or by rule.
+
+A file of answers is TOML::
+
+    [values]                     # stays so; a name or a call as it stands in the program
+    di_part = true
+    "$IN[3]" = false
+    "GInput(giJob)" = 2
+    pVision = [[350, 20, 100], [0, 0, 1, 0], [0, 0, 0, 0], [9e9, 9e9, 9e9, 9e9, 9e9, 9e9]]
+
+    [sequences]                  # one answer after the other; the last one stays
+    "get_digital_in(1)" = [false, false, true]
+
+    [branches]                   # at a line: the branch taken, 1 for the first, 0 for none
+    "main.mod:120" = 1
+
+    [passes]                     # at a line: how often a loop runs whose end is not known
+    "main.mod:200" = 3
+
+    [calls]                      # routines whose text is not at hand and that move nothing
+    rGripperOpen = "skip"
+
+Without an answer: waits are satisfied at once; of the branches whose condition is not known the
+first that moves the robot and comes back is taken, else none; a loop whose end is not known runs
+once if it moves the robot, else not at all. What was decided so is noted with its line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ...errors import InputError, Note, Span, UnknownNameError
+from ...files.reading import read_toml
+
+Answer = bool | float | str | tuple["Answer", ...]
+"""A value in the language's own units; arrays and records are tuples."""
+
+_TABLES = ("values", "sequences", "branches", "passes", "calls")
+_MOST_PASSES = 10_000
+_LARGEST = 1e300
+
+
+@dataclass(frozen=True)
+class Answers:
+    """Answers to what a program asks; keys as `key` gives them, lines as ``file:line``.
+
+    Args:
+        values: lasting answers.
+        sequences: answers in turn.
+        branches: number of the branch taken, 0 for none.
+        passes: number of passes.
+        skipped: names of routines that are not at hand and are stepped over.
+        file: where they come from, for messages.
+    """
+
+    values: Mapping[str, Answer] = field(default_factory=dict)
+    sequences: Mapping[str, tuple[Answer, ...]] = field(default_factory=dict)
+    branches: Mapping[str, int] = field(default_factory=dict)
+    passes: Mapping[str, int] = field(default_factory=dict)
+    skipped: frozenset[str] = frozenset()
+    file: str = ""
+
+
+def load_answers(path: str | Path) -> Answers:
+    """The answers in a TOML file.
+
+    Raises:
+        InputError: the file cannot be read, or a table or value is of no known kind; the message
+            names the file and the key.
+    """
+    data = read_toml(path)
+    tables: dict[str, dict[str, object]] = {}
+    for name, table in data.items():
+        if name not in _TABLES:
+            raise UnknownNameError(f"table of {path}", name, _TABLES)
+        if not isinstance(table, dict):
+            raise InputError(f"{path}: {name} is a table, [{name}]")
+        tables[name] = table
+    return Answers(
+        {key(k): _answer(v, path, k) for k, v in tables.get("values", {}).items()},
+        {key(k): _sequence(v, path, k) for k, v in tables.get("sequences", {}).items()},
+        {_place(k): _count(v, path, k) for k, v in tables.get("branches", {}).items()},
+        {_place(k): _count(v, path, k) for k, v in tables.get("passes", {}).items()},
+        frozenset(_skipped(k, v, path) for k, v in tables.get("calls", {}).items()),
+        str(path),
+    )
+
+
+def key(text: str) -> str:
+    """How a name or call of a program is looked up: without blanks, in lower case."""
+    return "".join(text.split()).casefold()
+
+
+def _answer(value: object, path: str | Path, name: str) -> Answer:
+    if isinstance(value, bool | str):
+        return value
+    if isinstance(value, int | float) and abs(value) <= _LARGEST:
+        return float(value)
+    if isinstance(value, list):
+        return tuple(_answer(item, path, name) for item in value)
+    if isinstance(value, int | float):
+        raise InputError(f"{path}: {name} is too large, or no number")
+    raise InputError(f"{path}: {name} is true or false, a number, a text or a list, not {value!r}")
+
+
+def _sequence(value: object, path: str | Path, name: str) -> tuple[Answer, ...]:
+    if not isinstance(value, list) or not value:
+        raise InputError(f"{path}: {name} in [sequences] is a list of answers, not {value!r}")
+    return tuple(_answer(item, path, name) for item in value)
+
+
+def _count(value: object, path: str | Path, name: str) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= _MOST_PASSES:
+        raise InputError(
+            f"{path}: {name} is a whole number from 0 to {_MOST_PASSES}, not {value!r}"
+        )
+    if ":" not in name:
+        raise InputError(f"{path}: {name!r} is no place: write 'file:line'")
+    return value
+
+
+def _skipped(name: str, value: object, path: str | Path) -> str:
+    if value != "skip":
+        raise InputError(f'{path}: {name} in [calls] is "skip", not {value!r}')
+    return key(name)
+
+
+@dataclass
+class Course:
+    """Decides what the text of a program leaves open, and remembers what was decided.
+
+    Args:
+        answers: what the user has to say.
+    """
+
+    answers: Answers = field(default_factory=Answers)
+    _turns: dict[str, int] = field(default_factory=dict)
+    _decided: dict[tuple[str, int, str], tuple[Note, int]] = field(default_factory=dict)
+
+    def value(self, text: str) -> Answer | None:
+        """The answer to a name or call as it stands in the program; None if there is none."""
+        name = key(text)
+        turns = self.answers.sequences.get(name)
+        if turns is not None:
+            turn = self._turns.get(name, 0)
+            self._turns[name] = turn + 1
+            return turns[min(turn, len(turns) - 1)]
+        return self.answers.values.get(name)
+
+    def changing(self, text: str) -> bool:
+        """Whether a name or call has one answer after the other."""
+        return key(text) in self.answers.sequences
+
+    def skips(self, routine: str) -> bool:
+        """Whether the user says that a routine which is not at hand moves nothing."""
+        return key(routine) in self.answers.skipped
+
+    def branch(self, span: Span, reason: str, returning: Sequence[bool]) -> int:
+        """Which branch is taken where a condition is not known.
+
+        Args:
+            span: of the condition.
+            reason: what it depends on.
+            returning: for each branch, whether it moves the robot and comes back.
+
+        Returns:
+            The branch, from 1; 0 for none.
+
+        Raises:
+            InputError: the user's answer names a branch that there is not.
+        """
+        answer = _at(self.answers.branches, span)
+        if answer is not None:
+            if answer > len(returning):
+                raise InputError(
+                    f"{self.answers.file}: [branches] at {span.file}:{span.line}: there are "
+                    f"{len(returning)} branches, not {answer}"
+                )
+            return answer
+        taken = next((k for k, moves in enumerate(returning, 1) if moves), 0)
+        which = f"branch {taken} of {len(returning)}, the first that moves the robot, is taken"
+        if not taken:
+            which = "no branch that moves the robot: taken as not fulfilled"
+        self._note(span, f"the condition depends on {reason}: {which}")
+        return taken
+
+    def passes(self, span: Span, reason: str, moving: bool) -> int:
+        """How often a loop runs whose condition is not known.
+
+        Args:
+            span: of the condition.
+            reason: what it depends on.
+            moving: whether its body moves the robot.
+        """
+        answer = _at(self.answers.passes, span)
+        if answer is not None:
+            return answer
+        count = 1 if moving else 0
+        how = "its body runs once" if moving else "it does not move the robot and is left at once"
+        self._note(span, f"the end of the loop depends on {reason}: {how}")
+        return count
+
+    def notes(self) -> tuple[Note, ...]:
+        """What was decided without an answer, in the order in which it came up."""
+        return tuple(
+            Note(note.message + (f" ({count} times)" if count > 1 else ""), span=note.span)
+            for note, count in self._decided.values()
+        )
+
+    def _note(self, span: Span, message: str) -> None:
+        place = (span.file, span.start, message)
+        note, count = self._decided.get(place, (Note(message, span=span), 0))
+        self._decided[place] = note, count + 1
+
+
+def _place(text: str) -> str:
+    """How a file, or a line of it, is looked up."""
+    return text.replace("\\", "/").casefold()
+
+
+def _at(table: Mapping[str, int], span: Span) -> int | None:
+    """The entry for a place, by the file's path or its name alone."""
+    file = _place(span.file)
+    for name in (file, file.rpartition("/")[2]):
+        found = table.get(f"{name}:{span.line}")
+        if found is not None:
+            return found
+    return None

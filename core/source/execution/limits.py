@@ -1,0 +1,98 @@
+"""How much of a program is executed before it is taken for one without an end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ...errors import SourceError, Span
+
+Executed = Callable[[Span], None]
+"""Told of a statement that is executed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Bounds of one execution of a program.
+
+    Args:
+        statements: executed in a row without a move among them.
+        moves: executed in all.
+        repeats: of one and the same move.
+        calls: routines that have called each other.
+    """
+
+    statements: int = 100_000
+    moves: int = 20_000
+    repeats: int = 2_000
+    calls: int = 40
+
+
+class Meter:
+    """Counts what is executed.
+
+    Args:
+        limits: what must not be passed.
+        executed: is told of every statement; None for nobody.
+    """
+
+    def __init__(self, limits: Limits, executed: Executed | None = None) -> None:
+        self._limits = limits
+        self._executed = executed
+        self._statements = 0
+        self._moves = 0
+        self._repeats: dict[tuple[str, int, int], int] = {}
+        self._calls = 0
+
+    def statement(self, span: Span) -> None:
+        """A statement, or a pass of a loop.
+
+        Raises:
+            SourceError: there are too many since the last move.
+        """
+        self._statements += 1
+        if self._executed is not None:
+            self._executed(span)
+        if self._statements > self._limits.statements:
+            raise _endless(f"{self._limits.statements} statements are executed in a row", span)
+
+    def move(self, span: Span) -> None:
+        """A move.
+
+        Raises:
+            SourceError: there are too many.
+        """
+        self._moves += 1
+        self._statements = 0
+        if self._moves > self._limits.moves:
+            raise _endless(f"{self._limits.moves} moves are executed", span)
+        place = (span.file, span.line, span.column)
+        repeats = self._repeats[place] = self._repeats.get(place, 0) + 1
+        if repeats > self._limits.repeats:
+            raise _endless(f"this move is executed {self._limits.repeats} times", span)
+
+    def call(self, name: str, span: Span) -> None:
+        """A routine is entered; `back` is told when it is left.
+
+        Raises:
+            SourceError: too many have called each other.
+        """
+        self._calls += 1
+        if self._calls > self._limits.calls:
+            raise SourceError(
+                f"{name}: {self._limits.calls} routines have called each other: a recursion "
+                "without end? Controllers do not go deeper either",
+                span,
+            )
+
+    def back(self) -> None:
+        """A routine is left."""
+        self._calls -= 1
+
+
+def _endless(what: str, span: Span) -> SourceError:
+    return SourceError(
+        f"{what} and the program has not ended: a loop without end? Give it an end, choose a "
+        "routine without it as the entry, or raise the limit",
+        span,
+    )

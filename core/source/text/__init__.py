@@ -1,0 +1,1 @@
+"""Source texts: files and places in them, tokens, names, numbers."""

@@ -1,0 +1,179 @@
+"""A place in a list of tokens, and the few moves from which every language's parser is made."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import ClassVar, Generic, Protocol, TypeVar
+
+from ...errors import SourceError
+
+NESTING_LIMIT = 60
+"""Brackets and blocks inside each other; what goes deeper is damaged or hostile."""
+
+END, END_OF_LINE, NAME = "end of file", "end of line", "name"
+"""Kinds of token that languages have in common."""
+
+_SHOWN = 40
+"""Characters of a token that a message repeats."""
+
+
+class Tokens(Protocol):
+    """The tokens of a text, as parallel lists that end with an `END`."""
+
+    @property
+    def kinds(self) -> list[str]:
+        """A kind that has a name, or the symbol or keyword itself."""
+
+    @property
+    def starts(self) -> list[int]:
+        """Offsets."""
+
+    @property
+    def ends(self) -> list[int]:
+        """Offsets."""
+
+
+class Errors(Protocol):
+    """A text that makes errors of its places, such as `core.source.text.SourceText`."""
+
+    def error(self, message: str, start: int, end: int | None = None) -> SourceError:
+        """An error at ``start``, to be raised."""
+
+
+Source = TypeVar("Source", bound=Errors)
+
+
+class TokenCursor(Generic[Source]):
+    """Reads tokens from left to right; a language's own cursor derives from it.
+
+    Args:
+        source: what the tokens' offsets count in.
+        tokens: to be read.
+        text: what the tokens were found in.
+        base: offset of its first character.
+
+    Attributes:
+        keywords: kinds that are keywords, and how a message writes them.
+        nouns: what a message calls tokens of the kinds that do not name themselves well.
+        index: of the token that comes next.
+        depth: brackets and blocks that are open.
+    """
+
+    keywords: ClassVar[Mapping[str, str]]
+    nouns: ClassVar[Mapping[str, str]]
+
+    def __init__(self, source: Source, tokens: Tokens, text: str, base: int = 0) -> None:
+        self.source = source
+        self.kinds = tokens.kinds
+        self.starts = tokens.starts
+        self.ends = tokens.ends
+        self._text = text
+        self._base = base
+        self.index = 0
+        self.depth = 0
+
+    @property
+    def kind(self) -> str:
+        """Kind of the token that comes next."""
+        return self.kinds[self.index]
+
+    @property
+    def start(self) -> int:
+        """Where the token that comes next begins."""
+        return self.starts[self.index]
+
+    @property
+    def end(self) -> int:
+        """Where the token gone past last ends."""
+        return self.ends[self.index - 1]
+
+    @property
+    def text(self) -> str:
+        """The token that comes next, as it stands."""
+        index, base = self.index, self._base
+        return self._text[self.starts[index] - base : self.ends[index] - base]
+
+    def peek(self, ahead: int = 1) -> str:
+        """Kind of the token ``ahead`` places after the next one."""
+        index = self.index + ahead
+        return self.kinds[index] if index < len(self.kinds) else END
+
+    def advance(self) -> None:
+        """Go past the next token (never past the end)."""
+        if self.kinds[self.index] != END:
+            self.index += 1
+
+    def accept(self, kind: str) -> bool:
+        """Go past the next token if it is a ``kind``, which is not `END`."""
+        if self.kinds[self.index] == kind:
+            self.index += 1
+            return True
+        return False
+
+    def expect(self, kind: str, where: str) -> None:
+        """Go past the next token, which must be a ``kind`` and not `END`.
+
+        Raises:
+            SourceError: it is something else; ``where`` says what it should follow or end.
+        """
+        if self.kinds[self.index] != kind:
+            raise self.unexpected(f"{self._wanted(kind)} {where}")
+        self.index += 1
+
+    def name(self, what: str) -> str:
+        """Go past a name and return it as it stands.
+
+        Raises:
+            SourceError: there is none where ``what`` should stand.
+        """
+        if self.kinds[self.index] != NAME:
+            raise self.unexpected(what)
+        text = self.text
+        self.index += 1
+        return text
+
+    def unexpected(self, wanted: str) -> SourceError:
+        """The error that ``wanted`` should stand where the next token is."""
+        if self.kind == END:
+            message = f"the file ends where {wanted} should follow: it is cut off or incomplete"
+        elif self.kind == END_OF_LINE:
+            message = f"the line ends where {wanted} should stand"
+        else:
+            message = f"{self._found()} stands where {wanted} should"
+        return self.source.error(message, self.start, self.ends[self.index])
+
+    @contextmanager
+    def nested(self) -> Iterator[None]:
+        """Inside one more bracket or block.
+
+        Raises:
+            SourceError: more than `NESTING_LIMIT` of them.
+        """
+        self.enter()
+        yield
+        self.depth -= 1
+
+    def enter(self) -> None:
+        """Go one level deeper; the counterpart is ``depth -= 1``.
+
+        Raises:
+            SourceError: more than `NESTING_LIMIT` levels.
+        """
+        self.depth += 1
+        if self.depth > NESTING_LIMIT:
+            raise self.source.error(
+                f"more than {NESTING_LIMIT} brackets and blocks inside each other", self.start
+            )
+
+    def _wanted(self, kind: str) -> str:
+        if kind in self.keywords:
+            return self.keywords[kind]
+        return f"a {kind}" if kind[:1].isalpha() else f"'{kind}'"
+
+    def _found(self) -> str:
+        kind, text = self.kind, self.text
+        if kind in self.keywords:
+            return f"the keyword {self.keywords[kind]}"
+        short = text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
+        return f"the {self.nouns.get(kind, kind)} {short}" if kind[:1].isalpha() else f"'{short}'"

@@ -1,0 +1,155 @@
+"""Source files as text, and places in them."""
+
+from __future__ import annotations
+
+import codecs
+import re
+from bisect import bisect_right
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...errors import InputError, Note, SourceError, Span
+from ...files.reading import read_bytes
+
+UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+LARGEST_FILE = 20_000_000
+"""Bytes. The largest programs seen have two million; what is larger is no program."""
+MOST_LINES = 500_000
+"""The longest programs seen have some 40 000."""
+
+
+@dataclass(frozen=True, slots=True)
+class SourceFile:
+    """A source file as text, with the codec that turns it back into the same bytes.
+
+    Args:
+        name: as the user named it, for messages and spans.
+        text: without a byte-order mark; ends of line as they stand in the file.
+        codec: of Python's, such as ``utf-8``, ``utf-8-sig``, ``cp1252``.
+    """
+
+    name: str
+    text: str
+    codec: str = "utf-8"
+
+    @property
+    def data(self) -> bytes:
+        """The file's bytes.
+
+        Raises:
+            InputError: the text holds a character that the codec has not.
+        """
+        try:
+            return self.text.encode(self.codec)
+        except UnicodeEncodeError as error:
+            character = self.text[error.start]
+            raise InputError(
+                f"{self.name}: {character!r} cannot be written in the file's encoding, {self.codec}"
+            ) from None
+
+
+def read_source(path: Path) -> SourceFile:
+    """A source file from disk; see `decode`.
+
+    Raises:
+        InputError: the file cannot be read, or is too large for a program.
+        SourceError: its bytes are no text.
+    """
+    data = read_bytes(path, LARGEST_FILE)
+    if max(data.count(b"\n"), data.count(b"\r")) > MOST_LINES:
+        raise InputError(f"{path}: has more than {MOST_LINES:,} lines: no robot program")
+    return SourceFile(str(path), *decode(data, str(path)))
+
+
+def decode(source: str | bytes, file: str) -> tuple[str, str]:
+    """The text of a source file, and the codec that turns the text back into the same bytes.
+
+    Files come as UTF-8, with or without a byte-order mark, and as Windows code page 1252, which
+    RobotStudio and older controllers write; in a few others (comments in GBK, say) every byte is
+    kept as one Latin-1 character, which changes nothing outside comments and strings.
+
+    Raises:
+        SourceError: the bytes are UTF-16.
+    """
+    if isinstance(source, str):
+        return source, "utf-8"
+    if source.startswith(UTF16):
+        raise SourceError(
+            "the file is UTF-16, which controllers do not read; save it as UTF-8",
+            Span(file, 1, 1, 0, 0),
+        )
+    if source.startswith(codecs.BOM_UTF8):
+        candidates = ["utf-8-sig", "latin-1"]
+    else:
+        candidates = ["utf-8", "cp1252", "latin-1"]
+    for codec in candidates[:-1]:
+        try:
+            return source.decode(codec), codec
+        except UnicodeDecodeError:
+            continue
+    return source.decode("latin-1"), "latin-1"
+
+
+class SourceText:
+    """A text that knows the line and column of every offset, as editors count them: ends of line
+    are LF, CR LF or CR.
+
+    Args:
+        text: the whole file.
+        file: its name, for messages.
+    """
+
+    def __init__(self, text: str, file: str) -> None:
+        self.text = text
+        self.file = file
+        self._lines = _line_starts(text)
+        self._row = 0
+
+    def span(self, start: int, end: int) -> Span:
+        """The stretch of characters from ``start`` to before ``end``."""
+        lines, row = self._lines, self._row
+        if not (lines[row] <= start and (row + 1 == len(lines) or start < lines[row + 1])):
+            row = self._row = bisect_right(lines, start) - 1  # places asked for are often near
+        return Span(self.file, row + 1, start - lines[row] + 1, start, end)
+
+    def error(self, message: str, start: int, end: int | None = None) -> SourceError:
+        """An error at ``start``, to be raised."""
+        return SourceError(message, self.span(start, start if end is None else end))
+
+
+def unbroken(text: str) -> str:
+    """A text with blanks for the carriage returns that end no line; offsets stay as they are.
+
+    LF and CR LF end a statement or a comment; CR does in a text without LF. Nothing else does: no
+    form feed, no NEL, no line separator of Unicode.
+    """
+    return _STRAY.sub(" ", text) if "\r" in text and "\n" in text else text
+
+
+def stray_return(file: SourceFile) -> Note | None:
+    """A note on the first carriage return that ends no line, where editors show one."""
+    text = file.text
+    found = _TELLING.search(text) if "\r" in text and "\n" in text else None
+    if found is None:
+        return None
+    return Note(
+        "a carriage return without a line feed ends no line here: what follows it in a comment is "
+        "comment, where an editor may show a line of its own; save the file with one kind of line "
+        "end",
+        span=SourceText(text, file.name).span(found.start(), found.start()),
+    )
+
+
+def lines_of(text: str) -> list[str]:
+    """The lines of a text, without their ends."""
+    return _END_OF_LINE.split(unbroken(text))
+
+
+_END_OF_LINE = re.compile(r"\r\n?|\n")
+_STRAY = re.compile(r"\r(?!\n)")
+_TELLING = re.compile(r"\r(?!\r*\n)")
+"""CR CR LF, which file transfers make of CR LF, looks like an empty line at most."""
+
+
+def _line_starts(text: str) -> list[int]:
+    return [0, *(found.end() for found in _END_OF_LINE.finditer(text))]

@@ -1,0 +1,1 @@
+"""What writers share: options, the approach, kept statements, reading back."""

@@ -1,0 +1,1 @@
+"""A motion as polynomials: grid, first guess, audit, proof, result."""

@@ -1,0 +1,1 @@
+"""The outer iteration: linearise, solve, prove, refine."""

@@ -1,0 +1,315 @@
+"""The outer iteration: linearise, solve, prove, accept; then limits between nodes.
+
+Distances to the surroundings are linearised about a motion that is proven free, the nonlinear
+program is solved within a box about it, and what comes of it is taken only if it is proven free
+itself, between its nodes too. Where it is not, the pair is looked at there as well and has to keep
+more; if that does not help, the box shrinks. So every motion that is kept is free if the first one
+is, and no node can jump to the other side of a wall.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from .....core.arrays import FloatArray
+from .....core.sqp import Result, Status, solve
+from ..motion.audit import Audit, audit
+from ..motion.first_guess import Guess
+from ..motion.layout import Layout
+from ..motion.motion import Motion
+from ..motion.proof import Proof, prove
+from ..motion.result import Step
+from ..task.limits import Limits
+from ..task.sampled import Plant, TorqueField
+from ..task.task import Task
+from ..transcription.rows import PlaceRows
+from ..transcription.sample_rows import EnergyTerm
+from ..transcription.transcription import Bounds, Transcription
+from .aiming import Aim
+from .effort import Effort
+from .patience import Patience
+from .refinement import PieceMargins, refined, too_coarse
+from .surroundings import Breach, Linearised, Places, Surroundings, breaches, linearised, sags
+
+Report = Callable[[Step], bool | None]
+
+_CORRECTIONS = 4
+_GROW, _SHRINK = 2.0, 4.0
+_SMALLEST, _LARGEST = 1e-3, 1.0
+"""rad or m, of the box."""
+_LOOKED = 8
+"""Places on each interval where a motion is looked at before it is proven."""
+_INFEASIBLE = 1e-4
+_IDLE = 1e-7
+_SOLVER_ITERATIONS, _OUTER_ITERATIONS = 60, 12
+"""At most; the second where there is a motion already that is to be made better."""
+_ROUNDS = 8
+
+
+class Interrupted(Exception):
+    """The user has had enough."""
+
+
+class Search:
+    """One search; it changes as it goes.
+
+    Args:
+        task, limits, plant, around, effort: what is asked.
+        guess: a motion whose time and energy are the units of the objective.
+        report: is told of every outer iteration; True ends the search.
+        begin: a free motion to begin with; None for the guess.
+
+    Attributes:
+        base: the motion so far.
+        best: the best motion so far that keeps all limits and is proven, with its audit and
+            proof; None if there was none yet.
+        steps: of the search.
+        converged, interrupted: whether it has ended by itself, or by the user.
+    """
+
+    def __init__(
+        self,
+        task: Task,
+        limits: Limits,
+        plant: Plant | None,
+        around: Surroundings | None,
+        effort: Effort,
+        guess: Guess,
+        report: Report | None = None,
+        begin: Guess | None = None,
+    ) -> None:
+        self.task, self.limits, self.plant = task, limits, plant
+        self.around, self.effort, self.report = around, effort, report
+        self.base = begin or guess
+        self.steps: list[Step] = []
+        self.converged, self.interrupted = False, False
+        self.best: tuple[float, Motion, Audit, Proof | None] | None = None
+        longest = task.objective.longest
+        self._longest = np.inf if longest is None else longest * (1.0 + effort.tolerance)
+        self._box = effort.box
+        self._clean = False
+        self._energy_unit = self._first_energy(guess)
+        self._margins = PieceMargins.none(self._audited(self.base.motion))
+        self._rounds = 0
+        self._most_intervals = 4 * len(guess.layout.grid)
+        self._warm: Result | None = None
+        self.aim = Aim(effort.trials)
+
+    def _first_energy(self, guess: Guess) -> float | None:
+        if self.task.objective.time_weight == 1.0:
+            return None
+        assert self.plant is not None
+        field = TorqueField(self.plant, guess.scale)
+        consumption = self.task.objective.consumption
+        return EnergyTerm(guess.layout, field, consumption, guess.scale, 0.0).size(guess.x)
+
+    # The outer iteration
+
+    def run(self) -> None:
+        """Search."""
+        given = (self.task.start_velocity, self.task.end_velocity)
+        if not any(np.asarray(velocity, dtype=float).any() for velocity in given):
+            # The first guess is at rest at both ends.
+            first = self._transcription(self.base.layout).objective(self.base.x)
+            self._note_best(self.base.motion, None, first)
+        try:
+            for _ in range(self.effort.outer):
+                if self._iterate():
+                    self.converged = True
+                    return
+        except (Interrupted, KeyboardInterrupt):
+            self.interrupted = True
+
+    def _iterate(self) -> bool:
+        """One outer iteration; whether nothing is left to do."""
+        transcription = self._transcription(self.base.layout)
+        before = transcription.objective(self.base.x)
+        found, step = self._candidate(transcription, before)
+        if found is None:
+            self._tell(step)
+            return self._failed(step) and self._settled()
+        guess, proof = found
+        after = transcription.objective(guess.x)
+        gain = (before - after) / abs(before)
+        previous, was_clean = self.base, self._clean
+        self.base, self._clean = guess, True
+        self._note_best(guess.motion, proof, after)
+        self._tell(replace(step, time=guess.motion.duration, objective=after, accepted=True))
+        if self.around is None:
+            return was_clean and gain < self.effort.gain and self._settled()
+        self._box = min(_GROW * self._box, _LARGEST)
+        little = was_clean and gain < self.effort.gain
+        return self.aim.gained(previous.x, little) and self._settled()
+
+    def _failed(self, step: Step) -> bool:
+        """Try something else; whether nothing is left to try."""
+        if self.around is None:
+            return True
+        if not self.aim.at_base or self.aim.exhausted:
+            return self.aim.missed()
+        self._box /= _SHRINK
+        return self._box < _SMALLEST
+
+    def _settled(self) -> bool:
+        """Whether limits hold between nodes too; else margins are raised or the grid refined."""
+        seen = self._audited(self.base.motion)
+        if seen.holds(self.effort.tolerance) or self._rounds >= _ROUNDS:
+            return True
+        self._rounds += 1
+        self._margins = self._margins.raised(seen, self.effort.tolerance)
+        cut = too_coarse(seen)
+        if cut.any() and len(cut) + cut.sum() <= self._most_intervals:
+            parts = np.where(cut, 2, 1)
+            self.base = refined(self.task, self.base, parts)
+            self._warm = None
+            self._margins = self._margins.split(parts)
+        self._clean = False
+        self.aim.settle()
+        self._box = max(self._box, 0.1 * self.effort.box)
+        return False
+
+    def _candidate(
+        self, transcription: Transcription, before: float
+    ) -> tuple[tuple[Guess, Proof | None] | None, Step]:
+        """A better motion that is proven free, or None."""
+        cuts, bounds = self._surroundings_of(transcription.layout)
+        keep, sag = self._kept(cuts)
+        extra = np.zeros(keep.shape)
+        x, iterations = self.base.x, 0
+        count = 0 if cuts is None else cuts.count
+        step = Step(self.base.motion.duration, before, np.nan, False, 0, count, self._box, "")
+        for attempt in range(1 if cuts is None else _CORRECTIONS):
+            rows = None
+            if cuts is not None and self.around is not None:
+                rows = cuts.rows(transcription.layout, self.around.wanted, keep, sag, extra)
+            result = self._solved(transcription, bounds, rows, x)
+            iterations += result.iterations
+            guess = Guess(transcription.layout, self.base.scale, result.x)
+            step = replace(step, candidate=guess.motion.duration, iterations=iterations)
+            if result.constraint_violation > _INFEASIBLE:
+                return None, replace(step, what=f"not solved: {result.message}")
+            if self._clean and result.objective >= before - 1e-9 * abs(before):
+                if attempt == 0 and self.aim.at_base:
+                    self.aim.exhaust(_touching(result, rows))
+                return None, replace(step, what="no better one that is free")
+            if self.around is None or cuts is None:
+                return (guess, None), step
+            proof = self._proof(guess.motion)
+            if isinstance(proof, Proof):
+                if proof.certificate.proven:
+                    return (guess, proof), step
+                return None, replace(step, what=str(proof.certificate))
+            (cuts, extra), x = proof.blamed(cuts, extra, self.around.wanted), result.x
+            keep, sag = self._kept(cuts)
+        return None, replace(step, what="too near between nodes")
+
+    def _kept(self, cuts: Linearised | None) -> tuple[FloatArray, FloatArray]:
+        """Linear distances of the base at the places of cuts, and how much nearer it comes between
+        them."""
+        if cuts is None or self.around is None:
+            return np.zeros(0), np.zeros(0)
+        motion, parts = self.base.motion, self.effort.places
+        q = cuts.places.of(self.task, motion)[:, self.task.moving]
+        looked = parts * max(1, round(_LOOKED / parts))
+        return cuts.at(q), sags(self.task, self.around, motion, cuts, looked)
+
+    def _solved(
+        self,
+        transcription: Transcription,
+        bounds: Bounds,
+        rows: PlaceRows | None,
+        x: FloatArray,
+    ) -> Result:
+        tolerance, patience = self.effort.solver_tolerance, None
+        if rows is not None or transcription.layout.stretches:
+            beat = transcription.objective(self.base.x) if self._clean else None
+            most = _SOLVER_ITERATIONS if beat is None else _OUTER_ITERATIONS
+            patience = Patience(tolerance, most, self.effort.gain, beat)
+        result = solve(
+            transcription.nlp(bounds, rows),
+            x,
+            tolerance=tolerance,
+            max_iterations=_SOLVER_ITERATIONS,
+            callback=patience,
+            qp=self.effort.qp,
+            warm_start=self._warm,
+        )
+        ended = patience is not None and patience.ended
+        if result.status is Status.INTERRUPTED and not ended:
+            raise Interrupted
+        self._warm = result
+        return result if patience is None else patience.outcome(result)
+
+    def _transcription(self, layout: Layout) -> Transcription:
+        return Transcription(
+            self.task,
+            self.limits,
+            layout,
+            self.base.scale,
+            self._energy_unit,
+            self.plant,
+            self._margins.at_samples(layout),
+        )
+
+    # Surroundings
+
+    def _surroundings_of(self, layout: Layout) -> tuple[Linearised | None, Bounds]:
+        """Linearised distances about the base, and how far each node may move."""
+        position = self._margins.at_samples(layout).position
+        lower, upper = self.limits.lower + position, self.limits.upper - position
+        if self.around is None:
+            return None, Bounds(lower, upper)
+        places = Places.even(len(layout.grid), self.effort.places)
+        q = self.aim.configurations(self.task, self.base, places)
+        cuts = linearised(self.task, self.around, q, places, self._box, self.effort.slots)
+        q = self.base.x[layout.q]
+        return cuts, Bounds(np.maximum(lower, q - self._box), np.minimum(upper, q + self._box))
+
+    def _proof(self, motion: Motion) -> Proof | Breach:
+        """A proof that a motion is free; else where it is not."""
+        assert self.around is not None
+        clearance = self.around.clearance
+        places = Places.even(len(motion), _LOOKED)
+        near = breaches(self.task, self.around, motion, places, clearance)
+        if near is not None:
+            return near
+        proof = prove(self.task, motion, self.around.scene, clearance)
+        if proof.certificate.proven or proof.pair is None or proof.time is None:
+            return proof
+        piece = motion.pieces(np.array([proof.time]))
+        share = (proof.time - motion.knots[piece]) / motion.durations[piece]
+        within = max(self.around.wanted, (proof.certificate.distance or 0.0) + 1e-5)
+        near = breaches(self.task, self.around, motion, Places(piece, share), within)
+        return proof if near is None else near
+
+    # What is kept
+
+    def _audited(self, motion: Motion) -> Audit:
+        return audit(self.task, self.limits, self.plant, motion, self.effort.tolerance)
+
+    def _note_best(self, motion: Motion, proof: Proof | None, objective: float) -> None:
+        """Keep a motion that holds all limits, is proven where it has to be, and is better."""
+        if self.best is not None and objective >= self.best[0]:
+            return
+        seen = self._audited(motion)
+        if not seen.holds(self.effort.tolerance) or motion.duration > self._longest:
+            return
+        if self.around is not None and proof is None:
+            proof = prove(self.task, motion, self.around.scene, self.around.clearance)
+        if proof is None or proof.certificate.proven:
+            self.best = (objective, motion, seen, proof)
+
+    def _tell(self, step: Step) -> None:
+        self.steps.append(step)
+        if self.report is not None and self.report(step):
+            raise Interrupted
+
+
+def _touching(result: Result, rows: PlaceRows | None) -> bool:
+    """Whether any linearised distance holds a motion back."""
+    if rows is None:
+        return False
+    return bool(np.abs(result.multipliers[-len(rows.lower) :]).max(initial=0.0) > _IDLE)

@@ -1,0 +1,1 @@
+"""Programs that a controller drives, improved: zones, via points, speeds; time and energy."""

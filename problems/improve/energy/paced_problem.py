@@ -1,0 +1,223 @@
+"""Time and energy of a program in all its numbers, as a `nonsmooth_sqp.Model`.
+
+Variables are those of its points and zones, then the logarithms of its speeds and accelerations.
+Points and zones bring their own constraints (`waypoints.evaluation`). Speeds change no geometry, so
+that distances are measured once for both.
+
+The time is piecewise smooth, and good programs sit on its kinks. As the search keeps gradients of
+the objective at points seen nearby, this model keeps those of the time: each is a row of its own
+beside the true one, never tighter than that where it stands.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ....core.arrays import FloatArray, IntArray
+from ....core.errors import MotionError
+from ....core.motion.emulator.controller import Controller
+from ....core.motion.gradients.derivatives import Derivatives, ProgramGradient
+from ....core.motion.model.consumption import Consumption
+from ....core.motion.path.path import Path
+from ....core.motion.timing.timing import Timing
+from ....core.program.program import Program
+from ..waypoints.block_problem import BlockProblem
+from ..waypoints.block_problem import Evaluated as Shape
+from .options import Goal
+from .pacing import Pacing
+
+_PLANES = 16
+"""Gradients of the time that are remembered."""
+
+
+@dataclass(frozen=True)
+class Fixed:
+    """Points and zones that stay.
+
+    Args:
+        program: whose they are.
+        path: through them.
+    """
+
+    program: Program
+    path: Path
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluated:
+    """The problem at a point.
+
+    Args:
+        x: (n,).
+        objective: of the goal.
+        problem: whose point it is.
+        program, timing: as driven.
+        duration: s.
+        energy: of the consumption.
+        shape: points and zones; None where they stay.
+    """
+
+    x: FloatArray
+    objective: float
+    problem: PacedProblem
+    program: Program
+    timing: Timing
+    duration: float
+    energy: float
+    shape: Shape | None
+
+    @property
+    def constraints(self) -> FloatArray:
+        """(m,), wanted to be zero or more: those of the shape, then the room until the latest end
+        as a share of it, by the true time and by the planes remembered now."""
+        return self.problem.constraints(self)
+
+    @cached_property
+    def duration_slope(self) -> FloatArray:
+        """(n,), of the time."""
+        return self.problem.slope(self, self.derivatives.duration())
+
+    @cached_property
+    def derivatives(self) -> Derivatives:
+        """Of the driven program."""
+        return Derivatives(self.problem.controller, self.program, self.timing)
+
+
+@dataclass(frozen=True, eq=False)
+class _Plane:
+    """The time near a point: duration + slope · (x − at)."""
+
+    at: FloatArray
+    duration: float
+    slope: FloatArray
+
+
+class PacedProblem:
+    """A program with its speeds as variables.
+
+    Args:
+        controller: that drives it.
+        geometry: points and zones as a problem, or what stays.
+        pacing: the speeds.
+        goal: what is to be small.
+        consumption: whose integral is the energy.
+
+    Attributes:
+        lower, upper, scale: (n,), see `nonsmooth_sqp.Model`.
+    """
+
+    def __init__(
+        self,
+        controller: Controller,
+        geometry: BlockProblem | Fixed,
+        pacing: Pacing,
+        goal: Goal,
+        consumption: Consumption,
+    ) -> None:
+        self.controller = controller
+        self._geometry = geometry
+        self._pacing = pacing
+        self._goal = goal
+        self._consumption = consumption
+        self._planes: list[_Plane] = []
+        bounds = [(pacing.lower, pacing.upper, pacing.scale)]
+        self._split = 0
+        if isinstance(geometry, BlockProblem):
+            bounds.insert(0, (geometry.lower, geometry.upper, geometry.scale))
+            self._split = geometry.block.variables.size
+        self.lower, self.upper, self.scale = (
+            np.concatenate(parts) for parts in zip(*bounds, strict=True)
+        )
+
+    # -------------------------------------------------------------------------- values
+
+    def point(self, x: FloatArray) -> Evaluated | None:
+        """The problem at x; None where the program cannot be driven."""
+        x = np.clip(x, self.lower, self.upper)
+        shape: Shape | None = None
+        if isinstance(self._geometry, BlockProblem):
+            shape = self._geometry.point(x[: self._split])
+            if shape is None:
+                return None
+            program, path = shape.drive.program, shape.drive.path
+        else:
+            program, path = self._geometry.program, self._geometry.path
+        program = self._pacing.applied(program, x[self._split :])
+        try:
+            timing = self.controller.stamp(program, path)
+        except MotionError:
+            return None
+        energy = self.controller.energy(program, timing, self._consumption).value
+        objective = self._goal.time * timing.duration + self._goal.energy * energy
+        return Evaluated(x, objective, self, program, timing, timing.duration, energy, shape)
+
+    def constraints(self, point: Evaluated) -> FloatArray:
+        """(m,), see `Evaluated.constraints`."""
+        own = np.zeros(0) if point.shape is None else point.shape.constraints
+        latest = self._goal.latest
+        if latest is None:
+            return own
+        times = np.full(1 + _PLANES, point.duration)
+        for k, plane in enumerate(self._planes):
+            foreseen = plane.duration + plane.slope @ (point.x - plane.at)
+            times[1 + k] = min(float(foreseen), point.duration)
+        return np.concatenate([own, 1.0 - times / latest])
+
+    # --------------------------------------------------------------------- derivatives
+
+    def gradient(self, point: Evaluated) -> FloatArray:
+        """∇f (n,).
+
+        Raises:
+            MotionError: a pose target is singular.
+        """
+        goal, total = self._goal, np.zeros(len(point.x))
+        if goal.latest is not None:
+            self._planes.append(_Plane(point.x, point.duration, point.duration_slope))
+            del self._planes[:-_PLANES]
+        if goal.time > 0.0:
+            total += goal.time * point.duration_slope
+        if goal.energy > 0.0:
+            made = point.derivatives.energy(self._consumption)
+            total += goal.energy * self.slope(point, made)
+        return total
+
+    def candidates(self, point: Evaluated, box: FloatArray) -> IntArray:
+        """Constraints that a step within ``box`` may violate; those of the time always."""
+        found = np.zeros(0, dtype=np.int64)
+        if point.shape is not None:
+            assert isinstance(self._geometry, BlockProblem)
+            found = self._geometry.candidates(point.shape, box[: self._split])
+        if self._goal.latest is None:
+            return found
+        first = self._first(point)
+        return np.concatenate([found, np.arange(first, first + 1 + len(self._planes))])
+
+    def jacobian(self, point: Evaluated, rows: IntArray) -> FloatArray:
+        """∂c/∂x of some constraints (len(rows), n)."""
+        out = np.zeros((len(rows), len(point.x)))
+        first = self._first(point)
+        ours = rows >= first
+        for row in np.flatnonzero(ours):
+            k = int(rows[row]) - first - 1
+            slope = point.duration_slope if k < 0 else self._planes[k].slope
+            out[row] = -slope / (self._goal.latest or 1.0)
+        if point.shape is not None:
+            assert isinstance(self._geometry, BlockProblem)
+            out[~ours, : self._split] = self._geometry.jacobian(point.shape, rows[~ours])
+        return out
+
+    def _first(self, point: Evaluated) -> int:
+        """Index of the first constraint of the time."""
+        return 0 if point.shape is None else len(point.shape.constraints)
+
+    def slope(self, point: Evaluated, made: ProgramGradient) -> FloatArray:
+        """(n,), from the program's numbers to the variables."""
+        paces = self._pacing.gradient(made, point.x[self._split :])
+        if not isinstance(self._geometry, BlockProblem):
+            return paces
+        x = point.x[: self._split]
+        return np.concatenate([self._geometry.block.variables.gradient(made, x), paces])

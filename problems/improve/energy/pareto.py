@@ -1,0 +1,298 @@
+"""The energy of a program, and the front between its time and its energy.
+
+A controller drives a program as fast as its numbers let it. So these numbers are what is sought: an
+outer problem over speeds, accelerations, zones and via points, with the emulator and its exact
+derivatives inside, whose result is plain robot code. This is the future work of D. Gleeson et al.,
+"Towards Energy Optimization using Trajectory Smoothing and Automatic Code Generation for Robotic
+Assembly" (Procedia CIRP 44, 2016).
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+from ....core.cell.cell import Cell
+from ....core.collision.proof.certificate import certify, scenes_of
+from ....core.dialect import Dialect
+from ....core.errors import InputError, Note
+from ....core.motion.emulator.controller import Controller, Run
+from ....core.program.program import Program
+from ..solution import RESOLUTION
+from ..start_check import check_start
+from ..waypoints import optimize_waypoints, optimize_zones
+from ..waypoints.changeable import select
+from ..waypoints.freed_stops import with_freed_stops
+from ..waypoints.options import Freedom
+from ..waypoints.options import Task as Wishes
+from ..waypoints.variables import Variables, make_variables
+from .front import Front, Point, without_dominated
+from .options import Effort, Goal, Progress, Report, Scope, Task
+from .pacing import make_pacing
+from .solve_round_verify import LATE, Bench, Candidate, Finished, ReadBack
+
+_FASTEST = 1e-3
+"""Share of the shortest time that the fastest program may take longer, to be frugal in it."""
+_WORTH = 5e-4
+"""Share of the energy that a slower program must save to count."""
+_CROWDED = 2.0
+"""Power of the spacing of durations: energy falls steepest at the fast end."""
+
+
+def pareto(
+    controller: Controller,
+    program: Program,
+    cell: Cell | None = None,
+    task: Task | None = None,
+    count: int = 8,
+    effort: Effort | None = None,
+    dialect: Dialect | None = None,
+    read_back: ReadBack = lambda program: program,
+    report: Report | None = None,
+) -> Front:
+    """The front between time and energy of a program, as programs.
+
+    Args:
+        controller: drives the program.
+        program: that is given; in a cell it keeps the clearance.
+        cell: what stands around, and the clearance to keep; None where that does not count, and
+            then only speeds and accelerations change.
+        task: what is wanted, and what must stay.
+        count: of durations between the shortest and that of the least energy, both included.
+        effort: how hard to search.
+        dialect: what the program's language has words for; None for everything.
+        read_back: makes of a program what a controller would read. It is this program whose
+            figures are told and which is proven.
+        report: is told of progress; True, or the keyboard's interrupt, ends the search with the
+            points found so far.
+
+    Raises:
+        InputError: fewer than two points, inertias that are not known, or nothing that may change.
+        MotionError: the program collides, keeps less clearance than is asked for, or cannot be
+            driven; the message names the move.
+    """
+    if count < 2:
+        raise InputError(f"a front has two points at least, not {count}")
+    made = _Work(controller, cell, task or Task(), effort or Effort(), dialect, read_back, report)
+    return made.front(program, count)
+
+
+def optimize_energy(
+    controller: Controller,
+    program: Program,
+    goal: Goal,
+    cell: Cell | None = None,
+    task: Task | None = None,
+    effort: Effort | None = None,
+    dialect: Dialect | None = None,
+    read_back: ReadBack = lambda program: program,
+) -> Front:
+    """One program that serves a goal best: a front of one point.
+
+    Never one that serves it worse than the program that is given, unless that ends too late.
+    Arguments and errors are those of `pareto`.
+    """
+    made = _Work(controller, cell, task or Task(), effort or Effort(), dialect, read_back, None)
+    return made.single(program, goal)
+
+
+@dataclass(frozen=True)
+class _Work:
+    """One request; arguments as above."""
+
+    controller: Controller
+    cell: Cell | None
+    task: Task
+    effort: Effort
+    dialect: Dialect | None
+    read_back: ReadBack
+    report: Report | None
+
+    def single(self, program: Program, goal: Goal) -> Front:
+        """The program that serves a goal best."""
+        notes: list[Note] = []
+        bench, given = self._prepared(program, notes)
+        found = bench.search(goal, bench.start)
+        finished = bench.finish(goal, found.x)
+        point = given if finished is None else self._point(finished)
+        if _rank(goal, given) <= _rank(goal, point):
+            notes.append(Note("nothing better was found: this is the program as it was given"))
+            point = given
+        if goal.latest is not None and point.duration > goal.latest * (1.0 + LATE):
+            notes.append(
+                Note(
+                    f"it takes {point.duration:.4g} s: no program that takes {goal.latest:.4g} s "
+                    "was found and proven"
+                )
+            )
+        return Front(given, (point,), self.task.consumption.unit, tuple(notes))
+
+    def front(self, program: Program, count: int) -> Front:
+        """All of it."""
+        notes: list[Note] = []
+        bench, given = self._prepared(program, notes)
+        candidates: list[tuple[Goal, Candidate]] = []
+        with suppress(KeyboardInterrupt, _Ended):
+            self._search(bench, count, candidates)
+        points: list[Point] = []
+        with suppress(KeyboardInterrupt):
+            for k, (goal, candidate) in enumerate(candidates):
+                finished = bench.finish(goal, candidate.x)
+                if finished is None:
+                    notes.append(
+                        Note(f"no program of {goal.latest or candidate.duration:.4g} s was proven")
+                    )
+                else:
+                    points.append(self._point(finished))
+                if self._tell("writing and proving", k + 1, len(candidates)):
+                    break
+        return Front(
+            given,
+            # How late programs may end is how well their times are known.
+            without_dominated([*points, *([given] if given.proven else [])], _WORTH, LATE),
+            self.task.consumption.unit,
+            tuple(notes),
+        )
+
+    # -------------------------------------------------------------------------- searching
+
+    def _search(self, bench: Bench, count: int, found: list[tuple[Goal, Candidate]]) -> None:
+        """Candidates from the fastest to the most frugal, added to ``found``.
+
+        Where only speeds change, the program as it is is the fastest.
+        """
+        first = bench.measured(Goal(), bench.start)
+        if first.energy == 0.0:
+            raise InputError("this program takes no energy: there is nothing to save")
+        by_energy = 1.0 / abs(first.energy)
+        fastest = first
+        if bench.variables is not None:
+            fastest = bench.search(Goal(1.0 / first.duration), bench.start)
+        self._ask("searching", 1, 2 * count)
+        latest = fastest.duration * (1.0 + _FASTEST)
+        goal = Goal(0.0, by_energy, latest)
+        quick = bench.search(goal, fastest.x)
+        found.append((goal, quick))
+        self._ask("searching", 2, 2 * count)
+        frugal = bench.search(Goal(0.0, by_energy), quick.x)
+        for k in range(1, count - 1):
+            share = (k / (count - 1)) ** _CROWDED
+            latest = quick.duration + share * max(frugal.duration - quick.duration, 0.0)
+            goal = Goal(0.0, by_energy, latest)
+            found.append((goal, bench.search_near(goal, found[-1][1].x)))
+            self._ask("searching", 2 + k, 2 * count)
+        found.append((Goal(0.0, by_energy, max(frugal.duration, quick.duration)), frugal))
+        self._back(bench, found, count)
+
+    def _back(self, bench: Bench, found: list[tuple[Goal, Candidate]], count: int) -> None:
+        """Each once more, from the slower one's values: other routes pay where time is short."""
+        for k in range(len(found) - 2, 0, -1):
+            goal, known = found[k]
+            other = bench.search_near(goal, found[k + 1][1].x)
+            found[k] = goal, min(known, other, key=lambda candidate: candidate.rank)
+            self._ask("searching", 2 * count - k, 2 * count)
+
+    def _point(self, finished: Finished) -> Point:
+        return Point.of(self.controller, finished.run, self.task.consumption, finished.certificate)
+
+    def _tell(self, stage: str, done: int, total: int) -> bool:
+        return self.report is not None and bool(self.report(Progress(stage, done, total)))
+
+    def _ask(self, stage: str, done: int, total: int) -> None:
+        if self._tell(stage, done, total):
+            raise _Ended
+
+    # -------------------------------------------------------------------------- preparing
+
+    def _prepared(self, program: Program, notes: list[Note]) -> tuple[Bench, Point]:
+        """Where to search, and the figures of the program that was given."""
+        wishes = self.task.wishes
+        program = replace(program, start=wishes.start or program.start)
+        scenes = None if self.cell is None else scenes_of(self.cell)
+        run = self.controller.run(program)
+        proof = None
+        if scenes is not None:
+            proof = certify(
+                self.controller,
+                run,
+                scenes,
+                self._clearance,
+                wishes.residual,
+                resolution=RESOLUTION,
+            )
+            check_start(self.controller, run, scenes, proof, wishes.residual)
+        given = Point.of(self.controller, run, self.task.consumption, proof)
+        base, wishes = self._routed(program, notes)
+        driven = self.controller.run(base)
+        robot, slowest = self.controller.robot, self.task.slowest
+        pacing = make_pacing(base, driven.timing, robot, self.dialect, wishes, slowest)
+        bench = Bench(
+            self.controller,
+            base,
+            pacing,
+            self._variables(base, driven, wishes, notes),
+            scenes,
+            self._clearance,
+            self.task,
+            self.effort,
+            self.read_back,
+        )
+        if not len(bench.start):
+            raise InputError(
+                "nothing of this program may change: the process fixes all its speeds, or they "
+                "have no words in its language"
+            )
+        return bench, given
+
+    @property
+    def _clearance(self) -> float:
+        wanted = self.task.wishes.clearance
+        if wanted is None:
+            return 0.0 if self.cell is None else self.cell.clearance
+        return wanted
+
+    @property
+    def _shapes(self) -> bool:
+        """Whether points or zones may change: only where it is known what stands around."""
+        return self.cell is not None and self.task.scope is not Scope.SPEEDS
+
+    def _routed(self, program: Program, notes: list[Note]) -> tuple[Program, Wishes]:
+        """The program to begin with, the fastest one that a search from many starts finds, and
+        what may still change in it."""
+        if not self._shapes:
+            return program, self.task.wishes
+        if self.cell is not None and self.effort.starts > 1:
+            points = self.task.scope is Scope.WAYPOINTS
+            solve = optimize_waypoints if points else optimize_zones
+            wishes = replace(self.task.wishes, time_weight=1.0)
+            found = solve(self.controller, program, self.cell, wishes, self.effort)
+            if found.changed:
+                return replace(found.program, start=program.start), self.task.wishes.spent()
+        wishes = self.task.wishes
+        return with_freed_stops(self.controller, program, wishes, notes), wishes
+
+    def _variables(
+        self, program: Program, driven: Run, wishes: Wishes, notes: list[Note]
+    ) -> Variables | None:
+        """Points and zones that may change; None where all stay."""
+        if not self._shapes:
+            return None
+        wishes = replace(wishes, freed=())
+        points = self.task.scope is Scope.WAYPOINTS
+        freedom = Freedom.WAYPOINTS_AND_ZONES if points else Freedom.ZONES
+        robot = self.controller.robot
+        selection = select(program, driven.path, robot, wishes, freedom)
+        notes += [Note(f"stays as it is: {why}", i) for i, why in selection.reasons.items()]
+        made = make_variables(program, robot, selection, wishes)
+        return made if made.size else None
+
+
+class _Ended(Exception):
+    """The user has seen enough."""
+
+
+def _rank(goal: Goal, point: Point) -> tuple[float, float]:
+    """Smaller is better: programs in time first."""
+    late = 0.0 if goal.latest is None else point.duration / goal.latest - 1.0
+    cost = goal.time * point.duration + goal.energy * point.energy
+    return (late if late > LATE else 0.0), cost

@@ -1,0 +1,346 @@
+"""Where a program's numbers are sought for one goal, written, read back and proven."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ....core.arrays import FloatArray
+from ....core.collision.proof.certificate import SceneOf, certify
+from ....core.collision.proof.verdict import Certificate
+from ....core.errors import MotionError
+from ....core.motion.emulator.controller import Controller, Run
+from ....core.motion.gradients.sensitivity import Places
+from ....core.program.program import Program
+from ..nonsmooth_sqp import Memory, Settings, search, violation
+from ..rounding import STEP
+from ..waypoints.block_emulation import crowd, rooms_of
+from ..waypoints.block_problem import BlockProblem
+from ..waypoints.blocks import Block
+from ..waypoints.solve_round_verify import wider_margin
+from ..waypoints.variables import Variables
+from .options import Effort, Goal, Task
+from .paced_problem import Evaluated, Fixed, PacedProblem
+from .pacing import Pacing
+
+ReadBack = Callable[[Program], Program]
+"""Writes a program and reads what was written."""
+
+_COARSE, _FINE = 2, 4
+"""Density of places of a search and of a refinement."""
+_NEAR, _NEAR_BOX = 45, 0.3
+"""Iterations at most and first trust box of a search that begins at a neighbour's values."""
+_REFINING, _SETTLING = Settings(20, 0.2), Settings(10, 0.1)
+"""Of a refinement, and of one with accelerations rounded."""
+_FEASIBLE = 1e-5
+_EARLY = 2e-5
+"""Share of the latest end by which a search aims to be earlier, so that rounding leaves room."""
+LATE = 1e-4
+"""Share by which a program may end later than asked for."""
+_APART = 1e-7
+_HOPELESS = 0.02
+"""Share by which a program ends too late where aiming earlier is no use."""
+_STEPS = STEP * 2.0 ** np.arange(8)
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """Values of the variables.
+
+    Args:
+        x: (n,).
+        duration: s.
+        energy: of the consumption.
+        violation: largest one.
+        objective: of the goal.
+    """
+
+    x: FloatArray
+    duration: float
+    energy: float
+    violation: float
+    objective: float
+
+    @property
+    def rank(self) -> tuple[float, float]:
+        """Smaller is better: feasible ones first."""
+        return (0.0 if self.violation < _FEASIBLE else self.violation), self.objective
+
+
+@dataclass(frozen=True, eq=False)
+class Finished:
+    """A program that was written, read back and, in a cell, proven.
+
+    Args:
+        run: of the program as read back.
+        duration: s.
+        energy: of the consumption.
+        certificate: None without a cell.
+    """
+
+    run: Run
+    duration: float
+    energy: float
+    certificate: Certificate | None
+
+
+@dataclass(frozen=True)
+class Bench:
+    """What all searches of a program share.
+
+    Args:
+        controller: that drives it.
+        program: from its start, freed stops passed.
+        pacing: its speeds.
+        variables: its points and zones; None where they stay.
+        scenes: the cell with each tool; None without a cell.
+        clearance: m to keep.
+        task, effort: see `pareto`.
+        read_back: see `pareto`.
+    """
+
+    controller: Controller
+    program: Program
+    pacing: Pacing
+    variables: Variables | None
+    scenes: SceneOf | None
+    clearance: float
+    task: Task
+    effort: Effort
+    read_back: ReadBack
+
+    @property
+    def start(self) -> FloatArray:
+        """(n,), the program as it is."""
+        own = np.zeros(0) if self.variables is None else self.variables.start
+        return np.concatenate([own, self.pacing.start])
+
+    # -------------------------------------------------------------------------- searching
+
+    def measured(self, goal: Goal, x: FloatArray) -> Candidate:
+        """Values judged by a goal.
+
+        Raises:
+            MotionError: they cannot be driven.
+        """
+        point = self._problem(goal, self.pacing).point(x)
+        if point is None:
+            raise MotionError("the program cannot be driven as it is", 0)
+        return _candidate(point)
+
+    def search(self, goal: Goal, x: FloatArray) -> Candidate:
+        """The best values found from a start.
+
+        Raises:
+            MotionError: it cannot be driven.
+        """
+        return self._found(goal, x, Settings(self.effort.iterations))
+
+    def search_near(self, goal: Goal, x: FloatArray) -> Candidate:
+        """The same from values that serve a goal much like this one."""
+        return self._found(goal, x, Settings(min(_NEAR, self.effort.iterations), _NEAR_BOX))
+
+    def _found(self, goal: Goal, x: FloatArray, settings: Settings) -> Candidate:
+        found = self._searched(goal, self.pacing, x, settings)
+        if found is None:
+            raise MotionError("the program cannot be driven as it is", 0)
+        return found
+
+    def _searched(
+        self,
+        goal: Goal,
+        pacing: Pacing,
+        x: FloatArray,
+        settings: Settings,
+        manner: _Manner | None = None,
+    ) -> Candidate | None:
+        """From one start; None where it cannot be driven."""
+        if goal.latest is not None:
+            goal = replace(goal, latest=goal.latest * (1.0 - _EARLY))
+        problem = self._problem(goal, pacing, manner or _Manner(_COARSE))
+        start = problem.point(x)
+        if start is None:
+            return None
+        try:
+            memory = Memory(start.x, settings.box)
+            return _candidate(search(problem, start, settings, memory).point)
+        except MotionError:
+            # A pose target is singular where the search stands: no way on.
+            return _candidate(start)
+
+    def _problem(self, goal: Goal, pacing: Pacing, manner: _Manner | None = None) -> PacedProblem:
+        manner = manner or _Manner(_COARSE)
+        consumption = self.task.consumption
+        return PacedProblem(self.controller, self._geometry(manner), pacing, goal, consumption)
+
+    def _geometry(self, manner: _Manner) -> BlockProblem | Fixed:
+        if self.variables is None or self.scenes is None:
+            return self._fixed
+        apart = self._apart
+        return BlockProblem(
+            self.controller,
+            Block(0, len(apart.moves) - 1, apart, Variables(apart, self.variables.parts)),
+            self.scenes,
+            replace(self.task.wishes, time_weight=1.0),
+            self.clearance + self.effort.margin + manner.margin,
+            self.clearance,
+            manner.density,
+            manner.more,
+        )
+
+    @cached_property
+    def _fixed(self) -> Fixed:
+        return Fixed(self._apart, self.controller.plan(self._apart))
+
+    @cached_property
+    def _apart(self) -> Program:
+        """The program with speeds that differ by next to nothing from move to move: its path is
+        sampled as one on which they do."""
+        return self.pacing.applied(
+            self.program, self.pacing.start - _APART * np.arange(self.pacing.size)
+        )
+
+    # -------------------------------------------------------------------------- finishing
+
+    def finish(self, goal: Goal, x: FloatArray) -> Finished | None:
+        """The program near x as its language says it; None where it cannot be proven.
+
+        Where it ends too late, as rounded, an earlier end is aimed at; if that does not help, it
+        is what it is.
+        Accelerations are rounded first, as their steps are large, and all else is sought again.
+        """
+        manner, aim = _Manner(_FINE), goal
+        best: Finished | None = None
+        for _ in range(self.effort.proofs + 1):
+            x, run = self._refined(aim, x, manner)
+            if run is None:
+                break
+            proof = self._proof(run)
+            late = 0.0 if goal.latest is None else run.timing.duration / goal.latest - 1.0
+            if proof is not None and not proof.proven:
+                if self.variables is None:
+                    break
+                manner = self._wider(manner, run, proof)
+                continue
+            if best is not None and run.timing.duration >= best.duration:
+                break
+            best = self._finished(run, proof)
+            if aim.latest is None or not LATE < late < _HOPELESS:
+                break
+            aim = replace(aim, latest=aim.latest * (1.0 - 1.5 * late))
+        return best
+
+    def _refined(self, goal: Goal, x: FloatArray, manner: _Manner) -> tuple[FloatArray, Run | None]:
+        """Values near x that can be written, and their program as it is read and driven."""
+        if self.variables is not None:
+            found = self._searched(goal, self.pacing, x, _REFINING, manner)
+            if found is None:
+                return x, None
+            x = found.x
+        x = self._with_rounded_accelerations(x)
+        found = self._searched(goal, self._paces_alone(x), x, _SETTLING, manner)
+        if found is None:
+            return x, None
+        x = self._released(goal, self._with_room(found.x))
+        return x, self._driven(self.read_back(self._written(x)))
+
+    def _released(self, goal: Goal, x: FloatArray) -> FloatArray:
+        """Values with the programmed speed wherever a lower one is not reached either."""
+        point = self._problem(goal, self.pacing).point(x)
+        if point is None:
+            return x
+        y = self.pacing.released(x[self._split :], point.timing, self.controller.robot)
+        return np.concatenate([x[: self._split], y])
+
+    def _finished(self, run: Run, proof: Certificate | None) -> Finished:
+        consumption = self.task.consumption
+        energy = self.controller.energy(run.program, run.timing, consumption).value
+        return Finished(run, run.timing.duration, energy, proof)
+
+    @property
+    def _split(self) -> int:
+        return 0 if self.variables is None else self.variables.size
+
+    def _with_rounded_accelerations(self, x: FloatArray) -> FloatArray:
+        y = x[self._split :]
+        rounded = np.where(self.pacing.coarse(), self.pacing.rounded(y), y)
+        return np.concatenate([x[: self._split], rounded])
+
+    def _paces_alone(self, x: FloatArray) -> Pacing:
+        """The pacing with accelerations held at what they are."""
+        held, y = self.pacing.coarse(), np.exp(x[self._split :])
+        return Pacing(
+            [
+                replace(n, begin=v, least=v, most=v) if hold else n
+                for n, v, hold in zip(self.pacing.numbers, y.tolist(), held, strict=True)
+            ]
+        )
+
+    def _written(self, x: FloatArray) -> Program:
+        program = self.program
+        if self.variables is not None:
+            program = self.variables.written(x[: self._split], self.task.wishes.rounding)
+        return self.pacing.written(program, x[self._split :])
+
+    def _with_room(self, x: FloatArray) -> FloatArray:
+        """Values with zones small enough for their neighbours when all is rounded."""
+        variables = self.variables
+        if variables is None:
+            return x
+        shape, y = x[: self._split], x[self._split :]
+        for step in _STEPS:
+            try:
+                path = self.controller.plan(self._written(np.concatenate([shape, y])))
+            except MotionError:
+                return x
+            tight = {room.corner for room in rooms_of(path) if room.left.value < -1e-9}
+            if not tight:
+                break
+            for corner in tight:
+                shape = variables.with_smaller_zone(shape, path.route.zone_moves[corner], step)
+        return np.concatenate([shape, y])
+
+    def _driven(self, program: Program) -> Run | None:
+        try:
+            return self.controller.run(program, self.program.start)
+        except MotionError:
+            return None
+
+    def _proof(self, run: Run) -> Certificate | None:
+        if self.scenes is None:
+            return None
+        residual = self.task.wishes.residual
+        return certify(self.controller, run, self.scenes, self.clearance, residual)
+
+    def _wider(self, manner: _Manner, run: Run, proof: Certificate) -> _Manner:
+        """How to search where a proof has failed: with more room, and closer there."""
+        margin = self.effort.margin + manner.margin
+        wider = wider_margin(margin, self.clearance, proof) - self.effort.margin
+        more = manner.more
+        if proof.sigma is not None and proof.configuration is not None:
+            q = np.array(proof.configuration)
+            near = crowd(run.path, 0.5 * sum(proof.sigma), q, _FINE)
+            more = near if more is None else more.with_more(near)
+        return _Manner(_FINE, wider, more)
+
+
+@dataclass(frozen=True)
+class _Manner:
+    """How closely to look at distances.
+
+    Args:
+        density: of places.
+        margin: m that comes to that of the effort.
+        more: places.
+    """
+
+    density: int
+    margin: float = 0.0
+    more: Places | None = None
+
+
+def _candidate(point: Evaluated) -> Candidate:
+    return Candidate(point.x, point.duration, point.energy, violation(point), point.objective)

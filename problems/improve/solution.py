@@ -1,0 +1,249 @@
+"""What every optimisation of a program hands back: the new program, what it gained and cost."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...core.arrays import FloatArray
+from ...core.cell.floor import FLOOR
+from ...core.errors import InputError, Note
+from ...core.motion.emulator.controller import Controller, Run
+from ...core.motion.timing.limits import interval_samples
+from ...core.motion.timing.timing import Timing
+from ...core.program.program import Program
+from ...core.robot.model import Robot
+from ...core.spatial.rotation import rotation_vector
+
+if TYPE_CHECKING:
+    from ...core.collision.proof.certificate import SceneOf
+    from ...core.collision.proof.verdict import Certificate
+
+
+_STILL = 1e-9
+"""m and rad below which a point has not been moved."""
+RESOLUTION = 1e-5
+"""m to which the clearance that there is is proven, for the table before and after."""
+
+
+@dataclass(frozen=True)
+class Measures:
+    """Figures of one driven program.
+
+    Args:
+        time: cycle time, s.
+        path_length: of the TCP, m.
+        peak_acceleration: largest acceleration of the TCP, m/s², before any smoothing in time.
+        lowest: height of the TCP at its lowest, m in the world; None where a tool stands still.
+        energy: (N,) ∫ τⱼ² dt of each joint in N² m² s, before any smoothing in time; None where
+            the robot's inertias are not known.
+        clearance: proven to be kept, m; None where nothing is proven.
+    """
+
+    time: float
+    path_length: float
+    peak_acceleration: float
+    lowest: float | None = None
+    energy: FloatArray | None = None
+    clearance: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A line of the before/after table.
+
+    Args:
+        what: the figure.
+        unit: of both values.
+        before, after: None where not known.
+    """
+
+    what: str
+    unit: str
+    before: float | None
+    after: float | None
+
+    @property
+    def change(self) -> float | None:
+        """In percent of the value before; None where there is none to compare with."""
+        if self.before is None or self.after is None or self.before == 0.0:
+            return None
+        return 100.0 * (self.after - self.before) / self.before
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """How far a via point was moved: the tool's TCP there, or what the robot carries to a tool that
+    stands still.
+
+    Args:
+        move: index of the move to it.
+        distance: m.
+        rise: m, upward in the world.
+        turn: rad.
+    """
+
+    move: int
+    distance: float
+    rise: float
+    turn: float
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What an optimisation made of a program.
+
+    Args:
+        original: the program that was given.
+        program: the new one; the same object where nothing better was found.
+        before, after: their figures.
+        certificate: of the new program; None where no proof was asked for.
+        notes: what was found on the way.
+        moved: the via points that are elsewhere than before, or turned; empty where the number of
+            moves has changed.
+    """
+
+    original: Program
+    program: Program
+    before: Measures
+    after: Measures
+    certificate: Certificate | None = None
+    notes: tuple[Note, ...] = ()
+    moved: tuple[Moved, ...] = ()
+
+    @property
+    def changed(self) -> bool:
+        """Whether the new program is another one than was given."""
+        return self.program is not self.original
+
+    @property
+    def proven(self) -> bool:
+        """Whether the new program is proven to keep its clearance."""
+        return self.certificate is not None and self.certificate.proven
+
+    def table(self, joints: Sequence[str] = ()) -> tuple[Row, ...]:
+        """Figures before and after.
+
+        Args:
+            joints: names of the axes, for the lines of energy; their numbers if left out.
+        """
+        before, after = self.before, self.after
+        rows = [
+            Row("cycle time", "s", before.time, after.time),
+            Row("TCP path length", "m", before.path_length, after.path_length),
+            Row("peak TCP acceleration", "m/s²", before.peak_acceleration, after.peak_acceleration),
+        ]
+        lowest = [None if m.lowest is None else 1e3 * m.lowest for m in (before, after)]
+        if lowest[0] is not None:
+            rows.append(Row("lowest point of the TCP", "mm", *lowest))
+        if before.energy is not None and after.energy is not None:
+            names = joints or [str(j + 1) for j in range(len(before.energy))]
+            rows += [
+                Row(f"energy, joint {name}", "N² m² s", float(one), float(other))
+                for name, one, other in zip(names, before.energy, after.energy, strict=True)
+            ]
+        clearances = [None if m.clearance is None else 1e3 * m.clearance for m in (before, after)]
+        rows.append(Row("proven clearance", "mm", *clearances))
+        return tuple(rows)
+
+
+def scene_notes(scenes: SceneOf, program: Program) -> tuple[Note, ...]:
+    """What a user should know of the shapes that a program has been looked at with.
+
+    Args:
+        scenes: the cell with each tool.
+        program: whose tools count.
+    """
+    tools = dict.fromkeys(move.tool for move in program.moves)
+    around = [obstacle.name for tool in tools for obstacle in scenes(tool).cell.obstacles]
+    notes = [note for tool in tools for note in scenes(tool).notes]
+    if FLOOR in around:
+        notes.append(
+            Note(
+                "nothing is known of tools and surroundings: it is proven that the arm touches "
+                f"neither itself nor {FLOOR}, and that TCPs stay above it"
+            )
+        )
+    elif not around:
+        notes.append(
+            Note("nothing stands around the robot: it is proven that it does not touch itself")
+        )
+    return tuple(dict.fromkeys(notes))
+
+
+def measure(controller: Controller, run: Run, certificate: Certificate | None = None) -> Measures:
+    """The figures of a driven program.
+
+    Args:
+        controller: that drove it.
+        run: what came of it.
+        certificate: of the run, if there is one.
+    """
+    steps = np.diff(run.trajectory.position, axis=0)
+    held = all(move.tool.robot_held for move in run.program.moves)
+    return Measures(
+        run.duration,
+        float(np.linalg.norm(steps, axis=1).sum()),
+        _peak_acceleration(run.timing),
+        float(run.trajectory.position[:, 2].min()) if held else None,
+        _energy(controller, run),
+        certificate.clearance if certificate is not None and certificate.proven else None,
+    )
+
+
+def moved_points(robot: Robot, before: Run, after: Run) -> tuple[Moved, ...]:
+    """The waypoints of a program that are elsewhere than in another, or turned.
+
+    Args:
+        robot: that drives both.
+        before, after: the programs, driven; with other numbers of moves nothing is told.
+    """
+    if len(before.program.moves) != len(after.program.moves):
+        return ()
+    old, new = _waypoints(robot, before), _waypoints(robot, after)
+    return tuple(
+        moved
+        for index in sorted(old.keys() & new.keys())
+        if (moved := _between(index, old[index], new[index])) is not None
+    )
+
+
+def _waypoints(robot: Robot, run: Run) -> dict[int, FloatArray]:
+    """Poses (4, 4) in the world of what each move brings to its waypoint."""
+    found = {}
+    for k, index in enumerate(run.path.route.moves):
+        flange = robot.flange_pose(run.path.segments.ends.q[k, 1]).matrix()
+        tool = run.program.moves[index].tool
+        found[index] = flange @ tool.tcp.matrix() if tool.robot_held else flange
+    return found
+
+
+def _between(index: int, before: FloatArray, after: FloatArray) -> Moved | None:
+    shift = after[:3, 3] - before[:3, 3]
+    turn = float(np.linalg.norm(rotation_vector(after[:3, :3] @ before[:3, :3].T)))
+    distance = float(np.linalg.norm(shift))
+    if distance < _STILL and turn < _STILL:
+        return None
+    return Moved(index, distance, float(shift[2]), turn)
+
+
+def _peak_acceleration(timing: Timing) -> float:
+    """p' σ̈ + p'' σ̇² at both ends of every interval."""
+    states, stamp = timing.along.states, timing.stamp
+    left = interval_samples(timing.path.pieces)
+    ends = np.stack([left, left + 1], -1)
+    x = np.stack([stamp.x[:-1], stamp.x[1:]], -1)[..., None]
+    rate, bend = states.v[ends, :3], states.a[ends, :3]
+    return float(np.linalg.norm(rate * stamp.u[:, None, None] + bend * x, axis=-1).max())
+
+
+def _energy(controller: Controller, run: Run) -> FloatArray | None:
+    try:
+        made = controller.energy(run.program, run.timing)
+    except InputError:
+        return None
+    steps = run.timing.end - run.timing.begin
+    return np.asarray(0.5 * np.einsum("k,kej->j", steps, made.torque**2))

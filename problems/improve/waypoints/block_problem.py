@@ -1,0 +1,256 @@
+"""A block as an optimisation problem: objective, constraints and their derivatives.
+
+Constraints, all wanted to be zero or more: the distance of every pair of bodies at every place of
+the path less what it is to be (m); the room between neighbouring zones (m, or shares); how far
+joints stay within their limits at those places (rad or m); and the user's limits on via points.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....core.arrays import FloatArray, IntArray
+from ....core.collision.distance.answers import Distances
+from ....core.collision.proof.certificate import SceneOf
+from ....core.collision.scene.scene import CollisionScene
+from ....core.errors import MotionError
+from ....core.motion.emulator.controller import Controller
+from ....core.motion.gradients.derivatives import Derivatives
+from ....core.motion.gradients.sensitivity import Places
+from .block_emulation import Drive, Driver
+from .blocks import Block
+from .options import Task
+from .point_limit_rows import PointRow, point_rows
+
+_WITHIN = 0.3
+"""m beyond which distances are of no concern to a step."""
+_COSTLY_WITHIN = 0.04
+"""The same of distances to meshes: those would be most of the work, and a step that meets one
+from further away is corrected by the true value there."""
+_FASTEST = 4.0
+"""m by which a robot's body moves at most, about, where the variables change by a length of 1."""
+
+
+@dataclass(frozen=True)
+class Watched:
+    """Places that one scene looks at.
+
+    Args:
+        scene: the cell with the tool mounted there.
+        places: (k,) indices of places.
+        first: index of its first constraint; they run over places, then pairs.
+        wanted: (P,) m, distance that each pair is to keep.
+    """
+
+    scene: CollisionScene
+    places: IntArray
+    first: int
+    wanted: FloatArray
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """The problem at a point; see `search.Point`.
+
+    Args:
+        x: (n,).
+        objective: f.
+        constraints: (m,).
+        drive: the driven program.
+        distances: of each scene.
+    """
+
+    x: FloatArray
+    objective: float
+    constraints: FloatArray
+    drive: Drive
+    distances: tuple[Distances, ...]
+
+
+class BlockProblem:
+    """A block as a `search.Model`.
+
+    Args:
+        controller: that drives it.
+        block: the block.
+        scenes: the cell with each tool.
+        task: the user's wishes.
+        clearance: m to aim at.
+        least: m that is required; pairs that are nearer than aimed at where the robot stops
+            need keep no more than they have there.
+        density, more: of the places; see `Driver`.
+
+    Raises:
+        MotionError: the block cannot be driven as it was given.
+    """
+
+    def __init__(
+        self,
+        controller: Controller,
+        block: Block,
+        scenes: SceneOf,
+        task: Task,
+        clearance: float,
+        least: float,
+        density: int = 1,
+        more: Places | None = None,
+    ) -> None:
+        self.block = block
+        self._driver = Driver(controller, block, density, more)
+        self._controller = controller
+        variables = block.variables
+        self.lower, self.upper, self.scale = variables.lower, variables.upper, variables.scale
+        self._weight = task.time_weight
+        first = self._driver.drive(variables.start)
+        if first is None:
+            raise MotionError("the program cannot be driven as it is", block.first)
+        self._time, self._energy = self._costs(first)
+        self._watched = _watch(first, self._driver, scenes, clearance, least)
+        self._points: tuple[PointRow, ...] = point_rows(block, first.path, task)
+        limits = controller.robot.limits
+        self._joint_limits = limits.lower, limits.upper
+
+    # -------------------------------------------------------------------------- values
+
+    def point(self, x: FloatArray) -> Evaluated | None:
+        """The problem at x; None where the program cannot be driven."""
+        drive = self._driver.drive(np.clip(x, self.lower, self.upper))
+        if drive is None:
+            return None
+        time, energy = self._costs(drive)
+        objective = self._weight * time / self._time
+        if self._weight < 1.0:
+            objective += (1.0 - self._weight) * energy / self._energy
+        found = tuple(
+            watched.scene.distances(
+                drive.q[watched.places],
+                float(watched.wanted.max()) + _WITHIN,
+                float(watched.wanted.max()) + _COSTLY_WITHIN,
+            )
+            for watched in self._watched
+        )
+        return Evaluated(drive.x, objective, self._constraints(drive, found), drive, found)
+
+    def _costs(self, drive: Drive) -> tuple[float, float]:
+        if self._weight == 1.0:
+            return drive.timing.duration, 1.0
+        made = self._controller.energy(drive.program, drive.timing)
+        return drive.timing.duration, made.value
+
+    def _constraints(self, drive: Drive, found: tuple[Distances, ...]) -> FloatArray:
+        parts = [
+            (distances.distance - watched.wanted).ravel()
+            for watched, distances in zip(self._watched, found, strict=True)
+        ]
+        parts.append(np.array([room.left.value for room in drive.rooms]))
+        parts.append(self._joint_rooms(drive).ravel())
+        parts.append(np.array([row.value(drive.path) for row in self._points]))
+        return np.concatenate(parts)
+
+    def _joint_rooms(self, drive: Drive) -> FloatArray:
+        """(2, N), least distance of each axis from its lower and upper limit, over all places."""
+        lower, upper = self._joint_limits
+        return np.stack([drive.q.min(axis=0) - lower, upper - drive.q.max(axis=0)])
+
+    # --------------------------------------------------------------------- derivatives
+
+    def gradient(self, point: Evaluated) -> FloatArray:
+        """∇f (n,).
+
+        Raises:
+            MotionError: a pose target is singular.
+        """
+        drive, variables = point.drive, self.block.variables
+        made = Derivatives(self._controller, drive.program, drive.timing)
+        total = np.zeros(variables.size)
+        if self._weight > 0.0:
+            total += self._weight / self._time * variables.gradient(made.duration(), point.x)
+        if self._weight < 1.0:
+            share = (1.0 - self._weight) / self._energy
+            total += share * variables.gradient(made.energy(), point.x)
+        return total
+
+    def candidates(self, point: Evaluated, box: FloatArray) -> IntArray:
+        """Constraints that a step within ``box`` may violate, and a few more."""
+        drive = point.drive
+        near = point.constraints < min(_FASTEST * float(np.linalg.norm(box)), 0.999 * _WITHIN)
+        told = [found.normal.any(axis=-1).ravel() for found in point.distances]
+        near[: sum(map(len, told))] &= np.concatenate(told)
+        first = len(point.constraints) - len(self._points) - 2 * drive.q.shape[1]
+        near[first - len(drive.rooms) : first] = True
+        return np.flatnonzero(near)
+
+    def jacobian(self, point: Evaluated, rows: IntArray) -> FloatArray:
+        """∂c/∂x of some constraints (len(rows), n)."""
+        drive = point.drive
+        extreme = np.concatenate([drive.q.argmin(axis=0), drive.q.argmax(axis=0)])
+        entries = [self._entries(k, rows) for k in range(len(self._watched))]
+        wanted = [self._watched[k].places[sample] for k, (_, sample, _) in enumerate(entries)]
+        which, back = np.unique(np.concatenate([*wanted, extreme]), return_inverse=True)
+        change = self._driver.change(drive, which)
+        out = np.zeros((len(rows), self.block.variables.size))
+        done = 0
+        for k, (at, sample, pair) in enumerate(entries):
+            watched, distances = self._watched[k], point.distances[k]
+            q = drive.q[watched.places]
+            slopes = watched.scene.gradients(q, distances, (sample, pair))
+            out[at] = np.einsum("kj,kjn->kn", slopes, change.q[back[done : done + len(at)]])
+            done += len(at)
+        self._rest(point, rows, change.q[back[done:]], change.rooms, change.waypoints, out)
+        return out
+
+    def _entries(self, k: int, rows: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+        """Places in ``rows`` of the distances of scene k, and their samples and pairs."""
+        watched = self._watched[k]
+        size = len(watched.places) * len(watched.wanted)
+        at = np.flatnonzero((rows >= watched.first) & (rows < watched.first + size))
+        sample, pair = np.divmod(rows[at] - watched.first, max(len(watched.wanted), 1))
+        return at, sample, pair
+
+    def _rest(
+        self,
+        point: Evaluated,
+        rows: IntArray,
+        extreme: FloatArray,
+        rooms: FloatArray,
+        waypoints: FloatArray,
+        out: FloatArray,
+    ) -> None:
+        """Derivatives of the constraints that are no distances."""
+        drive = point.drive
+        axes = drive.q.shape[1]
+        own = np.arange(axes)
+        limits = np.concatenate([extreme[own, own], -extreme[axes + own, own]])
+        points = [row.slope(drive.path, waypoints) for row in self._points]
+        table = np.concatenate([rooms, limits, *(slope[None] for slope in points)])
+        first = len(point.constraints) - len(table)
+        at = np.flatnonzero(rows >= first)
+        out[at] = table[rows[at] - first]
+
+
+def _watch(
+    first: Drive,
+    driver: Driver,
+    scenes: SceneOf,
+    clearance: float,
+    least: float,
+) -> tuple[Watched, ...]:
+    """Which scene looks at which places: by the tool of the move, in a zone of the one before."""
+    count = len(first.path.segments.scale)
+    part = driver.places.part
+    segment = np.where(part >= count, part - count, part)
+    tools = [driver.program.moves[i].tool for i in first.path.route.moves]
+    watched: list[Watched] = []
+    begin = 0
+    for tool in dict.fromkeys(tools):
+        scene = scenes(tool)
+        owns = np.array([other == tool for other in tools])[segment]
+        places = np.flatnonzero(owns)
+        stops = first.path.segments.ends.q[[0, -1], [0, 1]]
+        ends = scene.distances(stops, clearance).distance.min(axis=0, initial=clearance)
+        wanted = np.clip(ends, least, clearance)
+        watched.append(Watched(scene, places, begin, wanted))
+        begin += len(places) * len(wanted)
+    return tuple(watched)

@@ -1,0 +1,211 @@
+"""Which of a program's points and zones may change, and why the others stay.
+
+Tasks stay where they are: stop points, and the ends of moves whose path the process fixes. What
+moves is via points: waypoints of `MoveJ` and `MoveL` that the robot passes.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection, Hashable, Iterable, Sequence
+from dataclasses import dataclass
+
+from ....core.errors import InputError, UnknownNameError
+from ....core.motion.path.path import Path
+from ....core.program.move import Move, MoveC
+from ....core.program.origin import Origin, Ownership
+from ....core.program.program import Program
+from ....core.program.target import JointTarget
+from ....core.program.zone import ContourFraction, Fine, Radius
+from ....core.robot.model import Robot
+from .options import Freedom, Task
+from .oriented import stays_oriented
+from .point_limits import Fixed
+
+
+@dataclass(frozen=True)
+class Selection:
+    """What may change.
+
+    Args:
+        points: groups of moves (indices) whose targets are one datum each, and may move.
+        zones: groups of moves whose zones are one datum each, and may change.
+        reasons: why a fly-by point stays, by the index of its move.
+        passed: indices of the moves whose waypoint the robot passes.
+    """
+
+    points: tuple[tuple[int, ...], ...]
+    zones: tuple[tuple[int, ...], ...]
+    reasons: dict[int, str]
+    passed: tuple[int, ...]
+
+
+def select(program: Program, path: Path, robot: Robot, task: Task, freedom: Freedom) -> Selection:
+    """What of a driven program may change.
+
+    Args:
+        program: the program.
+        path: its path, which says where the robot stops.
+        robot: that drives it.
+        task: the user's wishes.
+        freedom: whether points may move.
+
+    Raises:
+        InputError: a move or speed is named that the program does not have.
+    """
+    moves = program.moves
+    process = _process_moves(program, task)
+    passed = tuple(
+        owner
+        for zone, owner in zip(path.route.zones, path.route.zone_moves, strict=True)
+        if not isinstance(zone, Fine)
+    )
+    after = _following(path)
+    why_zone: dict[int, str] = {}
+    why_point: dict[int, str] = {}
+    for i in passed:
+        reason = _why_untouched(i, after[i], process)
+        if reason is None and not _sizable(moves[i]):
+            why_zone[i] = "its zone has no radius to change"
+        elif reason is not None:
+            why_zone[i] = reason
+        reason = reason or _why_fixed(moves, i, after[i], task, freedom)
+        reason = reason or _why_oriented(moves[i], i, robot, task)
+        if reason is not None:
+            why_point[i] = reason
+    points = _groups(moves, passed, why_point, "target")
+    zones = _groups(moves, passed, why_zone, "zone")
+    reasons = {i: why for i, why in why_zone.items() if not any(i in g for g in zones)}
+    if freedom is not Freedom.ZONES:
+        reasons |= {i: why for i, why in why_point.items() if not any(i in g for g in points)}
+    return Selection(points, zones, dict(sorted(reasons.items())), passed)
+
+
+def _process_moves(program: Program, task: Task) -> dict[int, str]:
+    """Moves that stay as they are, and why."""
+    moves = program.moves
+    for i in (*task.keep, *task.limits):
+        if not 0 <= i < len(moves):
+            raise InputError(f"move {i + 1} is to be kept, but the program has {len(moves)} moves")
+    names = {move.speed.name for move in moves if move.speed.name is not None}
+    for name in task.keep_speeds:
+        if name not in names:
+            raise UnknownNameError("speed of the program", name, names)
+    found: dict[int, str] = {}
+    for i, move in enumerate(moves):
+        if i in task.keep:
+            found[i] = "it is to be kept"
+        elif move.speed.name is not None and move.speed.name in task.keep_speeds:
+            found[i] = f"its speed {move.speed.name} is the process's"
+        elif move.events:
+            found[i] = "something is switched on its way"
+        elif move.speed.duration is not None:
+            found[i] = "it takes a programmed time"
+    return found
+
+
+def _following(path: Path) -> dict[int, int]:
+    """The move driven after each move whose zone counts."""
+    return dict(zip(path.route.zone_moves, path.route.moves[1:], strict=True))
+
+
+def _why_untouched(i: int, after: int, process: dict[int, str]) -> str | None:
+    for near in (i, after):
+        if near in process:
+            return process[near] if near == i else f"move {near + 1} begins here: {process[near]}"
+    return None
+
+
+def _sizable(move: Move) -> bool:
+    return isinstance(move.zone, Radius | ContourFraction)
+
+
+def _why_fixed(
+    moves: Sequence[Move], i: int, after: int, task: Task, freedom: Freedom
+) -> str | None:
+    if freedom is Freedom.ZONES:
+        return "only zones are to change"
+    if isinstance(task.limits.get(i, task.limit), Fixed):
+        return "it is to stay"
+    if isinstance(moves[i], MoveC) or isinstance(moves[after], MoveC):
+        return "an arc begins or ends there"
+    return None
+
+
+def _why_oriented(move: Move, i: int, robot: Robot, task: Task) -> str | None:
+    """Why a target cannot move at all while its tool keeps its orientation."""
+    target = move.target
+    if task.turn_at(i) != 0.0 or not isinstance(target, JointTarget):
+        return None
+    axes = task.free_axes(robot.arm_size)
+    if not stays_oriented(target, robot.arm_chain, axes):
+        return None
+    return "the joints that may change cannot move it without turning the tool: allow a tilt"
+
+
+def _groups(
+    moves: Sequence[Move], passed: Collection[int], reasons: dict[int, str], part: str
+) -> tuple[tuple[int, ...], ...]:
+    """Passed moves that may change, those together that read one datum; completes ``reasons``."""
+    readers: defaultdict[Hashable, set[int]] = defaultdict(set)
+    for i, move in enumerate(moves):
+        for key in _keys(move, i, part):
+            readers[key].add(i)
+    found: list[tuple[int, ...]] = []
+    for i in passed:
+        if i in reasons or any(i in group for group in found):
+            continue
+        group = _joined(i, moves, readers, part)
+        why = _why_group_stays(i, group, passed, reasons, moves, part)
+        if why is None:
+            found.append(tuple(sorted(group)))
+        else:
+            reasons[i] = why
+    return tuple(found)
+
+
+def _joined(
+    i: int, moves: Sequence[Move], readers: defaultdict[Hashable, set[int]], part: str
+) -> set[int]:
+    """All moves that share data with move i, and those with them."""
+    group, todo = {i}, [i]
+    while todo:
+        for key in _keys(moves[todo.pop()], i, part):
+            new = readers[key] - group
+            group |= new
+            todo += new
+    return group
+
+
+def _keys(move: Move, index: int, part: str) -> Iterable[Hashable]:
+    """What a part is read from: its instruction, and the literals behind it."""
+    if move.origin is None:
+        return [index]
+    origin: Origin = getattr(move.origin, part)
+    spans = [span for span in origin.numbers if span is not None]
+    return [move.origin.statement, *spans] if origin.numbers else [move.origin.statement]
+
+
+def _why_group_stays(
+    i: int,
+    group: Collection[int],
+    passed: Collection[int],
+    reasons: dict[int, str],
+    moves: Sequence[Move],
+    part: str,
+) -> str | None:
+    move = moves[i]
+    if move.origin is not None:
+        origin: Origin = getattr(move.origin, part)
+        if origin.ownership is Ownership.DERIVED:
+            return f"the program computes its {part}"
+        if origin.ownership is Ownership.SHARED and origin.numbers and len(group) == 1:
+            return f"an expression of the program reads its {part} too"
+    if any(getattr(moves[j], part) != getattr(move, part) for j in group):
+        return f"its {part} shares numbers with another one that has others too"
+    for j in sorted(group):
+        if j not in passed:
+            return f"move {j + 1} has the same {part} and stops there"
+        if j in reasons:
+            return f"move {j + 1} has the same {part}: {reasons[j]}"
+    return None

@@ -1,0 +1,215 @@
+"""The best proven values of every block: searches from many starts, refined and certified.
+
+1. Short searches from every start, at few places of the path; the most promising ones go on, in
+   several rounds.
+2. Generations of variations of the best path of each block: neighbouring local optima are often
+   better.
+3. The best of these are refined at many places.
+4. They are proven between places too, the best first; a candidate that cannot be proven aims at a
+   wider margin and is tried again. No others are tried once one is proven that is better.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from ....core.worker_pool import Crew, crew
+from ..nonsmooth_sqp import Memory
+from .solve_round_verify import FEASIBLE, FINE_BOX, Answer, Job, Stage, Workshop, work
+from .starts import starting_points, variations
+
+ROUNDS = ((14, 0.5), (14, 0.5))
+"""Iterations of a round, and the share of the searches that go on after it."""
+_LEAST = 3
+"""Searches of a block that go on at least, and those that are refined."""
+_NEAR_ITERATIONS, _NEAR_BOX = 25, 0.6
+_ALIKE = 1e-6
+_HOPELESS = 0.05
+"""m of violation at which a searched candidate is not worth refining."""
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far the work has come, for a progress bar.
+
+    Args:
+        stage: what is being done, in words.
+        done, total: searches of this stage.
+        best: lowest objective of a block that is proven so far, in shares of the input's; 1 if
+            none is proven yet.
+    """
+
+    stage: str
+    done: int
+    total: int
+    best: float
+
+
+Report = Callable[[Progress], bool | None]
+"""Told of progress; True ends the work."""
+
+
+@dataclass(frozen=True)
+class Improved:
+    """What came of it.
+
+    Args:
+        best: proven values of every block; None where the input is not bettered.
+        ended: whether the user has ended the work.
+    """
+
+    best: tuple[Answer | None, ...]
+    ended: bool
+
+
+def improve(shop: Workshop, report: Report | None = None) -> Improved:
+    """The best proven values of every block.
+
+    Args:
+        shop: the problem.
+        report: is told of progress. When it, or the keyboard, ends the work, what has been found
+            until then is proven, and nothing more is searched.
+    """
+    jobs = _first(shop)
+    with crew(partial(work, shop), shop.effort.processes, len(jobs)) as team:
+        made = _Improvement(shop, team, report)
+        try:
+            made.search(jobs)
+            made.vary()
+        except KeyboardInterrupt:
+            made.over = True
+        try:
+            made.prove()
+        except KeyboardInterrupt:
+            made.over = True
+    return Improved(tuple(made.best), made.over)
+
+
+class _Improvement:
+    """One run.
+
+    Args:
+        shop, report: as above.
+        team: who works.
+
+    Attributes:
+        best: proven values of each block.
+        over: whether the user has ended the work.
+    """
+
+    def __init__(self, shop: Workshop, team: Crew[Job, Answer], report: Report | None) -> None:
+        self._shop = shop
+        self._team = team
+        self._report = report
+        self._found: list[Answer] = []
+        self.best: list[Answer | None] = [None] * len(shop.blocks)
+        self.over = False
+
+    def search(self, jobs: list[Job]) -> None:
+        """From every start, in rounds."""
+        for number in range(len(ROUNDS) + 1):
+            self._do(f"searching, round {number + 1}", jobs)
+            going = [] if self.over else _going_on(self._shop, number, self._found)
+            self._found = [answer for answer in self._found if answer not in going]
+            iterations = _iterations(self._shop, number + 1)
+            jobs = [Job(answer.block, answer.memory, iterations) for answer in going]
+            if not jobs:
+                return
+
+    def vary(self) -> None:
+        """From near the best, in generations."""
+        for generation in range(self._shop.effort.generations):
+            if not self.over:
+                jobs = _varied(self._shop, self._found, generation)
+                self._do(f"varying, round {generation + 1}", jobs)
+
+    def prove(self) -> None:
+        """Refine the best, and prove the best of them that can be proven."""
+        searched, self._found = self._found, []
+        count = 1 if self.over else _LEAST
+        self._do("refining", _finals(self._shop, searched, count))
+        queue = sorted(self._found, key=Answer.rank)
+        while queue:
+            turn = {a.block: a for a in reversed(queue) if self._may_lead(a)}
+            jobs = [Job(a.block, a.memory, stage=Stage.PROVE) for a in turn.values()]
+            self._do("proving", jobs)
+            queue = [a for a in queue if a not in turn.values() and self._may_lead(a)]
+
+    def _may_lead(self, answer: Answer) -> bool:
+        best = self.best[answer.block]
+        return best is None or answer.objective < best.objective
+
+    def _do(self, stage: str, jobs: Sequence[Job]) -> None:
+        """Do jobs, and keep what comes of them."""
+
+        def tell(done: int, answer: Answer) -> bool:
+            self._found.append(answer)
+            known = self.best[answer.block]
+            if answer.proven and (known is None or answer.objective < known.objective):
+                self.best[answer.block] = answer
+            if self._report is not None:
+                lowest = min((a.objective for a in self.best if a is not None), default=1.0)
+                ended = self._report(Progress(stage, done, len(jobs), lowest))
+                self.over = bool(ended) or self.over
+            return self.over and stage not in ("refining", "proving")
+
+        before = len(self._found)
+        answers = self._team.answers(jobs, tell) if jobs else []
+        # In the order of the jobs, whichever was done first.
+        self._found[before:] = [answer for answer in answers if answer is not None]
+
+
+def _first(shop: Workshop) -> list[Job]:
+    """A short search from every start."""
+    return [
+        Job(k, Memory(x, 1.0), _iterations(shop, 0))
+        for k, block in enumerate(shop.blocks)
+        for x in starting_points(block, shop.controller.plan(block.program), shop.effort)
+    ]
+
+
+def _iterations(shop: Workshop, number: int) -> int:
+    """Of round ``number``; the last one has all that are left."""
+    left = shop.effort.iterations - sum(iterations for iterations, _ in ROUNDS[:number])
+    return max(0, left if number >= len(ROUNDS) else min(left, ROUNDS[number][0]))
+
+
+def _going_on(shop: Workshop, number: int, found: Sequence[Answer]) -> list[Answer]:
+    """The searches of which more is to be expected after round ``number``."""
+    if number == len(ROUNDS) or not _iterations(shop, number + 1):
+        return []
+    going: list[Answer] = []
+    for k in range(len(shop.blocks)):
+        own = sorted((a for a in found if a.block == k), key=Answer.rank)
+        chosen = own[: max(_LEAST, round(ROUNDS[number][1] * len(own)))]
+        going += [answer for answer in chosen if not answer.finished]
+    return going
+
+
+def _varied(shop: Workshop, found: Sequence[Answer], generation: int) -> list[Job]:
+    """Searches from near the best path of each block."""
+    jobs: list[Job] = []
+    for k, block in enumerate(shop.blocks):
+        best = min((a for a in found if a.block == k), key=Answer.rank, default=None)
+        if best is None or best.violation > FEASIBLE:
+            continue
+        jobs += [
+            Job(k, Memory(x, _NEAR_BOX), min(_NEAR_ITERATIONS, shop.effort.iterations))
+            for x in variations(block, best.x, shop.effort, generation)
+        ]
+    return jobs
+
+
+def _finals(shop: Workshop, found: Sequence[Answer], count: int) -> list[Job]:
+    """Refinements of the best ``count`` of each block, no two of them alike."""
+    jobs: list[Job] = []
+    for k in range(len(shop.blocks)):
+        chosen: list[Answer] = []
+        for answer in sorted((a for a in found if a.block == k), key=Answer.rank):
+            alike = any(abs(a.objective - answer.objective) < _ALIKE for a in chosen)
+            if answer.violation < _HOPELESS and not alike and len(chosen) < count:
+                chosen.append(answer)
+        jobs += [Job(k, Memory(a.x, FINE_BOX), stage=Stage.REFINE) for a in chosen]
+    return jobs

@@ -1,0 +1,38 @@
+"""How far smoothing in time takes the links off each segment."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ....core.arrays import FloatArray
+from ....core.collision.deviation.bounds import Straying, stretches
+from ....core.motion.emulator.controller import Controller, Run
+from ....core.motion.timing.limits import interval_samples
+
+_TOGETHER = 100
+"""Segments that are looked at together."""
+
+
+def segment_strays(controller: Controller, run: Run, moves: Sequence[int]) -> FloatArray:
+    """(M, N) rad or m, the most on the segments of moves, at every override.
+
+    Args:
+        controller: that drove the run.
+        run: a program.
+        moves: indices of its moves; one that is not driven is between others, and has the most of
+            all of them.
+    """
+    waypoint, straying = run.path.layout.waypoint, Straying.of(controller, run)
+    left = run.path.sigma[interval_samples(run.path.pieces)]
+    most = np.zeros((len(waypoint) - 1, run.path.q.shape[1]))
+    for first in range(0, len(most), _TOGETHER):
+        ends = waypoint[first : first + _TOGETHER + 1]
+        begin = max(int(np.searchsorted(left, ends[0], "right")) - 1, 0)
+        found = straying.over(begin, max(int(np.searchsorted(left, ends[-1])), begin + 1))
+        part = [stretches(strays, ends[:-1], ends[1:]).most for strays in found]
+        most[first : first + _TOGETHER] = np.max(part, axis=0)
+    row = {move: k for k, move in enumerate(run.path.route.moves)}
+    greatest = most.max(axis=0)
+    return np.stack([most[row[move]] if move in row else greatest for move in moves])

@@ -1,0 +1,247 @@
+"""Zone maximisation (thesis, section 4.4): every zone as large as it can be.
+
+The program as driven must keep the clearance. Then the zone of each waypoint grows from nothing,
+for itself, as far as rules and obstacles let it; neighbours that share a leg share it out; and
+the program that comes out, read back from the text it is written to, is certified.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....core.arrays import FloatArray
+from ....core.cell.cell import Cell
+from ....core.collision.proof.certificate import SceneOf, certify, scenes_of
+from ....core.collision.proof.verdict import Certificate
+from ....core.errors import FlybyError, MotionError, Note
+from ....core.motion.emulator.controller import Controller, Run
+from ....core.program.program import Program
+from ....core.program.zone import Radius, Zone
+from ..reading_back import ReadBack, read_as_written
+from ..solution import RESOLUTION, Solution, measure, scene_notes
+from ..start_check import check_start
+from .changes import ZoneChange, changes
+from .clearing import Clearing
+from .deviation import segment_strays
+from .neighbourhood import Neighbourhoods
+from .options import ZoneOptions
+from .points import Points, find_points
+from .predefined import choices, choose
+from .repair import Repair, is_slower
+from .rules import Rules, passable
+from .search import Asking, Found, Search, Sides
+from .settling import settle, with_zones
+from .side_by_side import ZoneOf, drive
+from .sizes import Growth
+
+Tell = Callable[[str], None]
+
+_AIM = 1.1
+"""On strays that zones turn out to need, so that it takes few rounds until they have them."""
+_INTERRUPTED = Found(0.0, 0.0, MotionError("the search was interrupted"))
+
+
+@dataclass(frozen=True)
+class ZoneSolution(Solution):
+    """A program with larger zones.
+
+    Args:
+        zones: what became of each zone that might change.
+    """
+
+    zones: tuple[ZoneChange, ...] = ()
+
+
+def maximize_zones(
+    controller: Controller,
+    program: Program,
+    cell: Cell,
+    options: ZoneOptions | None = None,
+    read_back: ReadBack = lambda program: program,
+    tell: Tell = lambda message: None,
+) -> ZoneSolution:
+    """The program with zones as large as they can be.
+
+    Args:
+        controller: drives the program.
+        program: whose zones are to grow.
+        cell: what stands around, and the clearance to keep.
+        options: what is wanted.
+        read_back: makes of a program what a controller would read: written and read again.
+        tell: called with what is being done.
+
+    Raises:
+        InputError: no zone may change, or the cell does not fit the program.
+        MotionError: the program cannot be driven, or does not keep the clearance as it is.
+    """
+    return _Maximization(controller, program, cell, options or ZoneOptions(), tell).run(read_back)
+
+
+class _Maximization:
+    """One run.
+
+    Args:
+        controller, program, cell, options, tell: as above.
+    """
+
+    def __init__(
+        self, controller: Controller, program: Program, cell: Cell, options: ZoneOptions, tell: Tell
+    ) -> None:
+        self._controller = controller
+        self._program = program
+        self._options = options
+        self._tell = tell
+        self._wanted = cell.clearance if options.clearance is None else options.clearance
+        self._scenes: SceneOf = scenes_of(cell)
+
+    def run(self, read_back: ReadBack) -> ZoneSolution:
+        """All of it."""
+        options, program = self._options, self._program
+        self._tell("looking at the program as it is")
+        freed = dict.fromkeys(options.freed, options.pattern)
+        points = find_points(
+            self._controller, program, options.start, freed, options.kept, options.apart
+        )
+        before = self._controller.run(program, options.start)
+        proof = self._certified(before)
+        check_start(self._controller, before, self._scenes, proof, options.residual)
+        found, zones = self._grown(points, before)
+        self._tell("certifying the new program")
+        repair = Repair(points, program, zones, options.rounding)
+        notes: dict[Note, None] = dict.fromkeys(points.notes)
+        after, certificate = self._proven(repair, (before, proof), read_back, notes)
+        return ZoneSolution(
+            program,
+            after.program if repair.changed else program,
+            measure(self._controller, before, proof),
+            measure(self._controller, after, certificate),
+            certificate,
+            (*notes, *scene_notes(self._scenes, program)),
+            zones=changes(points, program, repair.zones, found),
+        )
+
+    def _proven(
+        self,
+        repair: Repair,
+        given: tuple[Run, Certificate],
+        read_back: ReadBack,
+        notes: dict[Note, None],
+    ) -> tuple[Run, Certificate]:
+        """The new program driven, and its certificate; zones are made smaller as needed.
+
+        It is no slower than the one that was given.
+        """
+        while repair.changed:
+            after = self._as_read(repair, read_back, notes)
+            if after is None:
+                continue
+            certificate = self._certified(after)
+            if not certificate.proven and repair.refused(after, certificate):
+                continue
+            if is_slower(given[0], after):
+                if not repair.slower(given[0], after):
+                    repair.give_up()
+            elif certificate.proven or not given[1].proven:
+                return after, certificate
+            else:
+                repair.give_up()
+        return given
+
+    def _as_read(self, repair: Repair, read_back: ReadBack, notes: dict[Note, None]) -> Run | None:
+        """The new program as read from its text, driven; None where it cannot be.
+
+        Zones that the text has no place for, or that cannot be driven, are then what they were.
+        """
+        try:
+            written = read_as_written(self._program, repair.program, read_back)
+        except FlybyError as error:
+            notes[Note(f"no zone is changed, as none can be written: {error}")] = None
+            repair.give_up()
+            return None
+        notes.update(dict.fromkeys(written.notes))
+        repair.hold(i for i, _ in written.refused)
+        if not repair.changed:
+            return None
+        try:
+            return self._controller.run(written.program, self._options.start)
+        except MotionError as error:
+            if not repair.undrivable(error.move):
+                repair.give_up()
+            return None
+
+    def _rules(self, points: Points) -> Rules:
+        return Rules(points.route, self._controller.model)
+
+    def _certified(self, run: Run) -> Certificate:
+        return certify(
+            self._controller,
+            run,
+            self._scenes,
+            self._wanted,
+            self._options.residual,
+            resolution=RESOLUTION,
+        )
+
+    def _grown(self, points: Points, before: Run) -> tuple[dict[int, Found], dict[int, Zone]]:
+        """What was found at each corner, and the zones that come of it.
+
+        They leave room for how far smoothing in time takes the links off the path. Larger zones may
+        make that more: then they grow anew, with that much room.
+        """
+        moves = points.route.moves
+        strays = segment_strays(self._controller, before, moves)
+        trials = Neighbourhoods(self._controller.robot, points.route, self._controller.model)
+        while True:
+            found = self._search(points, trials, strays)
+            rules, rounding = self._rules(points), self._options.rounding
+            zones = settle(points, self._program, trials, rules, found, rounding)
+            if _INTERRUPTED in found.values() or not strays.any():
+                return found, zones
+            program = with_zones(self._program, points, zones)
+            try:
+                run = self._controller.run(program, self._options.start)
+            except MotionError:
+                return found, zones  # Some of them go together badly: these are put back.
+            needed = segment_strays(self._controller, run, moves)
+            if (needed <= strays).all():
+                return found, zones
+            strays = np.where(needed > strays, _AIM * needed, strays)
+
+    def _search(
+        self, points: Points, trials: Neighbourhoods, strays: FloatArray
+    ) -> dict[int, Found]:
+        """Every zone for itself."""
+        rules = self._rules(points)
+        looks = self._looks(points, strays)
+        searches: dict[int, Asking] = {}
+        zones: dict[int, ZoneOf] = {}
+        for corner, largest in passable(trials, rules, points.growths).items():
+            sides = looks[corner], looks[corner + 1]
+            growth = points.growths[corner]
+            searches[corner], zones[corner] = self._one(growth, sides, largest)
+        count = len(searches)
+        self._tell(f"growing {count} zones")
+        found = drive(
+            trials, searches, zones, lambda done: self._tell(f"{done} of {count} zones are grown")
+        )
+        return {corner: found.get(corner, _INTERRUPTED) for corner in searches}
+
+    def _one(self, growth: Growth, sides: Sides, largest: float) -> tuple[Asking, ZoneOf]:
+        """The search at one corner, and what its sizes mean."""
+        predefined = self._options.rounding.predefined
+        if predefined and isinstance(growth.pattern, Radius):
+            allowed = choices(predefined, largest)
+            by_size: Mapping[float, Zone] = {zone.tcp: zone for zone in allowed}
+            return choose(sides, allowed), by_size.__getitem__
+        return Search(sides, largest, self._options.tolerance).run(), growth.zone
+
+    def _looks(self, points: Points, strays: FloatArray) -> list[Clearing]:
+        """What each segment is looked at by."""
+        tools = (self._program.moves[index].tool for index in points.route.moves)
+        return [
+            Clearing(self._scenes(tool), self._wanted, stray, self._options.residual)
+            for tool, stray in zip(tools, strays, strict=True)
+        ]

@@ -1,0 +1,55 @@
+"""What a user may ask of zone maximisation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from ....core.errors import InputError
+from ....core.program.target import JointTarget
+from ....core.program.zone import Radius
+from ..rounding import Rounding
+from .search import TOLERANCE
+from .sizes import GRADED
+
+_ROUNDING = Rounding()
+
+
+@dataclass(frozen=True)
+class ZoneOptions:
+    """How zones are made larger.
+
+    Args:
+        clearance: m that all bodies keep from each other; None for the cell's own.
+        residual: m by which the real robot may stray from the emulated one.
+        freed: indices of moves that end in a stop and may be passed instead.
+        pattern: proportions of the zones that freed stops get.
+        kept: indices of moves whose zone stays as it is.
+        apart: whether zones that the source states in one datum may become different ones.
+        rounding: of the new zones, as the program's language writes them, or to a vendor's
+            predefined ones.
+        tolerance: share of the first failing size by which a zone may stay below it.
+        start: where the robot stands; None for the program's own start.
+
+    Raises:
+        InputError: a number is out of range.
+    """
+
+    clearance: float | None = None
+    residual: float = 0.0
+    freed: Collection[int] = ()
+    pattern: Radius = GRADED
+    kept: Collection[int] = ()
+    apart: bool = False
+    rounding: Rounding = _ROUNDING
+    tolerance: float = TOLERANCE
+    start: JointTarget | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("clearance", "residual"):
+            value = getattr(self, name)
+            if value is not None and not 0.0 <= value < math.inf:
+                raise InputError(f"the {name} must be zero or more metres, not {value:g}")
+        if not 1e-4 <= self.tolerance <= 0.5:
+            raise InputError(f"the tolerance lies between 0.0001 and 0.5, not {self.tolerance:g}")

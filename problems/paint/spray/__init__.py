@@ -1,0 +1,1 @@
+"""The paint gun: its footprint, its trajectory, its outputs."""

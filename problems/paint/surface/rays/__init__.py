@@ -1,0 +1,1 @@
+"""Rays against triangles: a compiled tree of boxes, or Embree."""

@@ -1,0 +1,1 @@
+"""Trajectories for an even coat: the best speeds along a path, and the whole trajectory."""

@@ -1,0 +1,94 @@
+"""Accelerations along the path that rise and fall over a while."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flyby.core.errors import InputError
+from flyby.core.motion.command.ramps import stamped_motion
+from flyby.core.motion.model.motion_model.motion_model import MotionModel, load_motion_model
+from flyby.core.program.move import MoveL
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.zone import FINE, Radius
+
+
+def program(arm, *zones) -> Program:
+    speed = Speed(tcp=0.5, reorientation=10.0)
+    places = ((1, 0, 0), (1, 1, 0), (0, 1, 0.4))
+    moves = tuple(
+        MoveL(arm.target(place), speed, zone) for place, zone in zip(places, zones, strict=True)
+    )
+    return Program(moves, start=arm.start)
+
+
+def off_the_path(motion_q: np.ndarray, path_q: np.ndarray) -> float:
+    """How far (rad) configurations are from a dense polyline of others at most."""
+    start, step = path_q[:-1], np.diff(path_q, axis=0)
+    length = np.maximum(np.sum(step**2, axis=1), 1e-30)
+    worst = 0.0
+    for q in motion_q:
+        share = np.clip(np.sum((q - start) * step, axis=1) / length, 0.0, 1.0)
+        worst = max(worst, float(np.min(np.abs(start + share[:, None] * step - q).max(axis=1))))
+    return worst
+
+
+@settings(max_examples=8, deadline=None)
+@given(ramp=st.floats(0.005, 0.08))
+def test_a_ramp_takes_its_time_and_leaves_the_path_alone(arm, ramp) -> None:
+    driven = program(arm, Radius(0.2 * arm.leg), FINE, FINE)
+    plain = arm.controller(MotionModel())
+    sudden = plain.stamp(driven, plain.plan(driven))
+    controller = arm.controller(MotionModel(ramp=ramp))
+    timing = controller.stamp(driven, controller.plan(driven))
+    # One inner stop, and the end, are waited for.
+    assert timing.duration == pytest.approx(sudden.duration + 2 * ramp)
+    motion = stamped_motion(timing)
+    np.testing.assert_allclose(motion.q[[0, -1]], sudden.path.q[[0, -1]], atol=1e-9)
+    assert not motion.dq[[0, -1]].any()
+    dense = sudden.states_at(np.linspace(0.0, sudden.duration, 20000))[0]
+    assert off_the_path(motion.q[::20], dense) < 1e-6
+
+
+@settings(max_examples=6, deadline=None)
+@given(ramp=st.floats(0.01, 0.06))
+def test_acceleration_along_a_line_rises_and_falls_over_the_ramp(abb, ramp) -> None:
+    """Its change is at most twice the acceleration over the ramp, in m/s³."""
+    driven = program(abb, FINE, FINE, FINE)
+    timing = (c := abb.controller(MotionModel(ramp=ramp))).stamp(driven, c.plan(driven))
+    motion = stamped_motion(timing)
+    ddq = np.gradient(motion.dq, motion.t, axis=0)
+    jerk = np.gradient(ddq, motion.t, axis=0)
+    most = abb.robot.limits.acceleration
+    assert (np.abs(ddq).max(axis=0) <= 1.05 * most).all()
+    assert (np.abs(jerk).max(axis=0) <= 2.1 * most / ramp + 5.0).all()
+
+
+def test_a_run_is_at_rest_at_its_ends(arm) -> None:
+    driven = program(arm, Radius(0.2 * arm.leg), FINE, FINE)
+    model = MotionModel(ramp=0.03, smoothing=(0.04, 0.04))
+    made = arm.controller(model).run(driven, period=0.002).trajectory
+    np.testing.assert_allclose(made.q[0], arm.home, atol=1e-9)
+    assert np.abs(made.dq[[0, -1]]).max() < 1e-3
+    speed = np.gradient(made.q, made.t, axis=0)[2:-2]
+    assert np.abs(speed - made.dq[2:-2]).max() < 0.01 * np.abs(made.dq).max()
+
+
+def test_less_jerk_takes_a_longer_ramp(abb) -> None:
+    model = MotionModel(ramp=0.02)
+    assert model.ramp_at(0.5) == pytest.approx(0.04)
+
+
+def test_a_file_states_its_ramp(tmp_path) -> None:
+    path = tmp_path / "motion.toml"
+    path.write_text("[time]\nramp_s = 0.03\n", "utf-8")
+    model = load_motion_model(path)
+    assert model.ramp == 0.03
+    assert "time.ramp_s" in model.figures
+    assert "time.ramp_s" not in MotionModel().figures
+    path.write_text("[time]\nramp_s = -0.03\n", "utf-8")
+    with pytest.raises(InputError, match=r"time\.ramp_s"):
+        load_motion_model(path)

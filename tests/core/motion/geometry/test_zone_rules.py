@@ -1,0 +1,205 @@
+"""How zones of neighbouring waypoints share a segment, by vendor rule, with the reverse."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flyby.core.errors import MotionError
+from flyby.core.motion.geometry.segments import EndsGradient, SegmentsGradient, make_segments
+from flyby.core.motion.geometry.zones import (
+    JOINT_CORNER,
+    POSITION,
+    STOP,
+    TCP_CORNER,
+    TURNING,
+    ZoneGradient,
+    ZonePlanner,
+    pull_corners,
+)
+from flyby.core.motion.model.motion_model.motion_model import MotionModel, OrientationZone, Overlap
+from flyby.core.program.move import MoveC, MoveJ, MoveL
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.tool import Tool
+from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction
+from flyby.core.spatial.pose import Pose
+
+SPEED = Speed(tcp=0.2, reorientation=3.0)
+HALF, SHRINK, SKIP = (MotionModel(overlap=overlap) for overlap in Overlap)
+OWN = MotionModel(orientation_zone=OrientationZone.OWN)
+RADII = st.floats(0.05, 1.5)
+
+
+def chain(arm, *radii) -> Program:
+    """A square of lines one leg long with these zones (in legs) at its inner corners."""
+    offsets = [(1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 0.3), (0.8, 0.2, 0.5)][: len(radii) + 1]
+    zones = [*(Radius(r * arm.leg) for r in radii), FINE]
+    moves = (MoveL(arm.target(o), SPEED, z) for o, z in zip(offsets, zones, strict=True))
+    return Program(tuple(moves), start=arm.start)
+
+
+@settings(max_examples=15, deadline=None)
+@given(first=RADII, second=RADII)
+def test_half_way_is_as_far_as_a_zone_reaches(abb, first, second) -> None:
+    path = abb.controller(HALF).plan(chain(abb, first, second))
+    np.testing.assert_allclose(path.corners.reach[0, POSITION], min(first, 0.5), rtol=1e-9)
+    np.testing.assert_allclose(path.corners.reach[1, POSITION], min(second, 0.5), rtol=1e-9)
+    cut = [note for note in path.notes if "cut to" in note.message]
+    assert len(cut) == (first > 0.5 + 1e-6) + (second > 0.5 + 1e-6)
+
+
+@settings(max_examples=15, deadline=None)
+@given(first=RADII.filter(lambda r: r <= 1), second=RADII.filter(lambda r: r <= 1))
+def test_overlapping_blends_shrink_in_proportion_until_they_touch(ur, first, second) -> None:
+    path = ur.controller(SHRINK).plan(chain(ur, first, second))
+    reach = path.corners.reach[:, POSITION]
+    factor = min(1.0, 1.0 / (first + second))
+    np.testing.assert_allclose(reach[0], first * factor, rtol=1e-9)
+    np.testing.assert_allclose(reach[1], second * factor, rtol=1e-9)
+    assert bool([n for n in path.notes if "shrunk" in n.message]) == (factor < 1.0)
+
+
+def test_touching_blends_leave_no_sliver_between_them(ur) -> None:
+    path = ur.controller(SHRINK).plan(chain(ur, 0.8, 0.8))
+    assert path.corners.reach[:, POSITION].sum(1)[0] == pytest.approx(1.0)
+    assert np.diff(path.pieces.edge).min() > 1e-6 * ur.leg
+    run = ur.controller(SHRINK).run(chain(ur, 0.5, 0.5))
+    assert run.trajectory.position == pytest.approx(
+        ur.controller(HALF).run(chain(ur, 0.5, 0.5)).trajectory.position, abs=1e-9
+    )
+
+
+def test_the_later_of_two_overlapping_waypoints_is_left_out(ur) -> None:
+    controller = ur.controller(SKIP)
+    path = controller.plan(chain(ur, 0.6, 0.6, 0.1))
+    assert path.route.moves == (0, 2, 3)
+    assert ["left out" in note.message for note in path.notes] == [True]
+    assert path.notes[0].move == 1
+    apart = controller.plan(chain(ur, 0.4, 0.5, 0.1))
+    assert apart.route.moves == (0, 1, 2, 3)
+
+
+def test_the_zone_of_orientation_is_cut_at_half_way_by_itself(abb) -> None:
+    zone = Radius(0.1 * abb.leg, 0.9 * abb.leg, 0.9 * abb.leg, 0.1)
+    moves = (
+        MoveL(abb.target((1, 0, 0), (0, 0.3, 0)), SPEED, zone),
+        MoveL(abb.target((1, 1, 0)), SPEED, FINE),
+    )
+    path = abb.controller(OWN).plan(Program(moves, start=abb.start))
+    np.testing.assert_allclose(path.corners.reach[0, POSITION], 0.1)
+    np.testing.assert_allclose(path.corners.reach[0, TURNING], 0.5)
+    np.testing.assert_allclose(
+        abb.controller(HALF).plan(Program(moves, start=abb.start)).corners.reach[0], 0.1
+    )
+
+
+def test_what_space_a_corner_is_blended_in(abb) -> None:
+    zone, tool = Radius(0.1 * abb.leg), Tool("long", Pose((0.0, 0.0, 0.1)))
+    moves = (
+        MoveL(abb.target((1, 0, 0)), SPEED, zone),
+        MoveC(abb.target((1, 1, 0)), SPEED, zone, via=abb.target((1.3, 0.5, 0))),
+        MoveJ(abb.target((0, 1, 0)), SPEED, zone),
+        MoveJ(abb.target((0, 0.5, 0.4)), SPEED, zone),
+        MoveL(abb.target((0, 0, 0.4)), SPEED, zone),
+        MoveL(abb.target((0.5, 0, 0.4)), SPEED, zone, tool),
+        MoveL(abb.target((0.5, 0.5, 0.4)), SPEED, FINE, tool),
+    )
+    kind = abb.controller().plan(Program(moves, start=abb.start)).corners.kind
+    J = JOINT_CORNER
+    assert kind.tolist() == [TCP_CORNER, J, J, J, J, TCP_CORNER]
+
+
+def test_a_pure_reorientation_blends_by_its_angle(abb) -> None:
+    moves = (
+        MoveL(abb.target((0, 0, 0), (0.4, 0, 0)), SPEED, Radius(0.02, 0.02, 0.02, angle=0.1)),
+        MoveL(abb.target((0, 0, 0), (0.4, 0.4, 0)), SPEED, FINE),
+    )
+    path = abb.controller().plan(Program(moves, start=abb.start))
+    turn = np.linalg.norm(path.segments.turn_b, axis=1)
+    np.testing.assert_allclose(path.corners.reach[0, TURNING] * turn, 0.1)
+
+
+def test_a_vendor_may_stop_between_a_move_and_a_pure_reorientation(abb) -> None:
+    moves = (
+        MoveL(abb.target((1, 0, 0)), SPEED, Radius(0.02, 0.02, 0.02, angle=0.1)),
+        MoveL(abb.target((1, 0, 0), (0, 0.4, 0)), SPEED, FINE),
+    )
+    program = Program(moves, start=abb.start)
+    assert abb.controller().plan(program).corners.kind[0] == TCP_CORNER
+    stopping = abb.controller(MotionModel(stops_at_pure_reorientation=True)).plan(program)
+    assert stopping.corners.kind[0] == STOP
+    assert "stops here" in stopping.notes[0].message
+
+
+@pytest.mark.parametrize("zone", [SpeedFraction(0.5), Angle(0.1)])
+def test_zones_that_are_not_emulated_name_the_move(abb, zone) -> None:
+    moves = (
+        MoveJ(abb.target((1, 0, 0)), SPEED, zone),
+        MoveL(abb.target((1, 1, 0)), SPEED, FINE),
+    )
+    with pytest.raises(MotionError, match=r"move 1.*use a distance"):
+        abb.controller().plan(Program(moves, start=abb.start))
+
+
+ZONES = [Radius(0.04, 0.06, 0.05, 0.1), ContourFraction(0.6), Angle(0.05), Radius(0.07, 0.2)]
+
+
+@pytest.mark.parametrize("model", [HALF, SHRINK, OWN])
+def test_the_reverse_of_the_reaches_is_the_gradient(abb, model) -> None:
+    """Over radii, and over everything that the segments are made of."""
+    controller = abb.controller(model)
+    t = abb.target
+    moves = (
+        MoveL(t((1, 0, 0), (0, 0.2, 0)), SPEED, ZONES[0]),
+        MoveC(t((1, 1, 0)), SPEED, ZONES[1], via=t((1.3, 0.5, 0))),
+        MoveL(t((0.4, 1, 0.2), (0.3, 0, 0)), SPEED, ZONES[2]),
+        MoveL(t((0.2, 0.5, 0.4)), SPEED, ZONES[3]),
+        MoveJ(t((0, 0, 0.6)), SPEED, ZONES[0]),
+        MoveJ(t((0.6, 0, 0.2)), SPEED, FINE),
+    )
+    route = controller.plan(Program(moves, start=abb.start)).route
+    ends = route.ends
+    weights = np.random.default_rng(0).normal(size=(5, 3, 2))
+
+    def reaches(zones):
+        segments = make_segments(ends)
+        planner = ZonePlanner(segments, route.chains, model, route.moves)
+        return segments, planner.corners(zones)
+
+    def total(zones) -> float:
+        return float(np.sum(weights * reaches(zones)[1].reach))
+
+    segments, corners = reaches(route.zones)
+    bar, out, by_zone = (
+        SegmentsGradient.zeros(segments),
+        EndsGradient.zeros(ends),
+        ZoneGradient.zeros(5),
+    )
+    pull_corners(corners, weights, bar, out, by_zone)
+    h = 1e-6
+    zones = list(route.zones)
+    for i, name in ((0, "tcp"), (3, "tcp"), (4, "tcp"), (0, "reorientation"), (2, "angle")):
+        values = []
+        for step in (h, -h):
+            changed = {
+                field: getattr(zones[i], field) for field in type(zones[i]).__dataclass_fields__
+            }
+            changed[name] += step
+            values.append(total([*zones[:i], type(zones[i])(**changed), *zones[i + 1 :]]))
+        numeric = (values[0] - values[1]) / (2 * h)
+        assert getattr(by_zone, name)[i] == pytest.approx(numeric, rel=1e-5, abs=1e-6), (i, name)
+    # Joint moves' ends, through the first exit from the sphere.
+    for k in (4, 5):
+        for i in np.ndindex(2, 6):
+            old = ends.q[k][i]
+            ends.q[k][i] = old + h
+            above = total(zones)
+            ends.q[k][i] = old - h
+            below = total(zones)
+            ends.q[k][i] = old
+            numeric = (above - below) / (2 * h)
+            assert out.q[k][i] == pytest.approx(numeric, rel=1e-4, abs=1e-5)
+    assert np.abs(out.q[4:]).max() > 0.01

@@ -1,0 +1,94 @@
+"""Where figures come from: what is read is written, and what is malformed refused by its key."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flyby.core.errors import InputError
+from flyby.core.motion.model.motion_model.provenance import (
+    FitRecord,
+    Provenance,
+    provenance_text,
+    read_provenance,
+)
+
+WORD = st.text("ab \"'\\\n.é", min_size=1, max_size=8)
+DETAILS = st.dictionaries(st.sampled_from(["runs", "loss", "a b"]), st.integers() | WORD)
+FITS = st.builds(FitRecord, st.sampled_from("ab"), WORD, WORD, DETAILS)
+NUMBERS = st.floats(-1e9, 1e9)
+SOURCED = st.builds(Provenance, st.sampled_from(["published", "assumed"]), WORD, details=DETAILS)
+
+
+@st.composite
+def fitted(draw: st.DrawFn) -> Provenance:
+    names = tuple(draw(st.lists(WORD, max_size=3)))
+    intervals = tuple(tuple(sorted(draw(st.tuples(NUMBERS, NUMBERS)))) for _ in names)
+    return Provenance("fitted", "", draw(FITS), names, intervals, draw(DETAILS))
+
+
+def read(text: str) -> dict[str, Provenance]:
+    data = tomllib.loads(text)
+    return read_provenance(data.get("fits", {}), data.get("provenance", {}))
+
+
+def nameless(origin: Provenance) -> Provenance:
+    """Without the name of the fit, which is the file's own."""
+    return origin if origin.fit is None else replace(origin, fit=replace(origin.fit, name=""))
+
+
+@given(st.dictionaries(WORD, SOURCED | fitted(), max_size=6))
+def test_what_is_written_is_read(origins: dict[str, Provenance]) -> None:
+    made = read(provenance_text(origins))
+    for key, origin in origins.items():
+        assert nameless(made[key]) == nameless(origin)
+    # Each fit is described once, whatever figures came of it.
+    assert len({id(one.fit) for one in made.values() if one.fit}) == len(
+        {repr(one.fit) for one in origins.values() if one.fit}
+    )
+    assert read(provenance_text(made)) == made
+
+
+FIT = "[fits.one]\nsource = 's'\ncommand = 'c'\n"
+WRONG = {
+    "[fits]\none = 3": r"fits\.one: a table",
+    "[fits.one]\ncommand = 'c'": r"fits\.one: the source is missing",
+    "[fits.one]\nsource = 's'": r"fits\.one: the command is missing",
+    "[fits.one]\nsource = ['s']\ncommand = 'c'": r"fits\.one: source: a text",
+    "[provenance]\nx = 3": r"provenance\.x: a table",
+    "[provenance]\nx = { source = 's' }": r"provenance\.x: the status is missing",
+    "[provenance]\nx = { status = 3 }": r"provenance\.x: status: a text",
+    "[provenance]\nx = { status = 'guessed', source = 's' }": r"provenance\.x: unknown status",
+    "[provenance]\nx = { status = 'assumed' }": r"provenance\.x: the source is missing",
+    "[provenance]\nx = { status = 'fitted', source = 's' }": r"provenance\.x: .*by = ",
+    "[provenance]\nx = { status = 'fitted', by = 'one' }": r"provenance\.x: unknown fit.*'one'",
+    f"{FIT}[provenance]\nx = {{ status = 'fitted', by = 'on' }}": r"did you mean 'one'",
+    f"{FIT}[provenance]\nx = {{ status = 'assumed', by = 'one', source = 's' }}": r"\.x: .*by = ",
+    f"{FIT}[provenance]\nx = {{ status = 'fitted', by = 'one', source = 's' }}": "said by its fit",
+    f"{FIT}[provenance]\nx = {{ status = 'fitted', by = 'one', fitted = 'k' }}": r"x: fitted: a l",
+    f"{FIT}[provenance]\nx = {{ status = 'fitted', by = 'one', fitted = [1] }}": r"x: fitted: a l",
+    f"{FIT}[provenance]\nx = {{ status = 'fitted', by = 'one', interval = [[0, 1]] }}": (
+        "1 intervals of 0"
+    ),
+    f"{FIT}[provenance]\nx = {{ status = 'fitted', by = 'one', interval = [[1, 0]] }}": "pairs",
+    f"{FIT}[provenance]\nx = {{ status = 'fitted', by = 'one', interval = [[0, 'a']] }}": "pairs",
+}
+
+
+@pytest.mark.parametrize("text", WRONG)
+def test_what_is_malformed_is_named(text: str) -> None:
+    with pytest.raises(InputError, match=WRONG[text]):
+        read(text)
+
+
+def test_fits_of_one_name_are_told_apart() -> None:
+    origins = {
+        key: Provenance("fitted", fit=FitRecord("logs", source, "c"))
+        for key, source in (("x", "mine"), ("y", "the vendor's"), ("z", "mine"))
+    }
+    made = read(provenance_text(origins))
+    assert [made[key].fit.name for key in "xyz" if made[key].fit] == ["logs", "logs-2", "logs"]

@@ -1,0 +1,1 @@
+"""What tests and benchmarks hold the package against; no part of the wheel."""

@@ -1,0 +1,1 @@
+"""Surfaces to be painted, made by formulas."""

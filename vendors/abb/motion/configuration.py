@@ -1,0 +1,104 @@
+"""ABB's label for an inverse-kinematics solution: confdata."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....core.errors import InputError
+from ....core.program.target import Configuration
+from ....core.robot.model import Robot
+from ....core.robot.posture import posture
+
+EDGE_ANGLE = 1e-3
+"""rad. Programs hold quaternions of five to seven digits, so an axis that was taught at 90° comes
+back from inverse kinematics off by up to 1e-4 rad. Solutions that share cfx lie whole turns
+apart, so a generous edge never confuses them."""
+
+EDGE_DISTANCE = 1e-3
+"""m, the same for the wrist's centre beside axis 1 and beside the lower arm."""
+
+_QUADRANT = math.pi / 2
+
+
+@dataclass(frozen=True, slots=True)
+class AbbConfiguration:
+    """``[cf1, cf4, cf6, cfx]`` of a six-axis arm.
+
+    cf1, cf4 and cf6 are the quadrants of axes 1, 4 and 6: floor(angle / 90°), so 0 for 0..90°, -1
+    for -90..0° ("RAPID Reference Manual", confdata). cfx numbers the eight postures:
+
+        4 · (wrist centre behind axis 1) + 2 · (behind the lower arm) + (axis 5 negative)
+
+    (tables of RobotComponents, ARTE and others from the manual's newer editions; older arms with
+    fewer solutions write 0).
+
+    Args:
+        edges: of a solution's label: which of axes 1, 4, 6 stand on the lower edge of their
+            quadrant, so that the quadrant below fits as well.
+        undecided: of a solution's label: bits of cfx whose quantity is about zero.
+    """
+
+    cf1: int
+    cf4: int
+    cf6: int
+    cfx: int
+    edges: tuple[bool, bool, bool] = field(default=(False, False, False), compare=False, repr=False)
+    undecided: int = field(default=0, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.cfx <= 7:
+            raise InputError(f"cfx numbers eight postures from 0 to 7, not {self.cfx}")
+
+    def __str__(self) -> str:
+        """As RAPID writes it."""
+        return f"[{self.cf1},{self.cf4},{self.cf6},{self.cfx}]"
+
+    @property
+    def exact(self) -> bool:
+        """True: the controller goes to this solution or reports an error."""
+        return True
+
+    def mismatch(self, label: Configuration) -> float:
+        """Quadrants between the axes, plus the bits in which cfx differs; 0 for a match.
+
+        Raises:
+            InputError: the label is another vendor's.
+        """
+        if not isinstance(label, AbbConfiguration):
+            raise InputError(f"an ABB configuration cannot be compared with {label}")
+        pairs = zip(self._quadrants(), label._quadrants(), strict=True)
+        turns = sum(min(abs(a - b) for a in mine for b in its) for mine, its in pairs)
+        decided = ~(self.undecided | label.undecided)
+        return float(turns + ((self.cfx ^ label.cfx) & decided).bit_count())
+
+    def _quadrants(self) -> list[tuple[int, ...]]:
+        """For axes 1, 4 and 6 the quadrants that fit."""
+        quadrants = zip((self.cf1, self.cf4, self.cf6), self.edges, strict=True)
+        return [(cf, cf - 1) if edge else (cf,) for cf, edge in quadrants]
+
+
+def label(robot: Robot, q: NDArray[np.float64]) -> AbbConfiguration | None:
+    """The label of joint values (N,) rad; None for an arm without a spherical wrist."""
+    at = posture(robot, q)
+    if at is None:
+        return None
+    quarters = [float(q[axis]) / _QUADRANT for axis in (0, 3, 5)]
+    cf1, cf4, cf6 = (math.floor(quarter + EDGE_ANGLE / _QUADRANT) for quarter in quarters)
+    edges = [abs(v - round(v)) * _QUADRANT <= EDGE_ANGLE for v in quarters]
+    bits = (
+        (at.shoulder, EDGE_DISTANCE, 4),
+        (at.elbow, EDGE_DISTANCE, 2),
+        (at.wrist, EDGE_ANGLE, 1),
+    )
+    return AbbConfiguration(
+        cf1,
+        cf4,
+        cf6,
+        cfx=sum(bit for value, _, bit in bits if value < 0),
+        edges=(edges[0], edges[1], edges[2]),
+        undecided=sum(bit for value, edge, bit in bits if abs(value) <= edge),
+    )

@@ -1,0 +1,251 @@
+"""Functions that ask the emulated robot: where it stands, with which tool, in which frame.
+
+"RAPID Reference Manual", functions CRobT, CJointT, CPos, CTool, CWObj, CalcRobT, CalcJointT,
+ORobT, MirPos, CSpeedOverride. Positions are those of the last commanded target (`Whereabouts`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ....core.errors import FlybyError, MotionError, SourceError
+from ....core.program.tool import WORLD, Tool, WorkObject
+from ....core.spatial.pose import Pose
+from ....core.spatial.rotation import quaternion_from_matrix
+from ..syntax.tree import Call, Expression, Invoke
+from ..values.arguments import check_count
+from ..values.function_calls import Special
+from ..values.records import Record, pose_record, tool_record, work_object_record
+from ..values.scope import Scope
+from ..values.types import (
+    JOINTTARGET,
+    POSE,
+    ROBTARGET,
+    TOOLDATA,
+    WOBJDATA,
+    Type,
+    Unknown,
+    Value,
+    find_unknown,
+)
+
+if TYPE_CHECKING:
+    from ..run.interpreter import Interpreter
+
+FULL_OVERRIDE = 100.0
+
+
+class StateFunctions:
+    """The functions, by lower-case name.
+
+    Args:
+        run: the program run that they ask.
+    """
+
+    def __init__(self, run: Interpreter) -> None:
+        self._run = run
+
+    def table(self) -> dict[str, Special]:
+        """name → function."""
+        return {
+            "crobt": self._robtarget,
+            "cpos": self._position,
+            "cjointt": self._jointtarget,
+            "ctool": lambda call, scope: tool_record(self._run.whereabouts.tool),
+            "cwobj": lambda call, scope: work_object_record(self._run.whereabouts.work_object),
+            "calcrobt": self._forward,
+            "calcjointt": self._backward,
+            "orobt": self._undisplaced,
+            "mirpos": self._mirrored,
+            "cspeedoverride": lambda call, scope: FULL_OVERRIDE,
+        }
+
+    # ---------------------------------------------------------------- what it asks
+
+    def _robtarget(self, call: Call, scope: Scope) -> Value:
+        if any(a.option in ("taskref", "taskname") for a in call.arguments):
+            return self._unknown(call, "that of another task")
+        tool = self._tool(self._option(call, "tool"), scope)
+        frame = self._frame(self._option(call, "wobj"), scope)
+        if tool is None or frame is None:
+            return self._unknown(call, "in a tool or frame that is not known")
+        where = self._run.whereabouts
+        displacement = self._run.settings.displacement
+        record = self._asked(call, lambda: where.robtarget(tool, frame, displacement))
+        return self._unknown(call, None) if record is None else record
+
+    def present_robtarget(
+        self, tool: Expression | None, frame: Expression | None, scope: Scope, invoke: Invoke
+    ) -> Record:
+        """Where the robot stands, without program displacement.
+
+        Raises:
+            SourceError: it is not known.
+        """
+        a, b = self._tool(tool, scope), self._frame(frame, scope, None if tool is None else WORLD)
+        if a is not None and b is not None:
+            where = self._run.whereabouts
+            record = self._asked(invoke, lambda: where.robtarget(a, b, None))
+            if record is not None:
+                return record
+        raise SourceError(
+            f"{invoke.text} takes the robot's present position, which is not known here: name the "
+            "robot, or give the position with \\ExeP",
+            invoke.span,
+        )
+
+    def _position(self, call: Call, scope: Scope) -> Value:
+        value = self._robtarget(call, scope)
+        return value if isinstance(value, Unknown) else self._tuple(value)[0]
+
+    def _jointtarget(self, call: Call, scope: Scope) -> Value:
+        record = self._asked(call, self._run.whereabouts.jointtarget)
+        return self._unknown(call, None) if record is None else record
+
+    def _forward(self, call: Call, scope: Scope) -> Value:
+        """``CalcRobT(jointtarget, Tool [\\WObj])``"""
+        joints, tool_given = self._required(call, 2)
+        value = self._run.evaluator.evaluate(joints, scope)
+        tool = self._tool(tool_given, scope)
+        frame = self._frame(self._option(call, "wobj"), scope, WORLD)
+        if tool is None or frame is None or find_unknown(value) is not None:
+            return self._unknown(call, "of values that are not known")
+        self._check(value, JOINTTARGET, call)
+        target = self._run.convert.joint_target(value, None, False, call.span)
+        where = self._run.whereabouts
+        record = self._asked(call, lambda: where.forward(target, tool, frame))
+        return self._unknown(call, None) if record is None else record
+
+    def _backward(self, call: Call, scope: Scope) -> Value:
+        """``CalcJointT(robtarget, Tool [\\WObj])``"""
+        pose, tool_given = self._required(call, 2)
+        value = self._run.evaluator.evaluate(pose, scope)
+        tool = self._tool(tool_given, scope)
+        frame = self._frame(self._option(call, "wobj"), scope, WORLD)
+        if tool is None or frame is None or find_unknown(value) is not None:
+            return self._unknown(call, "of values that are not known")
+        self._check(value, ROBTARGET, call)
+        target = self._run.convert.pose_target(value, None, True, call.span)
+        where = self._run.whereabouts
+        record = self._asked(call, lambda: where.backward(target, tool, frame))
+        return self._unknown(call, None) if record is None else record
+
+    # ------------------------------------------------------------------- geometry
+
+    def _undisplaced(self, call: Call, scope: Scope) -> Value:
+        """``ORobT(point)``: as it is without program displacement."""
+        (point,) = self._required(call, 1)
+        value = self._run.evaluator.evaluate(point, scope)
+        displacement = self._run.settings.displacement
+        if displacement is None or find_unknown(value) is not None:
+            return value
+        self._check(value, ROBTARGET, call)
+        trans, rot, *rest = self._tuple(value)
+        moved = displacement @ self._run.convert.pose((trans, rot), call.span)
+        return (*pose_record(moved), *rest)
+
+    def _mirrored(self, call: Call, scope: Scope) -> Value:
+        """``MirPos(point, plane [\\WObj] [\\MirY])``: in the xy plane of a frame."""
+        point, plane = self._required(call, 2)
+        values = [self._run.evaluator.evaluate(e, scope) for e in (point, plane)]
+        frame = self._frame(self._option(call, "wobj"), scope, WORLD)
+        if frame is None or find_unknown(tuple(values)) is not None:
+            return self._unknown(call, "of values that are not known")
+        self._check(values[0], ROBTARGET, call)
+        mirror = self._plane(values[1], call)
+        trans, rot, *rest = self._tuple(values[0])
+        pose = self._run.convert.pose((trans, rot), call.span)
+        seen = mirror.inverse() @ frame.pose @ pose
+        keeps_y = not any(a.option == "miry" for a in call.arguments)
+        back = frame.pose.inverse() @ mirror @ _mirror(seen, keeps_y)
+        return (*pose_record(back), *rest)
+
+    def _plane(self, value: Value, call: Call) -> Pose:
+        if isinstance(value, tuple) and len(value) == len(WOBJDATA.components):
+            self._check(value, WOBJDATA, call)
+            _, _, _, user, frame = value
+            convert = self._run.convert
+            return convert.pose(user, call.span) @ convert.pose(frame, call.span)
+        self._check(value, POSE, call)
+        return self._run.convert.pose(value, call.span)
+
+    # -------------------------------------------------------------------- helpers
+
+    @staticmethod
+    def _asked(call: Call | Invoke, ask: Callable[[], Record | None]) -> Record | None:
+        try:
+            return ask()
+        except SourceError:
+            raise
+        except MotionError as error:
+            if error.span is None or error.move is None:
+                raise SourceError(f"{call.text}: {error.message}", call.span) from None
+            raise SourceError(
+                f"move {error.move + 1}: {error.message}; {call.text} at {call.span} asks where "
+                "the robot stands after it",
+                error.span,
+            ) from None
+        except FlybyError as error:
+            raise SourceError(f"{call.text}: {error}", call.span) from None
+
+    def _unknown(self, call: Call, why: str | None) -> Unknown:
+        if why is None:
+            unmoved = "the robot has not moved yet: give a start"
+            why = "name the robot" if self._run.robot is None else unmoved
+        key = self._run.evaluator.key(call.span)
+        return Unknown(f"the value of {call.text}() ({why})", call.span, key)
+
+    @staticmethod
+    def _option(call: Call, name: str) -> Expression | None:
+        return next((a.value for a in call.arguments if a.option == name), None)
+
+    @staticmethod
+    def _required(call: Call, count: int) -> list[Expression]:
+        found = [a.value for a in call.arguments if a.option is None and a.value is not None]
+        check_count(call.text, count, len(found), call.span)
+        return found
+
+    def _tool(self, given: Expression | None, scope: Scope) -> Tool | None:
+        if given is None:
+            return self._run.whereabouts.tool
+        found = self._run.evaluator.locate(given, scope)
+        if find_unknown(found.value) is not None:
+            return None
+        self._run.evaluator.check(found.value, TOOLDATA, "the tool", given.span)
+        return self._run.convert.tool(found, given)
+
+    def _frame(
+        self, given: Expression | None, scope: Scope, default: WorkObject | None = None
+    ) -> WorkObject | None:
+        if given is None:
+            return self._run.whereabouts.work_object if default is None else default
+        found = self._run.evaluator.locate(given, scope)
+        if find_unknown(found.value) is not None:
+            return None
+        self._run.evaluator.check(found.value, WOBJDATA, "the work object", given.span)
+        return self._run.convert.work_object(found, given)
+
+    def _check(self, value: Value, type_: Type, call: Call) -> None:
+        self._run.evaluator.check(value, type_, call.text, call.span)
+
+    @staticmethod
+    def _tuple(value: Value) -> Record:
+        assert isinstance(value, tuple)
+        return value
+
+
+def _mirror(pose: Pose, keeps_y: bool) -> Pose:
+    """A pose mirrored in the xy plane: the tool's z and one more axis are mirrored, and the third
+    one makes the frame right-handed."""
+    x, y, z = pose.position
+    flip = np.diag([1.0, 1.0, -1.0])
+    axes = flip @ pose.matrix()[:3, :3]
+    if keeps_y:
+        axes[:, 1] = np.cross(axes[:, 2], axes[:, 0])
+    else:
+        axes[:, 0] = np.cross(axes[:, 1], axes[:, 2])
+    w, i, j, k = (float(v) for v in quaternion_from_matrix(axes))
+    return Pose((x, y, -z), (w, i, j, k))

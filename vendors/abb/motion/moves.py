@@ -1,0 +1,382 @@
+"""Move instructions: their forms, and how their arguments become a move.
+
+Arguments: "RAPID Reference Manual", instructions MoveAbsJ, MoveC, MoveJ, MoveL.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from ....core.errors import SourceError, Span
+from ....core.program.event import Event
+from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from ....core.program.speed import Speed
+from ....core.program.target import JointTarget, PoseTarget
+from ....core.program.tool import WORLD, Load, Tool, WorkObject
+from ....core.program.zone import FINE, Zone
+from ....core.source.execution.provenance import Part
+from ..run.output import Sources
+from ..syntax.tree import Expression, Invoke, Name
+from ..values.arguments import Bound, bind
+from ..values.evaluator import Located
+from ..values.provenance import Literal, source_of_literal
+from ..values.records import PER_METRE, Record
+from ..values.scope import Scope
+from ..values.types import (
+    JOINTTARGET,
+    ROBTARGET,
+    SPEEDDATA,
+    TOOLDATA,
+    WOBJDATA,
+    ZONEDATA,
+    Type,
+    Unknown,
+    Value,
+)
+from .targets import undeclared
+
+if TYPE_CHECKING:
+    from ..run.interpreter import Interpreter
+
+_COMMON_OPTIONS = ("conc", "v", "t", "z", "inpos", "wobj", "tload", "corr", "id")
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """What a move instruction takes.
+
+    Args:
+        kind: ``joint``, ``linear``, ``circular``, ``absolute`` or ``external``, which leaves the
+            arm where it is.
+        names: of its required arguments in order. ``ToPoint`` (``ToJointPos``), ``CirPoint``,
+            ``Speed``, ``Zone`` and ``Tool`` are read here; without ``Zone`` it goes to a stop.
+        options: of its own.
+    """
+
+    kind: str
+    names: tuple[str, ...]
+    options: tuple[str, ...] = ()
+
+
+TO_POINT = ("ToPoint", "Speed", "Zone", "Tool")
+OVER_POINT = ("CirPoint", "ToPoint", "Speed", "Zone", "Tool")
+TO_JOINTS = ("ToJointPos", "Speed", "Zone", "Tool")
+
+FORMS = {
+    "movej": Form("joint", TO_POINT),
+    "movel": Form("linear", TO_POINT),
+    "movec": Form("circular", OVER_POINT),
+    "moveabsj": Form("absolute", TO_JOINTS, ("noeoffs",)),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _Common:
+    """What every move has, converted."""
+
+    speed: Speed
+    zone: Zone
+    tool: Tool
+    work_object: WorkObject
+    load: Load | None
+    speed_part: Part
+    zone_part: Part
+
+
+class _MoveReader:
+    """Reads one move instruction."""
+
+    def __init__(self, run: Interpreter, scope: Scope, bound: Bound) -> None:
+        self.run = run
+        self.scope = scope
+        self.bound = bound
+        self.record: Record = ()
+        _refuse_options(bound)
+
+    def pose_target(self, name: str, follow: bool) -> tuple[PoseTarget, Part]:
+        expression = self.bound.named(name)
+        found = self._found(expression, "target", ROBTARGET)
+        target = self.run.convert.pose_target(
+            found.value, _datum_name(found, expression), follow, expression.span
+        )
+        self.record = _record(found.value)
+        moved = self.run.settings.displacement is not None or self.run.settings.offsets is not None
+        source = None if moved else found.source
+        if source is None and found.source is not None:
+            self.run.evaluator.reads.by_expression(found.source, self.run.out.move_index)
+        return target, _part_of(expression.span, source)
+
+    def joint_target(self, arm_stays: bool) -> tuple[JointTarget, Part]:
+        expression = self.bound.named("ToJointPos")
+        found = self._found(expression, "target", JOINTTARGET)
+        name = _datum_name(found, expression)
+        offsets = "useeoffs" in self.bound.options or (
+            not arm_stays and "noeoffs" not in self.bound.options
+        )
+        target = self.run.convert.joint_target(
+            self._with_arm(found.value) if arm_stays else found.value,
+            name,
+            offsets,
+            expression.span,
+        )
+        self.record = _record(found.value)
+        moved = arm_stays or (offsets and self.run.settings.offsets is not None)
+        return target, _part_of(expression.span, None if moved else found.source)
+
+    def _with_arm(self, value: Value) -> Value:
+        """A jointtarget with the arm's present joint values."""
+        present = self.run.whereabouts.jointtarget()
+        if present is None:
+            raise SourceError(
+                f"{self.bound.text} leaves the arm where it is, and its joint values are not known "
+                "here: name the robot, or use MoveAbsJ before",
+                self.bound.span,
+            )
+        return (present[0], _record(value)[1])
+
+    def common(self) -> _Common:
+        tool = self._tool()
+        work_object = self._work_object()
+        if tool.robot_held == work_object.robot_held:
+            raise SourceError(
+                f"one of tool {tool.name} and work object {work_object.name} is held by the robot "
+                "(robhold) and the other stands still; here both are alike",
+                self.bound.span,
+            )
+        tool, load = self._loads(tool)
+        speed, speed_part = self._speed()
+        zone, zone_part = self._zone()
+        return _Common(speed, zone, tool, work_object, load, speed_part, zone_part)
+
+    def _found(self, expression: Expression, kind: str, type_: Type) -> Located:
+        found = self.run.evaluator.locate(expression, self.scope)
+        if isinstance(expression, Name) and found.cell is None and isinstance(found.value, Unknown):
+            raise undeclared(kind, expression, type_, self.scope)
+        use = f"the {kind} of {self.bound.text}"
+        self.run.evaluator.check_located(found, type_, use, expression.span)
+        return found
+
+    def _tool(self) -> Tool:
+        if "Tool" not in self.bound.names:
+            return self.run.whereabouts.tool
+        expression = self.bound.named("Tool")
+        return self.run.convert.tool(self._found(expression, "tool", TOOLDATA), expression)
+
+    def _work_object(self) -> WorkObject:
+        if "Tool" not in self.bound.names:
+            return self.run.whereabouts.work_object
+        if "wobj" not in self.bound.options:
+            return WORLD
+        expression = self.bound.option("wobj")
+        found = self._found(expression, "work object", WOBJDATA)
+        return self.run.convert.work_object(found, expression)
+
+    def _loads(self, tool: Tool) -> tuple[Tool, Load | None]:
+        """``\\TLoad`` is tool and payload in one, unless it is ``load0``."""
+        if "tload" in self.bound.options:
+            expression = self.bound.option("tload")
+            total = self.run.convert.load(expression, self.scope)
+            if total is not None:
+                return replace(tool, load=total), None
+        return tool, self.run.settings.load
+
+    def _option(self, name: str) -> float | None:
+        if name not in self.bound.options:
+            return None
+        use = f"{self.bound.text} \\{name.upper()}"
+        return self.run.number(self.bound.option(name), self.scope, use)
+
+    def _speed(self) -> tuple[Speed, Part]:
+        expression = self.bound.named("Speed")
+        found = self._found(expression, "speed", SPEEDDATA)
+        assert isinstance(found.value, tuple)
+        name = _datum_name(found, expression)
+        speed = self.run.convert.speed(
+            found.value, name, self._option("v"), self._option("t"), expression.span
+        )
+        part = self._part(found, expression, ("v", "t"))
+        settings = self.run.settings
+        limit = settings.greatest_tcp
+        capped = limit is not None and speed.tcp is not None and speed.tcp >= limit / PER_METRE
+        if settings.override == 1.0 and not capped:
+            return speed, part
+        # Under VelSet the number in the text is not the speed: derived.
+        for source in filter(None, part.sources):
+            self.run.evaluator.reads.by_expression(source, self.run.out.move_index)
+        return speed, Part(part.span)
+
+    def _zone(self) -> tuple[Zone, Part]:
+        if "Zone" not in self.bound.names:
+            return FINE, Part(self.bound.span)
+        expression = self.bound.named("Zone")
+        found = self._found(expression, "zone", ZONEDATA)
+        part = self._part(found, expression, ("z", "inpos"))
+        if "inpos" in self.bound.options:
+            return FINE, part
+        assert isinstance(found.value, tuple)
+        name = _datum_name(found, expression)
+        zone = self.run.convert.zone(found.value, name, self._option("z"), expression.span)
+        return zone, part
+
+    def _part(self, found: Located, expression: Expression, options: tuple[str, ...]) -> Part:
+        """A speed or zone; a number in an option at the move is the move's own."""
+        given = [name for name in options if name in self.bound.options]
+        if not given:
+            own = found.cell is not None and found.predefined is not None
+            name = found.cell.name if found.cell is not None and own else None
+            return _part_of(expression.span, found.source, name)
+        last = max((self.bound.option_spans[name] for name in given), key=lambda s: s.end)
+        whole = expression.span._replace(end=last.end)
+        value = self.bound.options[given[0]] if len(given) == 1 else None
+        literal = source_of_literal(value, None) if value is not None else None
+        if isinstance(value, Name):
+            literal = self.run.evaluator.locate(value, self.scope).source
+        return _part_of(whole, literal)
+
+
+def _record(value: Value) -> Record:
+    assert isinstance(value, tuple)
+    return value
+
+
+def _part_of(span: Span, source: Literal | None, predefined: str | None = None) -> Part:
+    return Part(span, () if source is None else (source,), predefined)
+
+
+def _refuse_options(bound: Bound) -> None:
+    reasons = {
+        "corr": "corrections from sensors come at run time",
+        "id": "synchronised robots (MultiMove) are not emulated",
+    }
+    for option, reason in reasons.items():
+        if option in bound.options:
+            raise SourceError(
+                f"{bound.text} \\{option.upper()}: {reason}; take the argument out",
+                bound.option_spans[option],
+            )
+
+
+def _datum_name(found: Located, expression: Expression) -> str | None:
+    """The name of a datum that has its declared value."""
+    cell = found.cell
+    if cell is None or not isinstance(expression, Name) or expression.path:
+        return None
+    unchanged = cell.constant or found.predefined is not None or found.source is not None
+    return cell.name if unchanged else None
+
+
+def read_move(
+    run: Interpreter, form: Form, bound: Bound, scope: Scope, events: tuple[Event, ...] = ()
+) -> tuple[Move, Sources]:
+    """The move of an instruction, and the sources of its numbers.
+
+    Raises:
+        SourceError: a part of it is not declared, not known, or not emulated.
+    """
+    _note_singularity(run, form, bound)
+    reader = _MoveReader(run, scope, bound)
+    settings = run.settings
+    if form.kind in ("absolute", "external"):
+        joints, part = reader.joint_target(form.kind == "external")
+        common = reader.common()
+        move: Move = MoveJ(joints, *_fields(common), events=events)
+        return move, _sources(run, bound, reader, common, part)
+    if form.kind == "circular":
+        arc = _arc_orientation(run, bound)
+        via, via_part = reader.pose_target("CirPoint", settings.check_linear)
+        target, part = reader.pose_target("ToPoint", settings.check_linear)
+        common = reader.common()
+        move = MoveC(target, *_fields(common), events=events, via=via, orientation=arc)
+        return move, _sources(run, bound, reader, common, part, via_part)
+    joint = form.kind == "joint"
+    follow = settings.check_joint if joint else settings.check_linear
+    target, part = reader.pose_target("ToPoint", follow)
+    common = reader.common()
+    kind = MoveJ if joint else MoveL
+    return kind(target, *_fields(common), events=events), _sources(run, bound, reader, common, part)
+
+
+def bind_move(invoke: Invoke, form: Form) -> Bound:
+    """The arguments of a move instruction."""
+    return bind(invoke, form.names, (*_COMMON_OPTIONS, *form.options))
+
+
+def drive(
+    run: Interpreter,
+    form: Form,
+    invoke: Invoke,
+    scope: Scope,
+    events: tuple[Event, ...] = (),
+    bound: Bound | None = None,
+) -> Record:
+    """Carry a move instruction out.
+
+    Args:
+        bound: its arguments, if somebody has bound them already.
+
+    Returns:
+        Its target.
+    """
+    if bound is None:
+        bound = bind_move(invoke, form)
+    move, sources = read_move(run, form, bound, scope, events)
+    reads = run.evaluator.reads
+    for part in (sources.target, sources.speed, sources.zone, sources.via):
+        for source in filter(None, part.sources if part is not None else ()):
+            reads.by_move(source, run.out.move_index)
+    run.emit_move(move, sources)
+    run.whereabouts.moved(move, sources.statement, sources.record)
+    return sources.record
+
+
+def _plain(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+    drive(run, FORMS[invoke.name], invoke, scope)
+
+
+def _note_singularity(run: Interpreter, form: Form, bound: Bound) -> None:
+    mode = run.settings.singularity
+    if mode == "off" or form.kind not in ("linear", "circular"):
+        return
+    name = {"wrist": "Wrist", "lockaxis4": "LockAxis4"}[mode]
+    if mode == "lockaxis4":
+        raise SourceError(
+            f"{bound.text} under SingArea \\{name} keeps axis 4 in place, which is not emulated: "
+            "use SingArea \\Off or \\Wrist",
+            bound.span,
+        )
+    run.out.note_once(
+        "singularity",
+        f"SingArea \\{name} lets the controller turn the tool a little off between the points; it "
+        "is emulated as \\Off, with the programmed orientation",
+        bound.span,
+    )
+
+
+def _arc_orientation(run: Interpreter, bound: Bound) -> ArcOrientation:
+    arc = run.settings.arc
+    if isinstance(arc, ArcOrientation):
+        return arc
+    raise SourceError(
+        f"{bound.text} under CirPathMode \\{arc} is not emulated: use \\PathFrame or \\ObjectFrame",
+        bound.span,
+    )
+
+
+def _fields(common: _Common) -> tuple[Speed, Zone, Tool, WorkObject, Load | None]:
+    return common.speed, common.zone, common.tool, common.work_object, common.load
+
+
+def _sources(
+    run: Interpreter,
+    bound: Bound,
+    reader: _MoveReader,
+    common: _Common,
+    target: Part,
+    via: Part | None = None,
+) -> Sources:
+    parts = (target, common.speed_part, common.zone_part, via)
+    return Sources(bound.span, *parts, record=reader.record)
+
+
+MOVES = dict.fromkeys(FORMS, _plain)

@@ -1,0 +1,364 @@
+"""RAPID values → the core's values, with the place named in every refusal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, TypeVar
+
+from ....core.errors import InputError, SourceError, Span
+from ....core.program.speed import Speed
+from ....core.program.target import JointTarget, PoseTarget
+from ....core.program.tool import Load, Tool, WorkObject
+from ....core.program.zone import FINE, Zone
+from ....core.spatial.pose import Pose, Quaternion
+from ..syntax.tree import Expression, Name
+from ..values.evaluator import Located
+from ..values.records import (
+    LOAD0,
+    PER_METRE,
+    UNUSED_AXIS,
+    Record,
+    check_speed,
+    load_value,
+    metres,
+    tool_value,
+    work_object_value,
+    zone_value,
+)
+from ..values.scope import Scope, unknown_name
+from ..values.types import LOADDATA, ORIENT, POSE, TOOLDATA, WOBJDATA, RecordType, Type, Value
+from ..write.options import AXIS_KINDS
+from .configuration import AbbConfiguration
+
+if TYPE_CHECKING:
+    from ....core.robot.model import Robot
+    from ..run.interpreter import Interpreter
+
+NORM_TOLERANCE = 1e-3
+"""A quaternion whose length is off by more is a mistake, no rounding."""
+EXACT = 1e-6
+"""What a `Pose` takes as it stands, and `literals` does: reading and writing keep the digits."""
+ROUNDING = 2e-5
+"""What five written decimals leave of a quaternion's unit length: not worth a note."""
+
+UNDEFINED_MASS = -1.0
+
+T = TypeVar("T")
+
+
+class Converter:
+    """Makes targets, speeds, zones, tools and frames of RAPID values.
+
+    Args:
+        run: the program run that they are for; it takes the notes.
+        external_axes: ``"linear"`` or ``"rotating"`` for eax_a, eax_b, … of the robot; None if
+            the robot is not known.
+    """
+
+    def __init__(self, run: Interpreter, external_axes: Sequence[str] | None) -> None:
+        for kind in external_axes or ():
+            if kind not in AXIS_KINDS:
+                raise InputError(f"an external axis is 'linear' or 'rotating', not {kind!r}")
+        self._run = run
+        self._axes = external_axes
+        self._made: dict[tuple[object, ...], object] = {}
+
+    # ------------------------------------------------------- tools, frames, loads
+
+    def tool(self, found: Located, expression: Expression) -> Tool:
+        """A tooldata."""
+        name = self._name(found, expression, "tool")
+        value = self._with_load(found.value, name, expression.span)
+        return self._cached(
+            ("tool", name, value),
+            lambda: self._made_of(tool_value, value, TOOLDATA, name, expression.span),
+        )
+
+    def _with_load(self, value: Value, name: str, span: Span) -> Value:
+        """A tooldata whose load is defined: a new tool has the mass -1 until somebody weighs it."""
+        assert isinstance(value, tuple)
+        if value[2][0] != UNDEFINED_MASS:
+            return value
+        message = f"the load of tool {name} is not defined (mass -1): none is taken"
+        self._run.out.note_once(f"load of {name}", message, span)
+        return (*value[:2], LOAD0)
+
+    def work_object(self, found: Located, expression: Expression) -> WorkObject:
+        """A wobjdata."""
+        value, name = found.value, self._name(found, expression, "wobj")
+        assert isinstance(value, tuple)
+        if not value[1] and not value[2]:
+            raise SourceError(
+                "ufprog is FALSE, so a mechanical unit moves the work object, but ufmec names none",
+                expression.span,
+            )
+        return self._cached(
+            ("work object", name, value),
+            lambda: self._made_of(work_object_value, value, WOBJDATA, name, expression.span),
+        )
+
+    def load(self, expression: Expression, scope: Scope) -> Load | None:
+        """A loaddata; None for ``load0``."""
+        value = self._run.evaluator.known(expression, scope, LOADDATA, "the load")
+        record = self._units(value, LOADDATA, expression.span)
+        name = expression.text if isinstance(expression, Name) else None
+        with_name: Load | None = self._guard(expression.span, lambda: load_value(record, name))
+        return with_name
+
+    def pose(self, value: Value, span: Span) -> Pose:
+        """A pose."""
+        record = self._units(value, POSE, span)
+        return self._guard(span, lambda: Pose(metres(record[0]), _quaternion(record[1])))
+
+    def _made_of(
+        self,
+        make: Callable[[Record, str], T],
+        value: Value,
+        type_: RecordType,
+        name: str,
+        span: Span,
+    ) -> T:
+        record = self._units(value, type_, span)
+        return self._guard(span, lambda: make(record, name))
+
+    def _cached(self, key: tuple[object, ...], make: Callable[[], T]) -> T:
+        """One value for equal data, made once: programs repeat few tools, speeds and zones."""
+        if key not in self._made:
+            self._made[key] = make()
+        return self._made[key]  # type: ignore[return-value]
+
+    @staticmethod
+    def _name(found: Located, expression: Expression, otherwise: str) -> str:
+        if isinstance(expression, Name) and not expression.path:
+            return found.cell.name if found.cell is not None else expression.text
+        return otherwise if found.source is None or not found.source.datum else found.source.datum
+
+    # ------------------------------------------------------------ speeds and zones
+
+    def speed(
+        self,
+        record: Record,
+        name: str | None,
+        tcp: float | None,
+        duration: float | None,
+        span: Span,
+    ) -> Speed:
+        """A speeddata under the settings in force.
+
+        Args:
+            record: ``[v_tcp, v_ori, v_leax, v_reax]``.
+            tcp: ``\\V`` in mm/s, None if absent.
+            duration: ``\\T`` in s, None if absent.
+        """
+        key = ("speed", record, name, tcp, duration, self._run.settings)
+        return self._cached(key, lambda: self._speed(record, name, tcp, duration, span))
+
+    def _speed(
+        self,
+        record: Record,
+        name: str | None,
+        tcp: float | None,
+        duration: float | None,
+        span: Span,
+    ) -> Speed:
+        settings = self._run.settings
+        self._guard(span, lambda: check_speed(record, tcp, duration))
+        v_tcp, v_ori, v_leax, v_reax = record
+        programmed = (v_tcp if tcp is None else tcp, v_ori, v_leax, v_reax)
+        scaled = [v * settings.override for v in programmed]
+        if settings.greatest_tcp is not None:
+            scaled[0] = min(scaled[0], settings.greatest_tcp)
+        changed = duration is not None or tuple(scaled) != record
+        # Zero speeds of external axes are common where there are none.
+        linear, angular = scaled[2:]
+        return self._guard(
+            span,
+            lambda: Speed(
+                tcp=scaled[0] / PER_METRE,
+                reorientation=math.radians(scaled[1]),
+                external_linear=linear / PER_METRE if linear != 0 else None,
+                external_angular=math.radians(angular) if angular != 0 else None,
+                tcp_acceleration=settings.tcp_acceleration,
+                joint_acceleration_fraction=settings.acceleration,
+                jerk_fraction=settings.ramp,
+                duration=None if duration is None else duration / settings.override,
+                name=None if changed else name,
+            ),
+        )
+
+    def zone(self, record: Record, name: str | None, tcp: float | None, span: Span) -> Zone:
+        """A zonedata.
+
+        The zones of reorientation and external axes are at least as large as the TCP's
+        ("RAPID Reference Manual", zonedata).
+
+        Args:
+            tcp: ``\\Z`` in mm, None if absent.
+        """
+        if record[0]:
+            return FINE
+        radius = record[1] if tcp is None else tcp
+        widened = (False, radius, max(radius, record[2]), max(radius, record[3]), *record[4:])
+        kept = name if tcp is None or tcp == record[1] else None
+        key = ("zone", widened, kept)
+        return self._cached(key, lambda: self._guard(span, lambda: zone_value(widened, kept)))
+
+    # -------------------------------------------------------------------- targets
+
+    def pose_target(self, value: Value, name: str | None, follow: bool, span: Span) -> PoseTarget:
+        """A robtarget.
+
+        Args:
+            follow: whether its configuration counts for the move.
+        """
+        assert isinstance(value, tuple)
+        trans, orient, robconf, extax = value
+        rot = self._unit(orient, span)
+        configuration = self._configuration(robconf, span) if follow else None
+        external = self._external(extax, span)
+        pose = self._guard(span, lambda: Pose(metres(trans), _quaternion(rot)))
+        displacement = self._run.settings.displacement
+        if displacement is not None:
+            pose = displacement @ pose
+        return PoseTarget(pose, configuration, external, name)
+
+    def joint_target(
+        self, value: Value, name: str | None, offsets: bool, span: Span
+    ) -> JointTarget:
+        """A jointtarget.
+
+        Args:
+            offsets: whether offsets of external axes count for the move.
+        """
+        assert isinstance(value, tuple)
+        robax, extax = value
+        for number, degrees in enumerate(robax):
+            if abs(degrees) >= UNUSED_AXIS:
+                raise SourceError(f"axis {number + 1} of the arm has no value (9E9)", span)
+        joints = tuple(math.radians(v) for v in robax)
+        external = self._external(extax, span, offsets)
+        return self._guard(span, lambda: JointTarget(joints, external, name))
+
+    def _configuration(self, robconf: Sequence[float], span: Span) -> AbbConfiguration:
+        if any(v != int(v) for v in robconf):
+            raise SourceError(f"a confdata has whole numbers, not {list(robconf)}", span)
+        cf1, cf4, cf6, cfx = (int(v) for v in robconf)
+        return self._guard(span, lambda: AbbConfiguration(cf1, cf4, cf6, cfx))
+
+    def _external(
+        self, extax: Sequence[float], span: Span, offsets: bool = True
+    ) -> tuple[float, ...]:
+        """External axes in rad and m, in the robot's order, as far as they are programmed."""
+        used = [abs(v) < UNUSED_AXIS for v in extax]
+        shift = self._run.settings.offsets
+        if offsets and shift is not None:
+            pairs = zip(extax, shift, used, strict=True)
+            extax = [v + s if counts and abs(s) < UNUSED_AXIS else v for v, s, counts in pairs]
+        if not any(used):
+            return ()
+        if self._axes is None:
+            return self._external_of_unknown_robot(extax, used, span)
+        count = len(self._axes)
+        for number, value in enumerate(extax[count:], count):
+            if used[number] and value != 0:
+                raise SourceError(
+                    f"external axis eax_{'abcdef'[number]} is sent to {value:g}, but the robot has "
+                    f"{count} external axes",
+                    span,
+                )
+        last = max((i for i in range(count) if used[i]), default=-1)
+        if not all(used[: last + 1]):
+            raise SourceError(
+                "an external axis without a value (9E9) stands before one that has a value: give "
+                "it a value",
+                span,
+            )
+        kinds = self._axes
+        return tuple(
+            extax[i] / PER_METRE if kinds[i] == "linear" else math.radians(extax[i])
+            for i in range(last + 1)
+        )
+
+    def _external_of_unknown_robot(
+        self, extax: Sequence[float], used: Sequence[bool], span: Span
+    ) -> tuple[float, ...]:
+        for number, value in enumerate(extax):
+            if used[number] and value != 0:
+                raise SourceError(
+                    f"external axis eax_{'abcdef'[number]} is sent to {value:g}, and the text does "
+                    "not say whether that is mm or degrees: tell the reader the robot's axes "
+                    "(external_axes=('linear',) or ('rotating',))",
+                    span,
+                )
+        self._run.out.note_once(
+            "external axes",
+            "external axes are sent to 0 everywhere; they are taken as not there (9E9 says so)",
+            span,
+        )
+        return ()
+
+    # -------------------------------------------------------------------- helpers
+
+    def _units(self, value: Value, type_: RecordType, span: Span) -> Record:
+        """A record whose quaternions are of unit length."""
+        assert isinstance(value, tuple)
+        return self._normalised(value, type_, span)
+
+    def _normalised(self, record: Record, type_: RecordType, span: Span) -> Record:
+        if type_ is ORIENT:
+            return self._unit(record, span)
+        return tuple(
+            self._normalised(part, component, span) if isinstance(component, RecordType) else part
+            for part, component in zip(record, type_.components.values(), strict=True)
+        )
+
+    def _unit(self, orient: Record, span: Span) -> Record:
+        length = math.sqrt(sum(v * v for v in orient))
+        error = abs(length - 1.0)
+        if not error <= NORM_TOLERANCE:
+            shown = ",".join(f"{v:g}" for v in orient)
+            raise SourceError(
+                f"an orientation is a quaternion of length 1, but [{shown}] has {length:.4g}: "
+                "correct it, or normalise it with NOrient",
+                span,
+            )
+        if error > ROUNDING:
+            self._run.out.note_quaternion(error, span)
+        return orient if error <= EXACT else tuple(v / length for v in orient)
+
+    @staticmethod
+    def _guard(span: Span, make: Callable[[], T]) -> T:
+        try:
+            return make()
+        except InputError as error:
+            raise SourceError(str(error), span) from None
+
+
+def _quaternion(orient: Record) -> Quaternion:
+    w, x, y, z = orient
+    return (w, x, y, z)
+
+
+def axis_kinds(robot: Robot | None) -> tuple[str, ...] | None:
+    """How RAPID counts the robot's external axes, eax_a first; None without a robot to ask."""
+    if robot is None:
+        return None
+    from ....core.robot.joint import JointKind  # late: it takes time
+
+    axes = [axis.joint.kind for axis in robot.external_axes]
+    return tuple("linear" if kind is JointKind.PRISMATIC else "rotating" for kind in axes)
+
+
+def undeclared(kind: str, name: Name, type_: Type, scope: Scope) -> SourceError:
+    """The error that a datum of a move is not declared, with the nearest of its type."""
+    known: list[str] = []
+    inner: Scope | None = scope
+    while inner is not None:
+        known += [cell.name for cell in inner.cells.values() if cell.type == type_]
+        inner = inner.outer
+    otherwise = (
+        "declare it, name the file that declares it, or put it beside this one, or answer it in a "
+        f"file (--io): [values] {name.text} = …"
+    )
+    return SourceError(unknown_name(kind, name.text, known, otherwise), name.span)

@@ -1,0 +1,151 @@
+"""Literal numbers changed where they stand."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+
+from ....core.errors import Span
+from ....core.program.speed import Speed
+from ....core.program.zone import Fine, Radius
+from ....core.source.patch.edits import alike
+from ....core.source.patch.uses import Kind, Use
+from ..syntax.tree import Name
+from ..values import predefined
+from ..write.operands import refuse_speed
+from .literals import ZONE_LEAVES, Leaf, leaves, millimetres_leaf, plain_leaf, with_radius
+from .places import Operand, Places
+
+Texts = Mapping[Span, str]
+"""What shall stand at a span; what is not named may say what it likes."""
+
+
+class InPlace:
+    """Finds what the literals of a program would have to say.
+
+    Args:
+        uses: all parts of all moves.
+        places: the program's files.
+        axis_kinds: of the external axes.
+    """
+
+    def __init__(self, uses: Iterable[Use], places: Places, axis_kinds: Sequence[str]) -> None:
+        self._places = places
+        self._axis_kinds = axis_kinds
+        self._readers: defaultdict[Span, list[Use]] = defaultdict(list)
+        self._wanted: dict[tuple[int, Kind], Texts | None] = {}
+        self._votes: dict[Span, dict[str, list[int]]] = {}
+        for use in uses:
+            for span in filter(None, use.origin.numbers):
+                self._readers[span].append(use)
+
+    def wanted(self, use: Use) -> Texts | None:
+        """What the literal that ``use`` reads must say; None if no numbers in it can say it."""
+        key = (use.index, use.kind)
+        if key not in self._wanted:
+            self._wanted[key] = self._texts(use)
+        return self._wanted[key]
+
+    def changed(self, use: Use) -> Texts | None:
+        """The part of `wanted` that the text does not say yet."""
+        wanted = self.wanted(use)
+        if wanted is None:
+            return None
+        return {span: text for span, text in wanted.items() if text != self._places.text(span)}
+
+    def against(self, use: Use, texts: Texts) -> list[int]:
+        """The moves that want the literal of ``use`` to say anything else than ``texts``."""
+        moves = {
+            move
+            for span, text in texts.items()
+            for other, voters in self._votes_on(span).items()
+            if other != text
+            for move in voters
+        }
+        return sorted(moves - {use.index})
+
+    def _votes_on(self, span: Span) -> dict[str, list[int]]:
+        if span not in self._votes:
+            votes: defaultdict[str, list[int]] = defaultdict(list)
+            for use in self._readers[span]:
+                wanted = self.wanted(use)
+                text = "" if wanted is None else wanted.get(span)
+                if text is not None:
+                    votes[text].append(use.index)
+            self._votes[span] = votes
+        return self._votes[span]
+
+    def _texts(self, use: Use) -> Texts | None:
+        numbers = use.origin.numbers
+        if type(use.old) is not type(use.new) and not isinstance(use.new, Fine | Radius):
+            return None
+        if len(numbers) == 1:
+            return self._option_text(use, numbers[0])
+        if isinstance(use.new, Fine | Radius):
+            return self._zone_texts(use) if len(numbers) == ZONE_LEAVES else None
+        if isinstance(use.new, Speed):
+            refuse_speed(use.new)
+            if use.new.duration is not None:
+                return None
+        found = leaves(use.new, use.old, self._axis_kinds)
+        return self._leaf_texts(found, numbers) if len(found) == len(numbers) else None
+
+    def _leaf_texts(self, found: Sequence[Leaf], numbers: Sequence[Span | None]) -> Texts:
+        return {
+            span: leaf.text_for(self._places.text(span))
+            for leaf, span in zip(found, numbers, strict=True)
+            if span is not None and leaf.value is not None
+        }
+
+    def _zone_texts(self, use: Use) -> Texts | None:
+        """The numbers of a zonedata, and its ``finep``."""
+        first = use.origin.numbers[0]
+        truth = self._places.truth_before(first) if first is not None else None
+        if truth is None or self._operand(use).option("inpos") is not None:
+            return None
+        said = self._places.text(truth)
+        stops = isinstance(use.new, Fine)
+        finep = {truth: said if (said.lower() == "true") is stops else str(stops).upper()}
+        if stops:
+            return finep
+        found = leaves(use.new, use.old, self._axis_kinds)
+        return {**finep, **self._leaf_texts(found, use.origin.numbers)}
+
+    def _option_text(self, use: Use, number: Span | None) -> Texts | None:
+        r"""The number of ``\V``, ``\T`` or ``\Z``."""
+        operand = self._operand(use)
+        if number is None or len(operand.options) != 1:
+            return None
+        leaf = _option_leaf(operand, operand.options[0].option or "", use)
+        return None if leaf is None else self._leaf_texts([leaf], [number])
+
+    def _operand(self, use: Use) -> Operand:
+        return self._places.operand(use.statement, use.origin.span)
+
+
+def _option_leaf(operand: Operand, option: str, use: Use) -> Leaf | None:
+    old, new = use.old, use.new
+    if isinstance(old, Speed) and isinstance(new, Speed):
+        if option == "t" and new.duration is not None:
+            fits = alike(replace(old, duration=new.duration), new)
+            return plain_leaf(new.duration) if fits else None
+        if option == "v" and new.tcp is not None:
+            return millimetres_leaf(new.tcp) if alike(replace(old, tcp=new.tcp), new) else None
+    if option == "z" and isinstance(new, Radius) and isinstance(old, Radius):
+        fits = alike(old, new) or alike(_resized(operand, old, new.tcp), new)
+        return millimetres_leaf(new.tcp) if fits else None
+    return None
+
+
+def _resized(operand: Operand, old: Radius, tcp: float) -> object:
+    r"""The zone with another ``\Z``; None if what stands before that is not known."""
+    base = operand.expression
+    if isinstance(base, Name) and not base.path:
+        known = predefined.zone(base.name)
+        if isinstance(known, Radius):
+            return with_radius(known, tcp)
+    # Where a part was widened to the radius, its own size is not known any more.
+    if min(old.reorientation, old.external) > old.tcp:
+        return with_radius(old, tcp)
+    return None

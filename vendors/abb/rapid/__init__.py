@@ -1,1 +1,0 @@
-"""RAPID, the language of ABB controllers: reader, writer and patcher."""

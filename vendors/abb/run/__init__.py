@@ -1,0 +1,1 @@
+"""RAPID programs carried out: statements → the moves the robot makes."""

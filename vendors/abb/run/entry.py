@@ -1,0 +1,103 @@
+"""Which routine a program starts in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import PureWindowsPath
+
+from ....core.errors import Note, SourceError, Span
+from ..syntax.traversal import calls_in, expressions_of, statements_of
+from ..syntax.tree import Invoke, Module, Routine
+from ..values.data import Globals
+from ..values.scope import NOWHERE, unknown_name
+from .analysis import Flow
+
+MAIN = "main"
+
+
+def choose_entry(
+    data: Globals, own: Sequence[Module], entry: str | None, file: str
+) -> tuple[Routine, tuple[Note, ...]]:
+    """The routine to run, and what is to be said about the choice.
+
+    Without the user's word this is ``main``; else the only procedure of the file; else the one
+    that is called as the file or its module; else the only one with ``main`` in its name; else the
+    only one that moves the robot and is not called by another.
+
+    Args:
+        own: modules of the file that the user named.
+        entry: a procedure's name; None if the user gave none.
+        file: name of the user's file.
+
+    Raises:
+        SourceError: there is no such procedure, it takes arguments, or several would do.
+    """
+    where = own[0].span if own else Span(file, 1, 1, 0, 0)
+    found = _procedure(data, own, entry or MAIN, where, fetch=entry is not None)
+    if found is not None:
+        if not _startable(found):
+            message = f"PROC {found.text} takes arguments and cannot be the entry"
+            raise SourceError(message, found.span)
+        return found, ()
+    routines = [r for module in own for r in module.routines if r.kind == "proc"]
+    candidates = [r for r in routines if _startable(r)]
+    if entry is None and candidates:
+        chosen, why = _fallback(data, own, candidates, file)
+        if chosen is not None:
+            message = f"there is no PROC main; {why}, {chosen.text}, is read"
+            return chosen, (Note(message, span=chosen.span),)
+    if not candidates:
+        raise SourceError("there is no procedure without parameters that could be run", where)
+    message = unknown_name("procedure", entry or MAIN, [r.text for r in candidates])
+    names = ", ".join(r.text for r in candidates)
+    raise SourceError(f"{message.split(':')[0]}: choose one of {names} as the entry", where)
+
+
+def _startable(routine: Routine) -> bool:
+    return all(p.optional for p in routine.parameters)
+
+
+def _procedure(
+    data: Globals, own: Sequence[Module], name: str, where: Span, fetch: bool
+) -> Routine | None:
+    for module in own:
+        for routine in module.routines:
+            if routine.name == name.lower() and routine.kind == "proc":
+                return routine
+    found = data.routines.get(name.lower())
+    if found is None and fetch:
+        found = data.fetched_routine(name.lower(), NOWHERE, where)
+    return found if found is not None and found.kind == "proc" else None
+
+
+def _fallback(
+    data: Globals, own: Sequence[Module], candidates: Sequence[Routine], file: str
+) -> tuple[Routine | None, str]:
+    if len(candidates) == 1:
+        return candidates[0], "the only procedure"
+    names = {PureWindowsPath(file).stem.lower(), *(module.name for module in own)}
+    named = [r for r in candidates if r.name in names]
+    if len(named) == 1:
+        return named[0], "the procedure that is called as its file or module"
+    alike = [r for r in candidates if MAIN in r.name]
+    if len(alike) == 1:
+        return alike[0], "the only procedure with 'main' in its name"
+    called = _called(own)
+    flow = Flow(data)
+    roots = [r for r in candidates if r.name not in called and flow.routine_moves(r)]
+    if len(roots) == 1:
+        return roots[0], "the only procedure that moves the robot and that no other calls"
+    return None, ""
+
+
+def _called(modules: Sequence[Module]) -> set[str]:
+    """Lower-case names of the routines that others call."""
+    called: set[str] = set()
+    for module in modules:
+        for routine in module.routines:
+            for statement in statements_of(routine.body):
+                if isinstance(statement, Invoke) and statement.name != routine.name:
+                    called.add(statement.name)
+                for expression in expressions_of(statement):
+                    called.update(call.name for call in calls_in(expression))
+    return called

@@ -1,0 +1,409 @@
+"""Runs a program: statements → the moves, waits and kept statements that the robot goes through.
+
+Values that only the running controller has (signals, clocks, an operator's answers) travel as
+`Unknown` through assignments; where a branch or a loop depends on one, `branching` decides, and
+where a move does, it is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+from typing import NoReturn
+
+from ....core.errors import Note, SourceError, Span
+from ....core.program.move import Move, Opaque, Wait
+from ....core.program.move import Statement as ProgramStatement
+from ....core.source.execution.answers import Course
+from ....core.source.execution.limits import Meter
+from ....core.source.reading import ReadOptions
+from ..motion.kinematics import StateFunctions
+from ..motion.position import Whereabouts
+from ..motion.settings import Settings
+from ..motion.targets import Converter
+from ..syntax.tree import (
+    Argument,
+    Assign,
+    Block,
+    Call,
+    Expression,
+    For,
+    Goto,
+    If,
+    Invoke,
+    Keyword,
+    Label,
+    LateInvoke,
+    Name,
+    Return,
+    Routine,
+    Statement,
+    Test,
+    While,
+)
+from ..values.data import Globals
+from ..values.evaluator import Evaluator
+from ..values.operators import OperandError, apply
+from ..values.scope import Cell, Scope, unknown_name
+from ..values.types import STRING, Unknown, Value, interpreted, mismatch
+from .analysis import Flow
+from .calls import pass_arguments, present
+from .flow import Frame, end_loop, jump_back, run_for, run_if, run_test, run_while
+from .instructions import INTERPRETED, KEPT, MOVING, REFUSED, known_names
+from .output import Output, Sources
+
+
+class _Returned(Exception):
+    def __init__(self, value: Value | None) -> None:
+        self.value = value
+
+
+class _Jump(Exception):
+    def __init__(self, goto: Goto) -> None:
+        self.goto = goto
+
+
+class _Finished(Exception):
+    pass
+
+
+class Interpreter:
+    """One run of a program.
+
+    Args:
+        data: modules, routines and data of the program.
+        texts: source texts by file, from which kept statements are cut.
+        options: answers, limits and the robot.
+        external_axes: see `Converter`.
+    """
+
+    def __init__(
+        self,
+        data: Globals,
+        texts: dict[str, str],
+        options: ReadOptions,
+        external_axes: Sequence[str] | None,
+    ) -> None:
+        self.data = data
+        self.settings = Settings()
+        self.out = Output(texts)
+        self.course = Course(options.answers)
+        self.meter = Meter(options.limits, options.executed)
+        self.flow = Flow(data)
+        self.robot = options.robot
+        self.convert = Converter(self, external_axes)
+        self.whereabouts = Whereabouts(options.robot, external_axes, options.start)
+        self.state = StateFunctions(self)
+        self.evaluator = Evaluator(
+            data,
+            self.course,
+            self.out.text_of,
+            self._call_function,
+            self.state.table(),
+            self._note_undeclared,
+        )
+        self._frames: list[Frame] = []
+        self._loops: dict[int, Block] = {}  # bodies of loops that a GOTO closes, by its id
+
+    # --------------------------------------------------------------------- the run
+
+    def run(self, entry: Routine) -> None:
+        """Execute a procedure without parameters to its end."""
+        with suppress(_Finished):
+            self._call(entry, (), self.data.scope_of(entry), entry.span)
+
+    def let_go(self) -> None:
+        """Forget everything: the parts of a run know each other, and would wait for a search for
+        garbage together with the syntax tree."""
+        vars(self).clear()
+
+    def statements(self) -> tuple[ProgramStatement, ...]:
+        """What was executed, each move with the origin of its numbers."""
+        return self.out.statements(self.evaluator.reads)
+
+    def notes(self) -> tuple[Note, ...]:
+        """What is to be said about the run."""
+        return (*self.data.notes, *self.out.notes(), *self.course.notes())
+
+    # ------------------------------------------------------ for instruction handlers
+
+    @property
+    def frame(self) -> Frame:
+        """The routine that is being run."""
+        return self._frames[-1]
+
+    def number(self, expression: Expression, scope: Scope, use: str) -> float:
+        """A known num; see `Evaluator.known`."""
+        return self.evaluator.number(expression, scope, use)
+
+    def emit(self, statement: Wait | Opaque) -> None:
+        """Put a statement that is no move at the end of the program."""
+        self.out.emit(statement)
+
+    def emit_move(self, move: Move, sources: Sources) -> None:
+        """Put a move at the end of the program.
+
+        Raises:
+            SourceError: there are too many.
+        """
+        self.meter.move(sources.statement)
+        self.out.emit_move(move, sources)
+
+    def change(
+        self, target: Expression, add: Expression | None, amount: float | None, scope: Scope
+    ) -> None:
+        """Add to a num, or clear it if ``amount`` is None."""
+        if not isinstance(target, Name):
+            raise SourceError("a variable is wanted here", target.span)
+        value: Value = 0.0
+        if amount is not None:
+            step = amount if add is None else self.evaluator.evaluate(add, scope)
+            try:
+                value = apply("+", self.evaluator.evaluate(target, scope), step)
+            except OperandError as error:
+                raise SourceError(str(error), target.span) from None
+        self.evaluator.assign(target, value, scope)
+
+    def finish(self, message: str, span: Span) -> NoReturn:
+        """End the program here, with a note."""
+        self.out.note_once("end", message, span)
+        raise _Finished
+
+    # -------------------------------------------------------------------- statements
+
+    def run_block(self, block: Block, scope: Scope) -> None:
+        """Execute statements in order."""
+        statements = block.statements
+        index = 0
+        while index < len(statements):
+            try:
+                self._run_statement(statements[index], scope)
+                index += 1
+            except _Jump as jump:
+                index = self._after_jump(block, index, jump.goto, scope)
+
+    def _after_jump(self, block: Block, index: int, goto: Goto, scope: Scope) -> int:
+        """Index of the statement where a block goes on after a jump out of one of its statements.
+
+        A jump back that stands in the block itself closes a loop.
+
+        Raises:
+            _Jump: the label is further out.
+        """
+        while goto.name in block.labels:
+            target = block.labels[goto.name]
+            if target > index:
+                return target
+            if goto is not block.statements[index]:
+                jump_back(self, Block(block.statements[target - 1 : index + 1]))
+                return target
+            body = self._loops.setdefault(id(goto), Block(block.statements[target - 1 : index]))
+            span = goto.span._replace(start=body.statements[0].span.start)
+            try:
+                end_loop(self, span, body, scope)
+                return target
+            except _Jump as jump:
+                goto = jump.goto
+        raise _Jump(goto)
+
+    def _run_statement(self, statement: Statement, scope: Scope) -> None:
+        self.meter.statement(statement.span)
+        if isinstance(statement, Invoke):
+            self._invoke(statement, scope)
+        elif isinstance(statement, Assign):
+            value = self.evaluator.evaluate(statement.value, scope)
+            self.evaluator.assign(statement.target, value, scope)
+        elif isinstance(statement, If):
+            run_if(self, statement, scope)
+        elif isinstance(statement, For):
+            run_for(self, statement, scope)
+        elif isinstance(statement, While):
+            run_while(self, statement, scope)
+        elif isinstance(statement, Test):
+            run_test(self, statement, scope)
+        elif isinstance(statement, Return):
+            value_ = statement.value
+            raise _Returned(None if value_ is None else self.evaluator.evaluate(value_, scope))
+        elif isinstance(statement, Goto):
+            raise _Jump(statement)
+        elif isinstance(statement, LateInvoke):
+            self._late(statement, scope)
+        elif not isinstance(statement, Label):
+            self._keyword(statement, scope)
+
+    def _keyword(self, statement: Keyword, scope: Scope) -> None:
+        if statement.word == "exit":
+            raise _Finished
+        if statement.word == "connect":
+            trap = self.data.routine(statement.name, scope.home)
+            if trap is not None:
+                home = self.data.scope_of(trap).home
+                self.evaluator.outputs.share(self.flow.signals_written(trap.body, home))
+            self.out.keep(statement, KEPT["connect"].why)
+            return
+        if statement.word == "placeholder":
+            message = "statements that are not filled in (<SMT>) are stepped over"
+            self.out.count(message, statement.span)
+            return
+        what = {
+            "raise": "RAISE hands an error to a handler, and error handlers are not run",
+            "retry": "RETRY stands outside an error handler",
+            "trynext": "TRYNEXT stands outside an error handler",
+        }
+        raise SourceError(what[statement.word], statement.span)
+
+    # ------------------------------------------------------------------------- calls
+
+    def _invoke(self, statement: Invoke, scope: Scope) -> None:
+        name = statement.name
+        routine = self.data.routine(name, scope.home)
+        if routine is not None and routine.kind == "proc":
+            self._call(routine, statement.arguments, scope, statement.span)
+            return
+        statement = self._with_present_arguments(statement, scope)
+        handler = INTERPRETED.get(name)
+        if handler is not None:
+            self.evaluator.reader = self.out.move_index if name in MOVING else -1
+            handler(self, statement, scope)
+            self.evaluator.reader = -1
+            return
+        if name in KEPT:
+            self.keep(statement, scope)
+            return
+        routine = None if name in REFUSED else self.fetched(statement, scope)
+        if routine is not None:
+            self._call(routine, statement.arguments, scope, statement.span)
+        elif self.course.skips(statement.text):
+            self.evaluator.outputs.forget()
+            self.out.keep(statement, "it is skipped, as the answers say", stops=False)
+        else:
+            raise self._refusal(statement)
+
+    def fetched(self, statement: Invoke, scope: Scope) -> Routine | None:
+        """A procedure of a module beside the program."""
+        found = self.data.fetched_routine(statement.name, scope.home, statement.span)
+        return found if found is not None and found.kind == "proc" else None
+
+    def keep(self, statement: Invoke, scope: Scope) -> None:
+        """Step over an instruction that does not move the robot; it stays as it stands."""
+        kept = KEPT[statement.name]
+        for argument in statement.arguments:
+            # Functions of the program itself may move the robot, even for a message's text.
+            if argument.value is not None and self.flow.call_moves(argument.value, scope.home):
+                self.evaluator.evaluate(argument.value, scope)
+        if kept.writes:
+            self._fill(statement, scope)
+        self.out.keep(statement, kept.why, kept.stops)
+        for argument in statement.arguments:
+            flag = argument.value
+            if argument.option == "timeflag" and isinstance(flag, Name) and scope.find(flag.name):
+                self.evaluator.assign(flag, False, scope)
+
+    def _fill(self, statement: Invoke, scope: Scope) -> None:
+        """Data that a kept instruction writes have the user's answers, or no known value."""
+        for argument in statement.arguments:
+            if not isinstance(argument.value, Name):
+                continue
+            cell = scope.find(argument.value.name)
+            if cell is not None and not cell.constant:
+                name = argument.value.text
+                unknown = Unknown(f"what {statement.text} gave {name}", statement.span, name)
+                self.evaluator.fill(argument.value, unknown, scope)
+
+    def _note_undeclared(self, name: Name) -> None:
+        message = f"'{name.text}' is written and not declared in what is at hand: it is taken to "
+        self.out.count(message + "be declared in a module that is not", name.span)
+
+    def _refusal(self, statement: Invoke) -> SourceError:
+        reason = REFUSED.get(statement.name)
+        if reason is not None:
+            return SourceError(f"{statement.text} is refused: {reason}", statement.span)
+        known = {*self.data.routine_names("proc"), *known_names()}
+        hint = self.data.hint(statement.name)
+        message = unknown_name(
+            "instruction or routine", statement.text, known, hint or "its text is not at hand"
+        )
+        return SourceError(
+            f"{message}; it might move the robot, so it is not stepped over: name the module that "
+            f"declares it, or, if it does not move the robot, answer '{statement.text} = \"skip\"' "
+            "in the table [calls] of the answers",
+            statement.span,
+        )
+
+    def _with_present_arguments(self, statement: Invoke, scope: Scope) -> Invoke:
+        """Without the arguments that are handed on from absent parameters."""
+        if not any(a.conditional for a in statement.arguments):
+            return statement
+        return replace(statement, arguments=tuple(present(statement.arguments, scope)))
+
+    def _late(self, statement: LateInvoke, scope: Scope) -> None:
+        name = self.evaluator.known(statement.routine, scope, STRING, "the routine to call")
+        assert isinstance(name, str)
+        self.call_named(name, statement.arguments, scope, statement.span)
+
+    def call_named(
+        self, name: str, arguments: tuple[Argument, ...], scope: Scope, span: Span
+    ) -> None:
+        """Call the procedure that a string names.
+
+        Raises:
+            SourceError: there is none.
+        """
+        _, _, own = name.rpartition(":")
+        routine = self.data.fetched_routine(own.strip().lower(), scope.home, span)
+        if routine is None or routine.kind != "proc":
+            if self.course.skips(name):
+                self.evaluator.outputs.forget()
+                return
+            known = self.data.routine_names("proc")
+            raise SourceError(unknown_name("routine", name, known), span)
+        self._call(routine, arguments, scope, span)
+
+    def _call_function(self, routine: Routine, call: Call, scope: Scope) -> Value:
+        reader, self.evaluator.reader = self.evaluator.reader, -1
+        value = self._call(routine, call.arguments, scope, call.span)
+        self.evaluator.reader = reader
+        if value is None:
+            raise SourceError(f"{routine.text} ends without RETURN and a value", call.span)
+        type_ = self.data.type(routine.returns or "", self.data.scope_of(routine).home, call.span)
+        wrong = mismatch(value, type_)
+        if wrong is not None:
+            raise SourceError(f"the value of {routine.text}: {wrong}", call.span)
+        return interpreted(value, type_, call.span)
+
+    def _call(
+        self, routine: Routine, arguments: tuple[Argument, ...], caller: Scope, span: Span
+    ) -> Value | None:
+        outer = self.data.scope_of(routine)
+        scope = outer.inner(f"{routine.kind.upper()} {routine.text}")
+        given = tuple(present(arguments, caller))
+        back = pass_arguments(self.evaluator, routine, given, caller, scope, span)
+        for declaration in routine.declarations:
+            self.data.declare(declaration, scope)
+        self.meter.call(routine.text, span)
+        where, self.out.where = self.out.where, scope.where
+        self._frames.append(Frame(routine, outer.home, main=not self._frames))
+        if routine.handlers:
+            kinds = ", ".join(h.upper() for h in routine.handlers)
+            self.out.note_once("handlers", f"handlers are not run: {kinds}", routine.span)
+        try:
+            self.run_block(routine.body, scope)
+        except _Returned as returned:
+            return returned.value
+        except _Jump as jump:
+            raise SourceError(
+                f"no label '{jump.goto.name}' can be reached from here", jump.goto.span
+            ) from None
+        finally:
+            self.meter.back()
+            self.out.where = where
+            self._frames.pop()
+            for cell, target in back:
+                self._hand_back(cell, target, caller)
+        return None
+
+    def _hand_back(self, cell: Cell, target: Name, caller: Scope) -> None:
+        """What a routine made of an element or component that was passed by reference."""
+        if cell.source is None and cell.value is not None:
+            self.evaluator.assign(target, cell.value, caller)

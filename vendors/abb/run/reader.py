@@ -1,0 +1,141 @@
+"""RAPID source → `Program`.
+
+The text is parsed (`parser`) and executed (`interpreter`) from the entry routine on, as far as its
+course follows from the text itself. What is decided here, and where a controller may differ:
+
+- A branch, a loop or a move that depends on what only the running controller knows (signals, the
+  robot's position, clocks, an operator's answer) is refused by name. In a plain assignment such a
+  value is carried along.
+- ``WHILE TRUE`` without a way out is read for one pass; what stands behind it is never reached.
+  Other loops may run, up to the limits in `interpreter`.
+- Instructions that do not move the robot stay as opaque statements; ``WaitUntil``, ``WaitDI`` and
+  their like are stops and taken as satisfied at once. Error handlers and traps do not run. An
+  instruction that no table of `instructions` knows is refused, as it might move the robot.
+- ``AccSet`` scales the joints' accelerations and, by its ramp, the jerk. ``VelSet`` scales the
+  programmed speeds and the times of ``\\T``, not the joints' own limits. ``PathAccLim`` with two
+  limits takes the smaller one.
+- ``\\TLoad`` takes the place of the tool's own load and of the payload.
+- A robtarget's configuration counts unless ``ConfJ\\Off`` (joint moves) or ``ConfL\\Off`` holds.
+- External axes have no kind in RAPID: a target that uses one needs ``external_axes``.
+- A program displacement is worked into the targets, which are then derived.
+- ``num`` has double precision; ``AND`` and ``OR`` evaluate all their operands.
+
+Ownership of a move's numbers: see `provenance`. A number given in ``\\V``, ``\\T`` or ``\\Z`` is
+the only one of its speed or zone, and belongs to the move.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+from ....core.errors import SourceError
+from ....core.program.program import Program
+from ....core.source.collection import collection_paused
+from ....core.source.reading import Files, ReadOptions, read_with
+from ....core.source.text.files import SourceFile, SourceText, decode
+from ..motion.targets import axis_kinds
+from ..syntax.parser import parse
+from ..syntax.tree import Module
+from ..values.data import Globals
+from ..values.library import Library
+from .entry import choose_entry
+from .files import MODULES, PROGRAM, beside, collect, loaded
+from .interpreter import Interpreter
+
+SUFFIXES = (*MODULES, PROGRAM)
+
+DEFAULTS = ReadOptions()
+
+
+def read(
+    text: str | bytes,
+    file: str,
+    options: ReadOptions = DEFAULTS,
+    *,
+    external_axes: Sequence[str] | None = None,
+) -> Program:
+    """The program in a text of one module or several; see `read_sources`.
+
+    Args:
+        text: of the file. Spans count characters of the text without a byte-order mark.
+        file: its name, for messages and spans.
+        options: see `ReadOptions`.
+        external_axes: see `read_sources`.
+
+    Raises:
+        SourceError: with line and column: the text is no RAPID, or its motion cannot be known.
+    """
+    source = SourceFile(file, *decode(text, file))
+    return read_with(
+        {file: source}, file, options, partial(read_sources, external_axes=external_axes)
+    )
+
+
+def read_file(
+    path: str | Path,
+    options: ReadOptions = DEFAULTS,
+    *,
+    external_axes: Sequence[str] | None = None,
+) -> Program:
+    """The program of a file and of what belongs to it (`files`); see `read_sources`.
+
+    Raises:
+        InputError: a file cannot be read.
+        SourceError: as `read`.
+    """
+    files = collect(Path(path), options)
+    return read_with(files, str(path), options, partial(read_sources, external_axes=external_axes))
+
+
+def read_sources(
+    files: Files,
+    main: str,
+    options: ReadOptions,
+    *,
+    external_axes: Sequence[str] | None = None,
+) -> Program:
+    """The program that the entry routine of ``main`` drives; no file is opened.
+
+    Args:
+        files: by name: the program's, the others that the user named, and those beside it.
+        main: a module or a list of modules (``.pgf``).
+        options: entry (None for ``main``), robot, answers, limits.
+        external_axes: ``"linear"`` (mm) or ``"rotating"`` (degrees) for eax_a, eax_b, …; those of
+            the robot if it is given. Without either a target that uses one is refused.
+
+    Raises:
+        InputError: a list names a module that is not there.
+        SourceError: with line and column: a text is no RAPID, or its motion cannot be known.
+    """
+    names = loaded(files, main, options)
+    try:
+        with collection_paused():
+            return _program(files, main, names, options, external_axes)
+    except RecursionError:
+        where = SourceText(files[main].text, main).span(0, 0)
+        message = "expressions, blocks and calls are nested too deeply"
+        raise SourceError(message, where) from None
+
+
+def _program(
+    files: Files,
+    main: str,
+    names: Sequence[str],
+    options: ReadOptions,
+    external_axes: Sequence[str] | None,
+) -> Program:
+    parsed = {name: parse(SourceText(files[name].text, name)) for name in names}
+    data = Globals(
+        [module for modules in parsed.values() for module in modules],
+        Library(beside(files, main, names)),
+    )
+    own: list[Module] = [m for n in names if n == main or main not in parsed for m in parsed[n]]
+    entry, notes = choose_entry(data, own, options.entry, main)
+    texts = {name: file.text for name, file in files.items()}
+    run = Interpreter(data, texts, options, external_axes or axis_kinds(options.robot))
+    run.run(entry)
+    program = Program(run.statements(), data.module_of(entry).text, notes=(*notes, *run.notes()))
+    run.let_go()
+    return program

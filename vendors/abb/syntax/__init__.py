@@ -1,0 +1,1 @@
+"""Text of RAPID → its syntax tree."""

@@ -1,0 +1,178 @@
+"""Text → tokens.
+
+One compiled pattern finds every token; blanks, ends of line and comments are part of the pattern
+in front of it. Written by hand rather than with a parser generator because source files hold
+hundreds of thousands of numbers: see `parser` for the measurement. For the same reason brackets
+with nothing but numbers in them, as robtargets are, come as one token (`LITERAL`), which the
+standard library's JSON scanner turns into a value.
+
+Sources: "RAPID Reference Manual", basic elements: identifiers, numbers (decimal; 0x, 0o, 0b),
+strings (``""`` for a quote, ``\\xx`` for a character code, ``\\\\`` for a backslash), ``!``
+comments; upper and lower case are the same.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+
+from ....core.source.text import cursor
+from ....core.source.text.files import SourceText, unbroken
+
+
+def words(text: str) -> frozenset[str]:
+    """The words of a text, for tables of names."""
+    return frozenset(text.split())
+
+
+KEYWORDS = words(
+    """alias and backward case connect const default div do else elseif endfor endfunc endif
+    endmodule endproc endrecord endtest endtrap endwhile error exit false for from func goto if
+    inout local mod module not or pers proc raise record retry return step task test then to trap
+    true trynext undo var while with xor"""
+)
+"""Reserved words (the attributes of a module are not: they may be used as names)."""
+
+END, NAME = cursor.END, cursor.NAME
+NUMBER, STRING, LITERAL = "number", "string", "literal"
+
+_LEAF = r"-?+[0-9][0-9.eE+-]*+\s*+"
+_ROW = rf"\[\s*+{_LEAF}(?:,\s*+{_LEAF})*+\]\s*+"
+_ITEM = rf"(?:{_LEAF}|{_ROW})"
+
+_TOKEN = re.compile(
+    r"""
+    (?: [\s\ufeff\x1a]++ | ![^\r\n]*+ )*+
+    (?: (?P<name> [^\W\d_]\w*+ )
+      | (?P<number> 0[xX][0-9a-fA-F]++ | 0[oO][0-7]++ | 0[bB][01]++
+                  | (?: [0-9]++ (?: \.[0-9]*+ )? | \.[0-9]++ ) (?: [eE][+-]?[0-9]++ )? )
+      | (?P<string> " (?: [^"\r\n]++ | "" )*+ " )
+      | (?P<literal> """
+    rf"\[\s*+{_ITEM}(?:,\s*+{_ITEM})*+\]"
+    r""" )
+      | (?P<symbol> := | <> | <= | >= | [-+*/=<>()\[\]{},;:.\\?|%] )
+      | (?P<end> \Z )
+    )""",
+    re.VERBOSE,
+)
+_GROUPS = ("", NAME, NUMBER, STRING, LITERAL, "symbol", END)
+_NAME, _LITERAL, _SYMBOL = (_TOKEN.groupindex[name] for name in ("name", "literal", "symbol"))
+_HEADER = re.compile(r"[\s\ufeff]*%%%.*?%%%", re.DOTALL)
+_ESCAPE = re.compile(r'""|\\\\|\\([0-9a-fA-F]{2})')
+
+
+Row = tuple[float | tuple[float, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Tokens:
+    """The tokens of a text, as parallel lists that end with an `END`.
+
+    Args:
+        source: the text.
+        kinds: `NAME`, `NUMBER`, `STRING`, `LITERAL`, `END`, or the symbol or lower-case keyword
+            itself.
+        starts, ends: offsets.
+        values: of the tokens that are a `LITERAL`, by index.
+    """
+
+    source: SourceText
+    kinds: list[str]
+    starts: list[int]
+    ends: list[int]
+    values: dict[int, Row]
+
+
+def tokenize(source: SourceText) -> Tokens:
+    """All tokens of a text.
+
+    Raises:
+        SourceError: a character that no token begins with, or a string without an end.
+    """
+    text = unbroken(source.text)
+    kinds: list[str] = []
+    starts: list[int] = []
+    ends: list[int] = []
+    values: dict[int, Row] = {}
+    header = _HEADER.match(text)
+    position = header.end() if header else 0
+    match = _TOKEN.match
+    while True:
+        found = match(text, position)
+        if found is None:
+            raise _stray(source, position)
+        group = found.lastindex or 0
+        start, position = found.span(group)
+        kind = _GROUPS[group]
+        if group == _SYMBOL:
+            kind = text[start:position]
+        elif group == _NAME:
+            word = text[start:position].lower()
+            if word in KEYWORDS:
+                kind = word
+        elif group == _LITERAL:
+            value = _literal_value(text[start:position])
+            if value is None:
+                kind, position = "[", start + 1
+            else:
+                values[len(kinds)] = value
+        kinds.append(kind)
+        starts.append(start)
+        ends.append(position)
+        if kind == END:
+            return Tokens(source, kinds, starts, ends, values)
+
+
+_decode = json.JSONDecoder(parse_int=float).decode
+_HUGE = re.compile(r"[eE]\+?[0-9]{3}|[0-9]{300}")
+
+
+def _literal_value(text: str) -> Row | None:
+    """Numbers in brackets; None if not written as JSON writes them, or too large."""
+    if _HUGE.search(text):
+        return None
+    try:
+        rows = _decode(text)
+    except ValueError:
+        return None
+    return tuple([tuple(row) if type(row) is list else row for row in rows])
+
+
+def number_value(literal: str) -> float:
+    """The value of a number's text."""
+    if literal[:1] == "0" and literal[1:2] in tuple("xXoObB"):
+        try:
+            return float(int(literal, 0))
+        except OverflowError:
+            return float("inf")
+    return float(literal)
+
+
+def string_value(literal: str) -> str:
+    """The value of a string's text, quotes included."""
+
+    def unescape(found: re.Match[str]) -> str:
+        if found[1] is not None:
+            return chr(int(found[1], 16))
+        return found[0][0]
+
+    return _ESCAPE.sub(unescape, literal[1:-1])
+
+
+_BLANK = re.compile(r"(?:[\s\ufeff\x1a]++|![^\r\n]*+)*+")
+
+
+def _stray(source: SourceText, position: int) -> Exception:
+    blank = _BLANK.match(unbroken(source.text), position)
+    start = blank.end() if blank else position
+    character = source.text[start]
+    if character == '"':
+        return source.error("this string has no closing quote on its line", start)
+    if character == "\0" or not character.isprintable():
+        return source.error(
+            f"character {ord(character):#04x} does not belong in a RAPID text: the file is "
+            "binary or damaged",
+            start,
+        )
+    return source.error(f"{character!r} does not belong here", start)

@@ -1,0 +1,199 @@
+"""Source text → syntax tree.
+
+A descent by hand over the tokens of `lexer`; `statements` and `expressions` hold the rest. A LALR
+parser that lark makes of a grammar of declarations and calls alone takes 1.7 times as long for
+its untyped tree (0.23 s against 0.13 s for 900 lines with 500 robtargets, 6.7 s against 4.0 s for
+19 800 lines; one shared core, Python 3.11). The other reason is messages: each says what should
+stand in the place, and not which of thirty terminals would be accepted there.
+"""
+
+from __future__ import annotations
+
+from ....core.source.text.files import SourceText
+from .cursor import Cursor
+from .expressions import parse_braces, parse_expression
+from .lexer import END, NAME, tokenize
+from .statements import parse_block
+from .tree import AliasDefinition, Declaration, Module, Parameter, RecordDefinition, Routine
+
+STORAGE = ("const", "var", "pers")
+HANDLERS = ("error", "undo", "backward")
+ROUTINES = ("proc", "func", "trap")
+
+
+def parse(source: SourceText) -> tuple[Module, ...]:
+    """The modules of a source text.
+
+    Raises:
+        SourceError: the text is no RAPID, or is cut off.
+    """
+    cursor = Cursor(tokenize(source))
+    if cursor.kind == END:
+        raise source.error("the file holds no module", cursor.start)
+    modules = []
+    while cursor.kind != END:
+        modules.append(_module(cursor))
+    return tuple(modules)
+
+
+def _module(cursor: Cursor) -> Module:
+    start = cursor.start
+    cursor.expect("module", "at the beginning of the file")
+    text = cursor.name("the module's name")
+    attributes = _attributes(cursor)
+    types: list[RecordDefinition | AliasDefinition] = []
+    declarations: list[Declaration] = []
+    routines: list[Routine] = []
+    while not cursor.accept("endmodule"):
+        begin = cursor.start
+        local = cursor.accept("local")
+        if not local:
+            cursor.accept("task")
+        kind = cursor.kind
+        if kind in STORAGE:
+            declarations.append(_declaration(cursor, begin, local))
+        elif kind in ROUTINES:
+            routines.append(_routine(cursor, begin, local))
+        elif kind == "record":
+            types.append(_record(cursor, begin, local))
+        elif kind == "alias":
+            types.append(_alias(cursor, begin, local))
+        else:
+            raise cursor.unexpected("a declaration, PROC, FUNC, TRAP or ENDMODULE")
+    return Module(
+        cursor.span_from(start),
+        text.lower(),
+        text,
+        attributes,
+        tuple(types),
+        tuple(declarations),
+        tuple(routines),
+    )
+
+
+def _attributes(cursor: Cursor) -> tuple[str, ...]:
+    attributes: list[str] = []
+    if cursor.accept("("):
+        while not cursor.accept(")"):
+            if attributes:
+                cursor.expect(",", "between the attributes of a module")
+            attributes.append(cursor.name("an attribute of the module").lower())
+    return tuple(attributes)
+
+
+def _declaration(cursor: Cursor, start: int, local: bool = False) -> Declaration:
+    kind = cursor.kind
+    cursor.advance()
+    type_name = cursor.name("a type").lower()
+    text = cursor.name("the name of the datum")
+    dimensions = parse_braces(cursor) if cursor.kind == "{" else ()
+    value = parse_expression(cursor) if cursor.accept(":=") else None
+    cursor.expect(";", f"at the end of the declaration of {text}")
+    span = cursor.span_from(start)
+    return Declaration(span, kind, type_name, text.lower(), text, dimensions, value, local)
+
+
+def _record(cursor: Cursor, start: int, local: bool) -> RecordDefinition:
+    cursor.advance()
+    name = cursor.name("the name of the record").lower()
+    components = []
+    while not cursor.accept("endrecord"):
+        type_name = cursor.name("a component's type").lower()
+        components.append((type_name, cursor.name("a component's name").lower()))
+        cursor.expect(";", "after the component")
+    return RecordDefinition(cursor.span_from(start), name, tuple(components), local)
+
+
+def _alias(cursor: Cursor, start: int, local: bool) -> AliasDefinition:
+    cursor.advance()
+    type_name = cursor.name("a type").lower()
+    name = cursor.name("the name of the alias").lower()
+    cursor.expect(";", "after the alias")
+    return AliasDefinition(cursor.span_from(start), name, type_name, local)
+
+
+def _routine(cursor: Cursor, start: int, local: bool) -> Routine:
+    kind = cursor.kind
+    cursor.advance()
+    returns = cursor.name("the function's type").lower() if kind == "func" else None
+    text = cursor.name(f"the name of the {kind.upper()}")
+    parameters = _parameters(cursor) if kind != "trap" else ()
+    declarations = []
+    while cursor.kind in STORAGE:
+        declarations.append(_declaration(cursor, cursor.start))
+    end = f"end{kind}"
+    ends = frozenset({end, *HANDLERS})
+    head = f"{kind.upper()} {text}"
+    body = parse_block(cursor, ends, head, start)
+    handlers = _handlers(cursor, ends, head, start)
+    cursor.expect(end, f"to end {head}")
+    return Routine(
+        cursor.span_from(start),
+        kind,
+        text.lower(),
+        text,
+        parameters,
+        tuple(declarations),
+        body,
+        returns,
+        handlers,
+        local,
+    )
+
+
+def _handlers(cursor: Cursor, ends: frozenset[str], head: str, start: int) -> tuple[str, ...]:
+    """Handlers are checked for their form and left out of the tree."""
+    handlers = []
+    while (kind := cursor.kind) in HANDLERS:
+        cursor.advance()
+        if kind == "error" and cursor.accept("("):
+            parse_expression(cursor)
+            while cursor.accept(","):
+                parse_expression(cursor)
+            cursor.expect(")", "after the error numbers")
+        parse_block(cursor, ends, head, start)
+        handlers.append(kind)
+    return tuple(handlers)
+
+
+def _parameters(cursor: Cursor) -> tuple[Parameter, ...]:
+    cursor.expect("(", "after the name of the routine")
+    parameters: list[Parameter] = []
+    group = 0
+    while not cursor.accept(")"):
+        if not cursor.accept("|"):
+            group += 1
+            if parameters and not cursor.accept(",") and cursor.kind != "\\":
+                raise cursor.unexpected("',' or ')'")
+        parameters.append(_parameter(cursor, group, parameters))
+    return tuple(parameters)
+
+
+def _parameter(cursor: Cursor, group: int, before: list[Parameter]) -> Parameter:
+    start = cursor.start
+    alternative = bool(before) and before[-1].group == group
+    optional = cursor.accept("\\") or (alternative and before[-1].optional)
+    mode = "in"
+    if cursor.kind in ("inout", "var", "pers"):
+        mode = cursor.kind
+        cursor.advance()
+    type_name = cursor.name("the type of a parameter").lower()
+    if type_name == "ref" and cursor.kind == NAME and cursor.peek() == NAME:
+        type_name = cursor.name("the type of a parameter").lower()
+    text = cursor.name("the name of a parameter")
+    dimensions = _open_dimensions(cursor)
+    span = cursor.span_from(start)
+    return Parameter(span, mode, type_name, text.lower(), dimensions, optional, group)
+
+
+def _open_dimensions(cursor: Cursor) -> int:
+    """``{*, *}``: an array of any size."""
+    if not cursor.accept("{"):
+        return 0
+    count = 1
+    cursor.expect("*", "as the size of an array parameter")
+    while cursor.accept(","):
+        cursor.expect("*", "as the size of an array parameter")
+        count += 1
+    cursor.expect("}", "after the sizes of an array parameter")
+    return count

@@ -1,0 +1,240 @@
+"""Tokens → statements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from .cursor import Cursor
+from .expressions import parse_arguments, parse_expression, parse_name
+from .lexer import END, NAME
+from .tree import (
+    Assign,
+    Block,
+    Branch,
+    Case,
+    For,
+    Goto,
+    If,
+    Invoke,
+    Keyword,
+    Label,
+    LateInvoke,
+    Return,
+    Statement,
+    Test,
+    While,
+)
+
+_CLOSING = frozenset(
+    {"else", "elseif", "endif", "endfor", "endwhile", "case", "default", "endtest"}
+    | {"endproc", "endfunc", "endtrap", "endmodule", "proc", "func", "trap", END}
+    | {"error", "undo", "backward"}
+)
+"""What ends a block, or begins what no block holds."""
+
+
+def parse_block(cursor: Cursor, ends: frozenset[str], opened_by: str, start: int) -> Block:
+    """Statements up to one of the keywords ``ends``, which is left to be read.
+
+    Args:
+        cursor: at the first statement.
+        ends: one of them begins with ``end``.
+        opened_by: what the block belongs to, for messages.
+        start: where that begins.
+
+    Raises:
+        SourceError: another block's end, or the end of the file, comes first.
+    """
+    statements = []
+    with cursor.nested():
+        while (kind := cursor.kind) not in ends:
+            if kind in _CLOSING:
+                (closing,) = (end.upper() for end in ends if end.startswith("end"))
+                line = cursor.source.span(start, start).line
+                raise cursor.unexpected(f"{closing}, to close {opened_by} of line {line},")
+            if not cursor.accept(";"):  # one too many does no harm
+                statements.append(parse_statement(cursor))
+    return Block(tuple(statements))
+
+
+def parse_statement(cursor: Cursor) -> Statement:
+    """The statement that starts at the cursor."""
+    parse = _BY_KEYWORD.get(cursor.kind)
+    if parse is None:
+        raise cursor.unexpected("a statement")
+    return parse(cursor)
+
+
+def _name_statement(cursor: Cursor) -> Statement:
+    following = cursor.peek()
+    if following == ":":
+        return _label(cursor)
+    if following in (":=", ".", "{"):
+        return _assignment(cursor)
+    start = cursor.start
+    text = cursor.name("an instruction")
+    arguments = parse_arguments(cursor, ";")
+    cursor.advance()
+    return Invoke(cursor.span_from(start), text.lower(), text, arguments)
+
+
+def _assignment(cursor: Cursor) -> Assign:
+    start = cursor.start
+    target = parse_name(cursor)
+    cursor.expect(":=", f"after {target.text}")
+    value = parse_expression(cursor)
+    cursor.expect(";", "at the end of the assignment")
+    return Assign(cursor.span_from(start), target, value)
+
+
+def _label(cursor: Cursor) -> Label:
+    start = cursor.start
+    name = cursor.name("a label").lower()
+    cursor.advance()
+    return Label(cursor.span_from(start), name)
+
+
+def _late_call(cursor: Cursor) -> LateInvoke:
+    start = cursor.start
+    cursor.advance()
+    routine = parse_expression(cursor)
+    cursor.expect("%", "to end the name of the routine")
+    arguments = parse_arguments(cursor, ";")
+    cursor.advance()
+    return LateInvoke(cursor.span_from(start), routine, arguments)
+
+
+def _if(cursor: Cursor) -> If:
+    start = cursor.start
+    cursor.advance()
+    condition = parse_expression(cursor)
+    if not cursor.accept("then"):
+        with cursor.nested():
+            compact = Block((parse_statement(cursor),))
+        return If(cursor.span_from(start), (Branch(condition, compact),), None)
+    ends = frozenset({"elseif", "else", "endif"})
+    branches = [Branch(condition, parse_block(cursor, ends, "the IF", start))]
+    while cursor.accept("elseif"):
+        condition = parse_expression(cursor)
+        cursor.expect("then", "after the condition")
+        branches.append(Branch(condition, parse_block(cursor, ends, "the IF", start)))
+    otherwise = None
+    if cursor.accept("else"):
+        otherwise = parse_block(cursor, frozenset({"endif"}), "the IF", start)
+    _end(cursor, "endif")
+    return If(cursor.span_from(start), tuple(branches), otherwise)
+
+
+def _for(cursor: Cursor) -> For:
+    start = cursor.start
+    cursor.advance()
+    name = cursor.name("the name of the loop variable").lower()
+    cursor.expect("from", "after the loop variable")
+    first = parse_expression(cursor)
+    cursor.expect("to", "after the start value")
+    last = parse_expression(cursor)
+    step = parse_expression(cursor) if cursor.accept("step") else None
+    cursor.expect("do", "at the head of the loop")
+    body = parse_block(cursor, frozenset({"endfor"}), "the FOR", start)
+    _end(cursor, "endfor")
+    return For(cursor.span_from(start), name, first, last, step, body)
+
+
+def _while(cursor: Cursor) -> While:
+    start = cursor.start
+    cursor.advance()
+    condition = parse_expression(cursor)
+    cursor.expect("do", "after the condition")
+    body = parse_block(cursor, frozenset({"endwhile"}), "the WHILE", start)
+    _end(cursor, "endwhile")
+    return While(cursor.span_from(start), condition, body)
+
+
+def _test(cursor: Cursor) -> Test:
+    start = cursor.start
+    cursor.advance()
+    subject = parse_expression(cursor)
+    cursor.accept(";")
+    ends = frozenset({"case", "default", "endtest"})
+    cases = []
+    while cursor.accept("case"):
+        values = [parse_expression(cursor)]
+        while cursor.accept(","):
+            values.append(parse_expression(cursor))
+        cursor.expect(":", "after the values of the case")
+        cases.append(Case(tuple(values), parse_block(cursor, ends, "the TEST", start)))
+    otherwise = None
+    if cursor.accept("default"):
+        cursor.expect(":", "after DEFAULT")
+        otherwise = parse_block(cursor, frozenset({"endtest"}), "the TEST", start)
+    _end(cursor, "endtest")
+    return Test(cursor.span_from(start), subject, tuple(cases), otherwise)
+
+
+def _goto(cursor: Cursor) -> Goto:
+    start = cursor.start
+    cursor.advance()
+    name = cursor.name("a label").lower()
+    cursor.expect(";", "after the label")
+    return Goto(cursor.span_from(start), name)
+
+
+def _return(cursor: Cursor) -> Return:
+    start = cursor.start
+    cursor.advance()
+    value = None if cursor.kind == ";" else parse_expression(cursor)
+    cursor.expect(";", "after RETURN")
+    return Return(cursor.span_from(start), value)
+
+
+def _word(cursor: Cursor) -> Keyword:
+    """``EXIT;``, ``RETRY;``, ``TRYNEXT;`` and ``RAISE`` with or without a number."""
+    start, word = cursor.start, cursor.kind
+    cursor.advance()
+    if word == "raise" and cursor.kind != ";":
+        parse_expression(cursor)
+    cursor.expect(";", f"after {word.upper()}")
+    return Keyword(cursor.span_from(start), word)
+
+
+def _connect(cursor: Cursor) -> Keyword:
+    start = cursor.start
+    cursor.advance()
+    parse_name(cursor)
+    cursor.expect("with", "after the interrupt")
+    name = cursor.name("the name of a trap routine").lower()
+    cursor.expect(";", "at the end of CONNECT")
+    return Keyword(cursor.span_from(start), "connect", name)
+
+
+def _placeholder(cursor: Cursor) -> Keyword:
+    """``<SMT>``, which an editor leaves where a statement is still to be filled in."""
+    start = cursor.start
+    cursor.advance()
+    cursor.name("a statement")
+    cursor.expect(">", "to close the placeholder")
+    cursor.accept(";")
+    return Keyword(cursor.span_from(start), "placeholder")
+
+
+def _end(cursor: Cursor, keyword: str) -> None:
+    cursor.expect(keyword, "to close the statement")
+    cursor.accept(";")
+
+
+_BY_KEYWORD: dict[str, Callable[[Cursor], Statement]] = {
+    NAME: _name_statement,
+    "%": _late_call,
+    "if": _if,
+    "for": _for,
+    "while": _while,
+    "test": _test,
+    "goto": _goto,
+    "return": _return,
+    "exit": _word,
+    "raise": _word,
+    "retry": _word,
+    "trynext": _word,
+    "connect": _connect,
+    "<": _placeholder,
+}

@@ -1,0 +1,1 @@
+"""Expressions of RAPID → values, and the data of a program."""

@@ -1,0 +1,457 @@
+"""Expressions → values, and assignments."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+from ....core.errors import SourceError, Span
+from ....core.source.execution.answers import Course
+from ....core.source.execution.outputs import Outputs
+from ....core.source.execution.provenance import ELSEWHERE, Reads
+from ..syntax.tree import (
+    Aggregate,
+    Call,
+    Declaration,
+    Expression,
+    Name,
+    Number,
+    Operation,
+    Packed,
+    Routine,
+    Star,
+    Text,
+    Truth,
+    Unary,
+)
+from .answers import free, like_signals, typed
+from .checks import check_known, check_type
+from .data import Globals
+from .elements import (
+    array_mismatch,
+    check_index,
+    check_size,
+    component,
+    element,
+    filled,
+    gathered,
+    item,
+    replaced,
+)
+from .function_calls import FunctionCalls, Special
+from .operators import OperandError, apply, negate
+from .provenance import Literal, source_of_literal
+from .scope import Cell, Scope
+from .types import BOOL, NUM, Foreign, Type, Unknown, Value, interpreted
+
+CallFunction = Callable[[Routine, Call, Scope], Value]
+
+
+@dataclass(frozen=True, slots=True)
+class Located:
+    """A value together with the place of the text that it was read from.
+
+    Args:
+        cell: the datum, None if the expression is no plain datum.
+        predefined: name of the controller's own datum that the value is.
+        type: of the value, None if it is not known.
+    """
+
+    value: Value
+    source: Literal | None
+    cell: Cell | None
+    predefined: str | None = None
+    type: Type | None = None
+
+
+class Evaluator:
+    """Evaluates expressions in a scope.
+
+    Args:
+        data: the program's types, routines and data.
+        course: the user's answers.
+        text_of: the text that stands at a place.
+        call: runs one of the program's own functions.
+        state: functions that ask the emulated robot.
+        undeclared: is told of a name that is assigned and declared nowhere at hand.
+    """
+
+    def __init__(
+        self,
+        data: Globals,
+        course: Course,
+        text_of: Callable[[Span], str],
+        call: CallFunction,
+        state: Mapping[str, Special],
+        undeclared: Callable[[Name], None],
+    ) -> None:
+        self.data = data
+        self.reads = Reads()
+        self.reader = ELSEWHERE
+        self.outputs = Outputs()
+        self.turns = 0
+        """How many answers of sequences were given."""
+        self._course = course
+        self._text_of = text_of
+        self._undeclared = undeclared
+        self._elsewhere: dict[str, Value] = {}
+        self._checked: dict[int, tuple[Value, Type]] = {}
+        self._functions = FunctionCalls(self, call, state)
+
+    # ------------------------------------------------------------------ values
+
+    def evaluate(self, expression: Expression, scope: Scope) -> Value:
+        """The value of an expression; `Unknown` where only the controller has it.
+
+        Raises:
+            SourceError: it has none.
+        """
+        if isinstance(expression, Number | Packed | Text | Truth):
+            return expression.value
+        if isinstance(expression, Name):
+            return self._read_name(expression, scope)
+        if isinstance(expression, Aggregate):
+            return tuple(self.evaluate(item, scope) for item in expression.items)
+        if isinstance(expression, Operation):
+            return self._operation(expression, scope)
+        if isinstance(expression, Unary):
+            operand = self.evaluate(expression.operand, scope)
+            try:
+                return negate(expression.operator, operand)
+            except OperandError as error:
+                raise SourceError(str(error), expression.span) from None
+        if isinstance(expression, Call):
+            return self._functions.value(expression, scope)
+        return _star(expression)
+
+    def locate(self, expression: Expression, scope: Scope, asking: bool = True) -> Located:
+        """A value that a move takes as it stands, with its source.
+
+        Unlike `evaluate` this does not count as a read by an expression: the caller tells
+        `reads` what it does with the value.
+
+        Args:
+            asking: whether the user's answer is taken where a datum is not known.
+        """
+        if isinstance(expression, Name):
+            return self._locate_name(expression, scope, asking)
+        value = self.evaluate(expression, scope)
+        return Located(value, source_of_literal(expression, None), None)
+
+    def known(self, expression: Expression, scope: Scope, type_: Type, use: str) -> Value:
+        """A value that must be known and of a type.
+
+        Args:
+            use: what depends on it, to stand at the beginning of a message.
+
+        Raises:
+            SourceError: it is not.
+        """
+        value = self.evaluate(expression, scope)
+        self.check(value, type_, use, expression.span)
+        return value
+
+    def check(self, value: Value, type_: Type, use: str, span: Span) -> None:
+        """Raises:
+        SourceError: a value is not known, or not of a type.
+        """
+        check_known(value, use, span)
+        check_type(value, type_, use, span)
+
+    def check_located(self, found: Located, type_: Type, use: str, span: Span) -> None:
+        """`check`, once for each value of a datum: moves read few data many times."""
+        if found.source is not None:  # a literal, all of it known
+            if found.type is not type_:
+                check_type(found.value, type_, use, span, found.type, self._text_of(span))
+            return
+        known = self._checked.get(id(found.value))
+        if known is not None and known[0] is found.value and known[1] is type_:
+            return
+        check_known(found.value, use, span)
+        check_type(found.value, type_, use, span, found.type, self._text_of(span))
+        if found.cell is not None:
+            self._checked[id(found.value)] = (found.value, type_)
+
+    def number(self, expression: Expression, scope: Scope, use: str) -> float:
+        """A known num."""
+        value = self.known(expression, scope, NUM, use)
+        assert isinstance(value, float)
+        return value
+
+    def truth(self, value: Value, use: str, span: Span) -> bool:
+        """A known bool."""
+        if value is True or value is False:
+            return value
+        self.check(value, BOOL, use, span)
+        raise AssertionError
+
+    # ------------------------------------------------------------------- answers
+
+    def ask(self, span: Span, type_: Type | None, sizes: tuple[int, ...] = ()) -> Value | None:
+        """The user's answer to the expression at a place, None if there is none.
+
+        Args:
+            type_: of the answer, None if it is not known.
+            sizes: of an array.
+
+        Raises:
+            SourceError: the answer is of another type.
+        """
+        return self._ask(self.key(span), span, type_, sizes)
+
+    def key(self, span: Span) -> str:
+        """Under which the user may answer the expression at a place."""
+        return " ".join(self._text_of(span).split())
+
+    def _ask(
+        self, key: str, span: Span, type_: Type | None, sizes: tuple[int, ...]
+    ) -> Value | None:
+        answer = self._course.value(key) if key else None
+        self.turns += self._course.changing(key)
+        if answer is None:
+            return None
+        return free(answer) if type_ is None else typed(answer, type_, sizes, key, span)
+
+    def fill(self, target: Name, unknown: Unknown, scope: Scope) -> None:
+        """An instruction writes a datum: the user's answer, or what is not known."""
+        found = self.locate(target, scope, asking=False)
+        sizes = found.cell.dimensions if found.cell is not None and not target.path else ()
+        answer = self.ask(target.span, found.type, sizes)
+        self.assign(target, unknown if answer is None else answer, scope)
+
+    def signal(self, expression: Expression | None, scope: Scope) -> str | None:
+        """The signal that an expression means, lower case; None if that is not known."""
+        if not isinstance(expression, Name) or expression.path:
+            return None
+        cell = self.cell(expression, scope)
+        if cell is None:
+            return None if expression.name in self._elsewhere else expression.name
+        value = self.settle(cell) if isinstance(cell.type, Foreign) and cell.present else None
+        return value.key.lower() or None if isinstance(value, Unknown) else None
+
+    def output(self, signal: Expression | None, asked: Span, scope: Scope) -> Value | None:
+        """What the program has set an output to; None if that is not known.
+
+        Args:
+            asked: where it is read: a user's answers to it in turn come first.
+        """
+        name = self.signal(signal, scope)
+        if name is None or self._course.changing(self.key(asked)):
+            return None
+        return self.outputs.value(name)
+
+    # -------------------------------------------------------------------- data
+
+    def settle(self, cell: Cell) -> Value:
+        """The value of a cell, evaluated now if it was not yet."""
+        value = self._settled(cell)
+        if cell.elements:
+            value = cell.value = gathered(value, cell.elements)
+            cell.elements.clear()
+        return value
+
+    def _settled(self, cell: Cell) -> Value:
+        """`settle`, leaving out the elements that were written of late."""
+        declaration, scope = cell.pending, cell.scope
+        if declaration is None:
+            assert cell.value is not None
+            return cell.value
+        if scope is None:
+            raise SourceError(f"the value of {cell.name} depends on itself", declaration.span)
+        cell.scope = None  # while it is evaluated
+        sizes = tuple(self._size(d, scope) for d in declaration.dimensions)
+        check_size(cell.name, sizes, declaration.span)
+        cell.dimensions = sizes
+        cell.value, cell.source, cell.predefined = self._initial(
+            declaration, cell.type, sizes, scope
+        )
+        cell.pending = None
+        return cell.value
+
+    def _size(self, expression: Expression, scope: Scope) -> int:
+        size = self.number(expression, scope, "the size of an array")
+        if size < 1 or size != int(size):
+            raise SourceError(f"an array has one element or more, not {size:g}", expression.span)
+        return int(size)
+
+    def _initial(
+        self, declaration: Declaration, type_: Type, sizes: tuple[int, ...], scope: Scope
+    ) -> tuple[Value, Literal | None, str | None]:
+        if isinstance(type_, Foreign):
+            reason = f"'{declaration.text}', a {type_.name}"
+            return filled(Unknown(reason, declaration.span, declaration.text), sizes), None, None
+        if declaration.value is None:
+            return filled(type_.default, sizes), None, None
+        found = self.locate(declaration.value, scope)
+        value = found.value
+        wrong = array_mismatch(value, type_, sizes)
+        if wrong is not None:
+            raise SourceError(f"{declaration.text}: {wrong}", declaration.value.span)
+        source = found.source
+        if source is not None and source.datum is None:
+            source = Literal(source.expression, source.root, declaration.text)
+        return value, source, found.predefined
+
+    def assign(self, target: Name, value: Value, scope: Scope) -> None:
+        """``target := value``
+
+        Raises:
+            SourceError: the target is constant, or of another type.
+        """
+        cell = self.cell(target, scope)
+        if cell is None:
+            self._assign_elsewhere(target, value)
+            return
+        if cell.constant:
+            raise SourceError(f"{cell.name} is a constant and cannot be assigned", target.span)
+        if not target.path:
+            if cell.pending is not None:
+                self.settle(cell)
+            wrong = array_mismatch(value, cell.type, cell.dimensions)
+            if wrong is not None:
+                raise SourceError(f"{target.text}: {wrong}", target.span)
+            cell.value = interpreted(value, cell.type, target.span)
+            cell.source, cell.predefined = None, None
+            cell.elements.clear()
+            return
+        self._assign_part(cell, target, value, scope)
+
+    def _assign_part(self, cell: Cell, target: Name, value: Value, scope: Scope) -> None:
+        """An element or component is written."""
+        old = self._settled(cell)
+        path = self._path(target, scope)
+        cell.predefined = None
+        if isinstance(path, Unknown):
+            cell.value, cell.source = replace(path, key=cell.name), None
+            cell.elements.clear()
+            return
+        first = path[0]
+        if isinstance(first, tuple):
+            check_index(first, cell.dimensions, target)
+            cell.elements[first] = replaced(element(cell, first), cell, path, value, target)
+            cell.overwritten.add(first)
+        else:
+            cell.value, cell.source = replaced(old, cell, path, value, target), None
+
+    def _assign_elsewhere(self, target: Name, value: Value) -> None:
+        """A datum of a module that is not at hand moves nothing by being written.
+
+        It keeps the value that it is given; of a part of it the type is not known.
+        """
+        self._undeclared(target)
+        if target.path:
+            self._elsewhere.pop(target.name, None)
+        else:
+            self._elsewhere[target.name] = value
+
+    # ------------------------------------------------------------------- names
+
+    def cell(self, name: Name, scope: Scope) -> Cell | None:
+        """The datum of a name, of a module beside the program if need be."""
+        found = scope.find(name.name)
+        return self.data.fetched_cell(name.name, name.span) if found is None else found
+
+    def _read_name(self, name: Name, scope: Scope) -> Value:
+        found = self._locate_name(name, scope)
+        if found.source is not None:
+            self.reads.by_expression(found.source, self.reader)
+        return found.value
+
+    def _locate_name(self, name: Name, scope: Scope, asking: bool = True) -> Located:
+        found = self._find(name, scope)
+        if asking and isinstance(found.value, Unknown):
+            held = self.output(name, name.span, scope)
+            if held is not None:
+                return Located(held, None, None)
+            sizes = found.cell.dimensions if found.cell is not None and not name.path else ()
+            answer = self.ask(name.span, found.type, sizes)
+            if answer is None and not name.path and found.value.key != name.text:
+                answer = self._ask(found.value.key, name.span, found.type, sizes)
+            if answer is not None:
+                return Located(answer, None, found.cell, type=found.type)
+        return found
+
+    def _find(self, name: Name, scope: Scope) -> Located:
+        cell = self.cell(name, scope)
+        if cell is None and not name.path and name.name in self._elsewhere:
+            return Located(self._elsewhere[name.name], None, None)
+        if cell is None:
+            reason = f"'{name.text}', which is not declared in what is at hand (a signal?)"
+            return Located(Unknown(reason, name.span, self.key(name.span)), None, None)
+        if not cell.present:
+            raise SourceError(f"the optional argument {cell.name} was not given", name.span)
+        if not name.path:
+            value = self.settle(cell)
+            source = None if cell.overwritten else cell.source
+            return Located(value, source, cell, cell.predefined, cell.type)
+        value = self._settled(cell)
+        path = self._path(name, scope)
+        if isinstance(path, Unknown):
+            return Located(path, None, cell)
+        source = None if path[0] in cell.overwritten else cell.source
+        type_: Type = cell.type
+        dimensions = cell.dimensions
+        for step in path:
+            if isinstance(step, tuple):
+                check_index(step, dimensions, name)
+                dimensions = ()
+                label = "{" + ",".join(str(i) for i in step) + "}"
+                for place, index in enumerate(step):
+                    value = item(value, index - 1)
+                    shown = label if place == len(step) - 1 else ""
+                    source = source.part(index - 1, shown) if source else None
+                value = cell.elements.get(step, value)
+            else:
+                position, type_ = component(step, type_, dimensions, name)
+                value = item(value, position)
+                source = source.part(position, f".{step}") if source else None
+        return Located(value, source, cell, type=type_)
+
+    def _path(self, name: Name, scope: Scope) -> list[str | tuple[int, ...]] | Unknown:
+        path: list[str | tuple[int, ...]] = []
+        for step in name.path:
+            if isinstance(step, str):
+                path.append(step)
+                continue
+            indices = []
+            for expression in step:
+                value = self.evaluate(expression, scope)
+                if isinstance(value, Unknown):
+                    return value
+                indices.append(self.as_index(value, expression.span))
+            path.append(tuple(indices))
+        return path
+
+    def as_index(self, value: Value, span: Span) -> int:
+        """A known value as an index.
+
+        Raises:
+            SourceError: it is no whole number.
+        """
+        self.check(value, NUM, "an index", span)
+        assert isinstance(value, float)
+        if value != int(value):
+            raise SourceError(f"an index is a whole number, not {value:g}", span)
+        return int(value)
+
+    # -------------------------------------------------- operators and functions
+
+    def _operation(self, operation: Operation, scope: Scope) -> Value:
+        value = self.evaluate(operation.first, scope)
+        for symbol, operand in operation.rest:
+            right = self.evaluate(operand, scope)
+            if symbol in ("=", "<>"):
+                value, right = like_signals(value, right)
+            try:
+                value = apply(symbol, value, right)
+            except OperandError as error:
+                raise SourceError(str(error), operation.span) from None
+        return value
+
+
+def _star(star: Star) -> Value:
+    raise SourceError(
+        "the position of '*' is not in the text: write the robtarget out, or store it with a "
+        "name, and read the program again",
+        star.span,
+    )

@@ -1,0 +1,90 @@
+"""Data that every controller knows without a declaration: speeds, zones, the flange, the world.
+
+The numbers are those of the "RAPID Reference Manual", data types speeddata, zonedata, tooldata,
+wobjdata and loaddata, as three public tools carry them alike (RobotComponents; rpiRobotics
+abb_motion_program_exec; a RAPID generator that cites the manual).
+
+RAPID does not tell upper from lower case: every table has lower-case keys, and the look-ups
+take a name in any case.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from ....core.program.speed import Speed
+from ....core.program.tool import FLANGE, WORLD, Tool, WorkObject
+from ....core.program.zone import Zone
+from .records import LOAD0, VMAX, Record, speed_value, tool_record, work_object_record, zone_value
+
+_V_TCP = (
+    *(5, 10, 20, 30, 40, 50, 60, 80, 100, 150, 200, 300, 400, 500, 600, 800, 1000),
+    *(1500, 2000, 2500, 3000, 4000, 5000, 6000, 7000),
+)
+
+SPEEDS: Mapping[str, Record] = MappingProxyType(
+    {
+        **{f"v{v}": (float(v), 500.0, 5000.0, 1000.0) for v in _V_TCP},
+        "vmax": VMAX,
+    }
+)
+"""name → ``[v_tcp, v_ori, v_leax, v_reax]`` in mm/s and deg/s."""
+
+ZONES: Mapping[str, Record] = MappingProxyType(
+    {
+        "fine": (True, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        "z0": (False, 0.3, 0.3, 0.3, 0.03, 0.3, 0.03),
+        "z1": (False, 1.0, 1.0, 1.0, 0.1, 1.0, 0.1),
+        "z5": (False, 5.0, 8.0, 8.0, 0.8, 8.0, 0.8),
+        "z10": (False, 10.0, 15.0, 15.0, 1.5, 15.0, 1.5),
+        "z15": (False, 15.0, 23.0, 23.0, 2.3, 23.0, 2.3),
+        "z20": (False, 20.0, 30.0, 30.0, 3.0, 30.0, 3.0),
+        "z30": (False, 30.0, 45.0, 45.0, 4.5, 45.0, 4.5),
+        "z40": (False, 40.0, 60.0, 60.0, 6.0, 60.0, 6.0),
+        "z50": (False, 50.0, 75.0, 75.0, 7.5, 75.0, 7.5),
+        "z60": (False, 60.0, 90.0, 90.0, 9.0, 90.0, 9.0),
+        "z80": (False, 80.0, 120.0, 120.0, 12.0, 120.0, 12.0),
+        "z100": (False, 100.0, 150.0, 150.0, 15.0, 150.0, 15.0),
+        "z150": (False, 150.0, 225.0, 225.0, 23.0, 225.0, 23.0),
+        "z200": (False, 200.0, 300.0, 300.0, 30.0, 300.0, 30.0),
+    }
+)
+"""name → ``[finep, pzone_tcp, pzone_ori, pzone_eax, zone_ori, zone_leax, zone_reax]`` in mm and
+deg."""
+
+RECORDS: Mapping[str, Mapping[str, Record]] = MappingProxyType(
+    {
+        "speeddata": SPEEDS,
+        "zonedata": ZONES,
+        "tooldata": MappingProxyType({FLANGE.name: tool_record(FLANGE)}),
+        "wobjdata": MappingProxyType({WORLD.name: work_object_record(WORLD)}),
+        "loaddata": MappingProxyType({"load0": LOAD0}),
+    }
+)
+"""data type → name → record: everything that needs no declaration."""
+
+NAMES = frozenset(name for records in RECORDS.values() for name in records)
+
+_SPEED_VALUES = {name: speed_value(record, name) for name, record in SPEEDS.items()}
+_ZONE_VALUES = {name: zone_value(record, name) for name, record in ZONES.items()}
+
+
+def speed(name: str) -> Speed | None:
+    """The predefined speed called ``name``, None if there is none."""
+    return _SPEED_VALUES.get(name.casefold())
+
+
+def zone(name: str) -> Zone | None:
+    """The predefined zone called ``name``, None if there is none."""
+    return _ZONE_VALUES.get(name.casefold())
+
+
+def tool(name: str) -> Tool | None:
+    """The bare flange for ``tool0``, else None."""
+    return FLANGE if name.casefold() == FLANGE.name else None
+
+
+def work_object(name: str) -> WorkObject | None:
+    """The world for ``wobj0``, else None."""
+    return WORLD if name.casefold() == WORLD.name else None

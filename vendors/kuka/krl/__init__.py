@@ -1,1 +1,0 @@
-"""KRL: KUKA's robot language."""

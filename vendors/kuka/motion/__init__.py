@@ -1,0 +1,1 @@
+"""Moves and motion settings of KRL → the core's."""

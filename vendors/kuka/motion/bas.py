@@ -1,0 +1,333 @@
+"""What ``BAS(…)`` and the functions of inline forms do, carried out natively.
+
+What is set, and from which default of ``$CONFIG.DAT``, follows a published ``BAS.SRC`` (KSS 8). Its
+corrections of tool and base (``TOOL_CORR`` and the like) are left out; with adaptive accelerations,
+which the controllers have switched on, a percentage of a PTP is ``$ACC_AXIS`` itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ....core.errors import SourceError, Span
+from ..syntax.expression_tree import Call, Constant, Expression
+from ..values.config_data import ConfigData
+from ..values.data import Data
+from ..values.evaluator import Evaluator
+from ..values.frames import null_frame
+from ..values.scope import Scope
+from ..values.types import convert
+from ..values.values import Array, Choice, Struct, Unknown, Value, left_open, shown
+from .output import Output
+
+AXES = 6
+Command = Callable[["Basis", Value | None, Span], None]
+
+
+class Basis:
+    """The commands of ``BAS``.
+
+    Args:
+        data: the system variables.
+        evaluator: for arguments.
+        config: the data of ``$CONFIG.DAT``.
+        output: takes notes.
+        changed: is told that system variables have other values now.
+    """
+
+    def __init__(
+        self,
+        data: Data,
+        evaluator: Evaluator,
+        config: ConfigData,
+        output: Output,
+        changed: Callable[[], None],
+    ) -> None:
+        self._data = data
+        self._evaluator = evaluator
+        self._config = config
+        self._output = output
+        self._changed = changed
+
+    def invoke(self, call: Call, scope: Scope) -> None:
+        """``BAS(#COMMAND, value)``
+
+        Raises:
+            SourceError: the command is not known, or its value is missing.
+        """
+        arguments = call.arguments
+        first = arguments[0] if arguments else None
+        command = None if first is None else self._command(first, scope)
+        if command is None:
+            raise SourceError(f"{call.text} begins with a command, as #INITMOV", call.span)
+        handler = _COMMANDS.get(command)
+        if handler is None:
+            self._output.note_once(
+                f"bas {command}",
+                f"{call.text}(#{command.upper()}) is stepped over: it sets nothing that is "
+                "emulated",
+                call.span,
+            )
+            return
+        second = arguments[1] if len(arguments) > 1 else None
+        value = None if second is None else self._evaluator.evaluate(second, scope)
+        handler(self, value, call.span)
+        self._changed()
+
+    def _command(self, first: Expression, scope: Scope) -> str | None:
+        if isinstance(first, Constant):
+            return first.name
+        value = self._evaluator.known(first, scope, "the command of BAS")
+        return value.name if isinstance(value, Choice) else None
+
+    # --------------------------------------------------------------------- variables
+
+    def default(self, name: str) -> Value:
+        """A datum of ``$CONFIG.DAT``."""
+        return self._config.value(name)
+
+    def datum(self, name: str, span: Span) -> Struct:
+        """``PDAT_ACT``, ``LDAT_ACT`` or ``FDAT_ACT``.
+
+        Raises:
+            SourceError: it is not known.
+        """
+        value = self._config.value(name)
+        if isinstance(value, Unknown):
+            raise left_open(name, value, span)
+        if not isinstance(value, Struct):
+            raise SourceError(f"{name} is {shown(value)} and no structure", span)
+        return value
+
+    def set(self, name: str, value: Value) -> None:
+        """A system variable."""
+        cell = self._data.system[name]
+        self._data.journal.note(cell)
+        cell.assigned = True
+        cell.value = value
+
+    def component(self, name: str, component: str, value: Value) -> None:
+        """A component of a system variable."""
+        cell = self._data.system[name]
+        self._data.journal.note(cell)
+        if not isinstance(cell.value, Struct):
+            cell.value = Struct(cell.type)
+        cell.value.fields[component] = value
+
+    def all_axes(self, name: str, value: Value) -> None:
+        """An axis variable, the same for every axis."""
+        items: dict[tuple[int, ...], Value] = {(k,): value for k in range(1, AXES + 1)}
+        self.set(name, Array("real", (AXES,), dict(items)))
+
+    def share(self, percent: Value | None, default: str) -> Value:
+        """A percentage of a default; the default itself for 100 and more, and if it is open."""
+        full = self.default(default)
+        if isinstance(full, int | float) and isinstance(percent, int | float) and percent < 100:
+            return float(percent) * full / 100
+        return percent if isinstance(percent, Unknown) else plain(full)
+
+    def path_limit(self, value: Value, span: Span) -> Value:
+        """A speed of the TCP, cut to ``DEF_VEL_CP``."""
+        most = self.default("DEF_VEL_CP")
+        if isinstance(value, int | float) and isinstance(most, int | float) and value > most:
+            self._output.note_once(
+                "DEF_VEL_CP",
+                f"a path speed of {value:g} m/s is cut to DEF_VEL_CP={most:g} m/s",
+                span,
+            )
+            return plain(most)
+        return value
+
+    # ------------------------------------------------------------------------ frames
+
+    def use_tool(self, number: Value | None, span: Span) -> None:
+        """``BAS(#TOOL,n)``: ``$TOOL`` and ``$LOAD``."""
+        index = self.index(number, "the number of a tool", span)
+        self.set("$act_tool", index)
+        self.set("$tool", self.frame("tool_data", index, span))
+        self.set("$load", self.load(index))
+
+    def use_base(self, number: Value | None, span: Span) -> None:
+        """``BAS(#BASE,n)``"""
+        index = self.index(number, "the number of a base", span)
+        self.set("$act_base", index)
+        self.set("$base", self.frame("base_data", index, span))
+
+    def use_frames(self, value: Value | None, span: Span) -> None:
+        """``BAS(#FRAMES)``: what FDAT_ACT says."""
+        fdat = self.datum("FDAT_ACT", span)
+        mode = fdat.fields.get("ipo_frame")
+        self.set("$ipo_mode", mode if isinstance(mode, Choice) else Choice("base"))
+        if "tool_no" in fdat.fields:
+            self.use_tool(fdat.fields["tool_no"], span)
+        if "base_no" in fdat.fields:
+            self.use_base(fdat.fields["base_no"], span)
+
+    def frame(self, table: str, index: int, span: Span) -> Value:
+        """An item of ``TOOL_DATA`` or ``BASE_DATA``; item 0, and -1 for none, is the null frame.
+
+        Raises:
+            SourceError: the table has no such item.
+        """
+        if index <= 0:
+            return null_frame()
+        value = self._config.item(table, index, span)
+        if value is None:
+            return null_frame(f"{table.upper()}[{index}]", shipped=True)
+        return value.copy() if isinstance(value, Struct) else value
+
+    def load(self, index: int) -> Value:
+        """An item of ``LOAD_DATA``."""
+        value = self._config.item("load_data", index, None) if index > 0 else None
+        return value.copy() if isinstance(value, Struct) else Struct("load")
+
+    @staticmethod
+    def index(number: Value | None, what: str, span: Span) -> int:
+        """A whole number.
+
+        Raises:
+            SourceError: it is none, or not known.
+        """
+        if isinstance(number, Unknown):
+            raise left_open(what, number, span)
+        if isinstance(number, bool) or not isinstance(number, int | float) or number != int(number):
+            raise SourceError(f"{what} is a whole number", span)
+        return int(number)
+
+    # ------------------------------------------------------------------------ motion
+
+    def initialise(self, value: Value | None, span: Span) -> None:
+        """``BAS(#INITMOV,0)``: speeds, accelerations and approximation as ``$CONFIG.DAT`` says."""
+        self.all_axes("$vel_axis", 100.0)
+        self.all_axes("$acc_axis", 100.0)
+        for variable in ("vel", "acc"):
+            for name in ("cp", "ori1", "ori2"):
+                default = self.default(f"DEF_{variable.upper()}_{name.upper()}")
+                self.component(f"${variable}", name, plain(default))
+        for name in ("cptp", "cdis", "cori", "cvel"):
+            self.component("$apo", name, plain(self.default(f"DEF_APO_{name.upper()}")))
+        self.component("$apo", "ptp_mode", Choice(""))
+        self.set("$ori_type", Choice("var"))
+        self.set("$circ_type", self._circle())
+        self.set("$ipo_mode", Choice("base"))
+        self.set("$tool", self.frame("tool_data", 1, span))
+        self.set("$base", null_frame())
+        self.set("$act_tool", 1)
+        self.set("$act_base", 0)
+        self.set("$advance", 3)
+
+    def _circle(self) -> Choice:
+        kind = self.default("DEF_CIRC_TYP")
+        return kind if isinstance(kind, Choice) else Choice("base")
+
+    def joint_data(self, value: Value | None, span: Span) -> None:
+        """``BAS(#PTP_DAT)``: what PDAT_ACT says."""
+        pdat = self.datum("PDAT_ACT", span).fields
+        self.joint_speed(pdat.get("vel", 100.0), span)
+        self._joint_data(span)
+
+    def _joint_data(self, span: Span) -> None:
+        """Acceleration and approximation: percent, or mm with ``APO_MODE #CDIS``."""
+        pdat = self.datum("PDAT_ACT", span).fields
+        self.joint_acceleration(pdat.get("acc", 100.0), span)
+        distance, mode = pdat.get("apo_dist"), pdat.get("apo_mode")
+        by_distance = isinstance(mode, Choice) and mode.name == "cdis"
+        if distance is not None:
+            self.component("$apo", "cdis" if by_distance else "cptp", distance)
+        self.component("$apo", "ptp_mode", Choice(""))
+
+    def joint_parameters(self, value: Value | None, span: Span) -> None:
+        """``BAS(#PTP_PARAMS,n)``: PDAT_ACT and FDAT_ACT at n percent."""
+        self._joint_data(span)
+        self.use_frames(None, span)
+        self.joint_speed(value, span)
+
+    def joint_speed(self, value: Value | None, span: Span) -> None:
+        """``BAS(#VEL_PTP,n)``"""
+        self.all_axes("$vel_axis", _percent(self.given(value, "VEL_PTP", span)))
+
+    def joint_acceleration(self, value: Value | None, span: Span) -> None:
+        """``BAS(#ACC_PTP,n)``"""
+        self.all_axes("$acc_axis", _percent(self.given(value, "ACC_PTP", span)))
+
+    def path_speed(self, value: Value | None, span: Span) -> None:
+        """``BAS(#VEL_CP,v)`` in m/s."""
+        speed = self.path_limit(self.given(value, "VEL_CP", span), span)
+        self.component("$vel", "cp", speed)
+
+    def path_acceleration(self, value: Value | None, span: Span) -> None:
+        """``BAS(#ACC_CP,n)`` in percent of the defaults, of the path and of turning."""
+        percent = self.given(value, "ACC_CP", span)
+        for name in ("cp", "ori1", "ori2"):
+            self.component("$acc", name, self.share(percent, f"DEF_ACC_{name.upper()}"))
+
+    def path_data(self, value: Value | None, span: Span) -> None:
+        """``BAS(#CP_DAT)``: what LDAT_ACT says."""
+        speed = self.datum("LDAT_ACT", span).fields.get("vel")
+        if speed is not None:
+            self.path_speed(speed, span)
+        self._path_data(span)
+
+    def _path_data(self, span: Span) -> None:
+        """Acceleration, approximation in mm, orientation."""
+        ldat = self.datum("LDAT_ACT", span).fields
+        self.path_acceleration(ldat.get("acc", 100.0), span)
+        if "apo_dist" in ldat:
+            self.component("$apo", "cdis", ldat["apo_dist"])
+        orientation, circle = ldat.get("ori_typ"), ldat.get("circ_typ")
+        self.set("$ori_type", orientation if isinstance(orientation, Choice) else Choice("var"))
+        self.set("$circ_type", circle if isinstance(circle, Choice) else self._circle())
+
+    def path_parameters(self, value: Value | None, span: Span) -> None:
+        """``BAS(#CP_PARAMS,v)``: LDAT_ACT and FDAT_ACT at v m/s."""
+        self._path_data(span)
+        self.use_frames(None, span)
+        self.path_speed(value, span)
+
+    @staticmethod
+    def given(value: Value | None, command: str, span: Span) -> Value:
+        """The value that a command needs.
+
+        Raises:
+            SourceError: it was left out.
+        """
+        if value is None:
+            raise SourceError(f"BAS(#{command},…) needs a value", span)
+        if isinstance(value, int) and not isinstance(value, bool):
+            return convert(value, "real", {})
+        return value
+
+    def nothing(self, value: Value | None, span: Span) -> None:
+        """A command that motion does not depend on."""
+
+
+_COMMANDS: dict[str, Command] = {
+    "initmov": Basis.initialise,
+    "vel_ptp": Basis.joint_speed,
+    "acc_ptp": Basis.joint_acceleration,
+    "vel_cp": Basis.path_speed,
+    "acc_cp": Basis.path_acceleration,
+    "ptp_dat": Basis.joint_data,
+    "cp_dat": Basis.path_data,
+    "ptp_params": Basis.joint_parameters,
+    "cp_params": Basis.path_parameters,
+    "frames": Basis.use_frames,
+    "tool": Basis.use_tool,
+    "base": Basis.use_base,
+    "out_sync": Basis.nothing,
+    "out_async": Basis.nothing,
+    "group": Basis.nothing,
+    "ex_bas": Basis.nothing,
+}
+
+
+def plain(value: Value) -> Value:
+    """A default, which is nobody's to change."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return float(value)
+    return value
+
+
+def _percent(value: Value) -> Value:
+    """At most 100."""
+    return 100.0 if isinstance(value, int | float) and value > 100 else value

@@ -1,0 +1,135 @@
+"""Functions that ask for the robot's kinematics: coupled bases, ``FORWARD`` and ``INVERSE``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ....core.errors import SourceError
+from ....core.program.move import MoveJ
+from ....core.program.speed import Speed
+from ....core.program.target import JointTarget
+from ....core.robot.joint import ExternalRole
+from ....core.robot.model import Robot
+from ..syntax.expression_tree import Call, Name
+from ..values.evaluator import Evaluator
+from ..values.frames import frame_of
+from ..values.scope import Scope
+from ..values.values import Struct, Unknown, Value, find_unknown
+from .frames import Placements
+from .inline_forms import Function
+from .output import Output
+from .position import Position
+from .targets import Targets
+
+
+class Kinematics:
+    """The functions.
+
+    Args:
+        robot: None if none is named.
+        evaluator: gives the argument that takes an error its value.
+        placements: tool and base in force.
+        targets: makes targets of positions and axis values.
+        position: follows the robot.
+        output: takes notes.
+    """
+
+    def __init__(
+        self,
+        robot: Robot | None,
+        evaluator: Evaluator,
+        placements: Placements,
+        targets: Targets,
+        position: Position,
+        output: Output,
+    ) -> None:
+        self._robot = robot
+        self._evaluator = evaluator
+        self._placements = placements
+        self._targets = targets
+        self._position = position
+        self._output = output
+
+    def functions(self) -> Mapping[str, Function]:
+        """By lower-case name."""
+        return {
+            "ek": self.coupled,
+            "eb": self.coupled,
+            "forward": self.forward,
+            "inverse": self.inverse,
+        }
+
+    def coupled(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
+        """``EK(root, type, offset)``: a base on the robot's table.
+
+        Raises:
+            SourceError: the robot has no table, or several that this may mean.
+        """
+        robot = self._robot
+        tables = (
+            []
+            if robot is None
+            else [axis.name for axis in robot.external_axes if axis.role is ExternalRole.TABLE]
+        )
+        if robot is not None:
+            carriers = {axis.carried_by for axis in robot.external_axes}
+            tables = [name for name in tables if name not in carriers]
+        if len(tables) != 1:
+            have = "no robot is named" if robot is None else f"the robot has {len(tables)} tables"
+            raise SourceError(
+                f"{call.text} couples the base to an external kinematic system, but {have}: name "
+                "a robot whose external axes hold the one table that is meant",
+                call.span,
+            )
+        offset = arguments[2] if len(arguments) > 2 else None
+        made = offset.copy() if isinstance(offset, Struct) else Struct("frame")
+        made.moved_by = tables[0]
+        self._output.note_once(
+            "EK",
+            f"{call.text}: the base is on {tables[0]}, at its place in the robot's cell",
+            call.span,
+        )
+        return made
+
+    def forward(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
+        """``FORWARD(axes, error)``: the pose of ``$TOOL`` in ``$BASE``."""
+        robot, axes = self._robot, arguments[0] if arguments else None
+        if robot is None or not isinstance(axes, Struct):
+            return Unknown(f"the value of {call.text} (name the robot)", call.span)
+        placement = self._placements.current(call.span)
+        found = self._targets.joints(axes, call.span)
+        assert isinstance(found.target, JointTarget)
+        from ....core.motion.path.commanded_position import Standing
+        from .configuration import label
+
+        standing = Standing(robot, label, found.target)
+        made = frame_of(standing.pose(placement.tool, placement.work_object), "e6pos")
+        self._no_error(call, scope)
+        return made
+
+    def inverse(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
+        """``INVERSE(position, near, error)``"""
+        position = arguments[0] if arguments else None
+        if self._robot is None or not isinstance(position, Struct):
+            return Unknown(f"the value of {call.text} (name the robot)", call.span)
+        placement = self._placements.current(call.span)
+        found = self._targets.pose(position, placement, True, False, call.span)
+        near = arguments[1] if len(arguments) > 1 else None
+        start = None
+        if isinstance(near, Struct) and find_unknown(near) is None:
+            joints = self._targets.joints(near, call.span).target
+            from ....core.motion.path.commanded_position import Standing
+            from .configuration import label
+
+            assert isinstance(joints, JointTarget)
+            start = Standing(self._robot, label, joints).joints()
+        move = MoveJ(found.target, Speed(), tool=placement.tool, work_object=placement.work_object)
+        q = self._position.solve(move, start, call.span)
+        self._no_error(call, scope)
+        return self._position.axis_struct(q)
+
+    def _no_error(self, call: Call, scope: Scope) -> None:
+        """The last argument takes the number of an error: none."""
+        last = call.arguments[-1] if call.arguments else None
+        if isinstance(last, Name) and len(call.arguments) > 1:
+            self._evaluator.assign(last, 0, scope, call.span)

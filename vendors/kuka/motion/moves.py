@@ -1,0 +1,428 @@
+"""The motion instructions: PTP, LIN, CIRC, their relative forms, and SPTP, SLIN, SCIRC alone.
+
+LIN and CIRC keep the Status that the robot has: S and T of their targets do not count. ``WITH``
+sets system variables for one motion. A motion to ``$POS_ACT`` or ``$AXIS_ACT`` goes nowhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+from ....core.errors import InputError, SourceError, Span
+from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Opaque
+from ....core.program.speed import Speed
+from ....core.program.target import JointTarget, PoseTarget
+from ....core.program.tool import Load, Tool, WorkObject
+from ....core.program.zone import Zone
+from ....core.source.execution.provenance import Part
+from ..syntax.expression_tree import Expression, Flat, Name
+from ..syntax.tree import Motion
+from ..values.data import Data
+from ..values.evaluator import Evaluator
+from ..values.frames import frame_of, pose_of
+from ..values.placement import Placement
+from ..values.predefined import MOTION, POSITION
+from ..values.provenance import KrlSource, LeafSource, Sources
+from ..values.scope import Cell, Scope
+from ..values.types import AXES, FRAME_FIELDS, POSES, KrlTypeError, convert
+from ..values.values import Pending, Struct, Unknown, Value, copied, shown
+from .arcs import beyond
+from .frames import Placements
+from .output import Output, Parts
+from .position import Position
+from .settings import Set, Settings
+from .targets import AXIS_NUMBERS, POSE_NUMBERS, Found, Targets, is_axes
+from .triggers import Triggers
+
+
+@dataclass(frozen=True, slots=True)
+class _Common:
+    """What every move has, converted."""
+
+    placement: Placement
+    speed: Set
+    zone: Set
+
+
+class MotionReader:
+    """Reads motion instructions.
+
+    Args:
+        data: of the program.
+        evaluator: for targets.
+        placements: tool and base in force.
+        settings: speeds and zones in force.
+        targets: makes targets of positions and axis values.
+        position: follows the robot.
+        triggers: what happens on the way.
+        output: takes the moves.
+        changed: is told that system variables have other values now.
+    """
+
+    def __init__(
+        self,
+        data: Data,
+        evaluator: Evaluator,
+        placements: Placements,
+        settings: Settings,
+        targets: Targets,
+        position: Position,
+        triggers: Triggers,
+        output: Output,
+        changed: Callable[[], None],
+    ) -> None:
+        self._data = data
+        self._evaluator = evaluator
+        self._placements = placements
+        self._settings = settings
+        self._targets = targets
+        self._position = position
+        self._triggers = triggers
+        self._output = output
+        self._changed = changed
+        self._literals: dict[tuple[int, bool, bool], Found] = {}
+
+    def read(self, motion: Motion, scope: Scope) -> None:
+        """Carry out one instruction, with what follows ``WITH`` set for it alone.
+
+        Raises:
+            SourceError: it cannot be emulated, or a value is not known.
+        """
+        if not motion.settings:
+            self._drive(motion, scope)
+            return
+        system = self._data.system
+        saved = {name: copied(_held(system[name])) for name in MOTION}
+        try:
+            for setting in motion.settings:
+                value = self._evaluator.evaluate(setting.value, scope)
+                self._evaluator.assign(setting.target, value, scope, setting.span)
+            self._changed()
+            self._drive(motion, scope)
+        finally:
+            for name, value in saved.items():
+                system[name].value = value
+            self._changed()
+
+    def _drive(self, motion: Motion, scope: Scope) -> None:
+        word = motion.word.removesuffix("_rel")
+        joint, arc = word.endswith("ptp"), word.endswith("circ")
+        if not arc and self._goes_nowhere(motion, scope):
+            self._stay(motion, joint)
+            return
+        placement = self._placements.current(motion.span)
+        start = None if joint else self._start(placement, motion)
+        if arc:
+            self._arc(motion, scope, placement, start)
+            return
+        found = self._target(motion, motion.targets[0], scope, placement, joint)
+        if not joint:
+            if isinstance(found.target, JointTarget):
+                raise SourceError(
+                    f"{motion.word.upper()} takes a position, not axis values", motion.span
+                )
+            found = self._constant_orientation(found, start, placement, motion)
+        common = self._common(motion, joint, placement)
+        kind = MoveJ if joint else MoveL
+        move: Move = kind(found.target, *_fields(common), events=self._triggers.taken())
+        self._emit(motion, move, found, common)
+
+    # --------------------------------------------------------------------- one kind each
+
+    def _goes_nowhere(self, motion: Motion, scope: Scope) -> bool:
+        """Whether the target is where the robot is, known or not."""
+        target = motion.targets[-1]
+        if not isinstance(target, Name) or target.path or motion.word.endswith("_rel"):
+            return False
+        if target.name in POSITION:
+            return True
+        cell = self._data.find(target.name, scope)
+        value = None if cell is None else cell.value
+        if not isinstance(value, Unknown) or value.here is None:
+            return False
+        moves, asked_in = value.here
+        return moves == self._output.move_index and (
+            asked_in is None or asked_in == self._placements.current(motion.span)
+        )
+
+    def _stay(self, motion: Motion, joint: bool) -> None:
+        """``PTP $AXIS_ACT``: no way, but an exact stop.
+
+        It is kept so that it goes nowhere wherever it is written, whatever the datum holds there.
+        """
+        at = motion.targets[-1].span
+        text, target = self._output.text(motion.span), self._output.text(at)
+        if target.lower() not in POSITION:
+            place = "$AXIS_ACT" if joint else "$POS_ACT"
+            begin = at.start - motion.span.start
+            text = text[:begin] + place + text[begin + len(target) :]
+        self._output.emit(Opaque(text, not motion.approximation, motion.span))
+        self._output.note_once(
+            "stays",
+            f"{motion.word.upper()} {target} goes to where the robot is: kept, no move",
+            motion.span,
+        )
+
+    def _arc(
+        self, motion: Motion, scope: Scope, placement: Placement, start: Struct | Unknown | None
+    ) -> None:
+        auxiliary = self._target(motion, motion.targets[0], scope, placement, False, via=True)
+        found = self._target(motion, motion.targets[1], scope, placement, False)
+        via, target = auxiliary.target, found.target
+        if isinstance(via, JointTarget) or isinstance(target, JointTarget):
+            raise SourceError(
+                f"{motion.word.upper()} takes positions, not axis values", motion.span
+            )
+        via_part = self._part(motion.targets[0].span, auxiliary.sources)
+        if motion.angle is not None:
+            via, target = self._by_angle(motion, motion.angle, scope, start, via, target)
+            complete = Struct("e6pos", {**found.complete.fields, **frame_of(target.pose).fields})
+            found = replace(found, target=target, complete=complete, sources=Sources(()))
+            via_part = Part(motion.targets[0].span)
+            for sources in (auxiliary.sources, found.sources):
+                self._read_by_expression(sources.entries)
+        found = self._constant_orientation(found, start, placement, motion)
+        common = self._common(motion, False, placement)
+        assert isinstance(found.target, PoseTarget)
+        move = MoveC(
+            found.target,
+            *_fields(common),
+            via=via,
+            orientation=self._arc_orientation(motion),
+            events=self._triggers.taken(),
+        )
+        self._emit(motion, move, found, common, via_part)
+
+    def _by_angle(
+        self,
+        motion: Motion,
+        angle: Expression,
+        scope: Scope,
+        start: Struct | Unknown | None,
+        via: PoseTarget,
+        target: PoseTarget,
+    ) -> tuple[PoseTarget, PoseTarget]:
+        """``CA``: the auxiliary and the end point of the arc that is really driven."""
+        degrees = self._evaluator.number(angle, scope, "CA")
+        if not isinstance(start, Struct):
+            reason = start.reason if isinstance(start, Unknown) else "where the robot stands"
+            raise SourceError(f"an arc of angle CA depends on {reason}", motion.span)
+        try:
+            middle, end = beyond(pose_of(start.fields), via.pose, target.pose, degrees)
+        except InputError as error:
+            raise SourceError(str(error), motion.span) from None
+        return replace(via, pose=middle), replace(target, pose=end)
+
+    def _arc_orientation(self, motion: Motion) -> ArcOrientation:
+        kind = self._settings.choice("$circ_type", motion.span)
+        return ArcOrientation.FOLLOWS_ARC if kind == "path" else ArcOrientation.FIXED_FRAME
+
+    def _constant_orientation(
+        self, found: Found, start: Struct | Unknown | None, placement: Placement, motion: Motion
+    ) -> Found:
+        """``$ORI_TYPE``: ``#CONSTANT`` keeps the orientation of the start point."""
+        kind = self._settings.choice("$ori_type", motion.span)
+        if kind == "joint":
+            self._output.note_once(
+                "#JOINT",
+                "$ORI_TYPE=#JOINT turns the wrist's axes evenly, which is not emulated: the "
+                "orientation goes the shortest way (#VAR)",
+                motion.span,
+            )
+        if kind != "constant":
+            return found
+        if not isinstance(start, Struct):
+            reason = start.reason if isinstance(start, Unknown) else "where the robot stands"
+            raise SourceError(
+                f"$ORI_TYPE=#CONSTANT keeps the orientation of the start point, which depends on "
+                f"{reason}",
+                motion.span,
+            )
+        kept = {name: start.fields[name] for name in "abc"}
+        complete = Struct("e6pos", {**found.complete.fields, **kept})
+        assert isinstance(found.target, PoseTarget)
+        target = replace(found.target, pose=pose_of(complete.fields))
+        return replace(found, target=target, complete=complete, sources=_only_position(found))
+
+    def _start(self, placement: Placement, motion: Motion) -> Struct | Unknown | None:
+        """Where the motion begins, if that is needed to know where it goes."""
+        constant = self._settings.choice("$ori_type", motion.span) == "constant"
+        if constant or motion.angle is not None:
+            return self._position.pose(placement, motion.span)
+        return None
+
+    # -------------------------------------------------------------------------- parts
+
+    def _target(
+        self,
+        motion: Motion,
+        expression: Expression,
+        scope: Scope,
+        placement: Placement,
+        joint: bool,
+        via: bool = False,
+    ) -> Found:
+        key = (id(expression), joint, via)
+        if key in self._literals:
+            return self._literals[key]
+        span = expression.span
+        value = self._value(motion, expression, scope)
+        if motion.word.endswith("_rel"):
+            return self._relative(motion, value, placement, via, span)
+        if is_axes(value):
+            found = self._targets.joints(value, span)
+        else:
+            found = self._targets.pose(value, placement, joint, via, span)
+        if found.filled:
+            self._depends_on_last()
+        elif isinstance(expression, Flat):
+            self._literals[key] = found  # loops come by often
+        return found
+
+    def _value(self, motion: Motion, expression: Expression, scope: Scope) -> Struct:
+        span = expression.span
+        self._evaluator.reader = self._output.move_index
+        value = self._evaluator.evaluate(expression, scope)
+        self._evaluator.reader = -1
+        what = f"the target of {motion.word.upper()}"
+        if isinstance(value, Unknown):
+            if isinstance(expression, Name) and self._data.find(expression.name, scope) is None:
+                raise self._evaluator.undeclared(expression, scope, "point")
+            self._evaluator.check_known(value, what, span)
+        if not isinstance(value, Struct):
+            raise SourceError(f"{what} is a position or axis values, not {shown(value)}", span)
+        if value.type == "":
+            return self._typed(value, "e6axis" if is_axes(value) else "e6pos", span)
+        if value.type in AXES or value.type in POSES:
+            return value
+        raise SourceError(f"{what} is a position or axis values, not {shown(value)}", span)
+
+    def _typed(self, value: Struct, kind: str, span: Span) -> Struct:
+        """An aggregate without a type as what its components make it."""
+        types = self._data.types
+        if value.fields.keys() <= types[kind].keys():
+            # `Targets` wants numbers, and says so.
+            return Struct(kind, value.fields, value.label, value.shipped, value.moved_by)
+        try:
+            typed = convert(value, kind, types)
+        except KrlTypeError as error:
+            raise SourceError(str(error), span) from None
+        assert isinstance(typed, Struct)
+        return typed
+
+    def _relative(
+        self, motion: Motion, value: Struct, placement: Placement, via: bool, span: Span
+    ) -> Found:
+        """The present target and a step."""
+        self._evaluator.check_known(value, f"the target of {motion.word.upper()}", span)
+        self._evaluator.reader = self._output.move_index
+        self._evaluator.note_reads(value)
+        self._evaluator.reader = -1
+        self._depends_on_last()
+        axes = is_axes(value)
+        present = self._position.axes(span) if axes else self._position.pose(placement, span)
+        if isinstance(present, Unknown):
+            raise SourceError(f"{motion.word.upper()} goes on from {present.reason}", span)
+        summed = dict(present.fields)
+        names = AXIS_NUMBERS if axes else (*FRAME_FIELDS, *POSE_NUMBERS[8:])
+        for name in names:
+            step = value.fields.get(name)
+            if step is not None:
+                summed[name] = _sum(summed.get(name, 0.0), step)
+        if axes:
+            return self._targets.joints(Struct("e6axis", summed), span)
+        if motion.frame == "tool":
+            summed.update(frame_of(pose_of(present.fields) @ pose_of(value.fields)).fields)
+        elif any(value.fields.get(name, 0) != 0 for name in "abc"):
+            turned = pose_of({n: v for n, v in value.fields.items() if n in "abc"})
+            summed.update(
+                {
+                    n: v
+                    for n, v in frame_of(turned @ pose_of(present.fields)).fields.items()
+                    if n in "abc"
+                }
+            )
+        for name in "st":
+            summed.pop(name, None)
+            if name in value.fields:
+                summed[name] = value.fields[name]
+        joint = "ptp" in motion.word
+        found = self._targets.pose(Struct("e6pos", summed), placement, joint, via, span)
+        return replace(found, sources=Sources(()))
+
+    def _depends_on_last(self) -> None:
+        """The last target's numbers are read by the move that comes now as well."""
+        if self._output.parts:
+            self._read_by_expression(self._output.parts[-1].target.sources)
+
+    def _read_by_expression(self, sources: Iterable[object]) -> None:
+        for source in sources:
+            if source is not None:
+                self._evaluator.reads.by_expression(source, self._output.move_index)  # type: ignore[arg-type]
+
+    def _common(self, motion: Motion, joint: bool, placement: Placement) -> _Common:
+        settings = self._settings
+        span = motion.span
+        speed = settings.joint_speed(span) if joint else settings.path_speed(span)
+        spline = motion.word.startswith("s")
+        zone = settings.zone(motion.approximation, joint, spline, motion.approximated)
+        return _Common(placement, speed, zone)
+
+    def _part(self, span: Span, sources: Sources, predefined: str | None = None) -> Part:
+        reads, index = self._evaluator.reads, self._output.move_index
+        for source in sources.distinct():
+            reads.by_move(source, index)
+            # A number may be read alone here and with its aggregate by another move.
+            reads.by_expression(source, index)
+        return Part(span, sources.entries, predefined)
+
+    def _emit(
+        self,
+        motion: Motion,
+        move: Move,
+        found: Found,
+        common: _Common,
+        via: Part | None = None,
+    ) -> None:
+        parts = Parts(
+            motion.span,
+            self._part(motion.targets[-1].span, found.sources, found.predefined),
+            self._part(motion.span, common.speed.sources),
+            self._part(motion.approximated, common.zone.sources),
+            via,
+        )
+        if isinstance(found.target, PoseTarget):
+            self._placements.remark_unset(motion.span)
+        self._output.emit_move(move, parts)
+        self._position.moved(move, motion.span, found.complete, common.placement)
+
+
+def _held(cell: Cell) -> Value:
+    value = cell.value
+    assert value is not None and not isinstance(value, Pending)
+    return value
+
+
+def _fields(common: _Common) -> tuple[Speed, Zone, Tool, WorkObject, Load | None]:
+    speed, zone = common.speed.value, common.zone.value
+    at = common.placement
+    assert isinstance(speed, Speed) and not isinstance(zone, Speed)
+    return speed, zone, at.tool, at.work_object, at.load
+
+
+def _only_position(found: Found) -> Sources:
+    """The sources of a target whose orientation does not count: its numbers one by one."""
+    entries: list[KrlSource | None] = []
+    for source in found.sources.entries:
+        if isinstance(source, LeafSource) or source is None:
+            entries.append(source)
+        else:
+            entries += source.parts()
+    turning = range(3, 6)
+    return Sources(tuple(None if k in turning else e for k, e in enumerate(entries)))
+
+
+def _sum(present: Value, step: Value) -> float:
+    assert isinstance(step, int | float) and isinstance(present, int | float)
+    return float(present) + float(step)

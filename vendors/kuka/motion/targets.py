@@ -1,0 +1,222 @@
+"""Positions and axis values of KRL → the core's targets.
+
+Components that a target leaves out keep the robot's present value (KRL's rule). External axes
+E1, E2, … are the robot's, in its order; without a robot they must be 0.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ....core.errors import InputError, SourceError, Span
+from ....core.program.target import JointTarget, PoseTarget
+from ....core.robot.joint import JointKind
+from ....core.robot.model import Robot
+from ..values.frames import pose_of
+from ..values.placement import Placement
+from ..values.provenance import Sources
+from ..values.types import AXES, AXIS_FIELDS, EXTERNAL_FIELDS, FRAME_FIELDS
+from ..values.values import Struct, Unknown, Value, find_unknown, left_open, shown
+from .configuration import KukaConfiguration
+from .position import Position
+
+POSE_NUMBERS = (*FRAME_FIELDS, "s", "t", *EXTERNAL_FIELDS)
+"""The numbers of a position, in the order of an origin's numbers."""
+AXIS_NUMBERS = (*AXIS_FIELDS, *EXTERNAL_FIELDS)
+"""The same of axis values."""
+_EXTERNAL_NAMES = frozenset(EXTERNAL_FIELDS)
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A target.
+
+    Args:
+        complete: all components, those left out filled in, for `Position`.
+        sources: the literals of its numbers.
+        filled: some components are the robot's present ones.
+        predefined: the datum of the shipped configuration that it is.
+    """
+
+    target: PoseTarget | JointTarget
+    complete: Struct
+    sources: Sources
+    filled: bool
+    predefined: str | None = None
+
+
+class Targets:
+    """Makes targets.
+
+    Args:
+        robot: for its external axes; None if none is named.
+        position: where the robot stands.
+    """
+
+    def __init__(self, robot: Robot | None, position: Position) -> None:
+        self._axes = None if robot is None else robot.external_axes
+        self._position = position
+
+    def pose(
+        self, value: Struct, placement: Placement, status: bool, via: bool, span: Span
+    ) -> Found:
+        """A position.
+
+        Args:
+            status: whether S and T count, as they do for PTP.
+            via: an auxiliary point: neither S and T nor external axes count.
+
+        Raises:
+            SourceError: a component is not known, or no number.
+        """
+        fields, filled = value.fields, False
+        missing = [name for name in FRAME_FIELDS if name not in fields]
+        if missing:
+            present = self._position.pose(placement, span)
+            if isinstance(present, Unknown):
+                left_out = ", ".join(name.upper() for name in missing)
+                raise SourceError(
+                    f"the target leaves out {left_out}: it keeps {present.reason}", span
+                )
+            fields, filled = {**{n: present.fields[n] for n in missing}, **fields}, True
+        numbers = self._numbers(fields, FRAME_FIELDS, span)
+        external, outside, kept = ((), {}, False) if via else self._external(value.fields, span)
+        complete = Struct("e6pos", {**numbers, **outside})
+        configuration = None
+        if status and not via:
+            configuration = self._configuration(value.fields, complete, span)
+        try:
+            target = PoseTarget(pose_of(numbers), configuration, external, value.label)
+        except InputError as error:
+            raise SourceError(str(error), span) from None
+        sources = Sources.of([value.fields.get(name) for name in POSE_NUMBERS])
+        return Found(target, complete, sources, filled or kept, _predefined(value))
+
+    def joints(self, value: Struct, span: Span) -> Found:
+        """Axis values.
+
+        Raises:
+            SourceError: as `pose`.
+        """
+        fields, filled = value.fields, False
+        missing = [name for name in AXIS_FIELDS if name not in fields]
+        if missing:
+            present = self._position.axes(span)
+            if isinstance(present, Unknown):
+                left_out = ", ".join(name.upper() for name in missing)
+                raise SourceError(
+                    f"the target leaves out {left_out}: it keeps {present.reason}", span
+                )
+            fields, filled = {**{n: present.fields[n] for n in missing}, **fields}, True
+        numbers = self._numbers(fields, AXIS_FIELDS, span)
+        external, outside, kept = self._external(value.fields, span)
+        degrees = [float(numbers[name]) for name in AXIS_FIELDS]  # type: ignore[arg-type]
+        try:
+            target = JointTarget(tuple(map(math.radians, degrees)), external, value.label)
+        except InputError as error:
+            raise SourceError(str(error), span) from None
+        sources = Sources.of([value.fields.get(name) for name in AXIS_NUMBERS])
+        complete = Struct("e6axis", {**numbers, **outside})
+        return Found(target, complete, sources, filled or kept, _predefined(value))
+
+    @staticmethod
+    def _numbers(
+        fields: Mapping[str, Value], names: tuple[str, ...], span: Span
+    ) -> dict[str, Value]:
+        numbers: dict[str, Value] = {}
+        for name in names:
+            number = fields[name]
+            if isinstance(number, bool) or not isinstance(number, int | float):
+                raise _no_number(name, number, span)
+            numbers[name] = float(number)
+        return numbers
+
+    def _configuration(
+        self, fields: Mapping[str, Value], complete: Struct, span: Span
+    ) -> KukaConfiguration | None:
+        found: dict[str, int | None] = {"s": None, "t": None}
+        for name in found:
+            value = fields.get(name)
+            if value is None:
+                continue
+            if isinstance(value, bool) or not isinstance(value, int | float):
+                raise _no_number(name, value, span)
+            if value != int(value):
+                raise SourceError(f"{name.upper()} is a whole number, not {value:g}", span)
+            found[name] = complete.fields[name] = int(value)
+        if found["s"] is None and found["t"] is None:
+            return None
+        try:
+            return KukaConfiguration(found["s"], found["t"])
+        except InputError as error:
+            raise SourceError(str(error), span) from None
+
+    def _external(
+        self, fields: Mapping[str, Value], span: Span
+    ) -> tuple[tuple[float, ...], dict[str, Value], bool]:
+        """External axes in rad and m as far as they are programmed, the same in mm and degrees,
+        and whether one of them keeps its present value."""
+        if _EXTERNAL_NAMES.isdisjoint(fields):
+            return (), {}, False
+        given: dict[int, float] = {}
+        for k, name in enumerate(EXTERNAL_FIELDS):
+            value = fields.get(name)
+            if value is None:
+                continue
+            if isinstance(value, bool) or not isinstance(value, int | float):
+                raise _no_number(name, value, span)
+            given[k] = float(value)
+        count = 0 if self._axes is None else len(self._axes)
+        for k, number in given.items():
+            if k >= count and number != 0:
+                raise self._no_axis(k, number, span)
+        last = max((k for k in given if k < count), default=-1)
+        kept = any(k not in given for k in range(last + 1))
+        for k in range(last + 1):
+            if k not in given:
+                present = self._position.external(k)
+                if not isinstance(present, int | float):
+                    raise SourceError(
+                        f"the target leaves out E{k + 1}, and where that axis stands is not known",
+                        span,
+                    )
+                given[k] = float(present)
+        converted = [
+            given[k] / 1000 if axis.joint.kind is JointKind.PRISMATIC else math.radians(given[k])
+            for k, axis in zip(range(last + 1), self._axes or (), strict=False)
+        ]
+        outside: dict[str, Value] = {EXTERNAL_FIELDS[k]: given[k] for k in range(last + 1)}
+        return tuple(converted), outside, kept
+
+    def _no_axis(self, k: int, number: float, span: Span) -> SourceError:
+        if self._axes is None:
+            return SourceError(
+                f"external axis E{k + 1} is sent to {number:g}, and the text does not say whether "
+                "that is mm or degrees: name the robot",
+                span,
+            )
+        return SourceError(
+            f"external axis E{k + 1} is sent to {number:g}, but the robot has {len(self._axes)} "
+            "external axes",
+            span,
+        )
+
+
+def _no_number(name: str, value: Value, span: Span) -> SourceError:
+    unknown = find_unknown(value)
+    if unknown is not None:
+        return left_open(f"{name.upper()} of the target", unknown, span)
+    return SourceError(f"{name.upper()} of the target is a number, not {shown(value)}", span)
+
+
+def _predefined(value: Struct) -> str | None:
+    return value.label if value.shipped else None
+
+
+def is_axes(value: Struct) -> bool:
+    """Whether a structure holds axis values, by its type or its components."""
+    if value.type in AXES:
+        return True
+    return value.type == "" and any(name in value.fields for name in AXIS_FIELDS)

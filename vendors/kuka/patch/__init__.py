@@ -1,0 +1,1 @@
+"""Changed programs → the user's own KRL files."""

@@ -1,0 +1,250 @@
+"""Literal numbers changed where they stand."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from ....core.errors import Span
+from ....core.program.speed import Speed
+from ....core.program.target import JointTarget, PoseTarget
+from ....core.program.zone import Angle, ContourFraction, Radius, SpeedFraction, Zone
+from ....core.robot.joint import JointKind
+from ....core.robot.model import Robot
+from ....core.source.patch.edits import TOLERANCE, alike
+from ....core.source.patch.uses import Kind, Use
+from ....core.source.text.numerals import shortest
+from ..motion.configuration import KukaConfiguration
+from ..values.angles import written_angles
+from ..write.formatting import EXTERNAL_AXES, MM
+from ..write.numbers import number
+from ..write.speeds import zone_settings
+from .places import Places
+
+Texts = Mapping[Span, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """A number of a part of a move.
+
+    Args:
+        name: as an aggregate calls it.
+        changes: whether it becomes another one.
+        text: what it becomes, from the text that stands there.
+    """
+
+    name: str
+    changes: bool
+    text: Callable[[str], str]
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What a part's literals must say.
+
+    Args:
+        texts: at each place.
+        missing: components that change and that no literal states.
+    """
+
+    texts: Texts
+    missing: tuple[Component, ...] = field(default=())
+
+
+class InPlace:
+    """Finds what the literals of a program would have to say.
+
+    Args:
+        uses: all parts of all moves.
+        places: the program's files.
+        robot: for the kinds of its external axes.
+    """
+
+    def __init__(self, uses: Iterable[Use], places: Places, robot: Robot) -> None:
+        self._places = places
+        self._robot = robot
+        self._readers: defaultdict[Span, list[Use]] = defaultdict(list)
+        self._wanted: dict[tuple[int, Kind], Wanted] = {}
+        for use in uses:
+            for span in set(filter(None, use.origin.numbers)):
+                self._readers[span].append(use)
+
+    def wanted(self, use: Use) -> Wanted:
+        """What the literals that ``use`` reads must say."""
+        key = (use.index, use.kind)
+        if key not in self._wanted:
+            self._wanted[key] = self._find(use)
+        return self._wanted[key]
+
+    def changed(self, use: Use) -> Texts:
+        """The part of `wanted` that the text does not say yet."""
+        texts = self.wanted(use).texts
+        return {span: text for span, text in texts.items() if text != self._places.text(span)}
+
+    def against(self, texts: Texts) -> list[int]:
+        """The moves that read one of the literals and want it to say something else."""
+        return sorted(
+            {
+                other.index
+                for span, text in texts.items()
+                for other in self._readers[span]
+                if self.wanted(other).texts.get(span) != text
+            }
+        )
+
+    def readers(self, span: Span) -> list[Use]:
+        """The parts that read a literal."""
+        return self._readers[span]
+
+    def _find(self, use: Use) -> Wanted:
+        numbers = use.origin.numbers
+        found = list(self._components(use))
+        if len(found) != len(numbers):
+            changed = tuple(c for c in found if c.changes)
+            return Wanted({s: self._places.text(s) for s in numbers if s is not None}, changed)
+        texts: dict[Span, str] = {}
+        missing: list[Component] = []
+        for component, span in zip(found, numbers, strict=True):
+            if span is None:
+                missing += [component] if component.changes else []
+                continue
+            text = self._places.text(span)
+            new = component.text(text) if component.changes else text
+            if texts.get(span, new) != new:
+                missing.append(component)  # one literal for two numbers that part
+            texts[span] = new
+        return Wanted(texts, tuple(missing))
+
+    def _components(self, use: Use) -> Iterator[Component]:
+        old, new = use.old, use.new
+        if isinstance(old, PoseTarget) and isinstance(new, PoseTarget):
+            yield from _pose(old, new)
+            yield from self._external(old.external, new.external)
+        elif isinstance(old, JointTarget) and isinstance(new, JointTarget):
+            for k, (a, b) in enumerate(zip(old.joints, new.joints, strict=True), 1):
+                yield _angle(f"A{k}", a, b)
+            yield from self._external(old.external, new.external)
+        elif isinstance(old, Speed) and isinstance(new, Speed):
+            yield from _speed(old, new, len(use.origin.numbers))
+        elif type(old) is type(new):
+            a, b, unit = _size(old), _size(new), _unit(old)  # type: ignore[arg-type]
+            yield Component("APO", not _same(a, b), _scaled(a, b, unit))
+
+    def _external(self, old: Sequence[float], new: Sequence[float]) -> Iterator[Component]:
+        for k in range(EXTERNAL_AXES):
+            a = old[k] if k < len(old) else 0.0
+            b = new[k] if k < len(new) else a
+            axes = self._robot.external_axes
+            linear = k < len(axes) and axes[k].joint.kind is JointKind.PRISMATIC
+            yield _length(f"E{k + 1}", a, b) if linear else _angle(f"E{k + 1}", a, b)
+
+
+def literals_of(use: Use) -> dict[str, frozenset[Span]]:
+    """Where the numbers of each variable stand that a speed or zone reads.
+
+    Those of all axes stand under ``$VEL_AXIS`` and ``$ACC_AXIS``.
+    """
+    found: dict[str, frozenset[Span]] = {}
+    for name, span in zip(_variables(use), use.origin.numbers, strict=False):
+        if span is not None:
+            found[name] = found.get(name, frozenset()) | {span}
+    return found
+
+
+def _variables(use: Use) -> list[str]:
+    if use.kind is Kind.ZONE:
+        return [variable for variable, _ in zone_settings(use.old)]  # type: ignore[arg-type]
+    if len(use.origin.numbers) == _OF_AXES:
+        return ["$VEL_AXIS"] * 6 + ["$ACC_AXIS"] * 6
+    return [f"${name}" for name, _, _ in _OF_PATH]
+
+
+def _pose(old: PoseTarget, new: PoseTarget) -> Iterator[Component]:
+    for name, a, b in zip("XYZ", old.pose.position, new.pose.position, strict=True):
+        yield _length(name, a, b)
+    turned = not alike(old.pose.quaternion, new.pose.quaternion)
+    for name, angle in zip("ABC", written_angles(new.pose.quaternion), strict=True):
+        yield Component(name, turned, _fixed(number(angle)))
+    stated = new.configuration if isinstance(new.configuration, KukaConfiguration) else None
+    before = old.configuration if isinstance(old.configuration, KukaConfiguration) else None
+    for name, attribute in (("S", "status"), ("T", "turn")):
+        was, wanted = getattr(before, attribute, None), getattr(stated, attribute, None)
+        yield Component(name, wanted is not None and was != wanted, _fixed(str(wanted)))
+
+
+_OF_AXES = 12
+_DEGREES = math.degrees(1.0)
+_OF_PATH = (
+    ("VEL.CP", "tcp", 1.0),
+    ("VEL.ORI1", "reorientation", _DEGREES),
+    ("VEL.ORI2", "reorientation", _DEGREES),
+    ("ACC.CP", "tcp_acceleration", 1.0),
+    ("ACC.ORI1", "reorientation_acceleration", _DEGREES),
+    ("ACC.ORI2", "reorientation_acceleration", _DEGREES),
+)
+"""The numbers of a TCP move's speed: variable, attribute of `Speed`, KRL's unit in an SI unit."""
+
+
+def _speed(old: Speed, new: Speed, count: int) -> Iterator[Component]:
+    """Twelve percentages of a joint move's, or the six numbers of a TCP move's."""
+    if count == _OF_AXES:
+        for name, attribute in (("VEL", "joint_fraction"), ("ACC", "joint_acceleration_fraction")):
+            a, b = getattr(old, attribute), getattr(new, attribute)
+            for k in range(6):
+                yield Component(f"{name}_AXIS[{k + 1}]", not _same(a, b), _scaled(a, b, 100.0))
+        return
+    for name, attribute, unit in _OF_PATH:
+        a, b = getattr(old, attribute), getattr(new, attribute)
+        yield Component(name, not _same(a, b), _scaled(a, b, unit))
+
+
+def _size(zone: Zone) -> float:
+    if isinstance(zone, Radius):
+        return zone.tcp
+    if isinstance(zone, ContourFraction | SpeedFraction):
+        return zone.fraction
+    return zone.angle if isinstance(zone, Angle) else 0.0
+
+
+def _unit(zone: Zone) -> float:
+    if isinstance(zone, Radius):
+        return 1 / MM
+    return math.degrees(1.0) if isinstance(zone, Angle) else 100.0
+
+
+def _same(old: float | None, new: float | None) -> bool:
+    return old is new or (old is not None and new is not None and alike(old, new))
+
+
+def _length(name: str, old: float, new: float) -> Component:
+    text = shortest(new, new / MM, lambda mm: mm / 1000)
+    return Component(name, not _same(old, new), _fixed(text))
+
+
+def _angle(name: str, old: float, new: float) -> Component:
+    text = shortest(new, math.degrees(new), math.radians)
+    return Component(name, not _same(old, new), _fixed(text))
+
+
+def _fixed(text: str) -> Callable[[str], str]:
+    return lambda _: text
+
+
+def _scaled(old: float | None, new: float | None, unit: float) -> Callable[[str], str]:
+    """What a number becomes that stands in the text for ``old``.
+
+    A literal need not state the value itself: percentages are of maxima that stand elsewhere.
+    """
+
+    def text(standing: str) -> str:
+        if new is None:
+            return standing
+        said = float(standing)
+        if old is not None and said != 0 and not math.isclose(said, old * unit, rel_tol=TOLERANCE):
+            return number(said * new / old)
+        return number(new * unit)
+
+    return text

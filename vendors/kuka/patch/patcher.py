@@ -1,0 +1,314 @@
+"""A changed program → the user's own KRL files with its numbers, every other byte kept.
+
+What is changed where:
+
+- Numbers of targets, of ``$VEL``, ``$ACC``, ``$APO`` and of the PDAT and LDAT of inline forms are
+  changed where they stand, if every move that reads them is to have the same new value. S and T
+  change only if the move's configuration does.
+- A component that an aggregate leaves out (``{X 10,Z 5}``) is put in.
+- Else the change is refused, or, under ``shared=own`` (literals that other moves read) and
+  ``derived=own`` (what expressions compute), the move gets numbers of its own: an aggregate in the
+  place of its target, or settings in lines of their own before the motion, which are taken back
+  behind it for the moves that follow.
+- A stop becomes a fly-by point by ``C_DIS``, ``C_PTP``, … behind the motion, and back again.
+- The visible line of an inline form follows (``CONT``, ``Vel=``).
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+
+from ....core.errors import FlybyError, InputError, Span
+from ....core.program.move import Move
+from ....core.program.origin import Ownership
+from ....core.program.program import Program
+from ....core.program.target import JointTarget, PoseTarget
+from ....core.program.zone import Fine, Zone
+from ....core.robot.model import Robot
+from ....core.source.patch.edits import Edit, alike, listed, patched, reading_of, with_one_distance
+from ....core.source.patch.uses import Kind, Use, uses
+from ....core.source.reading import Files
+from ....core.source.write.options import PatchOptions, Sharing
+from ..write.formatting import e6axis, e6pos
+from ..write.speeds import approximation, zone_settings
+from .additions import Additions, Motion, settings_of
+from .inline_forms import shown_approximation, shown_velocity, words_of
+from .inplace import InPlace, Texts, Wanted, literals_of
+from .places import Places
+
+_WORDS = re.compile(r"(?i)(?:[ \t]+C_(?:PTP|DIS|ORI|VEL|SPL))+[ \t]*$")
+
+
+def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
+    """The files of ``program`` with its targets, speeds and zones.
+
+    Args:
+        program: read from files, then changed.
+        robot: for the kinds of its external axes.
+        options: ``shared`` and ``derived``, each ``refuse`` or ``own``; see `PatchOptions`.
+
+    Returns:
+        The files that changed, by name.
+
+    Raises:
+        FlybyError: a change has no place in the text, or the patched text is not read as
+            ``program``.
+    """
+    chosen = PatchOptions.of(options, "KRL patcher")
+    reading = reading_of(program)
+    program = with_one_distance(program)
+    parts = uses(reading.again({}), program, _other_change)
+    places = Places(reading.files)
+
+    def attempt(in_place: Sequence[Ownership]) -> Files:
+        plan = _Plan(parts, places, reading.options.robot or robot, chosen, in_place)
+        return patched(program, reading, plan.edits())
+
+    first, *others = _IN_PLACE[chosen.shared]
+    try:
+        return attempt(first)
+    except FlybyError as error:
+        for in_place in others:
+            with suppress(FlybyError):
+                return attempt(in_place)
+        raise error
+
+
+_LITERALS = (Ownership.OWNED, Ownership.SHARED)
+_IN_PLACE: dict[Sharing, list[tuple[Ownership, ...]]] = {
+    Sharing.REFUSE: [_LITERALS],
+    # Where expressions read what was changed in place, the moves get numbers of their own.
+    Sharing.OWN: [_LITERALS, (Ownership.OWNED,)],
+}
+"""Whose literals are changed where they stand: what is tried, in turn."""
+
+
+class _Plan:
+    """Finds the edits.
+
+    Args:
+        parts: all parts of all moves.
+        places: the program's files.
+        robot: for the kinds of its external axes.
+        options: what may be done.
+        in_place: whose literals may be changed where they stand.
+    """
+
+    def __init__(
+        self,
+        parts: Sequence[Use],
+        places: Places,
+        robot: Robot,
+        options: PatchOptions,
+        in_place: Sequence[Ownership],
+    ) -> None:
+        self._changeable = in_place
+        self._parts = parts
+        self._places = places
+        self._robot = robot
+        self._options = options
+        self._literals = InPlace(parts, places, robot)
+        self._additions = Additions(places, _motions(parts))
+        self._executions: defaultdict[tuple[Span, Kind], list[Use]] = defaultdict(list)
+        for use in parts:
+            self._executions[use.statement, use.kind].append(use)
+
+    def edits(self) -> list[Edit]:
+        """All edits.
+
+        Raises:
+            FlybyError: a change has no place.
+        """
+        changed = [use for use in self._parts if use.changes]
+        found = [edit for use in changed for edit in self._edits_for(use)]
+        return [*found, *self._additions.edits()]
+
+    def _edits_for(self, use: Use) -> list[Edit]:
+        try:
+            if isinstance(use.new, Zone):
+                list(zone_settings(use.new))  # refuses what KRL cannot say
+            if use.kind is Kind.ZONE and type(use.old) is not type(use.new):
+                return list(self._another_approximation(use))
+            wanted = self._literals.wanted(use)
+            texts = self._literals.changed(use)
+            against = self._literals.against(texts)
+            changeable = use.origin.ownership in self._changeable
+            if changeable and not wanted.missing and not against:
+                return list(self._in_place(use, texts))
+            completed = self._completed(use, wanted) if changeable and not against else None
+            if completed is not None:
+                return [*self._in_place(use, texts), completed]
+            self._check_allowed(use, against)
+            self._check_executions(use)
+            return list(self._own(use))
+        except InputError as error:
+            raise use.error(str(error)) from None
+
+    # ------------------------------------------------------------------ numbers in place
+
+    def _in_place(self, use: Use, texts: Texts) -> Iterator[Edit]:
+        for span, text in texts.items():
+            yield Edit(span, text, use.index)
+            form = self._places.form(span)
+            if use.kind is Kind.SPEED and form is not None:
+                for place, shown in shown_velocity(self._places, form, text):
+                    if place != span:
+                        yield Edit(place, shown, use.index)
+
+    def _completed(self, use: Use, wanted: Wanted) -> Edit | None:
+        """Components put into the aggregate that leaves them out; None if there is none."""
+        known = [span for span in use.origin.numbers if span is not None]
+        if use.kind not in (Kind.TARGET, Kind.VIA) or not known:
+            return None
+        last = max(known, key=lambda span: span.end)
+        rest = self._rest_of_aggregate(last)
+        names = {c.name for c in wanted.missing}
+        if rest is None or len(known) + len(names) > len(use.origin.numbers):
+            return None
+        items = "".join(f",{c.name} {c.text('')}" for c in wanted.missing)
+        place = self._places.span(last.file, last.end + rest, last.end + rest)
+        return Edit(place, items, use.index)
+
+    def _rest_of_aggregate(self, last: Span) -> int | None:
+        """Characters from a number to the brace that ends its aggregate."""
+        line, _, _ = self._places.line(last)
+        rest = self._places.text(line)[last.end - line.start :]
+        closing = rest.find("}")
+        return closing if closing >= 0 and not rest[:closing].strip() else None
+
+    # ------------------------------------------------------------- numbers of their own
+
+    def _check_allowed(self, use: Use, against: list[int]) -> None:
+        literal = any(span is not None for span in use.origin.numbers)
+        if not literal or use.origin.ownership is Ownership.DERIVED:
+            if self._options.derived is Sharing.REFUSE:
+                raise InputError(
+                    "the program computes it, or no literal in its files states it, so there is no "
+                    "number to change: have the move get its own (--own; in "
+                    "Python derived=own), or leave it"
+                )
+        elif self._options.shared is Sharing.REFUSE:
+            who = f"is read by {listed(against)} as well, and that is to have another value"
+            raise InputError(
+                f"{use.origin.datum or 'the literal'} "
+                f"{who if against else 'does not state all of it'}: change all alike, or have "
+                "the move get its own (--own; in Python shared=own)"
+            )
+
+    def _check_executions(self, use: Use) -> None:
+        """What stands at the move holds for all executions of the instruction."""
+        others = [
+            other.index
+            for other in self._executions[use.statement, use.kind]
+            if not alike(other.new, use.new)
+        ]
+        if others:
+            raise InputError(
+                "the instruction is executed several times, and what is put there would hold for "
+                f"{listed(others)} too, which is to have another value: change them all alike"
+            )
+
+    def _own(self, use: Use) -> Iterator[Edit]:
+        if use.kind in (Kind.TARGET, Kind.VIA):
+            yield self._own_target(use)
+        else:
+            self._set(use)
+
+    def _own_target(self, use: Use) -> Edit:
+        """An aggregate in the place of the expression."""
+        if self._places.form(use.statement) is not None:
+            raise InputError(
+                "the motion stands in an inline form, whose point has its name: give it a point of "
+                "its own on the teach pendant"
+            )
+        new = use.new
+        if isinstance(new, PoseTarget):
+            text = e6pos(new, self._robot)
+        else:
+            assert isinstance(new, JointTarget)
+            text = e6axis(new, self._robot)
+        return Edit(use.origin.span, text, use.index)
+
+    def _set(self, use: Use) -> None:
+        """Settings of its own for a speed or zone that differs."""
+        own = settings_of(use.move)
+        if use.kind is Kind.SPEED:
+            own = {k: text for k, text in own.items() if not k.startswith("$APO")}
+            before = self._settings_before(use)
+            own = {k: text for k, text in own.items() if before.get(k) != text}
+        else:
+            own = {k: text for k, text in own.items() if k.startswith("$APO")}
+        self._additions.set(use.index, own)
+
+    def _settings_before(self, use: Use) -> dict[str, str]:
+        return settings_of(replace(use.move, speed=use.old))  # type: ignore[arg-type]
+
+    # ------------------------------------------------------------------- approximation
+
+    def _another_approximation(self, use: Use) -> Iterator[Edit]:
+        """Stop → fly-by point, back, or another kind of approximation."""
+        self._check_executions(use)
+        words = "" if isinstance(use.new, Fine) else approximation(use.move).strip()
+        form = self._places.form(use.statement)
+        if form is not None:
+            if words:
+                words = words_of(self._places, form, self._keyword(use))
+                yield self._form_distance(use)
+            for place, text in shown_approximation(self._places, form, words):
+                yield Edit(place, text, use.index)
+        elif words:
+            self._set(use)
+        yield self._worded(use, words)
+
+    def _worded(self, use: Use, words: str) -> Edit:
+        """The words behind the motion."""
+        text = self._places.text(use.statement)
+        found = _WORDS.search(text)
+        start = use.statement.start + (found.start() if found else len(text.rstrip()))
+        place = self._places.span(use.statement.file, start, use.statement.end)
+        return Edit(place, f" {words}" if words else "", use.index)
+
+    def _keyword(self, use: Use) -> str:
+        found = re.match(r"\w+", self._places.text(use.statement))
+        return found[0] if found else ""
+
+    def _form_distance(self, use: Use) -> Edit:
+        """The ``APO_DIST`` that an inline form will read."""
+        form = self._places.form(use.statement)
+        assert form is not None
+        span = self._places.approximation_datum(form)
+        if span is None:
+            raise InputError(
+                "the inline form's move data (PDAT, LDAT) are in no file of the program, so that "
+                "it cannot get an approximation distance"
+            )
+        (statement,) = (v for k, v in settings_of(use.move).items() if k.startswith("$APO"))
+        text = statement.partition("=")[2]
+        others = [other.index for other in self._literals.readers(span)]
+        standing = self._places.text(span)
+        if others and float(standing) != float(text):
+            raise InputError(
+                f"the inline form's approximation distance, {standing}, is read by "
+                f"{listed(others)} as well: give it move data of its own on the teach pendant"
+            )
+        return Edit(span, standing if float(standing) == float(text) else text, use.index)
+
+
+def _other_change(old: Move, new: Move) -> str | None:
+    return None if type(old.target) is type(new.target) else "kind of target"
+
+
+def _motions(parts: Sequence[Use]) -> list[Motion]:
+    """All moves in the order of execution."""
+    literals: defaultdict[int, dict[str, frozenset[Span]]] = defaultdict(dict)
+    for use in parts:
+        if use.kind in (Kind.SPEED, Kind.ZONE):
+            literals[use.index].update(literals_of(use))
+    found = {
+        use.index: Motion(use.index, use.move, use.statement, literals[use.index]) for use in parts
+    }
+    return [found[index] for index in sorted(found)]

@@ -1,0 +1,1 @@
+"""KRL programs carried out: statements → the moves the robot makes."""

@@ -1,0 +1,168 @@
+"""Calls of routines and functions: of the program, of KUKA's own files, and of others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+
+from ....core.errors import SourceError
+from ....core.source.execution.answers import Course
+from ....core.source.execution.provenance import ELSEWHERE
+from ..motion.bas import Basis
+from ..motion.inline_forms import Function
+from ..motion.output import Output
+from ..syntax.expression_tree import Call, Name
+from ..syntax.tree import Block, Invoke
+from ..values.data import Data
+from ..values.evaluator import Evaluator
+from ..values.functions import COMPUTED
+from ..values.library import Library
+from ..values.scope import Module, Scope, unknown_name
+from ..values.values import Array, Struct, Unknown, Value
+from .instructions import Kept, kept, refused
+from .output_writes import OutputWrites
+from .routines import Routines
+
+NATIVE = frozenset({"bas"})
+
+
+class Calls:
+    """Carries calls out.
+
+    Args:
+        data: of the program.
+        evaluator: for arguments.
+        course: says which routines are stepped over.
+        routines: runs those whose text is at hand.
+        basis: carries out ``BAS``.
+        functions: of KUKA's own files, by lower-case name.
+        writes: outputs at uncertain moments.
+        output: takes what is kept.
+    """
+
+    def __init__(
+        self,
+        data: Data,
+        evaluator: Evaluator,
+        course: Course,
+        routines: Routines,
+        basis: Basis,
+        functions: Mapping[str, Function],
+        writes: OutputWrites,
+        output: Output,
+    ) -> None:
+        self._data = data
+        self._library = data.library
+        self._evaluator = evaluator
+        self._course = course
+        self._routines = routines
+        self._basis = basis
+        self._functions = functions
+        self._writes = writes
+        self._output = output
+
+    def invoke(self, statement: Invoke, scope: Scope) -> None:
+        """A call as a statement.
+
+        Raises:
+            SourceError: it is refused, or the routine is not at hand.
+        """
+        call = statement.call
+        own = self._library.main.routines.get(call.name) or scope.module.routines.get(call.name)
+        if own is None:
+            if call.name in NATIVE:
+                self._basis.invoke(call, scope)
+                return
+            if self._course.skips(call.text):
+                self._data.outputs.forget()
+                self._output.keep(statement.span, call.text, "as the answers say")
+                return
+            table = self._from_table(call)
+            if table is not None:
+                self._keep_call(statement, table, scope)
+                return
+        found = self._library.routine(call.name, scope.module)
+        if found is None:
+            raise self._refusal(call, scope)
+        self._routines.run(*found, call, scope)
+
+    def _from_table(self, call: Call) -> Kept | None:
+        reason = refused(call.name)
+        if reason is not None:
+            raise SourceError(f"{call.text} is refused: {reason}", call.span)
+        return kept(call.name)
+
+    def _keep_call(self, statement: Invoke, why: Kept, scope: Scope) -> None:
+        if why.writes:
+            self._forget(statement.call, scope)
+        if why.outputs:
+            self._writes.pulsed(statement.call, scope)
+        self._output.keep(statement.span, statement.call.text, why.why, why.stops)
+
+    def _forget(self, call: Call, scope: Scope) -> None:
+        """Data that a kept call may have written have no known value any more."""
+        for argument in call.arguments:
+            if not isinstance(argument, Name):
+                continue
+            cell = self._data.find(argument.name, scope)
+            if cell is None or cell.constant or cell.signal is not None:
+                continue
+            if any(isinstance(step, str) for step in argument.path):
+                continue
+            unknown = Unknown(f"what {call.text} gave {argument.text}", call.span)
+            if not isinstance(cell.value, Array | Struct):
+                self._data.journal.note(cell)
+                cell.value = unknown
+            elif argument.path:
+                with suppress(SourceError):
+                    self._evaluator.assign(argument, unknown, scope, call.span)
+
+    def _refusal(self, call: Call, scope: Scope) -> SourceError:
+        known = self._library.routine_names(scope.module)
+        offer = (
+            "it might move the robot, so it is not stepped over: put its .src beside the program, "
+            f'name it with the other files, or answer [calls] {call.text} = "skip"'
+        )
+        return SourceError(unknown_name("routine", call.text, known, offer), call.span)
+
+    def call_function(self, call: Call, scope: Scope) -> Value | None:
+        """The value of a function of the program or of KUKA's own files."""
+        own = self._library.main.routines.get(call.name) or scope.module.routines.get(call.name)
+        if own is None:
+            function = self._functions.get(call.name)
+            if function is not None:
+                evaluate = self._evaluator.evaluate
+                arguments = [None if a is None else evaluate(a, scope) for a in call.arguments]
+                return function(call, arguments, scope)
+        found = self._library.routine(call.name, scope.module)
+        if found is None:
+            if call.name not in COMPUTED:
+                self._forget(call, scope)
+            return None
+        routine, module = found
+        reader, self._evaluator.reader = self._evaluator.reader, ELSEWHERE
+        value = self._routines.run(routine, module, call, scope)
+        self._evaluator.reader = reader
+        if value is None:
+            raise SourceError(f"{routine.text} ends without RETURN and a value", call.span)
+        return value
+
+
+class Bodies:
+    """The statements that calls run, as far as they are known without running.
+
+    Args:
+        library: the files.
+        where: modules of the routines under way, the innermost last.
+    """
+
+    def __init__(self, library: Library, where: Sequence[Module]) -> None:
+        self._library = library
+        self._where = where
+
+    def __call__(self, call: Call) -> Block | None:
+        """The body of the routine that a call means; None if it is not at hand."""
+        if call.name in NATIVE or kept(call.name) is not None:
+            return None
+        found = self._library.routine(call.name, self._where[-1])
+        return None if found is None else found[0].body

@@ -1,0 +1,139 @@
+"""Which files on disk belong to a program.
+
+The program's own ``.dat``, ``$CONFIG.DAT``, and of the files around it (its folder, and the folders
+``Program``, ``System`` and ``TP`` of a controller's tree ``R1``) those that its text calls by name
+or that declare something ``GLOBAL``; from there on, what these call.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+from ....core.errors import FlybyError
+from ....core.source.text.files import SourceFile, read_source
+from ..syntax.lexer import words
+from ..values.library import CONFIG
+
+SUFFIXES = (".src", ".dat")
+_TREE = ("program", "system", "tp")
+_MOST_FILES = 2000
+_LARGEST_SCAN = 400
+_TYPES = words(
+    """int real bool char frame pos e6pos axis e6axis load def deffct signal struc enum const decl
+    fdat pdat ldat in out"""
+)
+_WORD = re.compile(r"[A-Za-z_$][\w$]*")
+_GLOBAL = re.compile(r"(?im)^[ \t]*(?:decl[ \t]+)?(?:const[ \t]+)?global[ \t]+(?!interrupt)")
+
+
+def collect(path: Path, others: Iterable[Path]) -> dict[str, SourceFile]:
+    """The source files of a program, the main one first.
+
+    Args:
+        path: of the ``.src``.
+        others: files, or folders of files, that the user names.
+
+    Raises:
+        InputError: a named file cannot be read.
+    """
+    files = {str(path): read_source(path)}
+    for other in others:
+        for named in _named(other):
+            files.setdefault(str(named), read_source(named))
+    near = _near(path)
+    seen = _words(files.values())
+    for stem in (path.stem.lower(), CONFIG):
+        _take(files, near.pop(stem, []), seen)
+    for stem in list(near)[:_LARGEST_SCAN]:
+        _take_global(files, near, stem, seen)
+    while found := [stem for stem in near if stem in seen]:
+        for stem in found:
+            _take(files, near.pop(stem), seen)
+    return files
+
+
+def _named(other: Path) -> list[Path]:
+    if other.is_dir():
+        return sorted(p for p in other.iterdir() if p.suffix.lower() in SUFFIXES)
+    return [other]
+
+
+def _near(path: Path) -> dict[str, list[Path]]:
+    """Files around the program by lower-case stem, nearest folder first."""
+    near: dict[str, list[Path]] = {}
+    count = 0
+    for folder in _folders(path):
+        try:
+            entries = sorted(folder.iterdir())
+        except OSError:
+            continue
+        for entry in entries:
+            count += 1
+            if entry.suffix.lower() in SUFFIXES and entry != path and count < _MOST_FILES:
+                near.setdefault(entry.stem.lower(), []).append(entry)
+    return near
+
+
+def _folders(path: Path) -> list[Path]:
+    """The program's own folder; of a controller's tree the others, with what is in them."""
+    own = path.resolve().parent
+    folders = [path.parent]
+    for parent in [own, *own.parents][:4]:
+        name = parent.name.lower()
+        if name not in ("r1", *_TREE):
+            continue
+        root = parent if name == "r1" else parent.parent
+        for branch in _subfolders(root):
+            if branch.name.lower() in _TREE:
+                inner = [branch, *_subfolders(branch)]
+                folders += [folder for folder in inner if folder.resolve() != own]
+        break
+    return folders
+
+
+def _subfolders(root: Path) -> list[Path]:
+    try:
+        return sorted(entry for entry in root.iterdir() if entry.is_dir())
+    except OSError:
+        return []
+
+
+def _words(files: Iterable[SourceFile]) -> set[str]:
+    return {word.lower() for file in files for word in _WORD.findall(file.text)}
+
+
+def _take(files: dict[str, SourceFile], paths: list[Path], seen: set[str]) -> None:
+    """Take a module's files; one that cannot be read is as good as not there."""
+    for path in paths:
+        try:
+            file = read_source(path)
+        except FlybyError:
+            continue
+        files.setdefault(str(path), file)
+        seen |= _words([file])
+
+
+def _take_global(
+    files: dict[str, SourceFile], near: dict[str, list[Path]], stem: str, seen: set[str]
+) -> None:
+    """Take a module that declares something for everybody, if the program has the word."""
+    for path in near[stem]:
+        try:
+            text = read_source(path).text
+        except FlybyError:
+            continue
+        if _names(text) - _TYPES & seen:
+            _take(files, near.pop(stem), seen)
+            return
+
+
+def _names(text: str) -> set[str]:
+    """Words of the lines that declare something GLOBAL."""
+    found: set[str] = set()
+    for match in _GLOBAL.finditer(text):
+        end = text.find("\n", match.start())
+        line = text[match.end() : end if end >= 0 else len(text)]
+        found |= {word.lower() for word in _WORD.findall(line.partition("=")[0])}
+    return found

@@ -1,0 +1,273 @@
+"""Runs a program: statements → the moves, waits and kept statements that the robot goes through.
+
+A program is executed where its course follows from its own text. Values that only the running
+controller has (inputs, clocks) travel as `Unknown` through assignments; what depends on one is
+answered by the user or decided by rule (`core.source.answers`), and refused where a move does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+
+from ....core.errors import Note, SourceError, Span
+from ....core.program.move import Statement as ProgramStatement
+from ....core.source.execution.answers import Course
+from ....core.source.execution.limits import Meter
+from ....core.source.reading import ReadOptions
+from ..motion.bas import Basis
+from ..motion.frames import Placements
+from ..motion.inline_forms import InlineForms
+from ..motion.kinematics import Kinematics
+from ..motion.moves import MotionReader
+from ..motion.output import Output
+from ..motion.own_position import OwnPosition
+from ..motion.position import Position
+from ..motion.settings import Settings
+from ..motion.targets import Targets
+from ..motion.triggers import Triggers
+from ..syntax.expression_tree import Call, Expression, Name
+from ..syntax.tree import (
+    Assign,
+    Block,
+    Continue,
+    Declaration,
+    EnumDefinition,
+    Exit,
+    For,
+    Goto,
+    Halt,
+    If,
+    Invoke,
+    Keyword,
+    Label,
+    Loop,
+    Motion,
+    Repeat,
+    Return,
+    Routine,
+    SignalDeclaration,
+    SplineBlock,
+    Statement,
+    StrucDefinition,
+    Switch,
+    Trigger,
+    WaitFor,
+    WaitSec,
+    While,
+)
+from ..values.advance_run import AdvanceRun
+from ..values.config_data import ConfigData
+from ..values.data import Data
+from ..values.evaluator import Evaluator
+from ..values.library import Library
+from ..values.predefined import MOTION, SILENT, STOPS_WHEN_SET
+from ..values.scope import Scope
+from ..values.types import KrlTypeError, convert
+from ..values.values import Array, Pending, Unknown, Value
+from .calls import Bodies, Calls
+from .exits import Finished, Jump
+from .flow import Flow
+from .output_writes import OutputWrites
+from .routines import Routines
+from .waits import Waits
+
+
+class Interpreter:
+    """One run of a program.
+
+    Args:
+        library: its files.
+        options: robot, answers, limits.
+    """
+
+    def __init__(self, library: Library, options: ReadOptions) -> None:
+        robot, where = options.robot, [library.main]
+        self._library = library
+        self._data = data = Data(library)
+        self._course = course = Course(options.answers)
+        self._meter = meter = Meter(options.limits, options.executed)
+        self._output = output = Output(data.text, meter)
+        self._advance = AdvanceRun()
+        position = Position(robot, options.start)
+        self._placements = placements = Placements(data.system, output.note_once)
+        own_position = OwnPosition(position, placements, lambda: output.move_index)
+        self._evaluator = evaluator = Evaluator(
+            data, course, self._function, own_position, self._advance
+        )
+        config = ConfigData(data, evaluator.names, where)
+        self._settings = Settings(data.system, config.value, output.note_once)
+        targets = Targets(robot, position)
+        basis = Basis(data, evaluator, config, output, self._system_changed)
+        writes = OutputWrites(data, evaluator.names)
+        self._triggers = Triggers(evaluator, output, writes)
+        motions = MotionReader(
+            data,
+            evaluator,
+            placements,
+            self._settings,
+            targets,
+            position,
+            self._triggers,
+            output,
+            self._system_changed,
+        )
+        self._flow = flow = Flow(
+            self.run_block,
+            self._evaluated,
+            evaluator,
+            data,
+            course,
+            meter,
+            Bodies(library, where),
+            position,
+            own_position,
+            writes,
+            output,
+        )
+        functions = {
+            **InlineForms(basis, data).functions(),
+            **Kinematics(robot, evaluator, placements, targets, position, output).functions(),
+        }
+        self._routines = Routines(data, evaluator, meter, where, flow.run_body)
+        self._calls = Calls(
+            data, evaluator, course, self._routines, basis, functions, writes, output
+        )
+        waits = Waits(evaluator, data.outputs, writes, output)
+        self._handlers: dict[type, Callable[..., None]] = {
+            Assign: self._assign,
+            Motion: motions.read,
+            Invoke: self._calls.invoke,
+            If: flow.if_,
+            For: flow.for_,
+            While: flow.while_,
+            Repeat: flow.repeat_,
+            Loop: flow.loop_,
+            Switch: flow.switch_,
+            Goto: flow.goto_,
+            Return: flow.return_,
+            Exit: flow.exit_,
+            Halt: waits.halt,
+            WaitSec: waits.wait_sec,
+            WaitFor: waits.wait_for,
+            Trigger: self._triggers.trigger,
+            Keyword: waits.keyword,
+            SplineBlock: waits.spline,
+            Declaration: self._declare,
+            SignalDeclaration: self._define,
+            StrucDefinition: self._define,
+            EnumDefinition: self._define,
+        }
+
+    # ---------------------------------------------------------------------- the run
+
+    def run(self, entry: Routine) -> None:
+        """Execute a routine to its end; its parameters have no values."""
+        call = Call(entry.span, entry.name, entry.text, ())
+        scope = Scope("the entry", self._library.main)
+        with suppress(Finished):
+            self._routines.run(entry, self._library.main, call, scope)
+        self._triggers.end()
+
+    def statements(self) -> tuple[ProgramStatement, ...]:
+        """What was executed, each move with the origin of its numbers."""
+        return self._output.statements(self._evaluator.reads)
+
+    def notes(self) -> tuple[Note, ...]:
+        """What is to be said about the run."""
+        data = (*self._library.notes, *self._data.notes)
+        return (*data, *self._output.notes(), *self._course.notes())
+
+    def _function(self, call: Call, scope: Scope) -> Value | None:
+        return self._calls.call_function(call, scope)
+
+    def _system_changed(self) -> None:
+        """A system variable has another value now."""
+        self._settings.changed()
+        self._placements.changed()
+
+    # ------------------------------------------------------------------- statements
+
+    def run_block(self, block: Block, scope: Scope) -> None:
+        statements = block.statements
+        index = 0
+        while index < len(statements):
+            try:
+                self._run_statement(statements[index], scope)
+            except Jump as jump:
+                target = block.labels.get(jump.goto.name)
+                if target is None:
+                    raise
+                if target <= index:
+                    self._flow.jump_back(
+                        jump.goto, Block(statements[target:index]), statements[index], scope
+                    )
+                index = target
+                continue
+            index += 1
+
+    def _run_statement(self, statement: Statement, scope: Scope) -> None:
+        self._meter.statement(statement.span)
+        if isinstance(statement, Continue):
+            self._output.continues = True
+            return
+        handler = self._handlers.get(type(statement))
+        if handler is not None:
+            self._advance.stopped = False
+            handler(statement, scope)
+        if not isinstance(statement, Label):
+            self._output.continues = False
+
+    def _evaluated(
+        self, expression: Expression, scope: Scope, span: Span, datum: str | None = None
+    ) -> Value:
+        """A value; if reading it stops the advance run, the robot stops here."""
+        self._advance.stopped = False
+        value = self._evaluator.evaluate(expression, scope, datum)
+        if self._advance.stopped:
+            self._output.stop(span)
+            self._advance.stopped = False
+        return value
+
+    def _assign(self, statement: Assign, scope: Scope) -> None:
+        target = statement.target
+        datum = None if target.name.startswith("$") else self._data.text(target.span)
+        value = self._evaluated(statement.value, scope, statement.span, datum)
+        cell = self._evaluator.assign(target, value, scope, statement.span)
+        if target.name in MOTION:
+            self._system_changed()
+            return
+        written = target if cell.signal is None else cell.signal[0]
+        stops = written.name in STOPS_WHEN_SET
+        why = "outputs do not move the robot"
+        if cell.signal is None:
+            if not self._data.is_system(target.name) or target.name in SILENT:
+                return
+            why = why if stops else "it is not emulated"
+        self._output.keep(statement.span, written.text.upper(), why, stops)
+
+    def _declare(self, statement: Declaration, scope: Scope) -> None:
+        known = scope.cells.get(statement.name)
+        fresh = self._data.cell(statement, scope.module)
+        if known is not None:
+            known.type = fresh.type
+            if isinstance(known.value, Unknown | Array | None):
+                return
+            assert not isinstance(known.value, Pending)
+            try:
+                known.value = convert(known.value, fresh.type, self._data.types)
+            except KrlTypeError as error:
+                raise SourceError(f"{fresh.name}: {error}", statement.span) from None
+            return
+        if statement.value is not None:
+            value = self._evaluator.evaluate(statement.value, scope, statement.text)
+            name = Name(statement.span, statement.name, statement.text)
+            scope.cells[statement.name] = fresh
+            constant, fresh.constant = fresh.constant, False
+            self._evaluator.assign(name, value, scope, statement.span)
+            fresh.constant = constant
+            return
+        scope.cells[statement.name] = fresh
+
+    def _define(self, statement: Statement, scope: Scope) -> None:
+        self._data.define(statement, scope.cells)

@@ -1,0 +1,107 @@
+"""KRL source → `Program`.
+
+The text is parsed (`parser`) and executed (`interpreter`) from the entry routine on, as far as its
+course follows from the text itself. What is decided here, and where a controller may differ:
+
+- The entry is the ``DEF`` that is called like its file, else the first one without arguments. If it
+  takes arguments, they have no values, as on a controller that is sent there by hand.
+- A ``LOOP`` (``WHILE TRUE``, backward ``GOTO``) without a way out is read for one pass, and so is
+  a loop that leaves all data as they were; what stands behind it is never reached.
+- A loop that neither moves the robot nor changes its own condition waits for another task: it is
+  satisfied at once, as every wait is. Clocks and inputs are not known even after they were set.
+- Of a ``SWITCH`` with cases that nobody knows, a known one that fits is taken.
+- ``BAS(…)``, the functions of inline forms and the folds' data are carried out natively
+  (`basis`, `inline`). Initialisations of technology packages, I/O and messages stay as opaque
+  statements (`instructions`). The call of a routine that is in no file at hand is refused, as it
+  might move the robot.
+- Reading an input, a clock or the robot's position, setting an output and ``WAIT`` stop the
+  advance run, and so the robot, unless ``CONTINUE`` stands before them.
+- INT has 32 bits, REAL double precision; ``AND`` and ``OR`` evaluate both operands.
+- ``LIN_REL`` and ``PTP_REL`` go on from the last target; A, B and C turn about the axes of the
+  base, with ``#TOOL`` about those of the tool.
+- Interrupts are kept and do not run.
+
+Ownership of a move's numbers: see `core.source.provenance`. Numbers of an origin stand in this
+order: position X…C, S, T, E1…E6; axis values A1…A6, E1…E6; speed of PTP ``$VEL_AXIS[1…6]``,
+``$ACC_AXIS[1…6]``; of LIN and CIRC ``$VEL.CP ORI1 ORI2``, ``$ACC.CP ORI1 ORI2``; zone the one
+component of ``$APO`` that counts.
+"""
+
+from __future__ import annotations
+
+from ....core.errors import Note, SourceError, Span, UnknownNameError
+from ....core.program.program import Program
+from ....core.source.collection import collection_paused
+from ....core.source.reading import Files, ReadOptions
+from ..syntax.tree import Routine
+from ..values.library import Library, suffix_of
+from .interpreter import Interpreter
+from .suffixes import COMPANIONS
+
+
+def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
+    """The program that the main file's entry drives. No file is opened.
+
+    Args:
+        files: source files by name.
+        main: name of the one with the entry.
+        options: entry, robot, answers, limits.
+
+    Raises:
+        SourceError: with line and column: the text is no KRL, or its motion cannot be known.
+    """
+    start = Span(main, 1, 1, 0, 0)
+    if suffix_of(main) == ".dat":
+        raise SourceError(COMPANIONS[".dat"], start)
+    with collection_paused():
+        library = Library(files, main)
+        entry, notes = _entry(library, options.entry, start)
+        run = Interpreter(library, options)
+        try:
+            run.run(entry)
+        except RecursionError:
+            raise SourceError(
+                "expressions, blocks and calls are nested too deeply", entry.span
+            ) from None
+        return Program(run.statements(), entry.text, notes=(*notes, *run.notes()))
+
+
+def _entry(library: Library, wanted: str | None, start: Span) -> tuple[Routine, tuple[Note, ...]]:
+    """The routine to run."""
+    routines = library.main_unit.routines
+    if not routines:
+        raise SourceError(
+            "the file holds data (DEFDAT) and no DEF: read the .src that it belongs to", start
+        )
+    if wanted is not None:
+        found = library.main.routines.get(wanted.lower())
+        if found is None:
+            error = UnknownNameError("entry (DEF)", wanted, [r.text for r in routines])
+            raise SourceError(str(error), start)
+        return found, _open_arguments(found)
+    named = library.main.routines.get(library.main.stem)
+    if named is not None and named.returns is None:
+        return named, _open_arguments(named)
+    selectable = [r for r in routines if r.returns is None]
+    if not selectable:
+        raise SourceError(
+            "the file holds functions (DEFFCT) and no DEF: read a program that calls them",
+            routines[0].span,
+        )
+    first = next((r for r in selectable if not r.parameters), selectable[0])
+    if len(routines) == 1:
+        return first, _open_arguments(first)
+    message = f"no DEF is called like the file; the first one, {first.text}, is read"
+    return first, (Note(message, span=first.span), *_open_arguments(first))
+
+
+def _open_arguments(entry: Routine) -> tuple[Note, ...]:
+    """What is said of an entry that nobody calls with arguments."""
+    if not entry.parameters:
+        return ()
+    names = ", ".join(parameter.name for parameter in entry.parameters)
+    message = (
+        f"{entry.text} is read without a caller: its arguments ({names}) have no values, unless a "
+        "file of answers gives them"
+    )
+    return (Note(message, span=entry.span),)

@@ -1,0 +1,1 @@
+"""Text of KRL → its syntax tree."""

@@ -1,0 +1,151 @@
+"""Text → tokens.
+
+One compiled pattern finds every token. A line is a statement in KRL, so ends of line are tokens;
+blank lines, comments (``;``, folds are comments too) and header lines (``&ACCESS RVP``) between
+two statements belong to the one end of line. A flat aggregate, ``{X 10.0,Y 0,S 2}``, is one token:
+point files consist of little else, and most points of a file are never asked for.
+
+Sources: KUKA "Quickguide KRL-Syntax" (names, numbers), published programs (header lines, ``'B…'``
+and ``'H…'`` literals, ``{E6POS: X …}``).
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from ....core.source.text import cursor
+from ....core.source.text.files import SourceText, unbroken
+
+
+def words(text: str) -> frozenset[str]:
+    """The words of a text, for tables of names."""
+    return frozenset(text.split())
+
+
+KEYWORDS = words(
+    """and anin anout b_and b_exor b_not b_or brake case circ circ_rel continue decl def default
+    defdat deffct digin else end enddat endfct endfor endif endloop endspline endswitch endwhile
+    enum exit exor ext extfct false for global goto halt if import interrupt lin lin_rel loop not
+    or ptp ptp_rel ptp_spline repeat resume return scirc scirc_rel signal slin slin_rel spl spl_rel
+    spline sptp sptp_rel step struc switch then to trigger true until wait while"""
+)
+"""Words that a statement or a part of one begins with; other words are names."""
+
+END, NEWLINE, NAME = cursor.END, cursor.END_OF_LINE, cursor.NAME
+NUMBER, STRING, BITS, ENUM, RECORD = "number", "string", "bits", "enum", "record"
+
+_NUMBER = r"(?: [0-9]++ (?: \.[0-9]*+ )? | \.[0-9]++ ) (?: [eE][+-]?[0-9]++ )?"
+_BITS = r"' [ \t]* [bBhHoO]? [ \t]* [0-9a-fA-F]++ [ \t]* '"
+_NAME = r"(?: [^\W\d] | \$ ) [\w$]*+"
+_ITEM_VALUE = rf"""
+    (?: (?P<number> [+-]? [ \t]* {_NUMBER} ) | (?P<bits> {_BITS} ) | \# [ \t]* (?P<enum> {_NAME} )
+      | "(?P<string> [^"\r\n]*+ )" | (?P<truth> true | false ) )"""
+_FLAT_VALUE = re.sub(r"\?P<\w+>", "?:", _ITEM_VALUE)
+_FLAT_ITEM = rf"{_NAME} (?: [ \t]* \[ [ \t]* \] )? [ \t]* {_FLAT_VALUE} [ \t]*+"
+_BLANK = r"[ \t\f\v\xa0\ufeff\x1a]"
+
+_TOKEN = re.compile(
+    rf"""
+    (?: {_BLANK}++ | ;[^\r\n]*+ )*+
+    (?: (?P<name> {_NAME} )
+      | (?P<newline> [\r\n]++ (?: {_BLANK}++ | [\r\n]++ | ;[^\r\n]*+ | &[^\r\n]*+ )*+ )
+      | (?P<number> {_NUMBER} )
+      | (?P<record> \{{ [ \t]*+ (?: {_NAME} [ \t]* : [ \t]*+ )?
+            {_FLAT_ITEM} (?: , [ \t]*+ {_FLAT_ITEM} )*+ \}} )
+      | (?P<string> " [^"\r\n]*+ " )
+      | (?P<bits> {_BITS} )
+      | (?P<enum> \# {_BLANK}*+ {_NAME} )
+      | (?P<symbol> == | <> | <= | >= | [-+*/=<>()\[\]{{}},:.?!] )
+      | (?P<end> \Z )
+    )""",
+    re.VERBOSE | re.IGNORECASE,
+)
+ITEM = re.compile(
+    rf"(?P<name> {_NAME} ) (?: [ \t]* \[ [ \t]* \] )? [ \t]* {_ITEM_VALUE} [ \t]*+ [,}}]",
+    re.VERBOSE | re.IGNORECASE,
+)
+"""One item of a flat aggregate, with the comma or brace behind it."""
+RECORD_TYPE = re.compile(rf"\{{ [ \t]* (?P<type> {_NAME} ) [ \t]* :", re.VERBOSE)
+_HEADER = re.compile(rf"(?: {_BLANK}++ | [\r\n]++ | ;[^\r\n]*+ | &[^\r\n]*+ )*+", re.VERBOSE)
+
+
+@dataclass(frozen=True, slots=True)
+class Tokens:
+    """The tokens of a text, as parallel lists that end with an `END`.
+
+    Args:
+        source: the text.
+        kinds: `NAME`, `NUMBER`, `STRING`, `BITS`, `ENUM`, `RECORD`, `NEWLINE`, `END`, or the symbol
+            or lower-case keyword itself.
+        starts, ends: offsets.
+    """
+
+    source: SourceText
+    kinds: list[str]
+    starts: list[int]
+    ends: list[int]
+
+
+def tokenize(source: SourceText) -> Tokens:
+    """All tokens of a text.
+
+    Raises:
+        SourceError: a character that no token begins with, or a string without an end.
+    """
+    text = unbroken(source.text)
+    kinds: list[str] = []
+    starts: list[int] = []
+    ends: list[int] = []
+    header = _HEADER.match(text)
+    position = header.end() if header else 0
+    match = _TOKEN.match
+    while True:
+        found = match(text, position)
+        if found is None:
+            raise _stray(source, position)
+        kind = found.lastgroup or ""
+        start, position = found.span(kind)
+        if kind == "symbol":
+            kind = text[start:position]
+        elif kind == "name":
+            word = text[start:position].lower()
+            if word in KEYWORDS:
+                kind = word
+        elif kind == "newline":
+            kind = NEWLINE
+        kinds.append(kind)
+        starts.append(start)
+        ends.append(position)
+        if kind == "end" and start == position:
+            kinds[-1] = END
+            return Tokens(source, kinds, starts, ends)
+
+
+def bits_value(literal: str) -> int:
+    """The value of ``'B0101'``, ``'HFF'``, ``'O17'`` or ``'12'``, quotes included.
+
+    Raises:
+        ValueError: a digit that the base has not.
+    """
+    text = literal[1:-1].replace(" ", "").replace("\t", "")
+    base = {"b": 2, "h": 16, "o": 8}.get(text[:1].lower())
+    # 'B' is also a hexadecimal digit, but a literal without its base is decimal.
+    return int(text[1:], base) if base is not None else int(text)
+
+
+def _stray(source: SourceText, position: int) -> Exception:
+    blank = re.compile(rf"(?:{_BLANK}++|;[^\r\n]*+)*+").match(unbroken(source.text), position)
+    start = blank.end() if blank else position
+    character = source.text[start]
+    if character == '"':
+        return source.error("this string has no closing quote on its line", start)
+    if character == "'":
+        return source.error("this is no number in quotes: 'B0101' and 'H1F' are", start)
+    if character == "\0" or not character.isprintable():
+        return source.error(
+            f"character {ord(character):#04x} does not belong in a KRL text: the file is binary or "
+            "damaged",
+            start,
+        )
+    return source.error(f"{character!r} does not belong here", start)

@@ -1,0 +1,96 @@
+"""Source text → syntax tree: the routines and data lists of a file.
+
+A descent by hand over the tokens of `lexer`, for its messages and its speed.
+"""
+
+from __future__ import annotations
+
+from ....core.source.text.files import SourceText
+from .cursor import Cursor
+from .expressions import parse_indices
+from .lexer import END, NEWLINE, tokenize
+from .statements import CLOSING, parse_block
+from .tree import DataList, Parameter, Routine, Unit
+
+
+def parse(source: SourceText) -> Unit:
+    """What a source text holds.
+
+    Raises:
+        SourceError: the text is no KRL, or is cut off.
+    """
+    cursor = Cursor(tokenize(source))
+    routines: list[Routine] = []
+    lists: list[DataList] = []
+    while True:
+        start = cursor.start
+        shared = cursor.accept("global")
+        kind = cursor.kind
+        if kind in ("def", "deffct"):
+            routines.append(_routine(cursor, start, shared))
+        elif kind == "defdat" and not shared:
+            lists.append(_data_list(cursor))
+        elif kind == NEWLINE:
+            cursor.advance()
+        elif kind == END:
+            break
+        elif kind in CLOSING:
+            raise cursor.unexpected("DEF, DEFFCT or DEFDAT")
+        else:
+            raise cursor.unexpected("DEF, DEFFCT or DEFDAT (a program begins with one)")
+    if not routines and not lists:
+        raise source.error("the file holds no DEF and no DEFDAT: it is empty or no KRL", 0)
+    return Unit(source, tuple(routines), tuple(lists))
+
+
+def _routine(cursor: Cursor, start: int, shared: bool) -> Routine:
+    kind = cursor.kind
+    begin = cursor.start
+    cursor.advance()
+    returns = None
+    if kind == "deffct":
+        returns = cursor.word("the type of the function's value").lower()
+        if cursor.kind == "[":
+            parse_indices(cursor)
+    text = cursor.word(f"the name of the {kind.upper()}")
+    parameters = _parameters(cursor) if cursor.kind == "(" else ()
+    if not cursor.at_end_of_line:
+        cursor.skip_line()
+    span = cursor.span_from(start)
+    end = "end" if kind == "def" else "endfct"
+    # A function that ends with END is met, and no controller would mistake it.
+    ends = frozenset({end, "end"})
+    body = parse_block(cursor, ends, f"{kind.upper()} {text}", begin)
+    cursor.advance()
+    cursor.skip_line()
+    return Routine(span, text.lower(), text, parameters, body, returns, shared)
+
+
+def _parameters(cursor: Cursor) -> tuple[Parameter, ...]:
+    """``(A:IN, B[]:OUT)``; parameters are handed over by reference unless they are ``:IN``."""
+    cursor.advance()
+    parameters: list[Parameter] = []
+    while not cursor.accept(")"):
+        if parameters:
+            cursor.expect(",", "between the parameters")
+        name = cursor.word("the name of a parameter").lower()
+        if cursor.kind == "[":
+            parse_indices(cursor)
+        by_reference = True
+        if cursor.accept(":"):
+            by_reference = cursor.word("IN or OUT").lower() != "in"
+        parameters.append(Parameter(name, by_reference))
+    return tuple(parameters)
+
+
+def _data_list(cursor: Cursor) -> DataList:
+    start = cursor.start
+    cursor.advance()
+    text = cursor.word("the name of the DEFDAT")
+    public = cursor.accept_word("public")
+    cursor.skip_line()
+    span = cursor.span_from(start)
+    body = parse_block(cursor, frozenset({"enddat"}), f"DEFDAT {text}", start)
+    cursor.advance()
+    cursor.skip_line()
+    return DataList(span, text.lower(), text, public, body)

@@ -1,0 +1,1 @@
+"""Expressions of KRL → values, and the data of a program."""

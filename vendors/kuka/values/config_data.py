@@ -1,0 +1,50 @@
+"""The data of ``$CONFIG.DAT``, as KUKA's own routines read them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ....core.errors import SourceError, Span
+from ..syntax.expression_tree import Name
+from .data import Data
+from .elements import Names
+from .scope import Module, Scope
+from .values import Array, Value
+
+
+class ConfigData:
+    """Finds them, or the program's data of the same names.
+
+    Args:
+        data: all data.
+        names: reads them.
+        where: modules of the routines under way, the innermost last.
+    """
+
+    def __init__(self, data: Data, names: Names, where: Sequence[Module]) -> None:
+        self._data = data
+        self._names = names
+        self._where = where
+
+    def value(self, name: str) -> Value:
+        """A datum."""
+        node = Name(Span("", 1, 1, 0, 0), name.lower(), name)
+        return self._names.value(node, Scope("", self._where[-1]))
+
+    def item(self, table: str, index: int, span: Span | None) -> Value | None:
+        """An item of an array; None where nothing is set.
+
+        Raises:
+            SourceError: the index is outside the array.
+        """
+        cell = self._data.find(table, Scope("", self._where[-1]))
+        holder = cell.value if cell is not None else None
+        if not isinstance(holder, Array):
+            return None
+        size = holder.sizes[0]
+        if size is not None and index > size:
+            if span is None or (cell is not None and cell.shipped):
+                return None
+            raise SourceError(f"{table.upper()} has {size} items; there is no {index}", span)
+        assert cell is not None
+        return self._names.item(holder, (index,), cell)

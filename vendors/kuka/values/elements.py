@@ -1,0 +1,315 @@
+"""Data in expressions: names with components and indices → values.
+
+What nothing sets is answered by the user, or is an `Unknown`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+from ....core.errors import SourceError, Span
+from ....core.source.execution.answers import Answer, Course
+from ..syntax.expression_tree import Expression, Name
+from .advance_run import AdvanceRun
+from .data import Data
+from .frames import null_frame
+from .predefined import NEVER_KNOWN, OUTPUTS, POSITION, STOPS_WHEN_READ
+from .scope import Cell, Scope
+from .types import PREDEFINED, KrlTypeError, convert
+from .values import Array, Choice, Pending, Struct, Unknown, Value, copied, shown, unplaced
+
+Position = Callable[[str, Span], Value]
+Path = tuple[str | tuple[int, ...], ...]
+_LONGEST_ARRAY = 100_000
+_WIDEST = 32
+"""Bits of a ``SIGNAL``."""
+
+
+class Expressions(Protocol):
+    """Evaluates expressions in a scope."""
+
+    def evaluate(self, expression: Expression, scope: Scope, datum: str | None = None) -> Value:
+        """The value; ``datum`` is what a literal becomes the value of."""
+        ...
+
+    def number(self, expression: Expression, scope: Scope, use: str) -> float:
+        """A known number; ``use`` says in messages what needs it."""
+        ...
+
+
+class Names:
+    """Reads data.
+
+    Args:
+        expressions: for indices and initial values.
+        data: where names are found.
+        course: answers what only the controller knows.
+        position: where the robot is: ``pose`` or ``axes``.
+        advance: is stopped by reading some system variables.
+    """
+
+    def __init__(
+        self,
+        expressions: Expressions,
+        data: Data,
+        course: Course,
+        position: Position,
+        advance: AdvanceRun,
+    ) -> None:
+        self._expressions = expressions
+        self._data = data
+        self._course = course
+        self._position = position
+        self._advance = advance
+
+    def value(self, node: Name, scope: Scope) -> Value:
+        """The value of a datum or of a part of it.
+
+        Raises:
+            SourceError: it has no such part.
+        """
+        position = POSITION.get(node.name)
+        if node.name in STOPS_WHEN_READ:
+            self._advance.stopped = True
+        if node.name in OUTPUTS:
+            return self._output(node, scope)
+        if node.name in NEVER_KNOWN:
+            return self._undeclared(node, self.path(node, scope))
+        cell = self._data.find(node.name, scope)
+        if cell is None and position is not None:
+            return self._of_position(node, scope, position)
+        if cell is None:
+            return self._undeclared(node, self.path(node, scope))
+        if cell.signal is not None:
+            return self._signal(node, cell, scope)
+        value = self.settled(cell)
+        path = self.path(node, scope) if node.path else ()
+        for step in path:
+            if value is None or isinstance(value, Unknown):
+                break
+            value = self.part(value, step, node, cell)
+        if value is None or isinstance(value, Unknown):
+            answered = self._answer(node, path)
+            if answered is not None:
+                return answered
+            if isinstance(value, Unknown):
+                return value
+            if position is not None:
+                return self._of_position(node, scope, position)
+            return Unknown(f"the value of {spelled(node.text, path)}, which is not set", node.span)
+        return value
+
+    def _of_position(self, node: Name, scope: Scope, kind: str) -> Value:
+        path = self.path(node, scope)
+        answer = self._answer(node, path)
+        if answer is not None:
+            return answer
+        value = self._position(kind, node.span)
+        for step in path:
+            if isinstance(value, Unknown):
+                return value
+            part = self.part(value, step, node, Cell(node.text))
+            if part is None:
+                return Unknown(f"the value of {spelled(node.text, path)}", node.span)
+            value = part
+        return value
+
+    def _output(self, node: Name, scope: Scope) -> Value:
+        """What the program has set it to; a user's answers in turn come first."""
+        path = self.path(node, scope)
+        held = None
+        if not self._course.changing(spelled(node.text, path)):
+            held = self._data.outputs.value(spelled(OUTPUTS[node.name], path))
+        return self._undeclared(node, path) if held is None else held
+
+    def _signal(self, node: Name, cell: Cell, scope: Scope) -> Value:
+        """A ``SIGNAL``: an output that the program has set; answered by its own name, or by those
+        of the inputs and outputs that it stands for."""
+        assert cell.signal is not None
+        first, last = cell.signal
+        if first.name in STOPS_WHEN_READ:
+            self._advance.stopped = True
+        value: Value | None = None
+        if first.name in OUTPUTS and not self._course.changing(node.text):
+            value = self._whole(first, last, scope, self._data.outputs.value)
+        if value is None:
+            value = self._answer(node, ())
+        if value is None:
+            value = self._whole(first, last, scope, self._bit(first))
+        return Unknown(f"the value of {node.text}", node.span) if value is None else value
+
+    def _bit(self, first: Name) -> Callable[[str], Value | None]:
+        """What the user answers to one of the inputs or outputs of a signal."""
+        return lambda place: self._answer(Name(first.span, first.name, place), ())
+
+    def _whole(
+        self, first: Name, last: Name | None, scope: Scope, bit: Callable[[str], Value | None]
+    ) -> Value | None:
+        """The value of a signal from those of its places: one, or bits with the lowest first."""
+        values = [bit(place) for place in self.places(first, last, scope)]
+        known = [value for value in values if value is not None]
+        if last is None or len(known) < len(values):
+            return known[0] if last is None and known else None
+        return sum(1 << k for k, value in enumerate(known) if value is True or value == 1)
+
+    def places(self, first: Name, last: Name | None, scope: Scope) -> list[str]:
+        """The inputs or outputs that a signal stands for, as ``$OUT[3]``, the lowest bit first."""
+        name = OUTPUTS.get(first.name, first.text)
+        start = self.path(first, scope)
+        if last is None:
+            return [spelled(name, start)]
+        (low,), (high,) = (self._plain_index(p, first) for p in (start, self.path(last, scope)))
+        if not low <= high < low + _WIDEST:
+            raise SourceError(f"a SIGNAL has 1 to {_WIDEST} bits, in order", first.span)
+        return [f"{name}[{k}]" for k in range(low, high + 1)]
+
+    @staticmethod
+    def _plain_index(path: Path, node: Name) -> tuple[int, ...]:
+        if len(path) != 1 or isinstance(path[0], str) or len(path[0]) != 1:
+            raise SourceError("a SIGNAL stands for inputs or outputs with an index", node.span)
+        return path[0]
+
+    def outputs(self, node: Name, scope: Scope) -> list[str]:
+        """The outputs that a name stands for; none if it is something else.
+
+        Raises:
+            SourceError: its index is not known.
+        """
+        if node.name in OUTPUTS:
+            return [spelled(OUTPUTS[node.name], self.path(node, scope))]
+        cell = self._data.find(node.name, scope)
+        if cell is None or cell.signal is None or cell.signal[0].name not in OUTPUTS:
+            return []
+        return self.places(*cell.signal, scope)
+
+    def part(
+        self, value: Value, step: str | tuple[int, ...], node: Name, cell: Cell
+    ) -> Value | None:
+        """A component, an item, or a character; None if nothing is set there."""
+        if isinstance(step, str):
+            if not isinstance(value, Struct):
+                raise SourceError(
+                    f"{node.text} is {shown(value)} and has no component {step.upper()}", node.span
+                )
+            found = value.fields.get(step)
+            fields = self._data.types.get(value.type)
+            if found is None and fields is not None and step not in fields:
+                known = ", ".join(name.upper() for name in fields)
+                raise SourceError(
+                    f"{value.type.upper()} has no component {step.upper()} (it has {known})",
+                    node.span,
+                )
+            return found
+        if not step:
+            return value
+        if isinstance(value, str) and len(step) == 1:
+            index = step[0]
+            return value[index - 1] if 1 <= index <= len(value) else None
+        if not isinstance(value, Array):
+            raise SourceError(f"{node.text} is {shown(value)} and no array", node.span)
+        self.check_index(value, step, node)
+        return self.item(value, step, cell)
+
+    def item(self, array: Array, index: tuple[int, ...], cell: Cell) -> Value | None:
+        """An item of an array; None if nothing is set there."""
+        item = array.items.get(index)
+        if isinstance(item, Pending):
+            label = f"{cell.name}[{','.join(map(str, index))}]"
+            item = array.items[index] = self._initial(item, array.type, label, cell.shipped)
+        elif item is None and cell.shipped and array.type == "frame":
+            label = f"{cell.name}[{','.join(map(str, index))}]"
+            item = array.items[index] = null_frame(label, shipped=True)
+        return item
+
+    def check_index(self, array: Array, index: tuple[int, ...], node: Name) -> None:
+        for i, size in zip(index, array.sizes, strict=False):
+            if i < 1 or (size is not None and i > size) or i > _LONGEST_ARRAY:
+                raise SourceError(
+                    f"index {i} of {node.text} is outside 1 to {size or _LONGEST_ARRAY}", node.span
+                )
+        if len(index) > len(array.sizes):
+            raise SourceError(
+                f"{node.text} has {len(array.sizes)} dimensions, not {len(index)}", node.span
+            )
+
+    def path(self, node: Name, scope: Scope) -> Path:
+        """The path with its indices evaluated; an unknown index is refused."""
+        return tuple(
+            step
+            if isinstance(step, str)
+            else tuple(self.index(i, scope) for i in step if i is not None)
+            for step in node.path
+        )
+
+    def index(self, expression: Expression, scope: Scope) -> int:
+        """A known whole number.
+
+        Raises:
+            SourceError: it is none.
+        """
+        value = self._expressions.number(expression, scope, "an index")
+        if value != int(value):
+            raise SourceError(f"an index is a whole number, not {value:g}", expression.span)
+        return int(value)
+
+    def settled(self, cell: Cell) -> Value | None:
+        if isinstance(cell.value, Pending):
+            pending = cell.value
+            cell.value = None
+            cell.value = self._initial(pending, cell.type, cell.name, cell.shipped)
+        return cell.value
+
+    def _initial(self, pending: Pending, type_name: str, label: str, shipped: bool) -> Value:
+        scope = Scope("a data list", self._data.library.home(pending.home))
+        value = self._expressions.evaluate(pending.expression, scope, label)
+        if shipped:
+            value = unplaced(value)
+        return self.converted(value, type_name, label, shipped, pending.expression.span)
+
+    def converted(
+        self, value: Value, type_name: str, label: str | None, shipped: bool, span: Span
+    ) -> Value:
+        try:
+            made = convert(value, type_name, self._data.types)
+        except KrlTypeError as error:
+            raise SourceError(f"{label}: {error}" if label else str(error), span) from None
+        if made is value:
+            made = copied(value)
+        if isinstance(made, Struct) and label is not None:
+            made.label = label
+            made.shipped = shipped
+        return made
+
+    def _answer(self, node: Name, path: Path) -> Value | None:
+        answers = self._course.answers
+        if not answers.values and not answers.sequences:
+            return None
+        answer = self._course.value(spelled(node.text, path))
+        return None if answer is None else self.answered(answer)
+
+    def answered(self, answer: Answer) -> Value:
+        if isinstance(answer, str):
+            return Choice(answer[1:].lower()) if answer.startswith("#") else answer
+        if isinstance(answer, tuple):
+            values = [self.answered(part) for part in answer]
+            names = list(PREDEFINED["e6pos"])
+            return Struct("", dict(zip(names, values, strict=False)))
+        if isinstance(answer, float) and answer.is_integer() and abs(answer) < 2**31:
+            return int(answer)
+        return answer
+
+    def _undeclared(self, node: Name, path: Path) -> Value:
+        """The value of what nothing declares: an answer, or not known."""
+        answer = self._answer(node, path)
+        if answer is not None:
+            return answer
+        why = "" if self._data.is_system(node.name) else " (declared in no file at hand)"
+        return Unknown(f"the value of {spelled(node.text, path)}{why}", node.span)
+
+
+def spelled(text: str, path: Path) -> str:
+    """A datum with its evaluated indices, as ``TOOL_DATA[1].X``."""
+    for step in path:
+        text += f".{step.upper()}" if isinstance(step, str) else f"[{','.join(map(str, step))}]"
+    return text

@@ -1,0 +1,231 @@
+"""Expressions → values, and assignments."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ....core.errors import SourceError, Span
+from ....core.source.execution.answers import Course
+from ....core.source.execution.provenance import ELSEWHERE, Reads
+from ..syntax.expression_tree import (
+    Aggregate,
+    Ambiguous,
+    Call,
+    Constant,
+    Expression,
+    Flat,
+    Name,
+    Number,
+    Operation,
+    Text,
+    Truth,
+    Unary,
+)
+from .advance_run import AdvanceRun
+from .assignments import Assignment
+from .data import Data
+from .elements import Names, Position
+from .functions import COMPUTED, computed
+from .literals import flat_literal, number_literal, numeral
+from .operators import OperandError, apply, negate
+from .provenance import LeafSource
+from .scope import Scope, unknown_name
+from .values import (
+    Choice,
+    Leaf,
+    Root,
+    Struct,
+    Unknown,
+    Value,
+    copied,
+    find_unknown,
+    leaf_of,
+    leaves_in,
+    left_open,
+    shown,
+)
+
+CallFunction = Callable[[Call, Scope], Value | None]
+
+
+class Evaluator:
+    """Evaluates expressions in a scope.
+
+    Args:
+        data: where names are found.
+        course: answers what only the controller knows.
+        call: the value of a function of the program or of the inline forms; None if there is none
+            of that name.
+        position: where the robot is: ``pose`` or ``axes``.
+        advance: is stopped by reading some system variables.
+    """
+
+    def __init__(
+        self,
+        data: Data,
+        course: Course,
+        call: CallFunction,
+        position: Position,
+        advance: AdvanceRun,
+    ) -> None:
+        self.data = data
+        self.course = course
+        self.reads = Reads()
+        self.reader = ELSEWHERE
+        self._call = call
+        self.names = Names(self, data, course, position, advance)
+        self.assign = Assignment(data, self.names).assign
+        self._evaluate: dict[type, Callable[..., Value]] = {
+            Flat: self._flat,
+            Aggregate: self._aggregate,
+            Operation: self._operation,
+            Unary: self._unary,
+            Call: self._function,
+            Ambiguous: self._ambiguous,
+        }
+
+    # ------------------------------------------------------------------- expressions
+
+    def evaluate(self, expression: Expression, scope: Scope, datum: str | None = None) -> Value:
+        """The value of an expression.
+
+        Args:
+            datum: the datum that a literal becomes the value of.
+
+        Raises:
+            SourceError: it has none.
+        """
+        if isinstance(expression, Name):
+            return self.names.value(expression, scope)
+        if isinstance(expression, Number):
+            return number_literal(expression, datum)
+        if isinstance(expression, Truth | Text):
+            return expression.value
+        if isinstance(expression, Constant):
+            return Choice(expression.name)
+        return self._evaluate[type(expression)](expression, scope, datum)
+
+    def known(self, expression: Expression, scope: Scope, use: str) -> Value:
+        """A value that something depends on.
+
+        Raises:
+            SourceError: only the running controller knows it; ``use`` says what needs it.
+        """
+        value = self.evaluate(expression, scope)
+        if find_unknown(value) is not None:
+            self.check_known(value, use, expression.span)
+        return value
+
+    def check_known(self, value: Value, use: str, span: Span) -> None:
+        """Refuse a value that is not known.
+
+        Raises:
+            SourceError: it is not.
+        """
+        unknown = find_unknown(value)
+        if unknown is not None:
+            raise left_open(use, unknown, span)
+
+    def number(self, expression: Expression, scope: Scope, use: str) -> float:
+        """A known number.
+
+        Raises:
+            SourceError: it is none.
+        """
+        value = self.known(expression, scope, use)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise SourceError(f"{use} is a number, not {shown(value)}", expression.span)
+        return value
+
+    def _flat(self, node: Flat, scope: Scope, datum: str | None) -> Value:
+        return flat_literal(node, datum)
+
+    def _aggregate(self, node: Aggregate, scope: Scope, datum: str | None) -> Value:
+        """An aggregate with structures or expressions in it; its numbers belong to one literal."""
+        root = Root(node.source, node.start, node.end, datum)
+        return self._nested(node, scope, root, "")
+
+    def _nested(self, node: Aggregate, scope: Scope, root: Root, prefix: str) -> Struct:
+        made: dict[str, Value] = {}
+        for name, item in node.items:
+            component = f"{prefix}{name}"
+            if isinstance(item, Number):
+                root.leaves[component] = (item.start, item.end)
+                made[name] = numeral(item.value, Leaf(root, component))
+            elif isinstance(item, Flat):
+                made[name] = flat_literal(item, None, root, f"{component}.")
+            elif isinstance(item, Aggregate):
+                made[name] = self._nested(item, scope, root, f"{component}.")
+            else:
+                made[name] = copied(self.evaluate(item, scope))
+        return Struct(node.type or "", made)
+
+    def _operation(self, operation: Operation, scope: Scope, _: str | None) -> Value:
+        value = self._operand(operation.first, scope)
+        for symbol, operand in operation.rest:
+            right = self._operand(operand, scope)
+            try:
+                value = apply(symbol, value, right)
+            except OperandError as error:
+                raise SourceError(str(error), operation.span) from None
+        return value
+
+    def _operand(self, expression: Expression, scope: Scope) -> Value:
+        """A value that is computed with: the literal it came from is read by an expression."""
+        if isinstance(expression, Number):
+            return expression.value
+        value = self.evaluate(expression, scope)
+        self.note_reads(value)
+        return value
+
+    def note_reads(self, value: Value) -> None:
+        """An expression computes with a value."""
+        if isinstance(value, Struct):
+            for _, inner in leaves_in(value):
+                self.reads.by_expression(LeafSource(inner), self.reader)
+            return
+        leaf = leaf_of(value)
+        if leaf is not None:
+            self.reads.by_expression(LeafSource(leaf), self.reader)
+
+    def _unary(self, node: Unary, scope: Scope, _: str | None) -> Value:
+        try:
+            return negate(node.operator, self._operand(node.operand, scope))
+        except OperandError as error:
+            raise SourceError(str(error), node.span) from None
+
+    def _ambiguous(self, node: Ambiguous, scope: Scope, _: str | None) -> Value:
+        try:
+            return self.evaluate(node.manual, scope)
+        except SourceError:
+            return self.evaluate(node.usual, scope)
+
+    # --------------------------------------------------------------------- functions
+
+    def _function(self, call: Call, scope: Scope, _: str | None) -> Value:
+        value = self._call(call, scope)
+        if value is not None:
+            return value
+        if call.name in COMPUTED:
+            arguments = [self._operand(a, scope) for a in call.arguments if a is not None]
+            unknown = next(filter(None, map(find_unknown, arguments)), None)
+            if unknown is not None:
+                return unknown
+            try:
+                return computed(call.name, arguments)
+            except OperandError as error:
+                raise SourceError(f"{call.text}: {error}", call.span) from None
+        return self.unknown_function(call, scope)
+
+    def unknown_function(self, call: Call, scope: Scope) -> Value:
+        """What a function gives that is not at hand: an answer, or a value that is not known."""
+        answer = self.course.value(self.data.text(call.span))
+        if answer is not None:
+            return self.names.answered(answer)
+        return Unknown(f"the value of {call.text}()", call.span)
+
+    def undeclared(self, node: Name, scope: Scope, kind: str) -> SourceError:
+        """The error that a datum is declared nowhere."""
+        known = self.data.names(scope)
+        offer = "declare it, or name the .dat that does (the program's own, or $config.dat)"
+        return SourceError(unknown_name(kind, node.text, known, offer), node.span)

@@ -1,0 +1,82 @@
+"""Data of a running program: cells with values, and the names under which they are found."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from ....core.errors import Span
+from ..syntax.expression_tree import Name
+from ..syntax.tree import DataList, Routine
+from .values import Pending, Value
+
+
+@dataclass(eq=False, slots=True)
+class Cell:
+    """One datum.
+
+    Args:
+        name: as it stands in its declaration.
+        type: lower-case name of its type, or of its items' type if it is an array.
+        value: None until something is assigned.
+        constant: a ``CONST``.
+        signal: what a ``SIGNAL`` stands for: one system variable, or the first and last of several.
+        shipped: it stands in the configuration that comes with this package.
+        assigned: the program has assigned to it.
+    """
+
+    name: str
+    type: str = ""
+    value: Value | Pending | None = None
+    constant: bool = False
+    signal: tuple[Name, Name | None] | None = None
+    shipped: bool = False
+    assigned: bool = False
+
+
+@dataclass(eq=False)
+class Module:
+    """A ``.src`` with its ``.dat``.
+
+    Args:
+        stem: file name without folder and suffix, lower case.
+        routines: of the file, by lower-case name.
+        lists: data lists, not yet declared.
+        cells: data, once declared.
+        shared: names of the data that are declared GLOBAL.
+    """
+
+    stem: str
+    routines: dict[str, Routine] = field(default_factory=dict)
+    lists: list[DataList] = field(default_factory=list)
+    cells: dict[str, Cell] = field(default_factory=dict)
+    shared: set[str] = field(default_factory=set)
+    declared: bool = False
+
+
+@dataclass(eq=False, slots=True)
+class Scope:
+    """The names of a routine.
+
+    Args:
+        where: for messages: ``DEF pick``.
+        module: the file that it stands in.
+        cells: its own data.
+        returns: the type of its value, None for a ``DEF``.
+    """
+
+    where: str
+    module: Module
+    cells: dict[str, Cell] = field(default_factory=dict)
+    returns: str | None = None
+    span: Span | None = None
+
+
+def unknown_name(kind: str, name: str, known: Iterable[str], offer: str) -> str:
+    """The message for a name that is not declared, with the nearest ones that are."""
+    spellings = {k.lower(): k for k in known}
+    near = difflib.get_close_matches(name.lower(), spellings, n=3, cutoff=0.6)
+    if near:
+        offer = f"did you mean {' or '.join(spellings[n] for n in near)}? Else {offer}"
+    return f"unknown {kind} '{name}': {offer}"

@@ -1,0 +1,206 @@
+"""Program → the ``.src`` and ``.dat`` that a KUKA controller loads: data in, text out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from ....core.errors import InputError, MotionError
+from ....core.program.event import Event
+from ....core.program.move import Move, MoveJ, Opaque, Wait
+from ....core.program.program import Program
+from ....core.program.target import JointTarget, PoseTarget
+from ....core.robot.model import Robot
+from ....core.source.text.files import lines_of
+from ....core.source.text.names import Names
+from ....core.source.write.options import OpaqueStyle
+from ..motion.configuration import KukaConfiguration, label
+from ..syntax.names import NAME_RULES
+from .declarations import DataList, Datum
+from .formatting import ARM_AXES
+from .instructions import Line, Phrases, stated_positions, trigger
+from .numbers import number
+from .options import KrlOptions
+from .speeds import check_external
+
+HEADER = ("&ACCESS RVP", "&REL 1")
+INI = (
+    ";FOLD INI",
+    "  ;FOLD BASISTECH INI",
+    "    BAS (#INITMOV,0 )",
+    "  ;ENDFOLD (BASISTECH INI)",
+    "  ;FOLD USER INI",
+    "    ;Make your modifications here",
+    "  ;ENDFOLD (USER INI)",
+    ";ENDFOLD (INI)",
+)
+EXTERNALS = (
+    ";FOLD EXTERNAL DECLARATIONS",
+    "  ;FOLD BASISTECH EXT",
+    "    EXT BAS (BAS_COMMAND :IN,REAL :IN )",
+    "    DECL INT SUCCESS",
+    "  ;ENDFOLD (BASISTECH EXT)",
+    "  ;FOLD USER EXT",
+    "    ;Make your modifications here",
+    "  ;ENDFOLD (USER EXT)",
+    ";ENDFOLD (EXTERNAL DECLARATIONS)",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What stands round the statements of a program.
+
+    Args:
+        header: comments at the top.
+        before: statements before the first.
+        after: statements after the last.
+    """
+
+    header: Sequence[str] = ()
+    before: Sequence[str] = ()
+    after: Sequence[str] = ()
+
+
+def write(program: Program, robot: Robot, options: Mapping[str, str]) -> dict[str, str]:
+    """The texts of the ``.src`` and its ``.dat``, by file name; lines end with LF.
+
+    Names from the source are kept where they are legal and free. Tools, bases and loads are
+    declared in the ``.dat``, whatever numbers they have on the controller. ``Program.start`` has
+    no place in KRL: the robot starts from where it stands.
+
+    A joint move to a pose without S and T is written without them: the controller then keeps the
+    Status and turns the shortest way. As long as nothing before it has stated a configuration,
+    that would be undefined, and the S and T are written that the emulator drives to.
+
+    Args:
+        program: what to say.
+        robot: whose external axes and configurations they are.
+        options: ``opaque`` (``keep``, ``comment``); see `KrlOptions`.
+
+    Raises:
+        InputError: an option is unknown, or the robot is no six-axis arm.
+        MotionError: KRL cannot say a move; it is named by number.
+    """
+    return compose(program, robot, KrlOptions.of(options), Surroundings())
+
+
+def compose(
+    program: Program, robot: Robot, options: KrlOptions, around: Surroundings
+) -> dict[str, str]:
+    """As `write`, with what shall stand round the program's own statements."""
+    if robot.arm_size != ARM_AXES:
+        raise InputError(f"KRL drives arms of {ARM_AXES} axes; {robot.name} has {robot.arm_size}")
+    module = module_name(program)
+    data = DataList()
+    phrases = Phrases(robot, data, stated_positions(program, robot))
+    lines = _Body(program, phrases, options).lines()
+    names = data.names(Names(NAME_RULES, [module]))
+    body = ["".join(names[p] if isinstance(p, Datum) else p for p in line) for line in lines]
+    whole = [*around.header, *INI, "", *around.before, *body, *around.after]
+    return {
+        f"{module}.src": source_text(f"{module}( )", whole),
+        f"{module}.dat": _data(module, data, names),
+    }
+
+
+def module_name(program: Program) -> str:
+    """The program's name, or one near to it that KRL takes."""
+    return Names(NAME_RULES).claim(program.name, "PROG")
+
+
+def source_text(routine: str, body: Sequence[str]) -> str:
+    """A file with one routine, given by its name and parameters."""
+    lines = [*HEADER, "&COMMENT Written by flyby", f"DEF {routine}", *body, "END"]
+    return "\n".join(lines) + "\n"
+
+
+def _data(module: str, data: DataList, names: dict[Datum, str]) -> str:
+    lines = [*HEADER, f"DEFDAT {module}", *EXTERNALS, *data.lines(names), "ENDDAT"]
+    return "\n".join(lines) + "\n"
+
+
+class _Body:
+    """The statements of a program, from the first to the last.
+
+    Args:
+        program: what to say.
+        phrases: how.
+        options: what becomes of opaque statements.
+    """
+
+    def __init__(self, program: Program, phrases: Phrases, options: KrlOptions) -> None:
+        self._program = program
+        self._phrases = phrases
+        self._options = options
+        self._held: dict[str, Line] = {}
+        self._index = 0
+        self._defined = False
+
+    def lines(self) -> list[Line]:
+        """All of them, each with what must be set before it."""
+        lines: list[Line] = []
+        for statement in self._program.statements:
+            if isinstance(statement, Wait):
+                lines.append((f"WAIT SEC {number(statement.duration)}",))
+            elif isinstance(statement, Opaque):
+                lines += self._opaque(statement.text)
+            else:
+                lines += self._move(statement)
+        return lines
+
+    def _opaque(self, text: str) -> list[Line]:
+        keep = self._options.opaque is OpaqueStyle.KEEP
+        return [(line if keep else f"; {line}",) for line in lines_of(text)]
+
+    def _move(self, move: Move) -> list[Line]:
+        try:
+            check_external(move.speed, self._phrases.robot)
+            move = self._with_status(move)
+            lines: list[Line] = []
+            for variable, line in self._phrases.settings(move):
+                if self._held.get(variable) != line:
+                    self._held[variable] = line
+                    lines.append(line)
+            for event in move.events:
+                lines += self._event(event, move)
+            lines.append(self._phrases.motion(move))
+        except MotionError:
+            raise
+        except InputError as error:
+            span = move.origin.statement if move.origin is not None else None
+            raise MotionError(str(error), self._index, span) from None
+        self._index += 1
+        return lines
+
+    def _event(self, event: Event, move: Move) -> list[Line]:
+        if self._options.opaque is OpaqueStyle.COMMENT:
+            return self._opaque(event.text)
+        return [(trigger(event, move),)]
+
+    def _with_status(self, move: Move) -> Move:
+        """The move; S and T that the first one must state are found if it does not."""
+        target = move.target
+        if self._defined or not isinstance(move, MoveJ):
+            return move
+        self._defined = True
+        if isinstance(target, JointTarget) or _defines(target):
+            return move
+        found = self._found(move)
+        return replace(move, target=replace(target, configuration=found))
+
+    def _found(self, move: Move) -> KukaConfiguration | None:
+        from ....core.motion.path.commanded_position import Standing
+
+        robot = self._phrases.robot
+        standing = Standing(robot, label, self._program.start)
+        for earlier in self._program.moves[: self._index]:
+            standing.moved(earlier)
+        return label(robot, standing.solve(move))
+
+
+def _defines(target: PoseTarget) -> bool:
+    configuration = target.configuration
+    if not isinstance(configuration, KukaConfiguration):
+        return configuration is not None
+    return configuration.status is not None and configuration.turn is not None

@@ -1,0 +1,1 @@
+"""Moves and motion settings of URScript → the core's."""

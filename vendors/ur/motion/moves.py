@@ -1,0 +1,355 @@
+"""The moves: movej, movel, movep, movec, optimovej, optimovel.
+
+Parameters, their order and defaults: "The URScript Programming Language" / "Script Directory",
+module motion.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from ....core.errors import InputError, SourceError, Span
+from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from ....core.program.speed import Speed
+from ....core.program.target import JointTarget, PoseTarget, Target
+from ....core.program.tool import Tool
+from ....core.program.zone import FINE, Radius, Zone
+from ....core.source.execution.provenance import Part
+from ....core.spatial.pose import Pose
+from ..syntax.tree import Argument, Call, Expression
+from ..values.arguments import bind
+from ..values.located import NOTHING, Located
+from ..values.poses import pose_of
+from ..values.provenance import Sources, covering
+from ..values.scope import Scope
+from ..values.values import (
+    Solution,
+    Unknown,
+    UrPose,
+    ValueFault,
+    describe,
+    find_unknown,
+    is_number,
+    numbers,
+)
+from .arcs import carried_along
+from .configuration import UrConfiguration
+from .kinematics import INVERSE, INVERSE_PARAMETERS
+
+if TYPE_CHECKING:
+    from ..run.interpreter import Interpreter
+
+_SIX = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """A move's parameters.
+
+    Args:
+        targets: names of those that say where.
+        others: names of the others with their defaults, in order.
+        joint: whether a and v are the leading joint's.
+        shares: whether a and v are shares of what the robot can do.
+    """
+
+    targets: tuple[str, ...]
+    others: dict[str, float] = field(default_factory=dict)
+    joint: bool = False
+    shares: bool = False
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All parameters, in order."""
+        return (*self.targets, *self.others)
+
+
+SIGNATURES = {
+    "movej": Signature(("q",), {"a": 1.4, "v": 1.05, "t": 0.0, "r": 0.0}, joint=True),
+    "movel": Signature(("pose",), {"a": 1.2, "v": 0.25, "t": 0.0, "r": 0.0}),
+    "movep": Signature(("pose",), {"a": 1.2, "v": 0.25, "r": 0.0}),
+    "movec": Signature(("pose_via", "pose_to"), {"a": 1.2, "v": 0.25, "r": 0.0, "mode": 0.0}),
+    "optimovej": Signature(("goal",), {"a": 0.3, "v": 0.3, "r": 0.0}, joint=True, shares=True),
+    "optimovel": Signature(("goal",), {"a": 0.3, "v": 0.3, "r": 0.0}, joint=True, shares=True),
+}
+_SPEED = ("a", "v", "t")
+
+
+@dataclass(frozen=True, slots=True)
+class MoveParts:
+    """The parts of a move before all reads of the run are known."""
+
+    statement: Span
+    target: Part
+    speed: Part
+    zone: Part
+    via: Part | None = None
+
+    def all(self) -> list[Part]:
+        """Those that there are."""
+        parts = [self.target, self.speed, self.zone]
+        return parts if self.via is None else [*parts, self.via]
+
+
+@lru_cache(maxsize=1024)
+def _speed(function: str, a: float, v: float, t: float) -> Speed:
+    """The speed that a move's arguments give; programs have few."""
+    if t > 0:
+        return Speed(duration=t)
+    if t < 0:
+        raise InputError(f"the time is above zero, or zero for none, not {t:g}")
+    signature = SIGNATURES[function]
+    if signature.shares:
+        return Speed(joint_fraction=v, joint_acceleration_fraction=a)
+    if signature.joint:
+        return Speed(joint=v, joint_acceleration=a)
+    return Speed(tcp=v, tcp_acceleration=a)
+
+
+@lru_cache(maxsize=1024)
+def _blend(radius: float) -> Radius:
+    return Radius(radius, radius, radius)
+
+
+def move(run: Interpreter, call: Call, scope: Scope) -> Located:
+    """Carry out a move."""
+    _MoveReader(run, call, scope).read()
+    return NOTHING
+
+
+class _MoveReader:
+    """Reads one call of a move."""
+
+    def __init__(self, run: Interpreter, call: Call, scope: Scope) -> None:
+        self.run = run
+        self.call = call
+        self.scope = scope
+        self.texts = run.texts
+        self.signature = SIGNATURES[call.name]
+        names = self.signature.names
+        self.given = bind(call, names, len(self.signature.targets), run.texts)
+        self.span = run.span_of(call)
+        self.tool = self._tool()
+
+    def read(self) -> None:
+        """Put the move at the end of the program."""
+        run = self.run
+        run.evaluator.reader = run.move_index
+        *vias, last = [self._target(self.given[name]) for name in self.signature.targets]
+        numbers_ = {name: self._number(name) for name in self.signature.others}
+        values = {name: value for name, (value, _) in numbers_.items()}
+        speed, zone = self._speed(values), self._zone(values["r"])
+        parts = MoveParts(
+            self.span,
+            last[1],
+            self._part(_SPEED, {n: f.sources for n, (_, f) in numbers_.items()}),
+            self._part(("r",), {n: f.sources for n, (_, f) in numbers_.items()}),
+            vias[0][1] if vias else None,
+        )
+        common = speed, zone, self.tool, run.position.base
+        run.evaluator.reader = -1
+        if vias:
+            run.emit_move(*self._arc(vias[0], last, values["mode"], parts, common))
+            return
+        kind = MoveJ if self.call.name in ("movej", "optimovej") else MoveL
+        self._note_kind()
+        run.emit_move(kind(last[0], *common), parts)
+
+    def _tool(self) -> Tool:
+        settings = self.run.settings
+        if settings.unknown is not None:
+            raise self._refusal("the TCP of the move", settings.unknown, self.span)
+        if not settings.stated:
+            self.run.notebook.once(
+                "tcp",
+                "no set_tcp stands before the first move: the flange is taken for the TCP, where "
+                "a controller has the TCP of its installation; write set_tcp(p[…]) before it",
+                self.span,
+            )
+        return settings.tool
+
+    # ------------------------------------------------------------------- targets
+
+    def _target(self, argument: Argument) -> tuple[Target, Part]:
+        expression = argument.value
+        span = self.texts.span(expression.start, expression.end)
+        if self._is_inverse(expression):
+            assert isinstance(expression, Call)
+            return self._inverse(expression, span)
+        found = self.run.evaluator.locate(expression, self.scope)
+        value = found.value
+        name = argument.name or "target"
+        if isinstance(value, Solution):
+            return self._solution(value), Part(span)
+        self._known(found, f"the {name} of {self.call.name}", span)
+        part = Part(span, covering(found.sources, _SIX) if found.sources else ())
+        if isinstance(value, UrPose):
+            pose = self._pose(value, expression)
+            return PoseTarget(pose, name=found.name), part
+        values = numbers(value, _SIX)
+        if values is None:
+            raise SourceError(
+                f"the {name} of {self.call.name} is a pose p[x, y, z, rx, ry, rz] or six joint "
+                f"values, not {describe(value)}",
+                span,
+            )
+        return JointTarget(tuple(values), name=found.name), part
+
+    def _is_inverse(self, expression: Expression) -> bool:
+        """Whether the target is ``get_inverse_kin(…)`` itself, whose pose can be kept."""
+        return (
+            isinstance(expression, Call)
+            and expression.name == INVERSE
+            and self.scope.function(INVERSE) is None
+        )
+
+    def _inverse(self, call: Call, span: Span) -> tuple[Target, Part]:
+        given = bind(call, INVERSE_PARAMETERS, 1, self.texts)
+        if "tcp" in given:
+            solution = self.run.solution(call, self.scope)
+            if isinstance(solution, Unknown):
+                raise self._refusal("target", solution, span)
+            return self._solution(solution), Part(span)
+        found = self.run.evaluator.locate(given["x"].value, self.scope)
+        self._known(found, f"the pose of {INVERSE}", span)
+        pose = self._pose(found.value, given["x"].value)
+        sources = covering(found.sources, _SIX)
+        near = None
+        if "qnear" in given:
+            near = self.run.evaluator.locate(given["qnear"].value, self.scope)
+        if near is None or self.run.position.is_here(near.value):
+            kept = sources if any(sources) else ()
+            return PoseTarget(pose, name=found.name), Part(span, kept)
+        if isinstance(near.value, Unknown):
+            raise self._refusal("qnear", near.value, span)
+        configuration = self.run.near(near.value, given["qnear"].value)
+        sources = (*sources, *covering(near.sources, _SIX))
+        target = PoseTarget(pose, configuration, name=found.name)
+        return target, Part(span, sources if any(sources) else ())
+
+    def _solution(self, solution: Solution) -> PoseTarget:
+        """The pose that inverse kinematics was asked for, for the TCP in force."""
+        pose = solution.pose
+        if solution.tcp != self.tool.tcp:
+            pose = pose @ solution.tcp.inverse() @ self.tool.tcp
+        near = solution.near
+        return PoseTarget(pose, near if isinstance(near, UrConfiguration) else None)
+
+    def _pose(self, value: object, expression: Expression) -> Pose:
+        try:
+            return pose_of(value, "the target")  # type: ignore[arg-type]
+        except ValueFault as fault:
+            raise self.run.evaluator.fault(fault, expression) from None
+        except InputError as error:
+            raise SourceError(str(error), self.run.evaluator.span(expression)) from None
+
+    def _known(self, found: Located, what: str, span: Span) -> None:
+        unknown = find_unknown(found.value)
+        if unknown is not None:
+            raise self._refusal(what, unknown, span)
+
+    def _refusal(self, what: str, unknown: Unknown, span: Span) -> SourceError:
+        return SourceError(
+            f"{what} depends on {unknown.reason}: give its value in the answers, [values], or "
+            "take the move out",
+            span,
+        )
+
+    # ------------------------------------------------------------- speed and zone
+
+    def _number(self, name: str) -> tuple[float, Located]:
+        argument = self.given.get(name)
+        if argument is None:
+            return self.signature.others[name], Located(None)
+        found = self.run.evaluator.locate(argument.value, self.scope)
+        if not is_number(found.value):
+            span = self.texts.span(argument.start, argument.end)
+            self._known(found, f"'{name}' of {self.call.name}", span)
+            raise SourceError(
+                f"'{name}' of {self.call.name} is a number, not {describe(found.value)}", span
+            )
+        return float(found.value), found
+
+    def _speed(self, values: dict[str, float]) -> Speed:
+        a, v, t = (values.get(name, 0.0) for name in _SPEED)
+        try:
+            return _speed(self.call.name, a, v, t)
+        except InputError as error:
+            raise SourceError(
+                f"{self.call.name} with a={a:g}, v={v:g}, t={t:g}: {error}", self.span
+            ) from None
+
+    def _zone(self, radius: float) -> Zone:
+        if radius == 0:
+            return FINE
+        try:
+            return _blend(radius)
+        except InputError:
+            raise SourceError(
+                f"the blend radius of {self.call.name} is zero m or more, not {radius:g}",
+                self.span,
+            ) from None
+
+    def _part(self, names: tuple[str, ...], sources: dict[str, Sources]) -> Part:
+        """Of some arguments; where none is written, the place where they could be."""
+        written = [self.given[name] for name in names if name in self.given]
+        if not written:
+            close = self.call.end - 1
+            return Part(self.texts.span(close, close))
+        start, end = min(a.start for a in written), max(a.end for a in written)
+        own = [covering(sources.get(name, ()), 1)[0] for name in names]
+        return Part(self.texts.span(start, end), tuple(own) if any(own) else ())
+
+    # ---------------------------------------------------------------------- arcs
+
+    def _arc(
+        self,
+        via: tuple[Target, Part],
+        end: tuple[Target, Part],
+        mode: float,
+        parts: MoveParts,
+        common: tuple[object, ...],
+    ) -> tuple[Move, MoveParts]:
+        if mode not in (0.0, 1.0):
+            raise SourceError(f"the mode of movec is 0 or 1, not {mode:g}", self.span)
+        middle, target = self._as_pose(via[0]), self._as_pose(end[0])
+        if mode == 0.0:
+            orientation = ArcOrientation.FIXED_FRAME
+        else:
+            orientation = ArcOrientation.FOLLOWS_ARC
+            target = self._turned_along(middle, target)
+        made = MoveC(target, *common, via=middle, orientation=orientation)  # type: ignore[arg-type]
+        return made, parts
+
+    def _as_pose(self, target: Target) -> PoseTarget:
+        if isinstance(target, PoseTarget):
+            return target
+        what = f"the pose of the joint values in {self.call.name}"
+        pose = self.run.position.forward(target.joints, self.tool, what, self.span)
+        if isinstance(pose, Unknown):
+            raise self._refusal("the arc", pose, self.span)
+        return PoseTarget(pose)
+
+    def _turned_along(self, via: PoseTarget, target: PoseTarget) -> PoseTarget:
+        """Mode 1 keeps the orientation to the arc that it has at the start."""
+        start = self.run.position.pose(self.tool, "the start of the arc", self.span)
+        if isinstance(start, Unknown):
+            raise self._refusal("movec with mode=1", start, self.span)
+        turned = carried_along(start, via.pose.position, target.pose.position)
+        if turned is None:
+            return target  # no arc: planning says so
+        return PoseTarget(Pose(target.pose.position, turned), name=target.name)
+
+    def _note_kind(self) -> None:
+        name = self.call.name
+        if name == "movep":
+            message = "movep is read as movel with the same speed and blend radius"
+        elif self.signature.shares:
+            message = (
+                f"{name} is read as {name.removeprefix('opti')} with shares of the joints' limits"
+            )
+        else:
+            return
+        self.run.notebook.once(name, message, self.span)

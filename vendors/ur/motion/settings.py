@@ -1,0 +1,108 @@
+"""What holds until it is changed: TCP and payload.
+
+Source: "The URScript Programming Language", module internals: set_tcp, set_payload,
+set_payload_mass, set_payload_cog, set_target_payload.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from ....core.program.tool import FLANGE, Load, Tool
+from ....core.spatial.pose import IDENTITY, Pose, Quaternion, Vector3
+from ..values.values import Unknown, Value, ValueFault, describe, is_number, numbers
+
+DEFAULT_NAME = "tcp"
+
+
+@dataclass(frozen=True)
+class Settings:
+    """TCP and payload in force; values, so that every move keeps its own.
+
+    Args:
+        tcp: in the flange's frame.
+        name: of the TCP.
+        mass: payload with the tool, kg.
+        centre: its centre of gravity in the flange's frame, m; None for the TCP.
+        inertia: its inertia about the centre, Ixx, Iyy, Izz, Ixy, Ixz, Iyz, kg m².
+        stated: whether the program has set the TCP.
+        unknown: what the TCP depends on, if that is not known.
+    """
+
+    tcp: Pose = IDENTITY
+    name: str = FLANGE.name
+    mass: float = 0.0
+    centre: Vector3 | None = None
+    inertia: tuple[float, ...] = (0.0,) * 6
+    stated: bool = False
+    unknown: Unknown | None = None
+
+    @cached_property
+    def tool(self) -> Tool:
+        """The tool of moves; all that the flange carries is its load."""
+        return Tool(self.name, self.tcp, self._load())
+
+    def _load(self) -> Load | None:
+        if self.mass == 0:
+            return None
+        centre = self.tcp.position if self.centre is None else self.centre
+        moments, axes = _principal(self.inertia)
+        return Load(self.mass, centre, moments, axes)
+
+
+def mass_of(value: Value) -> float:
+    """A payload's mass, kg.
+
+    Raises:
+        ValueFault: it is none.
+    """
+    if not is_number(value) or float(value) < 0:
+        raise ValueFault(f"the mass is a number of kg, not {describe(value)}")
+    return float(value)
+
+
+def centre_of(value: Value) -> Vector3:
+    """A centre of gravity ``[x, y, z]``, m.
+
+    Raises:
+        ValueFault: it is none.
+    """
+    found = numbers(value, 3)
+    if found is None:
+        raise ValueFault(f"the centre of gravity is [x, y, z], not {describe(value)}")
+    x, y, z = found
+    return x, y, z
+
+
+def inertia_of(value: Value) -> tuple[float, ...]:
+    """``[Ixx, Iyy, Izz, Ixy, Ixz, Iyz]``, kg m².
+
+    Raises:
+        ValueFault: it is none.
+    """
+    found = numbers(value, 6)
+    if found is None:
+        raise ValueFault(f"the inertia is [Ixx, Iyy, Izz, Ixy, Ixz, Iyz], not {describe(value)}")
+    return tuple(found)
+
+
+def _principal(inertia: tuple[float, ...]) -> tuple[Vector3, Quaternion]:
+    """Principal moments, kg m², and their axes."""
+    xx, yy, zz, xy, xz, yz = inertia
+    if not (xy or xz or yz):
+        if min(xx, yy, zz) < 0:
+            raise ValueFault("moments of inertia are not negative")
+        return (xx, yy, zz), (1.0, 0.0, 0.0, 0.0)
+    import numpy as np
+
+    from ....core.spatial.rotation import quaternion_from_matrix
+
+    moments, axes = np.linalg.eigh(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
+    if moments[0] < -1e-9:
+        raise ValueFault("the matrix of inertia has a negative principal moment")
+    if np.linalg.det(axes) < 0:
+        axes = -axes
+    a, b, c = (max(float(m), 0.0) for m in moments)
+    w, x, y, z = (float(v) for v in quaternion_from_matrix(axes))
+    return (a, b, c), (w, x, y, z)

@@ -1,0 +1,1 @@
+"""URScript programs carried out: statements → the moves the robot makes."""

@@ -1,0 +1,100 @@
+"""Where a program begins."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import PurePath
+
+from ....core.errors import SourceError
+from ....core.program.program import Program
+from ..syntax.traversal import all_calls
+from ..syntax.tree import Assign, Block, Call, Define
+from .exits import Finished
+from .interpreter import Interpreter
+
+_USUAL = ("main", "program", "Program", "prog", "myprog", "unnamed")
+
+
+def run_program(run: Interpreter, blocks: Sequence[Block], main: str, entry: str | None) -> Program:
+    """Run a program from its beginning to its end.
+
+    Args:
+        run: that nothing was executed in yet.
+        blocks: statements of all files, the main one's last.
+        main: name of the main file.
+        entry: name of the function to start with, None for the program's own beginning.
+
+    Raises:
+        SourceError: there is no such function, or none that is clearly the first.
+    """
+    for block in blocks:
+        run.hoist(block, run.root)
+    name = PurePath(main.replace("\\", "/")).stem
+    with suppress(Finished):
+        if entry is not None:
+            define = _named(blocks, entry, run)
+            for block in blocks:
+                run.run_top(tuple(s for s in block if isinstance(s, Assign)))
+            name = define.name
+            _start(run, define)
+        else:
+            name = _run_top(run, blocks, name)
+    return Program(run.statements(), name, notes=run.notes())
+
+
+def _run_top(run: Interpreter, blocks: Sequence[Block], stem: str) -> str:
+    """Statements outside of functions, or else the function that is the program."""
+    defines = [s for s in blocks[-1] if isinstance(s, Define)]
+    for block in blocks:
+        run.run_top(tuple(s for s in block if not isinstance(s, Define)))
+    if run.move_index or not defines or any(d.name in run.entered for d in defines):
+        return stem
+    define = _first(defines, stem, run)
+    _start(run, define)
+    return define.name
+
+
+def _start(run: Interpreter, define: Define) -> None:
+    start, end = define.head
+    run.call(Call(start, end, define.name, ()), run.root)
+
+
+def _first(defines: Sequence[Define], stem: str, run: Interpreter) -> Define:
+    """The function that is the program."""
+    able = [d for d in defines if all(p.default is not None for p in d.parameters)]
+    if len(defines) == 1 and able:
+        return defines[0]
+    called = {name for d in defines for name in all_calls(d.body) if name != d.name}
+    first = [d for d in able if d.name not in called and d.kind != "thread"]
+    if len(first) == 1:
+        return first[0]
+    for name in (stem, *_USUAL):
+        for define in first:
+            if define.name == name:
+                return define
+    span = run.texts.span(*defines[0].head)
+    if not first:
+        raise SourceError(
+            "the file defines functions and calls none of them, and all take arguments or are "
+            "called by others: it holds no program to run",
+            span,
+        )
+    names = ", ".join(d.name for d in first[:6])
+    raise SourceError(
+        f"the file defines several functions and calls none of them: choose one of {names} as the "
+        "entry",
+        span,
+    )
+
+
+def _named(blocks: Sequence[Block], entry: str, run: Interpreter) -> Define:
+    defines = [s for block in reversed(blocks) for s in block if isinstance(s, Define)]
+    for define in defines:
+        if define.name == entry:
+            return define
+    known = ", ".join(d.name for d in defines[:8]) or "none"
+    raise SourceError(
+        f"there is no function '{entry}' to start with; the files define {known}",
+        run.texts.span(0, 0),
+    )

@@ -1,0 +1,108 @@
+"""URScript source → `Program`.
+
+The text is parsed (`statements`) and executed (`interpreter`) as far as its course follows from
+the text itself; `core.source.answers` decides the rest. What is decided here, and where a
+controller may differ:
+
+- Statements outside of functions are executed in order. If they neither move the robot nor call a
+  function, the file's one program is: the only ``def`` without required parameters that no other
+  one calls, or the one named ``main`` or like the file.
+- A loop that nothing ends is read for one pass; what stands behind it is never reached.
+- A loop that waits for what is not known is left at once and kept, and the robot stops there.
+- Calls that leave the robot alone are kept as they stand. Threads: see `threads`. Functions that
+  nobody declares are refused, unless an answer says otherwise.
+- Variables that the program does not declare (of the installation) are not known.
+- ``movej`` with a pose, and ``get_inverse_kin`` without ``qnear`` or with the joints that the robot
+  starts from, take the solution nearest to where the robot comes from.
+- A time ``t`` above zero takes the place of ``a`` and ``v``.
+- ``movep`` is a line; its blends are those of the motion model.
+- Without ``set_tcp`` the flange is the TCP, with a note.
+- ``/`` gives a float; ``and`` and ``or`` leave out what does not matter.
+
+Order of `Origin.numbers`: a pose's six, or six joint values; with ``qnear`` six more. Speed: a, v,
+t. Zone: r. What is not written is None; if nothing of a part is, its span is the empty place before
+the closing bracket.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ....core.errors import InputError, SourceError
+from ....core.files.reading import read_bytes
+from ....core.source.collection import collection_paused
+from ....core.source.reading import Files, ReadOptions, read_with
+from ....core.source.text.files import LARGEST_FILE, SourceFile, read_source
+from ..syntax.statements import parse
+from ..syntax.texts import Texts
+from .analysis import Flow
+from .entry import run_program
+from .interpreter import Interpreter
+
+if TYPE_CHECKING:
+    from ....core.program.program import Program
+
+SUFFIXES = (".script", ".urscript")
+_GZIP = b"\x1f\x8b"
+
+
+def read(text: str, file: str, options: ReadOptions | None = None) -> Program:
+    """The program in a text.
+
+    Args:
+        text: of one file.
+        file: its name, for messages and spans.
+        options: entry, robot, answers, limits.
+
+    Raises:
+        SourceError: with line and column: the text is no URScript, or its motion cannot be known.
+    """
+    return read_with({file: SourceFile(file, text)}, file, options or ReadOptions(), read_sources)
+
+
+def read_file(path: str | Path, options: ReadOptions | None = None) -> Program:
+    """The program of a file; `ReadOptions.others` are executed before it.
+
+    Raises:
+        InputError: a file cannot be read, or is compressed.
+        SourceError: see `read`.
+    """
+    options = options or ReadOptions()
+    files: dict[str, SourceFile] = {}
+    for one in (*options.others, Path(path)):
+        _check_kind(one)
+        source = read_source(one)
+        files[source.name] = source
+    return read_with(files, str(path), options, read_sources)
+
+
+def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
+    """The program of files that were read; all but ``main`` are executed before it.
+
+    Raises:
+        SourceError: see `read`.
+    """
+    ordered = [*(f for name, f in files.items() if name != main), files[main]]
+    texts = Texts(ordered)
+    try:
+        with collection_paused():
+            return _read(texts, main, options)
+    except RecursionError:
+        raise SourceError(
+            "expressions, blocks and calls are nested too deeply", texts.span(0, 0)
+        ) from None
+
+
+def _read(texts: Texts, main: str, options: ReadOptions) -> Program:
+    blocks = [parse(texts, which) for which in range(len(texts.sources))]
+    run = Interpreter(texts, Flow(blocks, options.answers.skipped), options)
+    return run_program(run, blocks, main, options.entry)
+
+
+def _check_kind(path: Path) -> None:
+    if read_bytes(path, LARGEST_FILE).startswith(_GZIP) or path.suffix.casefold() == ".urp":
+        raise InputError(
+            f"{path} is PolyScope's own compressed form of a program: PolyScope saves the same "
+            "program as .script beside it; read that"
+        )

@@ -1,0 +1,1 @@
+"""Text of URScript → its syntax tree."""

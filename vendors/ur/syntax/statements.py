@@ -1,0 +1,212 @@
+"""Tokens → statements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from .cursor import Cursor
+from .expressions import parse_expression
+from .lexer import END, LINE, tokenize
+from .texts import Texts
+from .tree import (
+    Assign,
+    Block,
+    Branch,
+    Constant,
+    Define,
+    Evaluate,
+    Expression,
+    If,
+    Index,
+    Keyword,
+    Member,
+    Name,
+    Parameter,
+    Return,
+    Statement,
+    ThreadEnd,
+    While,
+)
+
+_BODY = frozenset({"end"})
+_BRANCH = frozenset({"elif", "else", "end"})
+_AFTER = frozenset({LINE, ";", END, "end", "else", "elif"})
+"""What may follow a statement."""
+
+
+def parse(texts: Texts, which: int) -> Block:
+    """The statements of one of the texts.
+
+    Raises:
+        SourceError: the text is no URScript, or is cut off.
+    """
+    cursor = Cursor(tokenize(texts, which))
+    statements: list[Statement] = []
+    cursor.skip_lines()
+    while cursor.kind != END:
+        if cursor.kind in _BRANCH:
+            raise cursor.source.error(
+                f"this '{cursor.kind}' closes nothing: there is one too many, or a 'def', 'if' or "
+                "'while' above it is missing",
+                cursor.start,
+            )
+        statements.append(_statement(cursor))
+        cursor.skip_lines()
+    return tuple(statements)
+
+
+def _block(cursor: Cursor, ends: frozenset[str], opening: str) -> Block:
+    """Statements up to one of the keywords ``ends``, which is left to be read."""
+    statements: list[Statement] = []
+    with cursor.nested():
+        cursor.skip_lines()
+        while cursor.kind not in ends:
+            if cursor.kind == END:
+                raise cursor.unexpected(f"'end' of {opening}")
+            statements.append(_statement(cursor))
+            cursor.skip_lines()
+    return tuple(statements)
+
+
+def _statement(cursor: Cursor) -> Statement:
+    statement = _BY_KEYWORD.get(cursor.kind, _simple)(cursor)
+    if cursor.kind not in _AFTER:
+        raise cursor.unexpected("the end of the line, after a statement,")
+    return statement
+
+
+def _simple(cursor: Cursor) -> Statement:
+    """An assignment, or an expression."""
+    start = cursor.start
+    expression = parse_expression(cursor)
+    if cursor.kind == "=":
+        return _assignment(cursor, start, expression, "")
+    if cursor.kind == ":" and isinstance(expression, Name):
+        raise cursor.source.error(
+            f"'{expression.text}' is no statement of URScript", expression.start, expression.end
+        )
+    return Evaluate(start, cursor.end, expression)
+
+
+def _assignment(cursor: Cursor, start: int, target: Expression, storage: str) -> Assign:
+    if not isinstance(target, Name | Index | Member):
+        raise cursor.source.error(
+            "only a variable, an element of a list or a part of a struct can be assigned",
+            target.start,
+            target.end,
+        )
+    cursor.expect("=", "after the variable")
+    value = parse_expression(cursor)
+    return Assign(start, cursor.end, target, value, storage)
+
+
+def _declaration(cursor: Cursor) -> Statement:
+    """``global name = value`` or ``local name = value``"""
+    start, storage = cursor.start, cursor.kind
+    cursor.advance()
+    begin = cursor.start
+    name = Name(begin, begin, cursor.name(f"the name of a variable after '{storage}'"))
+    target = Name(begin, cursor.end, name.text)
+    if cursor.kind == "=":
+        return _assignment(cursor, start, target, storage)
+    return Assign(start, cursor.end, target, Constant(cursor.end, cursor.end, None), storage)
+
+
+def _define(cursor: Cursor) -> Statement:
+    start, kind = cursor.start, cursor.kind
+    cursor.advance()
+    name = cursor.name(f"a name after '{kind}'")
+    opening = f"'{kind} {name}' in {cursor.where(start)}"
+    parameters = _parameters(cursor, name)
+    cursor.expect(":", f"after '{kind} {name}(…)'")
+    loops, cursor.loops = cursor.loops, 0
+    body = _block(cursor, _BODY, opening)
+    cursor.loops = loops
+    cursor.expect("end", f"to close {opening}")
+    return Define(start, cursor.end, kind, name, parameters, body)
+
+
+def _parameters(cursor: Cursor, name: str) -> tuple[Parameter, ...]:
+    cursor.expect("(", f"after {name}")
+    parameters: list[Parameter] = []
+    while not cursor.accept(")"):
+        if parameters:
+            cursor.expect(",", f"or ')' between the parameters of {name}")
+        word = cursor.name(f"a parameter of {name}")
+        default = parse_expression(cursor) if cursor.accept("=") else None
+        parameters.append(Parameter(word, default))
+    return tuple(parameters)
+
+
+def _if(cursor: Cursor) -> Statement:
+    start = cursor.start
+    opening = f"'if' in {cursor.where(start)}"
+    branches = [_branch(cursor, opening)]
+    while cursor.kind == "elif":
+        branches.append(_branch(cursor, opening))
+    otherwise = None
+    if cursor.accept("else"):
+        cursor.expect(":", "after 'else'")
+        otherwise = _block(cursor, _BODY, opening)
+    cursor.expect("end", f"to close {opening}")
+    return If(start, cursor.end, tuple(branches), otherwise)
+
+
+def _branch(cursor: Cursor, opening: str) -> Branch:
+    cursor.advance()
+    condition = parse_expression(cursor)
+    cursor.expect(":", "after the condition")
+    return Branch(condition, _block(cursor, _BRANCH, opening))
+
+
+def _while(cursor: Cursor) -> Statement:
+    start = cursor.start
+    opening = f"'while' in {cursor.where(start)}"
+    cursor.advance()
+    condition = parse_expression(cursor)
+    cursor.expect(":", "after the condition")
+    cursor.loops += 1
+    body = _block(cursor, _BODY, opening)
+    cursor.loops -= 1
+    cursor.expect("end", f"to close {opening}")
+    return While(start, cursor.end, condition, body)
+
+
+def _return(cursor: Cursor) -> Statement:
+    start = cursor.start
+    cursor.advance()
+    value = None if cursor.kind in _AFTER else parse_expression(cursor)
+    return Return(start, cursor.end, value)
+
+
+def _word(cursor: Cursor) -> Statement:
+    start, word = cursor.start, cursor.kind
+    cursor.advance()
+    if word in ("break", "continue") and not cursor.loops:
+        raise cursor.source.error(f"'{word}' stands outside of a loop", start, cursor.end)
+    if word == "halt" and cursor.accept("("):
+        cursor.expect(")", "after 'halt('")
+    return Keyword(start, cursor.end, word)
+
+
+def _thread_end(cursor: Cursor) -> Statement:
+    start, word = cursor.start, cursor.kind
+    cursor.advance()
+    handle = parse_expression(cursor)
+    return ThreadEnd(start, cursor.end, word, handle)
+
+
+_BY_KEYWORD: dict[str, Callable[[Cursor], Statement]] = {
+    "def": _define,
+    "sec": _define,
+    "thread": _define,
+    "if": _if,
+    "while": _while,
+    "global": _declaration,
+    "local": _declaration,
+    "return": _return,
+    "join": _thread_end,
+    "kill": _thread_end,
+    **dict.fromkeys(("break", "continue", "halt", "pass"), _word),
+    **dict.fromkeys(("enter_critical", "exit_critical"), _word),
+}

@@ -1,0 +1,60 @@
+"""The texts of a program as one stretch of offsets: a place in any of them is one number."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
+
+from ....core.errors import SourceError, Span
+from ....core.source.text.files import SourceFile, SourceText
+
+
+class Texts:
+    """Source texts, one behind the other.
+
+    Args:
+        files: in the order in which they are executed.
+    """
+
+    def __init__(self, files: Iterable[SourceFile]) -> None:
+        self.sources = [SourceText(file.text, file.name) for file in files]
+        self.bases: list[int] = []
+        base = 0
+        for source in self.sources:
+            self.bases.append(base)
+            base += len(source.text) + 1
+        self._only = self.sources[0] if len(self.sources) == 1 else None
+
+    def span(self, start: int, end: int) -> Span:
+        """The stretch from ``start`` to before ``end``, with its file, line and column."""
+        if self._only is not None:
+            return self._only.span(start, end)
+        which = self._which(start)
+        base = self.bases[which]
+        return self.sources[which].span(start - base, end - base)
+
+    def spans(self, places: Sequence[tuple[int, int]]) -> tuple[Span, ...]:
+        """The spans of several stretches, in order, that most often stand on one line."""
+        if not places:
+            return ()
+        first, last = self.span(*places[0]), self.span(*places[-1])
+        if first.line != last.line:
+            return tuple([self.span(start, end) for start, end in places])
+        file, line, ahead = first.file, first.line, places[0][0] - first.start
+        left = first.start - first.column + ahead
+        return tuple(
+            [Span(file, line, start - left, start - ahead, end - ahead) for start, end in places]
+        )
+
+    def cut(self, start: int, end: int) -> str:
+        """The text from ``start`` to before ``end``."""
+        which = self._which(start)
+        base = self.bases[which]
+        return self.sources[which].text[start - base : end - base]
+
+    def error(self, message: str, start: int, end: int | None = None) -> SourceError:
+        """An error at ``start``, to be raised."""
+        return SourceError(message, self.span(start, start if end is None else end))
+
+    def _which(self, offset: int) -> int:
+        return bisect_right(self.bases, offset) - 1 if len(self.bases) > 1 else 0

@@ -1,1 +1,0 @@
-"""URScript: the language of Universal Robots."""

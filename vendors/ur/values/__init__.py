@@ -1,0 +1,1 @@
+"""Expressions of URScript → values, and the data of a program."""

@@ -1,0 +1,134 @@
+"""Program → a URScript that a controller runs: data in, text out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ....core.errors import InputError, MotionError
+from ....core.program.move import Move, Opaque, Wait
+from ....core.program.program import Program
+from ....core.robot.model import Robot
+from ....core.source.text.files import lines_of
+from ....core.source.text.names import Names
+from ....core.source.write.options import AS_COMMENTS, OpaqueStyle
+from ....core.vendor import Sources
+from ..syntax.names import NAME_RULES
+from .declarations import Line
+from .formatting import comment, number
+from .instructions import Phrases, Settings
+from .options import ScriptOptions
+
+SUFFIX = ".script"
+_STEP = "  "
+
+
+def write(program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
+    """The one file of a program: ``def name(): … end``; lines end with LF, all is ASCII.
+
+    Targets are written in the robot's base, whatever work object they had; numbers are the
+    shortest decimals that are the program's own doubles. Names from the source are kept where
+    they are legal and unique. ``Program.start`` has no place in URScript: the robot starts from
+    where it stands.
+
+    Raises:
+        InputError: URScript does not drive the robot, or an option is unknown.
+        MotionError: URScript cannot say a move; it is named by number.
+    """
+    script = body(program, robot, ScriptOptions.of(options))
+    return {script.name + SUFFIX: script.text()}
+
+
+class Script:
+    """The parts of a script before they become one text.
+
+    Args:
+        name: of its function.
+        declarations: lines that define its data.
+        statements: the lines of the function's body.
+    """
+
+    def __init__(self, name: str, declarations: list[str], statements: list[str]) -> None:
+        self.name = name
+        self.declarations = declarations
+        self.statements = statements
+
+    def text(self) -> str:
+        """The whole text."""
+        lines = [
+            "# Written by flyby.",
+            f"def {self.name}():",
+            *indented([*self.declarations, *self.statements]),
+            "end",
+            "",
+        ]
+        return "\n".join(lines)
+
+
+def body(program: Program, robot: Robot, options: ScriptOptions, *taken: str) -> Script:
+    """The script of a program.
+
+    Args:
+        program: what to say.
+        robot: in whose base poses are given.
+        options: how.
+        taken: names that the program's data may not have.
+
+    Raises:
+        InputError, MotionError: as `write`.
+    """
+    phrases = Phrases(robot, program, options.shares)
+    lines = _lines(program, phrases, options.opaque)
+    names = Names(NAME_RULES, taken)
+    name = names.claim(program.name, "program")
+    given = phrases.declarations.names(names)
+    statements = ["".join(p if isinstance(p, str) else given[p] for p in line) for line in lines]
+    return Script(name, phrases.declarations.lines(given), statements)
+
+
+def _lines(program: Program, phrases: Phrases, style: OpaqueStyle) -> list[Line]:
+    settings = Settings()
+    lines: list[Line] = []
+    index = 0
+    for statement in program.statements:
+        if isinstance(statement, Wait):
+            lines.append((f"sleep({number(statement.duration)})",))
+        elif isinstance(statement, Opaque):
+            lines += [(line,) for line in _opaque(statement, style)]
+        else:
+            lines += _move(statement, index, settings, phrases, style)
+            index += 1
+    return lines
+
+
+def _opaque(statement: Opaque, style: OpaqueStyle) -> list[str]:
+    if style is OpaqueStyle.COMMENT:
+        return comment(statement.text)
+    return ["\n".join(lines_of(statement.text))]
+
+
+def _move(
+    move: Move, index: int, settings: Settings, phrases: Phrases, style: OpaqueStyle
+) -> list[Line]:
+    """The move, with the settings that must change before it."""
+    try:
+        before = [*_events(move, style), *settings.changes(move)]
+        return [*((line,) for line in before), phrases.move(move)]
+    except InputError as error:
+        span = move.origin.statement if move.origin is not None else None
+        raise MotionError(str(error), index, span) from None
+
+
+def _events(move: Move, style: OpaqueStyle) -> list[str]:
+    """What happens along a move: URScript has no words for it."""
+    if move.events and style is OpaqueStyle.KEEP:
+        raise InputError(
+            f"URScript has no actions along a move ({move.events[0].text!r}): take them away, or "
+            f"make them comments ({AS_COMMENTS})"
+        )
+    return [line for event in move.events for line in comment(f"on the way: {event.text}")]
+
+
+def indented(lines: list[str]) -> list[str]:
+    """Lines inside the function."""
+    # Only the first line of a statement of several lines moves: the rest is the user's.
+    return [_STEP + line for line in lines]
