@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator
 
 from ...core.dialect import (
-    ArcRules,
     Dialect,
     Mention,
     MoveWords,
@@ -16,6 +14,7 @@ from ...core.dialect import (
     Wording,
 )
 from ...core.program.zone import Radius
+from .motion.arcs import ARCS
 
 _SPEEDS = frozenset(
     {
@@ -102,10 +101,6 @@ _OUTPUTS = OutputWords(
     level=lambda name, value: f"\\AOp:={name},{value:.6g}",
     longest_lead=0.5,  # TriggIO \Time
 )
-
-ARCS = ArcRules(math.radians(240), 1e-4, math.radians(1), "MoveC")
-"""Limits that RobotComponents checks for (PathGenerator): they follow the controller's own error
-messages for circles that are too small or too long."""
 
 RAPID = Dialect(
     joint=_MOVE,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ...core.program.program import Program
     from ...core.robot.model import Robot
-    from ...core.source.reading import ReadOptions
+    from ...core.source.reading import Files, ReadOptions
     from ...core.vendor import Sources
     from .write.options import RapidOptions
 
@@ -17,7 +17,11 @@ SUFFIXES = (".mod", ".modx", ".prg", ".sys", ".sysx", ".pgf")
 
 
 class Rapid:
-    """Reader and writer. Writing takes the options ``zones`` and ``opaque`` (`RapidOptions`)."""
+    """Reader, writer, patcher and recorder.
+
+    Writing takes the options ``zones`` and ``opaque`` (`RapidOptions`), patching ``shared`` and
+    ``derived`` (`PatchOptions`), recording none.
+    """
 
     def read(self, text: str, file: str, options: ReadOptions) -> Program:
         """See `flyby.core.vendor.Reader.read`."""
@@ -36,6 +40,25 @@ class Rapid:
         from .write.writer import RapidWriter
 
         return RapidWriter(_options(robot, options)).write(program)
+
+    def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
+        """See `flyby.core.vendor.Patcher.patch`."""
+        from ...core.source.patch.edits import reading_of
+        from ...core.source.write.options import PatchOptions
+        from .motion.targets import axis_kinds
+        from .patch.patcher import patch
+
+        # The files are read again as they were read, be it without a robot.
+        kinds = axis_kinds(reading_of(program).options.robot)
+        return patch(program, PatchOptions.of(options, "RAPID patcher"), kinds or ())
+
+    def record(self, program: Program, robot: Robot, period: float) -> Sources:
+        """See `flyby.core.vendor.Recorder.record`."""
+        from .motion.targets import axis_kinds
+        from .record import record
+        from .write.options import RapidOptions
+
+        return record(program, RapidOptions(external_axes=axis_kinds(robot) or ()), period)
 
 
 def _options(robot: Robot, options: Mapping[str, str]) -> RapidOptions:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from ...core.hookspec import VendorRegister, hookimpl
 from ...core.vendor import Vendor, lazy_motion, lazy_robots, motion_layers
 from .dialect import RAPID
-from .editing import RapidPatcher, RapidRecorder
 from .language import SUFFIXES, Rapid
 
 if TYPE_CHECKING:
@@ -40,8 +39,8 @@ def flyby_register_vendors(register: VendorRegister) -> None:
             label=_label,
             reader=rapid,
             writer=rapid,
-            patcher=RapidPatcher(),
-            recorder=RapidRecorder(),
+            patcher=rapid,
+            recorder=rapid,
             suffixes=SUFFIXES,
             speaks=RAPID,
         )

@@ -1,13 +1,12 @@
 """Functions that ask the emulated robot: where it stands, with which tool, in which frame.
 
 "RAPID Reference Manual", functions CRobT, CJointT, CPos, CTool, CWObj, CalcRobT, CalcJointT,
-ORobT, MirPos, CSpeedOverride. Positions are those of the last commanded target (`Whereabouts`).
+ORobT, MirPos, CSpeedOverride. Positions are those of the last commanded target (`Position`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from ....core.spatial.pose import Pose
 from ....core.spatial.rotation import quaternion_from_matrix
 from ..syntax.tree import Call, Expression, Invoke
 from ..values.arguments import check_count
-from ..values.function_calls import Special
+from ..values.function_calls import Evaluates, Special
 from ..values.records import Record, pose_record, tool_record, work_object_record
 from ..values.scope import Scope
 from ..values.types import (
@@ -31,63 +30,77 @@ from ..values.types import (
     Value,
     find_unknown,
 )
-
-if TYPE_CHECKING:
-    from ..run.interpreter import Interpreter
+from .position import Position
+from .settings import SettingsInForce
+from .targets import Converter
 
 FULL_OVERRIDE = 100.0
 
 
-class StateFunctions:
+class RobotFunctions:
     """The functions, by lower-case name.
 
     Args:
-        run: the program run that they ask.
+        position: of the robot.
+        convert: makes tools, frames and targets.
+        settings: that hold now.
+        known: whether there is a robot to ask.
     """
 
-    def __init__(self, run: Interpreter) -> None:
-        self._run = run
+    def __init__(
+        self, position: Position, convert: Converter, settings: SettingsInForce, known: bool
+    ) -> None:
+        self._position = position
+        self._convert = convert
+        self._settings = settings
+        self._known = known
 
     def table(self) -> dict[str, Special]:
         """name → function."""
         return {
             "crobt": self._robtarget,
-            "cpos": self._position,
+            "cpos": self._cpos,
             "cjointt": self._jointtarget,
-            "ctool": lambda call, scope: tool_record(self._run.whereabouts.tool),
-            "cwobj": lambda call, scope: work_object_record(self._run.whereabouts.work_object),
+            "ctool": lambda evaluator, call, scope: tool_record(self._position.tool),
+            "cwobj": lambda evaluator, call, scope: work_object_record(self._position.work_object),
             "calcrobt": self._forward,
             "calcjointt": self._backward,
             "orobt": self._undisplaced,
             "mirpos": self._mirrored,
-            "cspeedoverride": lambda call, scope: FULL_OVERRIDE,
+            "cspeedoverride": lambda evaluator, call, scope: FULL_OVERRIDE,
         }
 
     # ---------------------------------------------------------------- what it asks
 
-    def _robtarget(self, call: Call, scope: Scope) -> Value:
+    def _robtarget(self, evaluator: Evaluates, call: Call, scope: Scope) -> Value:
         if any(a.option in ("taskref", "taskname") for a in call.arguments):
-            return self._unknown(call, "that of another task")
-        tool = self._tool(self._option(call, "tool"), scope)
-        frame = self._frame(self._option(call, "wobj"), scope)
+            return self._unknown(evaluator, call, "that of another task")
+        tool = self._tool(evaluator, self._option(call, "tool"), scope)
+        frame = self._frame(evaluator, self._option(call, "wobj"), scope)
         if tool is None or frame is None:
-            return self._unknown(call, "in a tool or frame that is not known")
-        where = self._run.whereabouts
-        displacement = self._run.settings.displacement
+            return self._unknown(evaluator, call, "in a tool or frame that is not known")
+        where = self._position
+        displacement = self._settings.now.displacement
         record = self._asked(call, lambda: where.robtarget(tool, frame, displacement))
-        return self._unknown(call, None) if record is None else record
+        return self._unknown(evaluator, call, None) if record is None else record
 
     def present_robtarget(
-        self, tool: Expression | None, frame: Expression | None, scope: Scope, invoke: Invoke
+        self,
+        evaluator: Evaluates,
+        tool: Expression | None,
+        frame: Expression | None,
+        scope: Scope,
+        invoke: Invoke,
     ) -> Record:
         """Where the robot stands, without program displacement.
 
         Raises:
             SourceError: it is not known.
         """
-        a, b = self._tool(tool, scope), self._frame(frame, scope, None if tool is None else WORLD)
+        a = self._tool(evaluator, tool, scope)
+        b = self._frame(evaluator, frame, scope, None if tool is None else WORLD)
         if a is not None and b is not None:
-            where = self._run.whereabouts
+            where = self._position
             record = self._asked(invoke, lambda: where.robtarget(a, b, None))
             if record is not None:
                 return record
@@ -97,80 +110,80 @@ class StateFunctions:
             invoke.span,
         )
 
-    def _position(self, call: Call, scope: Scope) -> Value:
-        value = self._robtarget(call, scope)
+    def _cpos(self, evaluator: Evaluates, call: Call, scope: Scope) -> Value:
+        value = self._robtarget(evaluator, call, scope)
         return value if isinstance(value, Unknown) else self._tuple(value)[0]
 
-    def _jointtarget(self, call: Call, scope: Scope) -> Value:
-        record = self._asked(call, self._run.whereabouts.jointtarget)
-        return self._unknown(call, None) if record is None else record
+    def _jointtarget(self, evaluator: Evaluates, call: Call, scope: Scope) -> Value:
+        record = self._asked(call, self._position.jointtarget)
+        return self._unknown(evaluator, call, None) if record is None else record
 
-    def _forward(self, call: Call, scope: Scope) -> Value:
+    def _forward(self, evaluator: Evaluates, call: Call, scope: Scope) -> Value:
         """``CalcRobT(jointtarget, Tool [\\WObj])``"""
         joints, tool_given = self._required(call, 2)
-        value = self._run.evaluator.evaluate(joints, scope)
-        tool = self._tool(tool_given, scope)
-        frame = self._frame(self._option(call, "wobj"), scope, WORLD)
+        value = evaluator.evaluate(joints, scope)
+        tool = self._tool(evaluator, tool_given, scope)
+        frame = self._frame(evaluator, self._option(call, "wobj"), scope, WORLD)
         if tool is None or frame is None or find_unknown(value) is not None:
-            return self._unknown(call, "of values that are not known")
-        self._check(value, JOINTTARGET, call)
-        target = self._run.convert.joint_target(value, None, False, call.span)
-        where = self._run.whereabouts
+            return self._unknown(evaluator, call, "of values that are not known")
+        self._check(evaluator, value, JOINTTARGET, call)
+        target = self._convert.joint_target(value, None, False, call.span)
+        where = self._position
         record = self._asked(call, lambda: where.forward(target, tool, frame))
-        return self._unknown(call, None) if record is None else record
+        return self._unknown(evaluator, call, None) if record is None else record
 
-    def _backward(self, call: Call, scope: Scope) -> Value:
+    def _backward(self, evaluator: Evaluates, call: Call, scope: Scope) -> Value:
         """``CalcJointT(robtarget, Tool [\\WObj])``"""
         pose, tool_given = self._required(call, 2)
-        value = self._run.evaluator.evaluate(pose, scope)
-        tool = self._tool(tool_given, scope)
-        frame = self._frame(self._option(call, "wobj"), scope, WORLD)
+        value = evaluator.evaluate(pose, scope)
+        tool = self._tool(evaluator, tool_given, scope)
+        frame = self._frame(evaluator, self._option(call, "wobj"), scope, WORLD)
         if tool is None or frame is None or find_unknown(value) is not None:
-            return self._unknown(call, "of values that are not known")
-        self._check(value, ROBTARGET, call)
-        target = self._run.convert.pose_target(value, None, True, call.span)
-        where = self._run.whereabouts
+            return self._unknown(evaluator, call, "of values that are not known")
+        self._check(evaluator, value, ROBTARGET, call)
+        target = self._convert.pose_target(value, None, True, call.span)
+        where = self._position
         record = self._asked(call, lambda: where.backward(target, tool, frame))
-        return self._unknown(call, None) if record is None else record
+        return self._unknown(evaluator, call, None) if record is None else record
 
     # ------------------------------------------------------------------- geometry
 
-    def _undisplaced(self, call: Call, scope: Scope) -> Value:
+    def _undisplaced(self, evaluator: Evaluates, call: Call, scope: Scope) -> Value:
         """``ORobT(point)``: as it is without program displacement."""
         (point,) = self._required(call, 1)
-        value = self._run.evaluator.evaluate(point, scope)
-        displacement = self._run.settings.displacement
+        value = evaluator.evaluate(point, scope)
+        displacement = self._settings.now.displacement
         if displacement is None or find_unknown(value) is not None:
             return value
-        self._check(value, ROBTARGET, call)
+        self._check(evaluator, value, ROBTARGET, call)
         trans, rot, *rest = self._tuple(value)
-        moved = displacement @ self._run.convert.pose((trans, rot), call.span)
+        moved = displacement @ self._convert.pose((trans, rot), call.span)
         return (*pose_record(moved), *rest)
 
-    def _mirrored(self, call: Call, scope: Scope) -> Value:
+    def _mirrored(self, evaluator: Evaluates, call: Call, scope: Scope) -> Value:
         """``MirPos(point, plane [\\WObj] [\\MirY])``: in the xy plane of a frame."""
         point, plane = self._required(call, 2)
-        values = [self._run.evaluator.evaluate(e, scope) for e in (point, plane)]
-        frame = self._frame(self._option(call, "wobj"), scope, WORLD)
+        values = [evaluator.evaluate(e, scope) for e in (point, plane)]
+        frame = self._frame(evaluator, self._option(call, "wobj"), scope, WORLD)
         if frame is None or find_unknown(tuple(values)) is not None:
-            return self._unknown(call, "of values that are not known")
-        self._check(values[0], ROBTARGET, call)
-        mirror = self._plane(values[1], call)
+            return self._unknown(evaluator, call, "of values that are not known")
+        self._check(evaluator, values[0], ROBTARGET, call)
+        mirror = self._plane(evaluator, values[1], call)
         trans, rot, *rest = self._tuple(values[0])
-        pose = self._run.convert.pose((trans, rot), call.span)
+        pose = self._convert.pose((trans, rot), call.span)
         seen = mirror.inverse() @ frame.pose @ pose
         keeps_y = not any(a.option == "miry" for a in call.arguments)
         back = frame.pose.inverse() @ mirror @ _mirror(seen, keeps_y)
         return (*pose_record(back), *rest)
 
-    def _plane(self, value: Value, call: Call) -> Pose:
+    def _plane(self, evaluator: Evaluates, value: Value, call: Call) -> Pose:
         if isinstance(value, tuple) and len(value) == len(WOBJDATA.components):
-            self._check(value, WOBJDATA, call)
+            self._check(evaluator, value, WOBJDATA, call)
             _, _, _, user, frame = value
-            convert = self._run.convert
+            convert = self._convert
             return convert.pose(user, call.span) @ convert.pose(frame, call.span)
-        self._check(value, POSE, call)
-        return self._run.convert.pose(value, call.span)
+        self._check(evaluator, value, POSE, call)
+        return self._convert.pose(value, call.span)
 
     # -------------------------------------------------------------------- helpers
 
@@ -191,11 +204,11 @@ class StateFunctions:
         except FlybyError as error:
             raise SourceError(f"{call.text}: {error}", call.span) from None
 
-    def _unknown(self, call: Call, why: str | None) -> Unknown:
+    def _unknown(self, evaluator: Evaluates, call: Call, why: str | None) -> Unknown:
         if why is None:
             unmoved = "the robot has not moved yet: give a start"
-            why = "name the robot" if self._run.robot is None else unmoved
-        key = self._run.evaluator.key(call.span)
+            why = "name the robot" if not self._known else unmoved
+        key = evaluator.key(call.span)
         return Unknown(f"the value of {call.text}() ({why})", call.span, key)
 
     @staticmethod
@@ -208,28 +221,33 @@ class StateFunctions:
         check_count(call.text, count, len(found), call.span)
         return found
 
-    def _tool(self, given: Expression | None, scope: Scope) -> Tool | None:
+    def _tool(self, evaluator: Evaluates, given: Expression | None, scope: Scope) -> Tool | None:
         if given is None:
-            return self._run.whereabouts.tool
-        found = self._run.evaluator.locate(given, scope)
+            return self._position.tool
+        found = evaluator.locate(given, scope)
         if find_unknown(found.value) is not None:
             return None
-        self._run.evaluator.check(found.value, TOOLDATA, "the tool", given.span)
-        return self._run.convert.tool(found, given)
+        evaluator.check(found.value, TOOLDATA, "the tool", given.span)
+        return self._convert.tool(found, given)
 
     def _frame(
-        self, given: Expression | None, scope: Scope, default: WorkObject | None = None
+        self,
+        evaluator: Evaluates,
+        given: Expression | None,
+        scope: Scope,
+        default: WorkObject | None = None,
     ) -> WorkObject | None:
         if given is None:
-            return self._run.whereabouts.work_object if default is None else default
-        found = self._run.evaluator.locate(given, scope)
+            return self._position.work_object if default is None else default
+        found = evaluator.locate(given, scope)
         if find_unknown(found.value) is not None:
             return None
-        self._run.evaluator.check(found.value, WOBJDATA, "the work object", given.span)
-        return self._run.convert.work_object(found, given)
+        evaluator.check(found.value, WOBJDATA, "the work object", given.span)
+        return self._convert.work_object(found, given)
 
-    def _check(self, value: Value, type_: Type, call: Call) -> None:
-        self._run.evaluator.check(value, type_, call.text, call.span)
+    @staticmethod
+    def _check(evaluator: Evaluates, value: Value, type_: Type, call: Call) -> None:
+        evaluator.check(value, type_, call.text, call.span)
 
     @staticmethod
     def _tuple(value: Value) -> Record:

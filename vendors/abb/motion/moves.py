@@ -5,8 +5,9 @@ Arguments: "RAPID Reference Manual", instructions MoveAbsJ, MoveC, MoveJ, MoveL.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from ....core.errors import SourceError, Span
 from ....core.program.event import Event
@@ -16,13 +17,14 @@ from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import WORLD, Load, Tool, WorkObject
 from ....core.program.zone import FINE, Zone
 from ....core.source.execution.provenance import Part
-from ..run.output import Sources
 from ..syntax.tree import Expression, Invoke, Name
 from ..values.arguments import Bound, bind
-from ..values.evaluator import Located
+from ..values.evaluator import Evaluator
+from ..values.located import Located
 from ..values.provenance import Literal, source_of_literal
 from ..values.records import PER_METRE, Record
 from ..values.scope import Scope
+from ..values.transcript import Output, Sources
 from ..values.types import (
     JOINTTARGET,
     ROBTARGET,
@@ -34,12 +36,27 @@ from ..values.types import (
     Unknown,
     Value,
 )
-from .targets import undeclared
-
-if TYPE_CHECKING:
-    from ..run.interpreter import Interpreter
+from .position import Position
+from .settings import SettingsInForce
+from .targets import Converter, undeclared
 
 _COMMON_OPTIONS = ("conc", "v", "t", "z", "inpos", "wobj", "tload", "corr", "id")
+
+
+class MovesRun(Protocol):
+    """What instructions that move the robot need of a run."""
+
+    evaluator: Evaluator
+    out: Output
+    settings: SettingsInForce
+    convert: Converter
+    position: Position
+
+    def emit_move(self, move: Move, sources: Sources) -> None:
+        """Put a move at the end of the program."""
+
+
+MovesHandler = Callable[[MovesRun, Invoke, Scope], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +104,7 @@ class _Common:
 class _MoveReader:
     """Reads one move instruction."""
 
-    def __init__(self, run: Interpreter, scope: Scope, bound: Bound) -> None:
+    def __init__(self, run: MovesRun, scope: Scope, bound: Bound) -> None:
         self.run = run
         self.scope = scope
         self.bound = bound
@@ -101,7 +118,8 @@ class _MoveReader:
             found.value, _datum_name(found, expression), follow, expression.span
         )
         self.record = _record(found.value)
-        moved = self.run.settings.displacement is not None or self.run.settings.offsets is not None
+        settings = self.run.settings.now
+        moved = settings.displacement is not None or settings.offsets is not None
         source = None if moved else found.source
         if source is None and found.source is not None:
             self.run.evaluator.reads.by_expression(found.source, self.run.out.move_index)
@@ -121,12 +139,12 @@ class _MoveReader:
             expression.span,
         )
         self.record = _record(found.value)
-        moved = arm_stays or (offsets and self.run.settings.offsets is not None)
+        moved = arm_stays or (offsets and self.run.settings.now.offsets is not None)
         return target, _part_of(expression.span, None if moved else found.source)
 
     def _with_arm(self, value: Value) -> Value:
         """A jointtarget with the arm's present joint values."""
-        present = self.run.whereabouts.jointtarget()
+        present = self.run.position.jointtarget()
         if present is None:
             raise SourceError(
                 f"{self.bound.text} leaves the arm where it is, and its joint values are not known "
@@ -159,13 +177,13 @@ class _MoveReader:
 
     def _tool(self) -> Tool:
         if "Tool" not in self.bound.names:
-            return self.run.whereabouts.tool
+            return self.run.position.tool
         expression = self.bound.named("Tool")
         return self.run.convert.tool(self._found(expression, "tool", TOOLDATA), expression)
 
     def _work_object(self) -> WorkObject:
         if "Tool" not in self.bound.names:
-            return self.run.whereabouts.work_object
+            return self.run.position.work_object
         if "wobj" not in self.bound.options:
             return WORLD
         expression = self.bound.option("wobj")
@@ -176,16 +194,16 @@ class _MoveReader:
         """``\\TLoad`` is tool and payload in one, unless it is ``load0``."""
         if "tload" in self.bound.options:
             expression = self.bound.option("tload")
-            total = self.run.convert.load(expression, self.scope)
+            total = self.run.convert.load(self.run.evaluator, expression, self.scope)
             if total is not None:
                 return replace(tool, load=total), None
-        return tool, self.run.settings.load
+        return tool, self.run.settings.now.load
 
     def _option(self, name: str) -> float | None:
         if name not in self.bound.options:
             return None
         use = f"{self.bound.text} \\{name.upper()}"
-        return self.run.number(self.bound.option(name), self.scope, use)
+        return self.run.evaluator.number(self.bound.option(name), self.scope, use)
 
     def _speed(self) -> tuple[Speed, Part]:
         expression = self.bound.named("Speed")
@@ -196,7 +214,7 @@ class _MoveReader:
             found.value, name, self._option("v"), self._option("t"), expression.span
         )
         part = self._part(found, expression, ("v", "t"))
-        settings = self.run.settings
+        settings = self.run.settings.now
         limit = settings.greatest_tcp
         capped = limit is not None and speed.tcp is not None and speed.tcp >= limit / PER_METRE
         if settings.override == 1.0 and not capped:
@@ -267,7 +285,7 @@ def _datum_name(found: Located, expression: Expression) -> str | None:
 
 
 def read_move(
-    run: Interpreter, form: Form, bound: Bound, scope: Scope, events: tuple[Event, ...] = ()
+    run: MovesRun, form: Form, bound: Bound, scope: Scope, events: tuple[Event, ...] = ()
 ) -> tuple[Move, Sources]:
     """The move of an instruction, and the sources of its numbers.
 
@@ -276,7 +294,7 @@ def read_move(
     """
     _note_singularity(run, form, bound)
     reader = _MoveReader(run, scope, bound)
-    settings = run.settings
+    settings = run.settings.now
     if form.kind in ("absolute", "external"):
         joints, part = reader.joint_target(form.kind == "external")
         common = reader.common()
@@ -303,7 +321,7 @@ def bind_move(invoke: Invoke, form: Form) -> Bound:
 
 
 def drive(
-    run: Interpreter,
+    run: MovesRun,
     form: Form,
     invoke: Invoke,
     scope: Scope,
@@ -326,16 +344,16 @@ def drive(
         for source in filter(None, part.sources if part is not None else ()):
             reads.by_move(source, run.out.move_index)
     run.emit_move(move, sources)
-    run.whereabouts.moved(move, sources.statement, sources.record)
+    run.position.moved(move, sources.statement, sources.record)
     return sources.record
 
 
-def _plain(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+def _plain(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     drive(run, FORMS[invoke.name], invoke, scope)
 
 
-def _note_singularity(run: Interpreter, form: Form, bound: Bound) -> None:
-    mode = run.settings.singularity
+def _note_singularity(run: MovesRun, form: Form, bound: Bound) -> None:
+    mode = run.settings.now.singularity
     if mode == "off" or form.kind not in ("linear", "circular"):
         return
     name = {"wrist": "Wrist", "lockaxis4": "LockAxis4"}[mode]
@@ -353,8 +371,8 @@ def _note_singularity(run: Interpreter, form: Form, bound: Bound) -> None:
     )
 
 
-def _arc_orientation(run: Interpreter, bound: Bound) -> ArcOrientation:
-    arc = run.settings.arc
+def _arc_orientation(run: MovesRun, bound: Bound) -> ArcOrientation:
+    arc = run.settings.now.arc
     if isinstance(arc, ArcOrientation):
         return arc
     raise SourceError(
@@ -368,7 +386,7 @@ def _fields(common: _Common) -> tuple[Speed, Zone, Tool, WorkObject, Load | None
 
 
 def _sources(
-    run: Interpreter,
+    run: MovesRun,
     bound: Bound,
     reader: _MoveReader,
     common: _Common,
@@ -379,4 +397,4 @@ def _sources(
     return Sources(bound.span, *parts, record=reader.record)
 
 
-MOVES = dict.fromkeys(FORMS, _plain)
+MOVES: dict[str, MovesHandler] = dict.fromkeys(FORMS, _plain)

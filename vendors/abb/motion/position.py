@@ -17,7 +17,7 @@ from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import FLANGE, WORLD, Tool, WorkObject
 from ....core.spatial.pose import Pose
-from ..values.records import MM, UNUSED_AXIS, Record, pose_record
+from ..values.records import EXTERNAL_AXES, MM, UNUSED_AXIS, Record, pose_record
 from .configuration import AbbConfiguration
 
 if TYPE_CHECKING:
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from ....core.robot.model import Robot
 
 
-AXES = 6
+ARM_AXES = 6
 
 
-class Whereabouts:
+class Position:
     """Follows the robot from target to target.
 
     Args:
@@ -175,12 +175,12 @@ class Whereabouts:
             value / MM if kind == "linear" else math.degrees(value)
             for value, kind in zip(values, self._axes, strict=False)
         ]
-        return tuple(shown + [UNUSED_AXIS] * (AXES - len(shown)))
+        return tuple(shown + [UNUSED_AXIS] * (EXTERNAL_AXES - len(shown)))
 
     def _joint_record(self, q: FloatArray) -> Record:
         arm = len(q) - len(self._axes)
-        joints = [math.degrees(v) for v in q[:arm]][:AXES]
-        robax = tuple(joints + [0.0] * (AXES - len(joints)))
+        joints = [math.degrees(v) for v in q[:arm]][:ARM_AXES]
+        robax = tuple(joints + [0.0] * (ARM_AXES - len(joints)))
         return (robax, self._external_of([float(v) for v in q[arm:]]))
 
 

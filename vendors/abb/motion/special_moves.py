@@ -8,18 +8,13 @@ read as the moves that they are; what their process data do to the motion is not
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from ....core.errors import SourceError
 from ....core.program.event import Event
 from ..syntax.tree import Invoke, Name
 from ..values.scope import Cell, Scope
 from ..values.types import ROBTARGET
-from .moves import Form, bind_move, drive
-
-if TYPE_CHECKING:
-    from ..run.interpreter import Interpreter
-    from .settings import Handler
+from .moves import Form, MovesHandler, MovesRun, bind_move, drive
 
 # --------------------------------------------------------------------------- searches
 
@@ -41,7 +36,7 @@ _SEARCHES = {
 _FOUND = "what the search finds"
 
 
-def _search(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+def _search(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     """A search drives to its end, where it is taken to have found what it looks for.
 
     The user may answer the point that it finds; with \\Stop it drives there and no further. The
@@ -75,7 +70,7 @@ def _search(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
 _EXTERNAL = Form("external", ("ToJointPos", "Speed", "Zone"), ("useeoffs",))
 
 
-def _external(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+def _external(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     drive(run, _EXTERNAL, invoke, scope)
 
 
@@ -108,7 +103,7 @@ _PROCESSES = _shapes()
 """name → kind of move, and whether a zone stands before the tool; the others go to a stop."""
 
 
-def _process(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+def _process(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     """``ArcL ToPoint, Speed, Seam, Weld, Zone, Tool`` and its like.
 
     Their process data stand between the speed and the zone, and are as many as they are.
@@ -130,7 +125,7 @@ def _process(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
     drive(run, form, invoke, scope, (event,), bound)
 
 
-SPECIAL_MOVES: dict[str, Handler] = {
+SPECIAL_MOVES: dict[str, MovesHandler] = {
     **dict.fromkeys(_SEARCHES, _search),
     "moveextj": _external,
     **dict.fromkeys(_PROCESSES, _process),

@@ -13,8 +13,10 @@ from ....core.program.tool import Load, Tool, WorkObject
 from ....core.program.zone import FINE, Zone
 from ....core.spatial.pose import Pose, Quaternion
 from ..syntax.tree import Expression, Name
-from ..values.evaluator import Located
+from ..values.evaluator import Evaluator
+from ..values.located import Located
 from ..values.records import (
+    AXIS_KINDS,
     LOAD0,
     PER_METRE,
     UNUSED_AXIS,
@@ -27,13 +29,13 @@ from ..values.records import (
     zone_value,
 )
 from ..values.scope import Scope, unknown_name
+from ..values.transcript import Output
 from ..values.types import LOADDATA, ORIENT, POSE, TOOLDATA, WOBJDATA, RecordType, Type, Value
-from ..write.options import AXIS_KINDS
 from .configuration import AbbConfiguration
+from .settings import SettingsInForce
 
 if TYPE_CHECKING:
     from ....core.robot.model import Robot
-    from ..run.interpreter import Interpreter
 
 NORM_TOLERANCE = 1e-3
 """A quaternion whose length is off by more is a mistake, no rounding."""
@@ -51,16 +53,20 @@ class Converter:
     """Makes targets, speeds, zones, tools and frames of RAPID values.
 
     Args:
-        run: the program run that they are for; it takes the notes.
+        settings: that hold for them.
+        out: takes the notes.
         external_axes: ``"linear"`` or ``"rotating"`` for eax_a, eax_b, … of the robot; None if
             the robot is not known.
     """
 
-    def __init__(self, run: Interpreter, external_axes: Sequence[str] | None) -> None:
+    def __init__(
+        self, settings: SettingsInForce, out: Output, external_axes: Sequence[str] | None
+    ) -> None:
         for kind in external_axes or ():
             if kind not in AXIS_KINDS:
                 raise InputError(f"an external axis is 'linear' or 'rotating', not {kind!r}")
-        self._run = run
+        self._settings = settings
+        self._out = out
         self._axes = external_axes
         self._made: dict[tuple[object, ...], object] = {}
 
@@ -81,7 +87,7 @@ class Converter:
         if value[2][0] != UNDEFINED_MASS:
             return value
         message = f"the load of tool {name} is not defined (mass -1): none is taken"
-        self._run.out.note_once(f"load of {name}", message, span)
+        self._out.note_once(f"load of {name}", message, span)
         return (*value[:2], LOAD0)
 
     def work_object(self, found: Located, expression: Expression) -> WorkObject:
@@ -98,9 +104,9 @@ class Converter:
             lambda: self._made_of(work_object_value, value, WOBJDATA, name, expression.span),
         )
 
-    def load(self, expression: Expression, scope: Scope) -> Load | None:
+    def load(self, evaluator: Evaluator, expression: Expression, scope: Scope) -> Load | None:
         """A loaddata; None for ``load0``."""
-        value = self._run.evaluator.known(expression, scope, LOADDATA, "the load")
+        value = evaluator.known(expression, scope, LOADDATA, "the load")
         record = self._units(value, LOADDATA, expression.span)
         name = expression.text if isinstance(expression, Name) else None
         with_name: Load | None = self._guard(expression.span, lambda: load_value(record, name))
@@ -151,7 +157,7 @@ class Converter:
             tcp: ``\\V`` in mm/s, None if absent.
             duration: ``\\T`` in s, None if absent.
         """
-        key = ("speed", record, name, tcp, duration, self._run.settings)
+        key = ("speed", record, name, tcp, duration, self._settings.now)
         return self._cached(key, lambda: self._speed(record, name, tcp, duration, span))
 
     def _speed(
@@ -162,7 +168,7 @@ class Converter:
         duration: float | None,
         span: Span,
     ) -> Speed:
-        settings = self._run.settings
+        settings = self._settings.now
         self._guard(span, lambda: check_speed(record, tcp, duration))
         v_tcp, v_ori, v_leax, v_reax = record
         programmed = (v_tcp if tcp is None else tcp, v_ori, v_leax, v_reax)
@@ -218,7 +224,7 @@ class Converter:
         configuration = self._configuration(robconf, span) if follow else None
         external = self._external(extax, span)
         pose = self._guard(span, lambda: Pose(metres(trans), _quaternion(rot)))
-        displacement = self._run.settings.displacement
+        displacement = self._settings.now.displacement
         if displacement is not None:
             pose = displacement @ pose
         return PoseTarget(pose, configuration, external, name)
@@ -251,7 +257,7 @@ class Converter:
     ) -> tuple[float, ...]:
         """External axes in rad and m, in the robot's order, as far as they are programmed."""
         used = [abs(v) < UNUSED_AXIS for v in extax]
-        shift = self._run.settings.offsets
+        shift = self._settings.now.offsets
         if offsets and shift is not None:
             pairs = zip(extax, shift, used, strict=True)
             extax = [v + s if counts and abs(s) < UNUSED_AXIS else v for v, s, counts in pairs]
@@ -291,7 +297,7 @@ class Converter:
                     "(external_axes=('linear',) or ('rotating',))",
                     span,
                 )
-        self._run.out.note_once(
+        self._out.note_once(
             "external axes",
             "external axes are sent to 0 everywhere; they are taken as not there (9E9 says so)",
             span,
@@ -324,7 +330,7 @@ class Converter:
                 span,
             )
         if error > ROUNDING:
-            self._run.out.note_quaternion(error, span)
+            self._out.note_quaternion(error, span)
         return orient if error <= EXACT else tuple(v / length for v in orient)
 
     @staticmethod

@@ -9,7 +9,6 @@ the motion. Distances count back from the target, with ``\\Start`` forward from 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from ....core.errors import InputError, SourceError, Span
 from ....core.program.event import Event, EventAnchor
@@ -19,11 +18,7 @@ from ..values.outputs import write
 from ..values.records import PER_METRE
 from ..values.scope import Scope
 from ..values.types import NUM, Unknown, Value, mismatch
-from .moves import OVER_POINT, TO_JOINTS, TO_POINT, Form, bind_move, drive
-
-if TYPE_CHECKING:
-    from ..run.interpreter import Interpreter
-    from .settings import Handler
+from .moves import OVER_POINT, TO_JOINTS, TO_POINT, Form, MovesHandler, MovesRun, bind_move, drive
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +61,7 @@ _DEFINITIONS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 _LAGS = ("EquipLag", "ScaleLag")
 
 
-def _define(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+def _define(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     names, options = _DEFINITIONS[invoke.name]
     bound = bind(invoke, names, options)
     target = bound.named("TriggData")
@@ -98,7 +93,7 @@ def _event(text: str, anchor: EventAnchor, distance: float, time: float, span: S
         raise SourceError(str(error), span) from None
 
 
-def _number(run: Interpreter, bound: Bound, expression: Expression, scope: Scope) -> float:
+def _number(run: MovesRun, bound: Bound, expression: Expression, scope: Scope) -> float:
     """A distance or time, 0 with a note if it is not known."""
     value = run.evaluator.evaluate(expression, scope)
     if isinstance(value, Unknown):
@@ -111,7 +106,7 @@ def _number(run: Interpreter, bound: Bound, expression: Expression, scope: Scope
     return value
 
 
-def _action(run: Interpreter, bound: Bound) -> str:
+def _action(run: MovesRun, bound: Bound) -> str:
     r"""``do1,1``, ``\AOp:=ao1,5``, or the instruction's own name and data."""
     for option, kind in _SIGNALS.items():
         signal = bound.options.get(option)
@@ -142,7 +137,7 @@ _TRIGG_FORMS = {
 }
 
 
-def _trigger_move(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+def _trigger_move(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     form = _TRIGG_FORMS[invoke.name]
     bound = bind_move(invoke, form)
     given = [bound.named("Trigg")] if "Trigg" in bound.names else []
@@ -162,7 +157,7 @@ def _trigger_move(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
 
 
 def _events_of(
-    run: Interpreter, expression: Expression, found: tuple[TriggData, ...]
+    run: MovesRun, expression: Expression, found: tuple[TriggData, ...]
 ) -> tuple[Event, ...]:
     if found:
         return tuple(event for one in found for event in one.events)
@@ -205,7 +200,7 @@ _ACTION_FORMS = {
 }
 
 
-def _action_move(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+def _action_move(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     form = _ACTION_FORMS[invoke.name]
     bound = bind_move(invoke, replace(form, options=("value", "dvalue")))
     extra = [bound.named(n) for n in ("Signal", "Value", "ProcName") if n in bound.names]
@@ -222,8 +217,8 @@ def _action_move(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
         run.evaluator.outputs.forget()
 
 
-TRIGGER_DEFINITIONS: dict[str, Handler] = dict.fromkeys(_DEFINITIONS, _define)
-TRIGGER_MOVES: dict[str, Handler] = {
+TRIGGER_DEFINITIONS: dict[str, MovesHandler] = dict.fromkeys(_DEFINITIONS, _define)
+TRIGGER_MOVES: dict[str, MovesHandler] = {
     **dict.fromkeys(_TRIGG_FORMS, _trigger_move),
     **dict.fromkeys(_ACTION_FORMS, _action_move),
 }

@@ -19,8 +19,7 @@ from ....core.source.patch.uses import MovePart
 from ....core.source.text.numerals import shortest
 from ..motion.configuration import AbbConfiguration
 from ..syntax.lexer import number_value
-from ..values.records import MM, UNUSED_AXIS, metres
-from ..write.options import EXTERNAL_AXES
+from ..values.records import EXTERNAL_AXES, MM, UNUSED_AXIS, metres
 
 ZONE_LEAVES = 6
 JOINT_LEAVES = 12

@@ -6,27 +6,34 @@ move the robot.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from ....core.errors import InputError, SourceError
 from ....core.program.move import Wait
-from ..motion.moves import MOVES
-from ..motion.settings import SETTINGS, Handler
+from ..motion.moves import MOVES, MovesRun
+from ..motion.settings_instructions import SETTINGS, SettingsRun
 from ..motion.special_moves import SPECIAL_MOVES
 from ..motion.triggers import TRIGGER_DEFINITIONS, TRIGGER_MOVES
 from ..syntax.lexer import words
-from ..syntax.tree import Invoke, Name
+from ..syntax.tree import Expression, Invoke, Name
 from ..values.arguments import bind
-from ..values.operators import OperandError
-from ..values.outputs import SIGNALS
+from ..values.evaluator import Evaluator
+from ..values.operators import OperandError, apply
 from ..values.scope import Scope
 from ..values.text_functions import with_bit
-from ..values.types import NUM, STRING, Unknown, find_unknown, mismatch
+from ..values.types import NUM, STRING, Unknown, Value, find_unknown, mismatch
+from .handlers import Keeping, Running
+from .signals import SIGNALS
 from .waits import WAIT_UNTIL, wait_until
 
-if TYPE_CHECKING:
-    from .interpreter import Interpreter
+
+class Run(MovesRun, SettingsRun, Keeping, Running, Protocol):
+    """What all of them need of a run."""
+
+
+Handler = Callable[[Run, Invoke, Scope], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +154,7 @@ REFUSED: dict[str, str] = {
 """name → why it is refused."""
 
 
-def _wait_time(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+def _wait_time(run: Running, invoke: Invoke, scope: Scope) -> None:
     bound = bind(invoke, ("Time",), ("inpos",))
     value = run.evaluator.evaluate(bound.value(0), scope)
     unknown = find_unknown(value)
@@ -160,23 +167,43 @@ def _wait_time(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
     if wrong is not None or not isinstance(value, float):
         raise SourceError(f"WaitTime: {wrong}", invoke.span)
     try:
-        run.emit(Wait(value, invoke.span))
+        run.out.emit(Wait(value, invoke.span))
     except InputError as error:
         raise SourceError(f"WaitTime: {error}", invoke.span) from None
 
 
-def _step(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+def _change(
+    evaluator: Evaluator,
+    target: Expression,
+    add: Expression | None,
+    amount: float | None,
+    scope: Scope,
+) -> None:
+    """Add to a num, or clear it if ``amount`` is None."""
+    if not isinstance(target, Name):
+        raise SourceError("a variable is wanted here", target.span)
+    value: Value = 0.0
+    if amount is not None:
+        step = amount if add is None else evaluator.evaluate(add, scope)
+        try:
+            value = apply("+", evaluator.evaluate(target, scope), step)
+        except OperandError as error:
+            raise SourceError(str(error), target.span) from None
+    evaluator.assign(target, value, scope)
+
+
+def _step(run: Running, invoke: Invoke, scope: Scope) -> None:
     """``Incr n``, ``Decr n``, ``Clear n`` and ``Add n, m``."""
     if invoke.name == "add":
         bound = bind(invoke, ("Name", "AddValue"), ())
-        run.change(bound.value(0), bound.value(1), 1.0, scope)
+        _change(run.evaluator, bound.value(0), bound.value(1), 1.0, scope)
         return
     bound = bind(invoke, ("Name",), ())
     amount = {"incr": 1.0, "decr": -1.0, "clear": None}[invoke.name]
-    run.change(bound.value(0), None, amount, scope)
+    _change(run.evaluator, bound.value(0), None, amount, scope)
 
 
-def _set_bit(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+def _set_bit(run: Running, invoke: Invoke, scope: Scope) -> None:
     """``BitSet byte, position`` and ``BitClear``."""
     bound = bind(invoke, ("BitData", "BitPos"), ())
     target = bound.value(0)
@@ -187,7 +214,7 @@ def _set_bit(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
     if unknown is not None:
         run.evaluator.assign(target, unknown, scope)
         return
-    byte, position = (bound.number(run, index, scope) for index in (0, 1))
+    byte, position = (bound.number(run.evaluator, index, scope) for index in (0, 1))
     try:
         changed = with_bit(byte, position, invoke.name == "bitset")
     except OperandError as error:
@@ -195,7 +222,7 @@ def _set_bit(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
     run.evaluator.assign(target, changed, scope)
 
 
-def _data_by_name(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+def _data_by_name(run: Running, invoke: Invoke, scope: Scope) -> None:
     """``SetDataVal "name", value`` and ``GetDataVal "name", datum``."""
     bound = bind(invoke, ("Object", "Value"), ("block", "taskref", "taskname"))
     named = run.evaluator.evaluate(bound.value(0), scope)
@@ -214,14 +241,14 @@ def _data_by_name(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
         run.evaluator.assign(given, run.evaluator.evaluate(datum, scope), scope)
 
 
-def _call_by_var(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+def _call_by_var(run: Running, invoke: Invoke, scope: Scope) -> None:
     """``CallByVar "part", n``: the procedure ``part1``, …"""
     bound = bind(invoke, ("Name", "Number"), ())
     name = run.evaluator.known(bound.value(0), scope, STRING, "CallByVar")
-    run.call_named(f"{name}{bound.number(run, 1, scope):g}", (), scope, invoke.span)
+    run.call_named(f"{name}{bound.number(run.evaluator, 1, scope):g}", (), scope, invoke.span)
 
 
-def _exit_cycle(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+def _exit_cycle(run: Running, invoke: Invoke, scope: Scope) -> None:
     bind(invoke, (), ())
     run.finish("ExitCycle ends the cycle: one cycle is read", invoke.span)
 

@@ -11,23 +11,23 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import NoReturn
+from weakref import proxy
 
 from ....core.errors import Note, SourceError, Span
-from ....core.program.move import Move, Opaque, Wait
+from ....core.program.move import Move
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.answers import Course
 from ....core.source.execution.limits import Meter
 from ....core.source.reading import ReadOptions
-from ..motion.kinematics import StateFunctions
-from ..motion.position import Whereabouts
-from ..motion.settings import Settings
+from ..motion.kinematics import RobotFunctions
+from ..motion.position import Position
+from ..motion.settings import SettingsInForce
 from ..motion.targets import Converter
 from ..syntax.tree import (
     Argument,
     Assign,
     Block,
     Call,
-    Expression,
     For,
     Goto,
     If,
@@ -44,14 +44,13 @@ from ..syntax.tree import (
 )
 from ..values.data import Globals
 from ..values.evaluator import Evaluator
-from ..values.operators import OperandError, apply
 from ..values.scope import Cell, Scope, unknown_name
+from ..values.transcript import Output, Sources
 from ..values.types import STRING, Unknown, Value, interpreted, mismatch
 from .analysis import Flow
 from .calls import pass_arguments, present
 from .flow import Frame, end_loop, jump_back, run_for, run_if, run_test, run_while
 from .instructions import INTERPRETED, KEPT, MOVING, REFUSED, known_names
-from .output import Output, Sources
 
 
 class _Returned(Exception):
@@ -86,22 +85,20 @@ class Interpreter:
         external_axes: Sequence[str] | None,
     ) -> None:
         self.data = data
-        self.settings = Settings()
+        self.settings = SettingsInForce()
         self.out = Output(texts)
         self.course = Course(options.answers)
         self.meter = Meter(options.limits, options.executed)
         self.flow = Flow(data)
-        self.robot = options.robot
-        self.convert = Converter(self, external_axes)
-        self.whereabouts = Whereabouts(options.robot, external_axes, options.start)
-        self.state = StateFunctions(self)
+        self.convert = Converter(self.settings, self.out, external_axes)
+        self.position = Position(options.robot, external_axes, options.start)
+        known = options.robot is not None
+        self.functions = RobotFunctions(self.position, self.convert, self.settings, known)
+        # Expressions call routines, which evaluate expressions: no reference holds the two
+        # together, so that a run is gone, with the syntax tree, as soon as it is over.
+        host = proxy(self)
         self.evaluator = Evaluator(
-            data,
-            self.course,
-            self.out.text_of,
-            self._call_function,
-            self.state.table(),
-            self._note_undeclared,
+            data, self.course, self.out.text_of, host, self.functions.table()
         )
         self._frames: list[Frame] = []
         self._loops: dict[int, Block] = {}  # bodies of loops that a GOTO closes, by its id
@@ -112,11 +109,6 @@ class Interpreter:
         """Execute a procedure without parameters to its end."""
         with suppress(_Finished):
             self._call(entry, (), self.data.scope_of(entry), entry.span)
-
-    def let_go(self) -> None:
-        """Forget everything: the parts of a run know each other, and would wait for a search for
-        garbage together with the syntax tree."""
-        vars(self).clear()
 
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""
@@ -133,14 +125,6 @@ class Interpreter:
         """The routine that is being run."""
         return self._frames[-1]
 
-    def number(self, expression: Expression, scope: Scope, use: str) -> float:
-        """A known num; see `Evaluator.known`."""
-        return self.evaluator.number(expression, scope, use)
-
-    def emit(self, statement: Wait | Opaque) -> None:
-        """Put a statement that is no move at the end of the program."""
-        self.out.emit(statement)
-
     def emit_move(self, move: Move, sources: Sources) -> None:
         """Put a move at the end of the program.
 
@@ -149,21 +133,6 @@ class Interpreter:
         """
         self.meter.move(sources.statement)
         self.out.emit_move(move, sources)
-
-    def change(
-        self, target: Expression, add: Expression | None, amount: float | None, scope: Scope
-    ) -> None:
-        """Add to a num, or clear it if ``amount`` is None."""
-        if not isinstance(target, Name):
-            raise SourceError("a variable is wanted here", target.span)
-        value: Value = 0.0
-        if amount is not None:
-            step = amount if add is None else self.evaluator.evaluate(add, scope)
-            try:
-                value = apply("+", self.evaluator.evaluate(target, scope), step)
-            except OperandError as error:
-                raise SourceError(str(error), target.span) from None
-        self.evaluator.assign(target, value, scope)
 
     def finish(self, message: str, span: Span) -> NoReturn:
         """End the program here, with a note."""
@@ -311,7 +280,7 @@ class Interpreter:
                 unknown = Unknown(f"what {statement.text} gave {name}", statement.span, name)
                 self.evaluator.fill(argument.value, unknown, scope)
 
-    def _note_undeclared(self, name: Name) -> None:
+    def note_undeclared(self, name: Name) -> None:
         message = f"'{name.text}' is written and not declared in what is at hand: it is taken to "
         self.out.count(message + "be declared in a module that is not", name.span)
 
@@ -360,7 +329,7 @@ class Interpreter:
             raise SourceError(unknown_name("routine", name, known), span)
         self._call(routine, arguments, scope, span)
 
-    def _call_function(self, routine: Routine, call: Call, scope: Scope) -> Value:
+    def call_function(self, routine: Routine, call: Call, scope: Scope) -> Value:
         reader, self.evaluator.reader = self.evaluator.reader, -1
         value = self._call(routine, call.arguments, scope, call.span)
         self.evaluator.reader = reader

@@ -136,6 +136,4 @@ def _program(
     texts = {name: file.text for name, file in files.items()}
     run = Interpreter(data, texts, options, external_axes or axis_kinds(options.robot))
     run.run(entry)
-    program = Program(run.statements(), data.module_of(entry).text, notes=(*notes, *run.notes()))
-    run.let_go()
-    return program
+    return Program(run.statements(), data.module_of(entry).text, notes=(*notes, *run.notes()))

@@ -7,31 +7,27 @@ states, else values that are not known.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from ..syntax.traversal import calls_in, names_in
 from ..syntax.tree import Call, Expression, Invoke, Name, Operation, Unary
 from ..values.arguments import bind
 from ..values.outputs import READING
 from ..values.scope import Scope
 from ..values.types import Unknown, Value
-
-if TYPE_CHECKING:
-    from .interpreter import Interpreter
+from .handlers import Keeping
 
 WAIT_UNTIL = "waituntil"
 _OPTIONS = ("inpos", "maxtime", "timeflag", "pollrate", "visualize", "header", "message")
 _LOOKS = ("msgarray", "wrap", "icon", "image", "visualizetime", "uiactivesignal", "errornumber")
 
 
-def wait_until(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
+def wait_until(run: Keeping, invoke: Invoke, scope: Scope) -> None:
     """``WaitUntil [\\InPos] Cond [\\MaxTime] [\\TimeFlag] …`` ("RAPID Reference Manual")."""
     condition = bind(invoke, ("Cond",), (*_OPTIONS, *_LOOKS)).value(0)
     run.keep(invoke, scope)
     _suppose(run, condition, True, scope)
 
 
-def _suppose(run: Interpreter, condition: Expression, holds: bool, scope: Scope) -> None:
+def _suppose(run: Keeping, condition: Expression, holds: bool, scope: Scope) -> None:
     """Give data the values with which a condition that does not hold does (or does not)."""
     if any(call.name not in READING for call in calls_in(condition)):
         return
@@ -57,7 +53,7 @@ def _all_must(condition: Operation, holds: bool) -> bool:
     return all(operator == word for operator, _ in condition.rest)
 
 
-def _stated(run: Interpreter, condition: Expression, holds: bool, scope: Scope) -> bool:
+def _stated(run: Keeping, condition: Expression, holds: bool, scope: Scope) -> bool:
     """``flag`` and ``n = 1`` say which value the datum has."""
     if isinstance(condition, Name):
         return _give(run, condition, holds, scope)
@@ -72,7 +68,7 @@ def _stated(run: Interpreter, condition: Expression, holds: bool, scope: Scope) 
     )
 
 
-def _give(run: Interpreter, datum: Expression, value: Value, scope: Scope) -> bool:
+def _give(run: Keeping, datum: Expression, value: Value, scope: Scope) -> bool:
     """Whether a datum, or an output, could be given a value."""
     if isinstance(datum, Call) and datum.name in READING:
         datum = next((a.value for a in datum.arguments if a.value is not None), datum)
@@ -89,7 +85,7 @@ def _give(run: Interpreter, datum: Expression, value: Value, scope: Scope) -> bo
     return True
 
 
-def _forget(run: Interpreter, condition: Expression, scope: Scope) -> None:
+def _forget(run: Keeping, condition: Expression, scope: Scope) -> None:
     """What a condition is about has been changed by others, to what is not known."""
     for name in sorted(names_in(condition)):
         datum = Name(condition.span, name, name)

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from ....core.errors import SourceError, Span
 from ....core.source.text.arguments import wrong_count
 from ..syntax.tree import Expression, Invoke
 from .scope import Scope, unknown_name
 
-if TYPE_CHECKING:
-    from ..run.interpreter import Interpreter
+
+class Numbers(Protocol):
+    """Gives the number that an expression is."""
+
+    def number(self, expression: Expression, scope: Scope, use: str) -> float:
+        """See `Evaluator.number`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +57,10 @@ class Bound:
             raise SourceError(f"{self.text}: \\{name} needs a value", self.span)
         return value
 
-    def number(self, run: Interpreter, index: int, scope: Scope) -> float:
+    def number(self, evaluator: Numbers, index: int, scope: Scope) -> float:
         """A required argument that is a known num."""
-        return run.number(self.required[index], scope, f"{self.text}, argument {self.names[index]}")
+        use = f"{self.text}, argument {self.names[index]}"
+        return evaluator.number(self.required[index], scope, use)
 
 
 def check_count(text: str, wanted: int, given: int, span: Span, names: Sequence[str] = ()) -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import Protocol
 
 from ....core.errors import SourceError, Span
 from ....core.source.execution.answers import Course
@@ -38,30 +39,22 @@ from .elements import (
     item,
     replaced,
 )
-from .function_calls import FunctionCalls, Special
+from .function_calls import SPECIAL, Special, function_value
+from .located import Located
 from .operators import OperandError, apply, negate
 from .provenance import Literal, source_of_literal
 from .scope import Cell, Scope
 from .types import BOOL, NUM, Foreign, Type, Unknown, Value, interpreted
 
-CallFunction = Callable[[Routine, Call, Scope], Value]
 
+class Host(Protocol):
+    """Runs what expressions call."""
 
-@dataclass(frozen=True, slots=True)
-class Located:
-    """A value together with the place of the text that it was read from.
+    def call_function(self, routine: Routine, call: Call, scope: Scope) -> Value:
+        """The value of one of the program's own functions."""
 
-    Args:
-        cell: the datum, None if the expression is no plain datum.
-        predefined: name of the controller's own datum that the value is.
-        type: of the value, None if it is not known.
-    """
-
-    value: Value
-    source: Literal | None
-    cell: Cell | None
-    predefined: str | None = None
-    type: Type | None = None
+    def note_undeclared(self, name: Name) -> None:
+        """A name is assigned and declared nowhere at hand."""
 
 
 class Evaluator:
@@ -71,9 +64,8 @@ class Evaluator:
         data: the program's types, routines and data.
         course: the user's answers.
         text_of: the text that stands at a place.
-        call: runs one of the program's own functions.
-        state: functions that ask the emulated robot.
-        undeclared: is told of a name that is assigned and declared nowhere at hand.
+        host: runs what expressions call.
+        special: functions that ask the emulated robot, by lower-case name.
     """
 
     def __init__(
@@ -81,9 +73,8 @@ class Evaluator:
         data: Globals,
         course: Course,
         text_of: Callable[[Span], str],
-        call: CallFunction,
-        state: Mapping[str, Special],
-        undeclared: Callable[[Name], None],
+        host: Host,
+        special: Mapping[str, Special],
     ) -> None:
         self.data = data
         self.reads = Reads()
@@ -93,10 +84,10 @@ class Evaluator:
         """How many answers of sequences were given."""
         self._course = course
         self._text_of = text_of
-        self._undeclared = undeclared
+        self._host = host
         self._elsewhere: dict[str, Value] = {}
         self._checked: dict[int, tuple[Value, Type]] = {}
-        self._functions = FunctionCalls(self, call, state)
+        self._special = {**SPECIAL, **special}
 
     # ------------------------------------------------------------------ values
 
@@ -121,7 +112,7 @@ class Evaluator:
             except OperandError as error:
                 raise SourceError(str(error), expression.span) from None
         if isinstance(expression, Call):
-            return self._functions.value(expression, scope)
+            return function_value(self, self._host.call_function, self._special, expression, scope)
         return _star(expression)
 
     def locate(self, expression: Expression, scope: Scope, asking: bool = True) -> Located:
@@ -338,7 +329,7 @@ class Evaluator:
 
         It keeps the value that it is given; of a part of it the type is not known.
         """
-        self._undeclared(target)
+        self._host.note_undeclared(target)
         if target.path:
             self._elsewhere.pop(target.name, None)
         else:

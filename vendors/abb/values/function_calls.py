@@ -3,212 +3,246 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
+from typing import Protocol
 
-from ....core.errors import SourceError
+from ....core.errors import SourceError, Span
+from ....core.source.execution.outputs import Outputs
 from ....core.source.text.files import SourceText
 from ..syntax.cursor import Cursor
 from ..syntax.expressions import parse_expression
 from ..syntax.lexer import END, tokenize
-from ..syntax.tree import Argument, Call, Name, Routine
+from ..syntax.tree import Argument, Call, Expression, Name, Routine
 from .arguments import check_count
+from .data import Globals
 from .elements import array_mismatch
 from .functions import COMPUTED, STATE, euler_zyx
+from .located import Located
 from .operators import OperandError, is_vector
 from .outputs import READING
 from .provenance import constant, source_of_literal
 from .scope import Cell, Scope, unknown_name
-from .types import NUM, Unknown, Value, find_unknown, mismatch
-
-if TYPE_CHECKING:
-    from .evaluator import Evaluator
-
-Special = Callable[[Call, Scope], Value]
+from .types import NUM, Type, Unknown, Value, find_unknown, mismatch
 
 
-class FunctionCalls:
-    """Values of functions.
+class Evaluates(Protocol):
+    """What functions need of the evaluator; see `Evaluator`."""
+
+    data: Globals
+    outputs: Outputs
+
+    def evaluate(self, expression: Expression, scope: Scope) -> Value:
+        """The value of an expression."""
+
+    def locate(self, expression: Expression, scope: Scope, asking: bool = True) -> Located:
+        """The same, with the place that it was read from."""
+
+    def check(self, value: Value, type_: Type, use: str, span: Span) -> None:
+        """Refuse a value that is not known, or of another type."""
+
+    def as_index(self, value: Value, span: Span) -> int:
+        """A known value as an index."""
+
+    def cell(self, name: Name, scope: Scope) -> Cell | None:
+        """The datum of a name."""
+
+    def settle(self, cell: Cell) -> Value:
+        """The value of a datum."""
+
+    def assign(self, target: Name, value: Value, scope: Scope) -> None:
+        """``target := value``"""
+
+    def fill(self, target: Name, unknown: Unknown, scope: Scope) -> None:
+        """A datum gets the user's answer, or what is not known."""
+
+    def ask(self, span: Span, type_: Type | None, sizes: tuple[int, ...] = ()) -> Value | None:
+        """The user's answer to the expression at a place."""
+
+    def key(self, span: Span) -> str:
+        """Under which the user may answer the expression at a place."""
+
+    def output(self, signal: Expression | None, asked: Span, scope: Scope) -> Value | None:
+        """What the program has set an output to."""
+
+
+CallFunction = Callable[[Routine, Call, Scope], Value]
+Special = Callable[[Evaluates, Call, Scope], Value]
+
+
+def function_value(
+    evaluator: Evaluates,
+    run: CallFunction,
+    special: Mapping[str, Special],
+    call: Call,
+    scope: Scope,
+) -> Value:
+    """The value of a call; the user's answer where it is not known.
 
     Args:
-        evaluator: of their arguments.
         run: runs one of the program's own functions.
-        state: functions that ask the emulated robot, by lower-case name.
+        special: functions whose arguments are no plain values, by lower-case name.
+
+    Raises:
+        SourceError: it has none.
     """
+    value = _value(evaluator, run, special, call, scope)
+    if not isinstance(value, Unknown):
+        return value
+    answer = evaluator.ask(call.span, STATE.get(call.name))
+    return value if answer is None else answer
 
-    def __init__(
-        self,
-        evaluator: Evaluator,
-        run: Callable[[Routine, Call, Scope], Value],
-        state: Mapping[str, Special],
-    ) -> None:
-        self._evaluator = evaluator
-        self._run = run
-        self._special: dict[str, Special] = {
-            "present": self._present,
-            "dim": self._dim,
-            "eulerzyx": self._euler,
-            "strtoval": self._read_value,
-            "testandset": self._test_and_set,
-            "ispers": lambda call, scope: self._datum(call, scope).persistent,
-            "isvar": lambda call, scope: not self._datum(call, scope).persistent,
-            "type": lambda call, scope: self._datum(call, scope).type.name,
-            **state,
-        }
 
-    def value(self, call: Call, scope: Scope) -> Value:
-        """The value of a call; the user's answer where it is not known.
+def _value(
+    evaluator: Evaluates,
+    run: CallFunction,
+    special: Mapping[str, Special],
+    call: Call,
+    scope: Scope,
+) -> Value:
+    data = evaluator.data
+    own = data.routine(call.name, scope.home)
+    if own is None:
+        special_ = special.get(call.name)
+        if special_ is not None:
+            return special_(evaluator, call, scope)
+        if call.name in COMPUTED:
+            return _computed(evaluator, call, scope)
+        if call.name in READING and call.arguments:
+            held = evaluator.output(call.arguments[0].value, call.span, scope)
+            if held is not None:
+                return held
+        if call.name in STATE:
+            return Unknown(f"the value of {call.text}()", call.span, evaluator.key(call.span))
+        own = data.fetched_routine(call.name, scope.home, call.span)
+    if own is None:
+        return _missing(evaluator, call)
+    if own.kind != "func":
+        raise SourceError(f"{own.text} is no function but a {own.kind.upper()}", call.span)
+    return run(own, call, scope)
 
-        Raises:
-            SourceError: it has none.
-        """
-        value = self._value(call, scope)
-        if not isinstance(value, Unknown):
-            return value
-        answer = self._evaluator.ask(call.span, STATE.get(call.name))
-        return value if answer is None else answer
 
-    def _value(self, call: Call, scope: Scope) -> Value:
-        data = self._evaluator.data
-        own = data.routine(call.name, scope.home)
-        if own is None:
-            special = self._special.get(call.name)
-            if special is not None:
-                return special(call, scope)
-            if call.name in COMPUTED:
-                return self._computed(call, scope)
-            if call.name in READING and call.arguments:
-                held = self._evaluator.output(call.arguments[0].value, call.span, scope)
-                if held is not None:
-                    return held
-            if call.name in STATE:
-                return Unknown(
-                    f"the value of {call.text}()", call.span, self._evaluator.key(call.span)
-                )
-            own = data.fetched_routine(call.name, scope.home, call.span)
-        if own is None:
-            return self._missing(call)
-        if own.kind != "func":
-            raise SourceError(f"{own.text} is no function but a {own.kind.upper()}", call.span)
-        return self._run(own, call, scope)
+def _missing(evaluator: Evaluates, call: Call) -> Unknown:
+    """The value of a function of which nobody has the text; it is taken to move nothing."""
+    evaluator.outputs.forget()
+    known = [*evaluator.data.routine_names("func"), *COMPUTED]
+    hint = evaluator.data.hint(call.name)
+    reason = unknown_name("function", call.text, known, hint or "its text is not at hand")
+    return Unknown(f"an {reason}", call.span, evaluator.key(call.span))
 
-    def _missing(self, call: Call) -> Unknown:
-        """The value of a function of which nobody has the text; it is taken to move nothing."""
-        self._evaluator.outputs.forget()
-        known = [*self._evaluator.data.routine_names("func"), *COMPUTED]
-        hint = self._evaluator.data.hint(call.name)
-        reason = unknown_name("function", call.text, known, hint or "its text is not at hand")
-        return Unknown(f"an {reason}", call.span, self._evaluator.key(call.span))
 
-    def _computed(self, call: Call, scope: Scope) -> Value:
-        function, types, options = COMPUTED[call.name]
-        required = [a.value for a in call.arguments if a.option is None and a.value is not None]
-        check_count(call.text, len(types), len(required), call.span)
-        given = {a.option: a.value for a in call.arguments if a.option is not None}
-        for option in given:
-            if option not in options:
-                raise SourceError(f"{call.text}: \\{option} is not supported", call.span)
-        values = [self._evaluator.evaluate(e, scope) for e in required]
-        for option in options:
-            if option in given and given[option] is None:
-                values.append(1.0)
-                continue
-            expression = given.get(option)
-            values.append(
-                0.0 if expression is None else self._evaluator.evaluate(expression, scope)
-            )
-        unknown = find_unknown(tuple(values))
-        if unknown is not None:
-            return unknown
-        for value, type_ in zip(values, (*types, *[NUM] * len(options)), strict=True):
-            wrong = mismatch(value, type_) if type_ is not None else None
-            if wrong is not None:
-                raise SourceError(f"{call.text}: {wrong}", call.span)
-        try:
-            return _checked(function(*values))
-        except OperandError as error:
-            raise SourceError(f"{call.text}: {error}", call.span) from None
-        except (ValueError, ArithmeticError):
-            raise SourceError(
-                f"{call.text} has no finite value for these arguments", call.span
-            ) from None
+def _computed(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
+    function, types, options = COMPUTED[call.name]
+    required = [a.value for a in call.arguments if a.option is None and a.value is not None]
+    check_count(call.text, len(types), len(required), call.span)
+    given = {a.option: a.value for a in call.arguments if a.option is not None}
+    for option in given:
+        if option not in options:
+            raise SourceError(f"{call.text}: \\{option} is not supported", call.span)
+    values = [evaluator.evaluate(e, scope) for e in required]
+    for option in options:
+        if option in given and given[option] is None:
+            values.append(1.0)
+            continue
+        expression = given.get(option)
+        values.append(0.0 if expression is None else evaluator.evaluate(expression, scope))
+    unknown = find_unknown(tuple(values))
+    if unknown is not None:
+        return unknown
+    for value, type_ in zip(values, (*types, *[NUM] * len(options)), strict=True):
+        wrong = mismatch(value, type_) if type_ is not None else None
+        if wrong is not None:
+            raise SourceError(f"{call.text}: {wrong}", call.span)
+    try:
+        return _checked(function(*values))
+    except OperandError as error:
+        raise SourceError(f"{call.text}: {error}", call.span) from None
+    except (ValueError, ArithmeticError):
+        raise SourceError(
+            f"{call.text} has no finite value for these arguments", call.span
+        ) from None
 
-    def _dim(self, call: Call, scope: Scope) -> Value:
-        """``Dim(array, n)``: size of the n-th dimension."""
-        array = _only_name(call, 2)
-        cell = self._evaluator.cell(array, scope)
-        if cell is None:
-            raise SourceError(unknown_name("array", array.text, scope.names()), array.span)
-        self._evaluator.settle(cell)
-        which = call.arguments[1].value
-        value = self._evaluator.evaluate(which, scope) if which is not None else 0.0
-        if isinstance(value, Unknown):
-            return value
-        index = self._evaluator.as_index(value, call.span)
-        if not 1 <= index <= len(cell.dimensions):
-            raise SourceError(
-                f"{cell.name} has {len(cell.dimensions)} dimensions, not {index}", call.span
-            )
-        return float(cell.dimensions[index - 1])
 
-    def _euler(self, call: Call, scope: Scope) -> Value:
-        """``EulerZYX(\\X, orient)``"""
-        switches = [a.option for a in call.arguments if a.option is not None]
-        required = [a.value for a in call.arguments if a.option is None and a.value is not None]
-        if len(switches) != 1 or switches[0] not in ("x", "y", "z") or len(required) != 1:
-            raise SourceError("EulerZYX takes \\X, \\Y or \\Z and an orient", call.span)
-        value = self._evaluator.evaluate(required[0], scope)
-        unknown = find_unknown(value)
-        if unknown is not None:
-            return unknown
-        if not is_vector(value, 4):
-            raise SourceError("EulerZYX takes an orient", call.span)
-        assert isinstance(value, tuple)
-        try:
-            return euler_zyx(switches[0], value)
-        except OperandError as error:
-            raise SourceError(f"EulerZYX: {error}", call.span) from None
+def _dim(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
+    """``Dim(array, n)``: size of the n-th dimension."""
+    array = _only_name(call, 2)
+    cell = evaluator.cell(array, scope)
+    if cell is None:
+        raise SourceError(unknown_name("array", array.text, scope.names()), array.span)
+    evaluator.settle(cell)
+    which = call.arguments[1].value
+    value = evaluator.evaluate(which, scope) if which is not None else 0.0
+    if isinstance(value, Unknown):
+        return value
+    index = evaluator.as_index(value, call.span)
+    if not 1 <= index <= len(cell.dimensions):
+        raise SourceError(
+            f"{cell.name} has {len(cell.dimensions)} dimensions, not {index}", call.span
+        )
+    return float(cell.dimensions[index - 1])
 
-    def _datum(self, call: Call, scope: Scope) -> Cell:
-        """The datum that is a function's only argument."""
-        name = _only_name(call, 1)
-        cell = self._evaluator.cell(name, scope)
-        if cell is None:
-            raise SourceError(unknown_name("datum", name.text, scope.names()), name.span)
-        return cell
 
-    def _read_value(self, call: Call, scope: Scope) -> Value:
-        """``StrToVal(text, datum)``: whether the text is a value of the datum, which it becomes."""
-        given = [a.value for a in call.arguments]
-        if len(given) != 2 or given[0] is None or not isinstance(given[1], Name):
-            raise SourceError("StrToVal takes a string and a datum", call.span)
-        text = self._evaluator.evaluate(given[0], scope)
-        if isinstance(text, Unknown):
-            self._evaluator.fill(given[1], text, scope)
-            return text
-        found = self._evaluator.locate(given[1], scope, asking=False)
-        value = literal_value(text) if isinstance(text, str) else None
-        sizes = found.cell.dimensions if found.cell is not None and not given[1].path else ()
-        if value is None or found.type is None or array_mismatch(value, found.type, sizes):
-            return False
-        self._evaluator.assign(given[1], value, scope)
-        return True
+def _euler(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
+    """``EulerZYX(\\X, orient)``"""
+    switches = [a.option for a in call.arguments if a.option is not None]
+    required = [a.value for a in call.arguments if a.option is None and a.value is not None]
+    if len(switches) != 1 or switches[0] not in ("x", "y", "z") or len(required) != 1:
+        raise SourceError("EulerZYX takes \\X, \\Y or \\Z and an orient", call.span)
+    value = evaluator.evaluate(required[0], scope)
+    unknown = find_unknown(value)
+    if unknown is not None:
+        return unknown
+    if not is_vector(value, 4):
+        raise SourceError("EulerZYX takes an orient", call.span)
+    assert isinstance(value, tuple)
+    try:
+        return euler_zyx(switches[0], value)
+    except OperandError as error:
+        raise SourceError(f"EulerZYX: {error}", call.span) from None
 
-    def _test_and_set(self, call: Call, scope: Scope) -> Value:
-        """``TestAndSet(flag)``: takes a flag that is free; nobody else takes it here."""
-        name = _only_name(call, 1)
-        before = self._evaluator.evaluate(name, scope)
-        if isinstance(before, Unknown):
-            return before
-        self._evaluator.assign(name, True, scope)
-        return before is False
 
-    def _present(self, call: Call, scope: Scope) -> Value:
-        """``Present(parameter)``"""
-        name = _only_name(call, 1)
-        cell = scope.find(name.name)
-        if cell is None:
-            raise SourceError(unknown_name("parameter", name.text, scope.names()), name.span)
-        return cell.present
+def _datum(evaluator: Evaluates, call: Call, scope: Scope) -> Cell:
+    """The datum that is a function's only argument."""
+    name = _only_name(call, 1)
+    cell = evaluator.cell(name, scope)
+    if cell is None:
+        raise SourceError(unknown_name("datum", name.text, scope.names()), name.span)
+    return cell
+
+
+def _read_value(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
+    """``StrToVal(text, datum)``: whether the text is a value of the datum, which it becomes."""
+    given = [a.value for a in call.arguments]
+    if len(given) != 2 or given[0] is None or not isinstance(given[1], Name):
+        raise SourceError("StrToVal takes a string and a datum", call.span)
+    text = evaluator.evaluate(given[0], scope)
+    if isinstance(text, Unknown):
+        evaluator.fill(given[1], text, scope)
+        return text
+    found = evaluator.locate(given[1], scope, asking=False)
+    value = literal_value(text) if isinstance(text, str) else None
+    sizes = found.cell.dimensions if found.cell is not None and not given[1].path else ()
+    if value is None or found.type is None or array_mismatch(value, found.type, sizes):
+        return False
+    evaluator.assign(given[1], value, scope)
+    return True
+
+
+def _test_and_set(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
+    """``TestAndSet(flag)``: takes a flag that is free; nobody else takes it here."""
+    name = _only_name(call, 1)
+    before = evaluator.evaluate(name, scope)
+    if isinstance(before, Unknown):
+        return before
+    evaluator.assign(name, True, scope)
+    return before is False
+
+
+def _present(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
+    """``Present(parameter)``"""
+    name = _only_name(call, 1)
+    cell = scope.find(name.name)
+    if cell is None:
+        raise SourceError(unknown_name("parameter", name.text, scope.names()), name.span)
+    return cell.present
 
 
 def _only_name(call: Call, count: int) -> Name:
@@ -235,3 +269,16 @@ def _checked(value: Value) -> Value:
     if isinstance(value, float) and value - value != 0.0:
         raise OverflowError
     return float(value) if type(value) is int else value
+
+
+SPECIAL: dict[str, Special] = {
+    "present": _present,
+    "dim": _dim,
+    "eulerzyx": _euler,
+    "strtoval": _read_value,
+    "testandset": _test_and_set,
+    "ispers": lambda evaluator, call, scope: _datum(evaluator, call, scope).persistent,
+    "isvar": lambda evaluator, call, scope: not _datum(evaluator, call, scope).persistent,
+    "type": lambda evaluator, call, scope: _datum(evaluator, call, scope).type.name,
+}
+"""Functions whose arguments are data or switches, by lower-case name."""

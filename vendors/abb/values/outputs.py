@@ -1,96 +1,35 @@
-r"""Output signals: what the program has set them to is known to it afterwards.
+"""Outputs: what the program has set them to is known to it afterwards.
 
-"RAPID Reference Manual", instructions Set, Reset, SetDO, SetAO, SetGO, PulseDO, InvertDO, AliasIO,
-WaitDO, functions DOutput, AOutput, GOutput. Signals are taken as apart from each other: which of
-them are cross-connected, or bits of a group, is in the controller's configuration.
+Signals are taken as apart from each other: which of them are cross-connected, or bits of a group,
+is in the controller's configuration.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 
+from ....core.source.execution.outputs import Outputs
 from ..syntax.lexer import words
-from ..syntax.tree import Expression, Invoke, Name, Text
-from .arguments import bind
+from ..syntax.tree import Expression
 from .scope import Scope
-from .types import Unknown, Value
-
-if TYPE_CHECKING:
-    from ..motion.settings import Handler
-    from ..run.interpreter import Interpreter
-    from .evaluator import Evaluator
+from .types import Value
 
 READING = words("doutput aoutput goutput goutputdnum")
 """Functions that give what an output holds."""
 WRITING = words("set reset setdo setao setgo pulsedo invertdo wzdoset")
 """Instructions that write an output, their first required argument but for ``WZDOSet``."""
 
-_VALUES = {"set": 1.0, "reset": 0.0}
+
+class Signals(Protocol):
+    """Knows which signal an expression means."""
+
+    outputs: Outputs
+
+    def signal(self, expression: Expression | None, scope: Scope) -> str | None:
+        """See `Evaluator.signal`."""
 
 
-def _write(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
-    """``Set do1``, ``SetDO [\\SDelay] [\\Sync] do1, 1``, ``SetGO [\\SDelay] go1, 5``, …"""
-    given = [a.value for a in invoke.arguments if a.option is None and a.value is not None]
-    options = {a.option for a in invoke.arguments}
-    value: Value | None = _VALUES.get(invoke.name)
-    if invoke.name == "invertdo" and given:
-        before = _held(run.evaluator, given[0], scope)
-        value = None if before is None else 1.0 - before
-    elif invoke.name in ("setdo", "setao", "setgo") and len(given) > 1:
-        value = run.evaluator.evaluate(given[1], scope)
-        if invoke.name == "setdo" and isinstance(value, float):
-            value = float(value != 0)  # a number other than zero is taken as 1
-    run.keep(invoke, scope)
-    certain = isinstance(value, float) and "sdelay" not in options
-    if given:
-        write(run.evaluator, given[0], value if certain else None, scope)
-
-
-def _supervised(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
-    """``WZDOSet [\\Temp] | [\\Stat] WorldZone, \\Inside | \\Before, Signal, SetValue``"""
-    run.keep(invoke, scope)
-    given = [a.value for a in invoke.arguments if a.option is None and a.value is not None]
-    names = {run.evaluator.signal(e, scope) for e in given if isinstance(e, Name)}
-    run.evaluator.outputs.share(name for name in names if name is not None)
-
-
-def _waited(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
-    """``WaitDO do1, 1``, ``WaitGO go1, 5``: it is so afterwards, or in the range that is given."""
-    run.keep(invoke, scope)
-    given = [a.value for a in invoke.arguments if a.option is None and a.value is not None]
-    if len(given) != 2:
-        return
-    value = run.evaluator.evaluate(given[1], scope)
-    ranges = {"lt", "gt", "noteq", "maxtime", "timeflag"} & {a.option for a in invoke.arguments}
-    held = _held(run.evaluator, given[0], scope)
-    if held is not None and held != value:
-        certain = isinstance(value, float) and not ranges
-        write(run.evaluator, given[0], value if certain else None, scope)
-
-
-def _alias(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
-    """``AliasIO do1, alias``: one signal under two names."""
-    run.keep(invoke, scope)
-    original, alias = bind(invoke, ("FromSignal", "ToSignal"), ()).required
-    key = None
-    if isinstance(original, Text):
-        key = original.value.lower()
-    elif isinstance(original, Name):
-        key = run.evaluator.signal(original, scope)
-    cell = scope.find(alias.name) if isinstance(alias, Name) else None
-    if isinstance(alias, Name) and cell is not None and not cell.constant and key is not None:
-        run.evaluator.assign(alias, Unknown(f"'{alias.text}'", alias.span, key), scope)
-    else:
-        run.evaluator.outputs.forget()
-
-
-def _unsettle(run: Interpreter, invoke: Invoke, scope: Scope) -> None:
-    """A unit is switched off, or names are given back: any output may hold something else."""
-    run.keep(invoke, scope)
-    run.evaluator.outputs.forget()
-
-
-def write(evaluator: Evaluator, signal: Expression, value: Value | None, scope: Scope) -> None:
+def write(evaluator: Signals, signal: Expression, value: Value | None, scope: Scope) -> None:
     """An output gets a value; None for one that is not certain."""
     name = evaluator.signal(signal, scope)
     if name is None:
@@ -99,15 +38,7 @@ def write(evaluator: Evaluator, signal: Expression, value: Value | None, scope: 
         evaluator.outputs.write(name, value if isinstance(value, float) else None)
 
 
-def _held(evaluator: Evaluator, signal: Expression, scope: Scope) -> float | None:
+def held(evaluator: Signals, signal: Expression, scope: Scope) -> float | None:
+    """What the program has set an output to; None if that is not known."""
     name = evaluator.signal(signal, scope)
     return None if name is None else evaluator.outputs.value(name)
-
-
-SIGNALS: dict[str, Handler] = {
-    **dict.fromkeys(WRITING - {"wzdoset"}, _write),
-    "wzdoset": _supervised,
-    **dict.fromkeys(words("waitdo waitao waitgo"), _waited),
-    "aliasio": _alias,
-    **dict.fromkeys(words("aliasioreset iodisable clearioboff"), _unsettle),
-}

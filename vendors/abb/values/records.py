@@ -32,6 +32,11 @@ MM = 1 / PER_METRE
 UNUSED_AXIS = 9e9
 """Value of an external axis that a target does not position (``9E9``)."""
 
+EXTERNAL_AXES = 6
+"""Of an extjoint."""
+AXIS_KINDS = ("linear", "rotating")
+"""Of external axes: RAPID's own text does not say which one an axis is."""
+
 VMAX: Record = (10000.0, 500.0, 5000.0, 1000.0)
 """``vmax``. Its v_tcp belongs to the robot; this stand-in is the one of rpiRobotics
 abb_motion_program_exec, beyond the TCP speed of any robot in the catalogue."""

@@ -11,7 +11,7 @@ from ....core.program.move import Move, MoveC
 from ....core.program.target import PoseTarget
 from ....core.spatial.pose import Pose
 from ....core.spatial.rotation import angle_between, arc_angle
-from ..dialect import ARCS
+from ..motion.arcs import ARCS
 
 
 def check_arc(before: Move | None, move: MoveC) -> None:

@@ -17,6 +17,7 @@ from ....core.program.zone import Fine, Radius, Zone
 from ..motion.configuration import AbbConfiguration
 from ..values.predefined import NAMES, SPEEDS, ZONES
 from ..values.records import (
+    EXTERNAL_AXES,
     MM,
     UNUSED_AXIS,
     Record,
@@ -29,7 +30,7 @@ from ..values.records import (
 )
 from .declarations import Datum, Declarations, sized
 from .formatting import literal
-from .options import EXTERNAL_AXES, RapidOptions, ZoneStyle
+from .options import RapidOptions, ZoneStyle
 
 Operand = str | Datum
 

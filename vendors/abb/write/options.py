@@ -7,9 +7,7 @@ from enum import StrEnum
 
 from ....core.errors import InputError
 from ....core.source.write.options import OpaqueStyle
-
-EXTERNAL_AXES = 6
-AXIS_KINDS = ("linear", "rotating")
+from ..values.records import AXIS_KINDS, EXTERNAL_AXES
 
 
 class ZoneStyle(StrEnum):

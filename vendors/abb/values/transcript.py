@@ -10,7 +10,7 @@ from ....core.program.move import Statement as ProgramStatement
 from ....core.program.origin import MoveOrigin
 from ....core.source.execution.provenance import Part, Reads
 from ..syntax.tree import Invoke, Keyword
-from ..values.records import Record
+from .records import Record
 
 
 @dataclass(frozen=True, slots=True)

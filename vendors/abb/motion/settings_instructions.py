@@ -1,0 +1,248 @@
+"""Instructions that set what holds for all moves until it is changed.
+
+"RAPID Reference Manual", instructions ConfJ, ConfL, SingArea, AccSet, VelSet, PathAccLim,
+WorldAccLim, CirPathMode, GripLoad, PDispSet. What would change the motion in a way that this
+reader has no words for is refused by name, as soon as it is set to anything but its default.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Protocol
+
+from ....core.errors import SourceError
+from ....core.program.move import ArcOrientation
+from ....core.spatial.pose import Pose
+from ..syntax.tree import Expression, Invoke
+from ..values.arguments import Bound, bind
+from ..values.evaluator import Evaluator
+from ..values.records import UNUSED_AXIS
+from ..values.scope import Scope
+from ..values.transcript import Output
+from ..values.types import BOOL, EXTJOINT, POSE, ROBTARGET, find_unknown
+from .kinematics import RobotFunctions
+from .settings import SettingsInForce
+from .targets import Converter
+
+LEAST_ACCELERATION = 20.0
+"""Percent: ``AccSet`` takes less as this much."""
+LEAST_RAMP = 10.0
+"""Percent, likewise for its ramp."""
+
+
+class SettingsRun(Protocol):
+    """What instructions that set motion need of a run."""
+
+    evaluator: Evaluator
+    out: Output
+    settings: SettingsInForce
+    convert: Converter
+    functions: RobotFunctions
+
+
+SettingsHandler = Callable[[SettingsRun, Invoke, Scope], None]
+
+
+def _one_switch(bound: Bound, default: str) -> str:
+    if len(bound.options) > 1:
+        raise SourceError(f"{bound.text} takes one switch", bound.span)
+    return next(iter(bound.options), default)
+
+
+def _conf_joint(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    switch = _one_switch(bind(invoke, (), ("on", "off")), "on")
+    run.settings.now = replace(run.settings.now, check_joint=switch == "on")
+
+
+def _conf_linear(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    switch = _one_switch(bind(invoke, (), ("on", "off")), "on")
+    run.settings.now = replace(run.settings.now, check_linear=switch == "on")
+
+
+def _sing_area(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    switch = _one_switch(bind(invoke, (), ("wrist", "lockaxis4", "off")), "off")
+    run.settings.now = replace(run.settings.now, singularity=switch)
+
+
+def _acc_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    bound = bind(invoke, ("Acc", "Ramp"), ("finepointramp",))
+    acceleration = _percent(run, bound, 0, scope)
+    ramps = [bound.number(run.evaluator, 1, scope)]
+    if "finepointramp" in bound.options:
+        fine = bound.option("finepointramp")
+        ramps.append(run.evaluator.number(fine, scope, "AccSet \\FinePointRamp"))
+    if not all(0 < ramp <= 100 for ramp in ramps):
+        raise SourceError(f"{bound.text}: a ramp is in (0, 100], not {min(ramps):g}", bound.span)
+    if len(set(ramps)) > 1:
+        run.out.note_once(
+            "finepointramp",
+            "AccSet ramps differently towards fine points: the smaller ramp is taken everywhere",
+            bound.span,
+        )
+    share = max(acceleration, LEAST_ACCELERATION) / 100
+    ramp = max(min(ramps), LEAST_RAMP) / 100
+    run.settings.now = replace(run.settings.now, acceleration=share, ramp=ramp)
+
+
+def _vel_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    bound = bind(invoke, ("Override", "Max"), ())
+    override = _percent(run, bound, 0, scope)
+    greatest = bound.number(run.evaluator, 1, scope)
+    if greatest <= 0:
+        raise SourceError(f"VelSet: the greatest speed is above zero, not {greatest:g}", bound.span)
+    run.settings.now = replace(run.settings.now, override=override / 100, greatest_tcp=greatest)
+
+
+def _percent(run: SettingsRun, bound: Bound, index: int, scope: Scope) -> float:
+    value = bound.number(run.evaluator, index, scope)
+    if not 0 < value <= 100:
+        raise SourceError(f"{bound.text}: a percentage is in (0, 100], not {value:g}", bound.span)
+    return value
+
+
+def _path_acc_lim(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    bound = bind(invoke, ("AccLim", "DecelLim"), ("accmax", "decelmax"))
+    limits = []
+    for index, option in enumerate(("accmax", "decelmax")):
+        on = run.evaluator.known(bound.value(index), scope, BOOL, "PathAccLim")
+        if on:
+            limit = bound.option(option)
+            limits.append(run.evaluator.number(limit, scope, f"PathAccLim \\{option}"))
+    if limits and min(limits) <= 0:
+        raise SourceError("PathAccLim: a limit is above zero", bound.span)
+    if len(limits) == 1 or (limits and limits[0] != limits[1]):
+        run.out.note_once(
+            "pathacclim",
+            "PathAccLim limits acceleration and deceleration differently: the smaller limit is "
+            "taken for both",
+            bound.span,
+        )
+    run.settings.now = replace(run.settings.now, tcp_acceleration=min(limits, default=None))
+
+
+def _cir_path_mode(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    modes = ("pathframe", "objectframe", "cirpointori", "wrist45", "wrist46", "wrist56")
+    switch = _one_switch(bind(invoke, (), modes), "pathframe")
+    known = {
+        "pathframe": ArcOrientation.FOLLOWS_ARC,
+        "objectframe": ArcOrientation.FIXED_FRAME,
+    }
+    run.settings.now = replace(run.settings.now, arc=known.get(switch, switch))
+
+
+def _grip_load(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    bound = bind(invoke, ("Load",), ())
+    expression = bound.value(0)
+    unknown = find_unknown(run.evaluator.evaluate(expression, scope))
+    load = None
+    if unknown is None:
+        load = run.convert.load(run.evaluator, expression, scope)
+    else:
+        message = f"GripLoad: the payload is {unknown.reason}; none is taken"
+        run.out.note_once("payload", message, invoke.span)
+    run.settings.now = replace(run.settings.now, load=load)
+
+
+def _pdisp_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    bound = bind(invoke, ("DispFrame",), ())
+    frame = run.evaluator.known(bound.value(0), scope, POSE, "PDispSet")
+    run.settings.now = replace(run.settings.now, displacement=run.convert.pose(frame, bound.span))
+
+
+def _pdisp_off(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    bind(invoke, (), ())
+    run.settings.now = replace(run.settings.now, displacement=None)
+
+
+def _pdisp_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    r"""``PDispOn [\Rot] [\ExeP,] ProgPoint, Tool [\WObj]``
+
+    The displacement takes the programmed point to the executed one, which is the present position
+    unless it is given; without ``\Rot`` by a shift alone.
+    """
+    bound = bind(invoke, ("ProgPoint", "Tool"), ("rot", "exep", "wobj"))
+    programmed = _point(run, bound.value(0), scope)
+    if "exep" in bound.options:
+        executed = _point(run, bound.option("exep"), scope)
+    else:
+        record = run.functions.present_robtarget(
+            run.evaluator, bound.value(1), bound.options.get("wobj"), scope, invoke
+        )
+        executed = run.convert.pose(record[:2], bound.span)
+    shift = tuple(e - p for e, p in zip(executed.position, programmed.position, strict=True))
+    displacement = Pose((shift[0], shift[1], shift[2]))
+    if "rot" in bound.options:
+        displacement = executed @ programmed.inverse()
+    run.settings.now = replace(run.settings.now, displacement=displacement)
+
+
+def _point(run: SettingsRun, expression: Expression, scope: Scope) -> Pose:
+    value = run.evaluator.known(expression, scope, ROBTARGET, "PDispOn")
+    assert isinstance(value, tuple)
+    return run.convert.pose(value[:2], expression.span)
+
+
+def _eoffs_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    bound = bind(invoke, ("EAxOffs",), ())
+    offsets = run.evaluator.known(bound.value(0), scope, EXTJOINT, "EOffsSet")
+    assert isinstance(offsets, tuple)
+    run.settings.now = replace(run.settings.now, offsets=offsets)
+
+
+def _eoffs_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    r"""``EOffsOn [\ExeP,] ProgPoint``: the difference of external axes between the two points."""
+    bound = bind(invoke, ("ProgPoint",), ("exep",))
+    programmed = run.evaluator.known(bound.value(0), scope, ROBTARGET, "EOffsOn")
+    if "exep" in bound.options:
+        executed = run.evaluator.known(bound.option("exep"), scope, ROBTARGET, "EOffsOn")
+    else:
+        executed = run.functions.present_robtarget(run.evaluator, None, None, scope, invoke)
+    assert isinstance(programmed, tuple) and isinstance(executed, tuple)
+    pairs = zip(executed[3], programmed[3], strict=True)
+    offsets = tuple(e - p if max(abs(e), abs(p)) < UNUSED_AXIS else 0.0 for e, p in pairs)
+    run.settings.now = replace(run.settings.now, offsets=offsets)
+
+
+def _eoffs_off(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    bind(invoke, (), ())
+    run.settings.now = replace(run.settings.now, offsets=None)
+
+
+def _only_off(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    """Settings that may be switched off, which they are at the start."""
+    if [a.option for a in invoke.arguments] != ["off"]:
+        raise SourceError(
+            f"{invoke.text} other than \\Off changes the motion and is not emulated: take it out",
+            invoke.span,
+        )
+
+
+def _speed_refresh(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    bound = bind(invoke, ("Override",), ())
+    if bound.number(run.evaluator, 0, scope) != 100:
+        raise SourceError(
+            "SpeedRefresh changes the speed while the robot moves and is not emulated: take it "
+            "out, or scale with VelSet before the move",
+            invoke.span,
+        )
+
+
+SETTINGS: dict[str, SettingsHandler] = {
+    "confj": _conf_joint,
+    "confl": _conf_linear,
+    "singarea": _sing_area,
+    "accset": _acc_set,
+    "velset": _vel_set,
+    "pathacclim": _path_acc_lim,
+    "cirpathmode": _cir_path_mode,
+    "gripload": _grip_load,
+    "pdispset": _pdisp_set,
+    "pdispoff": _pdisp_off,
+    "pdispon": _pdisp_on,
+    "eoffsset": _eoffs_set,
+    "eoffson": _eoffs_on,
+    "eoffsoff": _eoffs_off,
+    "worldacclim": _only_off,
+    "speedrefresh": _speed_refresh,
+}

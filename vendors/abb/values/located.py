@@ -1,0 +1,26 @@
+"""Values with the places that they were read from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .provenance import Literal
+from .scope import Cell
+from .types import Type, Value
+
+
+@dataclass(frozen=True, slots=True)
+class Located:
+    """A value together with the place of the text that it was read from.
+
+    Args:
+        cell: the datum, None if the expression is no plain datum.
+        predefined: name of the controller's own datum that the value is.
+        type: of the value, None if it is not known.
+    """
+
+    value: Value
+    source: Literal | None
+    cell: Cell | None
+    predefined: str | None = None
+    type: Type | None = None
