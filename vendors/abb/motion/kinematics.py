@@ -208,7 +208,7 @@ class RobotFunctions:
         if why is None:
             unmoved = "the robot has not moved yet: give a start"
             why = "name the robot" if not self._known else unmoved
-        key = evaluator.key(call.span)
+        key = evaluator.answers.key(call.span)
         return Unknown(f"the value of {call.text}() ({why})", call.span, key)
 
     @staticmethod

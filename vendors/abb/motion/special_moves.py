@@ -49,7 +49,7 @@ def _search(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     if cell is None or cell.constant or not isinstance(point, Name):
         raise SourceError(f"{invoke.text} needs a robtarget to put its point in", point.span)
     end = bound.named("ToPoint")
-    answer = run.evaluator.ask(point.span, cell.type)
+    answer = run.evaluator.answers.ask(point.span, cell.type)
     where = "at its end; answer the point if the program computes with it"
     if answer is not None:
         where = "where the answers say"

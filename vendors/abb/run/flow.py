@@ -193,7 +193,7 @@ def run_while(run: Interpreter, loop: While, scope: Scope) -> None:
     passed = waits = 0
     home, outputs = run.frame.home, run.evaluator.outputs
     while True:
-        turns = run.evaluator.turns
+        turns = run.evaluator.answers.turns
         outputs.asked.clear()
         value = run.evaluator.evaluate(loop.condition, scope)
         if isinstance(value, Unknown):
@@ -206,7 +206,7 @@ def run_while(run: Interpreter, loop: While, scope: Scope) -> None:
             left -= 1
         elif not run.evaluator.truth(value, "WHILE", loop.condition.span):
             return
-        fixed = left is None and run.evaluator.turns == turns
+        fixed = left is None and run.evaluator.answers.turns == turns
         waited = frozenset(outputs.asked)
         run.run_block(loop.body, scope)
         run.meter.statement(loop.span)

@@ -2,20 +2,69 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from ....core.errors import SourceError, Span
-from ....core.source.execution.answers import Answer
+from ....core.source.execution.answers import Answer, Course
 from .elements import array_mismatch
 from .types import Foreign, RecordType, Scalar, Type, Value
 
 
-def free(answer: Answer) -> Value:
+class Answers:
+    """The user's answers to expressions of a program.
+
+    Args:
+        course: has them.
+        text_of: the text that stands at a place.
+
+    Attributes:
+        turns: how many answers of sequences were given.
+    """
+
+    def __init__(self, course: Course, text_of: Callable[[Span], str]) -> None:
+        self.turns = 0
+        self._course = course
+        self._text_of = text_of
+
+    def key(self, span: Span) -> str:
+        """Under which the user may answer the expression at a place."""
+        return " ".join(self._text_of(span).split())
+
+    def ask(self, span: Span, type_: Type | None, sizes: tuple[int, ...] = ()) -> Value | None:
+        """The user's answer to the expression at a place, None if there is none.
+
+        Args:
+            type_: of the answer, None if it is not known.
+            sizes: of an array.
+
+        Raises:
+            SourceError: the answer is of another type.
+        """
+        return self.ask_by(self.key(span), span, type_, sizes)
+
+    def ask_by(
+        self, key: str, span: Span, type_: Type | None, sizes: tuple[int, ...]
+    ) -> Value | None:
+        """The same under a key."""
+        answer = self._course.value(key) if key else None
+        self.turns += self._course.changing(key)
+        if answer is None:
+            return None
+        return _free(answer) if type_ is None else _typed(answer, type_, sizes, key, span)
+
+    def in_turn(self, span: Span) -> bool:
+        """Whether the user answers the expression at a place in turn."""
+        return self._course.changing(self.key(span))
+
+
+def _free(answer: Answer) -> Value:
     """An answer to a name that nobody declares."""
     if isinstance(answer, tuple):
-        return tuple(free(item) for item in answer)
+        return tuple(_free(item) for item in answer)
     return answer
 
 
-def typed(answer: Answer, type_: Type, sizes: tuple[int, ...], key: str, span: Span) -> Value:
+def _typed(answer: Answer, type_: Type, sizes: tuple[int, ...], key: str, span: Span) -> Value:
     """An answer as a value of a type, or an array of it; 0 and 1 stand for FALSE and TRUE.
 
     Raises:
@@ -44,11 +93,11 @@ def _converted(answer: Answer, type_: Type, sizes: tuple[int, ...]) -> Value:
         if isinstance(type_, RecordType) and len(answer) == len(type_.components):
             parts = zip(answer, type_.components.values(), strict=True)
             return tuple(_converted(item, part, ()) for item, part in parts)
-        return free(answer)
+        return _free(answer)
     if isinstance(type_, Scalar) and type_.python is float and isinstance(answer, bool):
         return float(answer)
     if isinstance(type_, Scalar) and type_.python is bool and answer in (0.0, 1.0):
         return bool(answer)
     if isinstance(type_, Foreign):
-        return free(answer)
+        return _free(answer)
     return answer

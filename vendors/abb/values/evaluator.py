@@ -25,7 +25,7 @@ from ..syntax.tree import (
     Truth,
     Unary,
 )
-from .answers import free, like_signals, typed
+from .answers import Answers, like_signals
 from .checks import check_known, check_type
 from .data import Globals
 from .elements import (
@@ -80,9 +80,7 @@ class Evaluator:
         self.reads = Reads()
         self.reader = ELSEWHERE
         self.outputs = Outputs()
-        self.turns = 0
-        """How many answers of sequences were given."""
-        self._course = course
+        self.answers = Answers(course, text_of)
         self._text_of = text_of
         self._host = host
         self._elsewhere: dict[str, Value] = {}
@@ -178,36 +176,11 @@ class Evaluator:
 
     # ------------------------------------------------------------------- answers
 
-    def ask(self, span: Span, type_: Type | None, sizes: tuple[int, ...] = ()) -> Value | None:
-        """The user's answer to the expression at a place, None if there is none.
-
-        Args:
-            type_: of the answer, None if it is not known.
-            sizes: of an array.
-
-        Raises:
-            SourceError: the answer is of another type.
-        """
-        return self._ask(self.key(span), span, type_, sizes)
-
-    def key(self, span: Span) -> str:
-        """Under which the user may answer the expression at a place."""
-        return " ".join(self._text_of(span).split())
-
-    def _ask(
-        self, key: str, span: Span, type_: Type | None, sizes: tuple[int, ...]
-    ) -> Value | None:
-        answer = self._course.value(key) if key else None
-        self.turns += self._course.changing(key)
-        if answer is None:
-            return None
-        return free(answer) if type_ is None else typed(answer, type_, sizes, key, span)
-
     def fill(self, target: Name, unknown: Unknown, scope: Scope) -> None:
         """An instruction writes a datum: the user's answer, or what is not known."""
         found = self.locate(target, scope, asking=False)
         sizes = found.cell.dimensions if found.cell is not None and not target.path else ()
-        answer = self.ask(target.span, found.type, sizes)
+        answer = self.answers.ask(target.span, found.type, sizes)
         self.assign(target, unknown if answer is None else answer, scope)
 
     def signal(self, expression: Expression | None, scope: Scope) -> str | None:
@@ -227,7 +200,7 @@ class Evaluator:
             asked: where it is read: a user's answers to it in turn come first.
         """
         name = self.signal(signal, scope)
-        if name is None or self._course.changing(self.key(asked)):
+        if name is None or self.answers.in_turn(asked):
             return None
         return self.outputs.value(name)
 
@@ -355,9 +328,9 @@ class Evaluator:
             if held is not None:
                 return Located(held, None, None)
             sizes = found.cell.dimensions if found.cell is not None and not name.path else ()
-            answer = self.ask(name.span, found.type, sizes)
+            answer = self.answers.ask(name.span, found.type, sizes)
             if answer is None and not name.path and found.value.key != name.text:
-                answer = self._ask(found.value.key, name.span, found.type, sizes)
+                answer = self.answers.ask_by(found.value.key, name.span, found.type, sizes)
             if answer is not None:
                 return Located(answer, None, found.cell, type=found.type)
         return found
@@ -368,7 +341,7 @@ class Evaluator:
             return Located(self._elsewhere[name.name], None, None)
         if cell is None:
             reason = f"'{name.text}', which is not declared in what is at hand (a signal?)"
-            return Located(Unknown(reason, name.span, self.key(name.span)), None, None)
+            return Located(Unknown(reason, name.span, self.answers.key(name.span)), None, None)
         if not cell.present:
             raise SourceError(f"the optional argument {cell.name} was not given", name.span)
         if not name.path:

@@ -12,6 +12,7 @@ from ..syntax.cursor import Cursor
 from ..syntax.expressions import parse_expression
 from ..syntax.lexer import END, tokenize
 from ..syntax.tree import Argument, Call, Expression, Name, Routine
+from .answers import Answers
 from .arguments import check_count
 from .data import Globals
 from .elements import array_mismatch
@@ -28,6 +29,7 @@ class Evaluates(Protocol):
     """What functions need of the evaluator; see `Evaluator`."""
 
     data: Globals
+    answers: Answers
     outputs: Outputs
 
     def evaluate(self, expression: Expression, scope: Scope) -> Value:
@@ -53,12 +55,6 @@ class Evaluates(Protocol):
 
     def fill(self, target: Name, unknown: Unknown, scope: Scope) -> None:
         """A datum gets the user's answer, or what is not known."""
-
-    def ask(self, span: Span, type_: Type | None, sizes: tuple[int, ...] = ()) -> Value | None:
-        """The user's answer to the expression at a place."""
-
-    def key(self, span: Span) -> str:
-        """Under which the user may answer the expression at a place."""
 
     def output(self, signal: Expression | None, asked: Span, scope: Scope) -> Value | None:
         """What the program has set an output to."""
@@ -87,7 +83,7 @@ def function_value(
     value = _value(evaluator, run, special, call, scope)
     if not isinstance(value, Unknown):
         return value
-    answer = evaluator.ask(call.span, STATE.get(call.name))
+    answer = evaluator.answers.ask(call.span, STATE.get(call.name))
     return value if answer is None else answer
 
 
@@ -111,7 +107,9 @@ def _value(
             if held is not None:
                 return held
         if call.name in STATE:
-            return Unknown(f"the value of {call.text}()", call.span, evaluator.key(call.span))
+            return Unknown(
+                f"the value of {call.text}()", call.span, evaluator.answers.key(call.span)
+            )
         own = data.fetched_routine(call.name, scope.home, call.span)
     if own is None:
         return _missing(evaluator, call)
@@ -126,7 +124,7 @@ def _missing(evaluator: Evaluates, call: Call) -> Unknown:
     known = [*evaluator.data.routine_names("func"), *COMPUTED]
     hint = evaluator.data.hint(call.name)
     reason = unknown_name("function", call.text, known, hint or "its text is not at hand")
-    return Unknown(f"an {reason}", call.span, evaluator.key(call.span))
+    return Unknown(f"an {reason}", call.span, evaluator.answers.key(call.span))
 
 
 def _computed(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
