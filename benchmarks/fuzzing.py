@@ -29,7 +29,7 @@ from flyby.core.errors import FlybyError
 from flyby.core.program.program import Program
 from flyby.core.source.patch.edits import reading_of
 from flyby.core.source.reading import Reading
-from flyby.core.source.text.files.files import SourceFile, decode
+from flyby.core.source.text.files import SourceFile, decode
 from flyby.testing.hostile import HUGE, NUMBER, ODD, OPENERS
 
 SECONDS = 1.0

@@ -14,7 +14,7 @@ from flyby.core.program.zone import Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.patch.edits import difference
 from flyby.core.source.reading import named_apart
-from flyby.core.source.text.files.files import SourceFile
+from flyby.core.source.text.files import SourceFile
 
 KUKA, ROBOT = find_vendor("kuka"), find_robot("kuka/kr30-3")
 SRC = """DEF job()

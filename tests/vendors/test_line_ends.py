@@ -9,7 +9,7 @@ import pytest
 from flyby.core.errors import SourceError
 from flyby.core.program.program import Program
 from flyby.core.registry import find_robot, find_vendor
-from flyby.core.source.text.files.files import SourceFile, SourceText, lines_of
+from flyby.core.source.text.files import SourceFile, SourceText, lines_of
 
 
 @dataclass(frozen=True)

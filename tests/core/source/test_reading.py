@@ -9,7 +9,7 @@ from flyby.core.program.move import Wait
 from flyby.core.program.program import Program
 from flyby.core.source.patch.edits import reading_of
 from flyby.core.source.reading import Files, Reading, ReadOptions, read_with
-from flyby.core.source.text.files.files import SourceFile
+from flyby.core.source.text.files import SourceFile
 
 
 def read(files: Files, main: str, options: ReadOptions) -> Program:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from flyby.core.dialect import Orientation
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius
 from flyby.core.registry import find_vendor
-from flyby.core.source.text.files.numerals import shortest
+from flyby.core.source.text.numerals import shortest
 from flyby.core.spatial.pose import Pose
 from flyby.problems.improve.rounding import Rounding
 

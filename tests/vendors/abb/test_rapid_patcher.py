@@ -15,7 +15,7 @@ from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import FINE, ContourFraction, Radius
 from flyby.core.source.patch.edits import difference
 from flyby.core.source.reading import ReadOptions, read_with
-from flyby.core.source.text.files.files import SourceFile, decode
+from flyby.core.source.text.files import SourceFile, decode
 from flyby.core.source.write.options import PatchOptions, Sharing
 from flyby.testing import strategies as given_by
 from flyby.vendors.abb.motion.configuration import AbbConfiguration

@@ -8,7 +8,7 @@ import pytest
 
 from flyby.core.errors import InputError, SourceError
 from flyby.core.source.reading import Reading, ReadOptions
-from flyby.core.source.text.files.files import SourceFile
+from flyby.core.source.text.files import SourceFile
 from flyby.vendors.abb.run.reader import read, read_file, read_sources
 
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"

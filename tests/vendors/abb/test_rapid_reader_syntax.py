@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from flyby.core.errors import SourceError
-from flyby.core.source.text.files.files import SourceText, decode
+from flyby.core.source.text.files import SourceText, decode
 from flyby.vendors.abb.run.reader import read
 from flyby.vendors.abb.syntax.lexer import END, number_value, string_value, tokenize
 from flyby.vendors.abb.syntax.parser import parse

@@ -16,7 +16,7 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Load, Tool, WorkObject
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction, Zone
-from flyby.core.source.text.files.names import Names
+from flyby.core.source.text.names import Names
 from flyby.core.source.write.options import OpaqueStyle
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import arc_angle

@@ -9,7 +9,7 @@ import pytest
 from flyby.core.program.program import Program
 from flyby.core.source.execution.answers import Answers
 from flyby.core.source.reading import ReadOptions, read_with
-from flyby.core.source.text.files.files import SourceFile
+from flyby.core.source.text.files import SourceFile
 from flyby.vendors.kuka.run.reader import read_sources
 
 ReadKrl = Callable[..., Program]

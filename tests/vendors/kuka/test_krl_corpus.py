@@ -18,7 +18,7 @@ from flyby.core.registry import find_vendor
 from flyby.core.robot.model import Robot
 from flyby.core.source.patch.edits import difference, reading_of
 from flyby.core.source.reading import Files
-from flyby.core.source.text.files.files import SourceFile
+from flyby.core.source.text.files import SourceFile
 
 CORPUS = Path(__file__).parents[2] / "corpus" / "krl"
 INDEX = tomllib.loads((CORPUS / "index.toml").read_text("utf-8"))["program"]

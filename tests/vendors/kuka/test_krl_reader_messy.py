@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from flyby.core.errors import FlybyError, SourceError
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.source.reading import ReadOptions
-from flyby.core.source.text.files.files import SourceText
+from flyby.core.source.text.files import SourceText
 from flyby.vendors.kuka.language import Krl
 from flyby.vendors.kuka.syntax.lexer import END, tokenize
 

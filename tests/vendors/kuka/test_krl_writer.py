@@ -19,7 +19,7 @@ from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Load, Tool, WorkObject
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction, Zone
 from flyby.core.registry import find_vendor
-from flyby.core.source.text.files.names import Names
+from flyby.core.source.text.names import Names
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_quaternion
 from flyby.vendors.abb.motion.configuration import AbbConfiguration

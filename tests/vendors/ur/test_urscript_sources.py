@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from flyby.core.errors import FlybyError, InputError, SourceError
 from flyby.core.registry import find_vendor
 from flyby.core.source.reading import Reading, ReadOptions
-from flyby.core.source.text.files.files import SourceFile
+from flyby.core.source.text.files import SourceFile
 from flyby.vendors.ur.run.reader import read, read_file
 
 PROGRAM = """def prog():

@@ -20,7 +20,7 @@ from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedF
 from flyby.core.registry import find_vendor
 from flyby.core.robot.inertia import carried_inertia
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
-from flyby.core.source.text.files.names import Names
+from flyby.core.source.text.names import Names
 from flyby.core.spatial.pose import Pose
 from flyby.vendors.ur.motion.configuration import UrConfiguration
 from flyby.vendors.ur.syntax.names import NAME_RULES, RESERVED

@@ -16,7 +16,7 @@ from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.not_executed.search import bystanders
-from flyby.core.source.text.files.references import reference_of, references
+from flyby.core.source.text.references import reference_of, references
 from flyby.core.spatial.pose import Pose
 
 AXES = "[9E9,9E9,9E9,9E9,9E9,9E9]"

@@ -28,7 +28,7 @@ from flyby.core.source.patch.edits import (
     reading_of,
 )
 from flyby.core.source.reading import Files, ReadOptions, read_with
-from flyby.core.source.text.files.files import SourceFile, SourceText
+from flyby.core.source.text.files import SourceFile, SourceText
 from flyby.core.spatial.pose import Pose
 from flyby.testing.strategies import poses
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from flyby.core.source.text.files.arguments import wrong_count
+from flyby.core.source.text.arguments import wrong_count
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import SourceError
-from flyby.core.source.text.files.cursor import END, END_OF_LINE, NAME, NESTING_LIMIT, TokenCursor
-from flyby.core.source.text.files.files import SourceText
+from flyby.core.source.text.cursor import END, END_OF_LINE, NAME, NESTING_LIMIT, TokenCursor
+from flyby.core.source.text.files import SourceText
 
 KEYWORDS = {"if", "do"}
 TOKEN = re.compile(r"(?P<word>\w+)|(?P<line>\n)|(?P<symbol>\S)")

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flyby.core.source.text.files.names import NameRules, Names
+from flyby.core.source.text.names import NameRules, Names
 
 FOLDING = NameRules(frozenset({"if", "do"}), longest=8)
 STRICT = NameRules(frozenset({"if", "do"}), fold=str, legal=re.compile(r"[A-Za-z_]\w*", re.ASCII))

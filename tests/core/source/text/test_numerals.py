@@ -8,7 +8,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from flyby.core.source.text.files.numerals import plain, shortest
+from flyby.core.source.text.numerals import plain, shortest
 
 FINITE = st.just(0.0) | st.floats(1e-12, 1e6) | st.floats(-1e6, -1e-12)
 UNITS = [

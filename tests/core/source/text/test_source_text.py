@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError, SourceError
 from flyby.core.source.text.files import files as module
-from flyby.core.source.text.files.files import SourceFile, SourceText, decode, read_source
+from flyby.core.source.text.files import SourceFile, SourceText, decode, read_source
 
 LINES = st.text(st.sampled_from("a;\n\r\tß"), max_size=40)
 MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
