@@ -37,7 +37,7 @@ from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry, Mesh
 from flyby.core.collision.distance.solid import Polytope, Solid, TriangleMesh
-from flyby.core.collision.scene.scene.scene import CollisionScene
+from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.program.tool import Tool
 from flyby.core.registry import installed
 from flyby.core.robot.shape import Box, Capsule, Cylinder, Sphere

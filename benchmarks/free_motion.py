@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flyby.core.arrays import FloatArray
-from flyby.core.collision.scene.scene.scene import CollisionScene
+from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.robot.inertia import carried_inertia

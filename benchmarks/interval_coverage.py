@@ -23,8 +23,8 @@ from report import Figure, main
 
 from flyby.core.motion.command.elasticity import Elasticity
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.model.motion_model.blend import Blend
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.blend import Blend
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

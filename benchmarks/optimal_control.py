@@ -30,7 +30,7 @@ from ipopt import Ipopt
 from report import Figure, main
 
 from flyby.core.collision.proof.certificate import scenes_of
-from flyby.core.motion.model.motion_model.consumption import SQUARED_TORQUE
+from flyby.core.motion.model.consumption import SQUARED_TORQUE
 from flyby.core.program.target import JointTarget
 from flyby.core.registry import find_robot
 from flyby.core.robot.inertia import carried_inertia

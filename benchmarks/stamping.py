@@ -38,7 +38,7 @@ from toppra.interpolator import AbstractGeometricPath
 
 from flyby.core.arrays import FloatArray
 from flyby.core.motion.gradients.stamping_adjoint import stamp_adjoint
-from flyby.core.motion.timing.timing.stamping import Stamp, joint_limits, stamp
+from flyby.core.motion.timing.stamping import Stamp, joint_limits, stamp
 
 TOPPRA_NAME, COPP_NAME = f"toppra {version('toppra')}", f"copp-py {version('copp-py')}"
 JOINTS = 6

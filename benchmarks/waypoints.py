@@ -56,7 +56,7 @@ from report import Figure, main
 from flyby.core.arrays import FloatArray
 from flyby.core.collision.proof.certificate import certify, scenes_of
 from flyby.core.motion.geometry.pieces import Sampling
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.sqp import NLP

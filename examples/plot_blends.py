@@ -13,8 +13,8 @@ import numpy as np
 
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.geometry.pieces import Sampling
-from flyby.core.motion.model.motion_model.blend import TANGENT_ARC, Blend
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.blend import TANGENT_ARC, Blend
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -12,7 +12,7 @@ import pytest
 from typer.testing import Result
 
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.model.motion_model.blend import Blend
+from flyby.core.motion.model.blend import Blend
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.target import JointTarget
 from flyby.core.registry import find_robot, find_vendor

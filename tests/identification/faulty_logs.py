@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flyby.core.motion.emulator.controller import Controller, Run
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

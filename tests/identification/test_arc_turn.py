@@ -10,7 +10,7 @@ import pytest
 
 from flyby.core.errors import InputError
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.model.motion_model.motion_model import (
+from flyby.core.motion.model.motion_model import (
     ArcTurn,
     MotionModel,
     load_motion_model,

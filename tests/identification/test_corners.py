@@ -7,7 +7,7 @@ import pytest
 
 from flyby.core.errors import InputError
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.registry import find_vendor
 from flyby.identification.alignment import align
 from flyby.identification.logs.cleaning import clean_samples

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.model.motion_model.consumption import (
+from flyby.core.motion.model.consumption import (
     SQUARED_TORQUE,
     Consumption,
     Motors,
     SquaredTorque,
 )
-from flyby.core.motion.timing.timing.energy import energy_by_joint
-from flyby.core.motion.timing.timing.timing import Timing
+from flyby.core.motion.timing.energy import energy_by_joint
+from flyby.core.motion.timing.timing import Timing
 from flyby.core.program.move import MoveJ
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

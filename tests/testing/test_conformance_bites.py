@@ -13,7 +13,7 @@ import pytest
 
 from flyby.core.dialect import Dialect
 from flyby.core.errors import MotionError
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.program import Program
 from flyby.core.registry import find_vendor
 from flyby.core.robot.joint import Limits

@@ -13,8 +13,8 @@ from hypothesis.errors import Unsatisfiable
 from flyby.core.motion.emulator.controller import Controller, Run
 from flyby.core.motion.geometry.pieces import Sampling
 from flyby.core.motion.gradients.derivatives import Derivatives
-from flyby.core.motion.model.motion_model.blend import Blend
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.blend import Blend
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.program import Program
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_vendor

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from flyby.core.motion.model.motion_model.blend import Blend
-from flyby.core.motion.model.motion_model.motion_model import (
+from flyby.core.motion.model.blend import Blend
+from flyby.core.motion.model.motion_model import (
     LineTurn,
     OrientationZone,
     Overlap,

@@ -13,7 +13,7 @@ import pytest
 
 from flyby.core import hookspec, vendor
 from flyby.core.errors import InputError, SourceError
-from flyby.core.motion.model.motion_model.provenance import read_provenance
+from flyby.core.motion.model.provenance import read_provenance
 from flyby.core.registry import Registry
 from flyby.testing.conformance import VendorConformance
 

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import HealthCheck, find, given, settings
 from hypothesis import strategies as st
 
-from flyby.core.motion.path.path.configurations import ConfigurationFinder
+from flyby.core.motion.path.configurations import ConfigurationFinder
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

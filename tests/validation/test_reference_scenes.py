@@ -12,10 +12,10 @@ import pytest
 from flyby.core.cell.file import load_cell
 from flyby.core.cell.geometry import Mesh
 from flyby.core.collision.proof.certificate import certify, scenes_of
-from flyby.core.collision.scene.scene.scene import CollisionScene
+from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.geometry.pieces import Sampling
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.zone import Fine, Radius
 from flyby.core.registry import find_vendor, installed

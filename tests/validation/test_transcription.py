@@ -11,7 +11,7 @@ from flyby.core.cell.cell import Obstacle
 from flyby.core.cell.geometry import Geometry
 from flyby.core.errors import InputError
 from flyby.core.motion.geometry.pieces import Sampling
-from flyby.core.motion.model.motion_model.blend import Blend
+from flyby.core.motion.model.blend import Blend
 from flyby.core.robot.shape import Cylinder
 from flyby.validation.transcription import (
     Grid,

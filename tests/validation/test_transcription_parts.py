@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from flyby.core.arrays import FloatArray
-from flyby.core.motion.model.motion_model.blend import PARABOLA
+from flyby.core.motion.model.blend import PARABOLA
 from flyby.core.sqp import check_derivatives
 from flyby.validation.scenes.scene import SECOND_ORDER
 from flyby.validation.transcription import Grid, Overlap, Transcription, initial_guess

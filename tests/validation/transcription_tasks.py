@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from flyby.core.motion.model.motion_model.blend import Blend
+from flyby.core.motion.model.blend import Blend
 from flyby.core.program.target import JointTarget
 from flyby.validation.scenes.scene import SECOND_ORDER
 from flyby.validation.scenes.two_joints import two_joints

@@ -10,7 +10,7 @@ import pytest
 
 from flyby.core.cell.cell import Cell
 from flyby.core.cell.file import load_cell
-from flyby.core.collision.scene.scene.scene import CollisionScene
+from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.errors import InputError
 from flyby.core.registry import find_robot, installed
 from flyby.core.robot.shape import Capsule

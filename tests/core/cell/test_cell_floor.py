@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flyby.core.cell.floor import FLOOR, bare_cell
-from flyby.core.collision.scene.scene.scene import CollisionScene
+from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.program.tool import FLANGE, Tool
 from flyby.core.registry import installed
 from flyby.core.spatial.pose import Pose

@@ -14,8 +14,8 @@ from flyby.core.collision.deviation.earliest_times import Course
 from flyby.core.collision.deviation.speed_bounds import Allowed, greatest
 from flyby.core.motion.command.ramps import ramped
 from flyby.core.motion.command.smoothing import Smoothing
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
-from flyby.core.motion.timing.timing.timing import Timing
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.timing.timing import Timing
 from flyby.core.program.move import MoveJ
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -18,7 +18,7 @@ from flyby.core.errors import InputError, MotionError
 from flyby.core.motion.command.elasticity import Elasticity
 from flyby.core.motion.emulator.controller import Controller, Run
 from flyby.core.motion.geometry.pieces import Sampling
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

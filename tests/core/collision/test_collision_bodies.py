@@ -16,9 +16,9 @@ from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry, Mesh
 from flyby.core.collision.distance.convex import hull, is_closed, obstacle_solids, tool_solids
 from flyby.core.collision.distance.solid import Polytope, TriangleMesh
-from flyby.core.collision.scene.scene.bodies import Kind, bodies_of
-from flyby.core.collision.scene.scene.frames import WORLD, frame_of_axis
-from flyby.core.collision.scene.scene.scene import CollisionScene
+from flyby.core.collision.scene.bodies import Kind, bodies_of
+from flyby.core.collision.scene.frames import WORLD, frame_of_axis
+from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.errors import InputError
 from flyby.core.program.tool import FLANGE, Tool
 from flyby.core.robot.shape import Box, Capsule, LinkShape, Sphere

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flyby.core.arrays import FloatArray
-from flyby.core.collision.scene.scene.frames import (
+from flyby.core.collision.scene.frames import (
     WORLD,
     base_place,
     distance_gradients,

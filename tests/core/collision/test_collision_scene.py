@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry, Mesh
-from flyby.core.collision.scene.scene.scene import CollisionScene
+from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.errors import InputError
 from flyby.core.program.tool import Tool
 from flyby.core.robot.joint import ExternalAxis

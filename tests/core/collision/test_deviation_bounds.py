@@ -14,10 +14,10 @@ from flyby.core.collision.deviation.bounds import Straying, Strays, parts_of, st
 from flyby.core.errors import MotionError
 from flyby.core.motion.command.elasticity import Carried, Coupled, Elasticity
 from flyby.core.motion.emulator.controller import Controller, Run
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
-from flyby.core.motion.timing.timing.rests import InPosition
-from flyby.core.motion.timing.timing.timing import Settling, Timing
-from flyby.core.motion.timing.timing.torque import Borne, Torque
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.timing.rests import InPosition
+from flyby.core.motion.timing.timing import Settling, Timing
+from flyby.core.motion.timing.torque import Borne, Torque
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

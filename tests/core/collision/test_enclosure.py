@@ -14,9 +14,9 @@ from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.geometry.curves import parameter_jet
 from flyby.core.motion.geometry.pieces import Sampling
 from flyby.core.motion.geometry.zones import POSITION
-from flyby.core.motion.model.motion_model.blend import PARABOLA, TANGENT_ARC, Blend
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
-from flyby.core.motion.path.path.path import Path
+from flyby.core.motion.model.blend import PARABOLA, TANGENT_ARC, Blend
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.path.path import Path
 from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.collision.distance.solid import Solid
-from flyby.core.collision.scene.scene.bodies import Body, Kind
-from flyby.core.collision.scene.scene.outline import lever, outlines_of, support
+from flyby.core.collision.scene.bodies import Body, Kind
+from flyby.core.collision.scene.outline import lever, outlines_of, support
 from flyby.core.robot.shape import Box, Capsule, Cylinder
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.collision.deviation.speed_bounds import Allowed, greatest
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -14,7 +14,7 @@ from flyby.core.collision.deviation.bounds import Strays, stretches
 from flyby.core.collision.proof.boxes import Boxes
 from flyby.core.collision.proof.items import Items, Sweeps
 from flyby.core.collision.proof.sweep import sweep
-from flyby.core.collision.scene.scene.scene import CollisionScene
+from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.program.tool import Tool
 from flyby.core.robot.shape import Box, Capsule, Sphere
 from flyby.core.spatial.pose import Pose

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.model import Robot

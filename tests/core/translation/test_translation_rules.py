@@ -10,7 +10,7 @@ import pytest
 from flyby.core.errors import InputError, MotionError, Span
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.geometry.segments import make_segments
-from flyby.core.motion.model.motion_model.blend import TANGENT_ARC, Blend
+from flyby.core.motion.model.blend import TANGENT_ARC, Blend
 from flyby.core.program.event import Event
 from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, Opaque, Wait
 from flyby.core.program.origin import MoveOrigin, Origin, Ownership

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.motion.emulator.controller import Controller, Run
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.identification.fit import ParameterSet, PreparedRun, fit
 from flyby.identification.logs import LoggedRun, clean
 from flyby.identification.logs.synthetic import synthetic_run

@@ -17,7 +17,7 @@ import pytest
 
 from flyby.core.motion.command.elasticity import RIGID
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

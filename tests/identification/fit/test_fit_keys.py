@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
 from flyby.core.motion.command.elasticity import Carried, Elasticity
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.fit.keys import figure_of, value_of, with_value
 from flyby.identification.fit.parameters import ParameterSet, parameter, usual_parameters

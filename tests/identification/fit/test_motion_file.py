@@ -10,8 +10,8 @@ import pytest
 
 from flyby.core.errors import InputError
 from flyby.core.motion.command.elasticity import Carried, Coupled, Elasticity
-from flyby.core.motion.model.motion_model.blend import Blend
-from flyby.core.motion.model.motion_model.motion_model import (
+from flyby.core.motion.model.blend import Blend
+from flyby.core.motion.model.motion_model import (
     ArcTurn,
     DurationRule,
     LineTurn,
@@ -22,7 +22,7 @@ from flyby.core.motion.model.motion_model.motion_model import (
     Space,
     load_motion_model,
 )
-from flyby.core.motion.timing.timing.torque import Borne, Torque
+from flyby.core.motion.timing.torque import Borne, Torque
 from flyby.identification.fit import (
     Fit,
     Interval,

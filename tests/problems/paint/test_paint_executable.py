@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Cell
-from flyby.core.collision.scene.scene.scene import CollisionScene
+from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.errors import InputError, MotionError
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import MoveJ

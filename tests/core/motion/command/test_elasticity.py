@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from flyby.core.errors import InputError
 from flyby.core.motion.command.elasticity import RIGID, Carried, Coupled, Elasticity
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.model.motion_model.motion_model import MotionModel, load_motion_model
+from flyby.core.motion.model.motion_model import MotionModel, load_motion_model
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

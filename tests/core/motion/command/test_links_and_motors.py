@@ -9,7 +9,7 @@ import pytest
 
 from flyby.core.motion.command import links_and_motors as driven
 from flyby.core.motion.command.elasticity import Carried, Elasticity
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveJ, MoveL, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

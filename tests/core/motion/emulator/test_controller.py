@@ -14,8 +14,8 @@ from flyby.core.lint.check import check
 from flyby.core.lint.finding import Severity
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.geometry.pieces import Sampling
-from flyby.core.motion.model.motion_model.blend import Blend
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.blend import Blend
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.origin import MoveOrigin, Origin, Ownership
 from flyby.core.program.program import Program

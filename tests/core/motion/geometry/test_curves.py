@@ -17,7 +17,7 @@ from flyby.core.motion.geometry.curves import (
     pull,
 )
 from flyby.core.motion.geometry.orientation_curves import orientation, pull_orientation
-from flyby.core.motion.model.motion_model.blend import BASIS, Blend
+from flyby.core.motion.model.blend import BASIS, Blend
 from flyby.core.spatial.rotation import matrix_from_rotation_vector, rotation_vector
 
 SETTINGS = settings(max_examples=25, deadline=None)

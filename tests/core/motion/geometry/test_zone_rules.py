@@ -19,7 +19,7 @@ from flyby.core.motion.geometry.zones import (
     ZonePlanner,
     pull_corners,
 )
-from flyby.core.motion.model.motion_model.motion_model import MotionModel, OrientationZone, Overlap
+from flyby.core.motion.model.motion_model import MotionModel, OrientationZone, Overlap
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from flyby.core.errors import InputError
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.gradients.derivatives import Derivatives, ProgramGradient
-from flyby.core.motion.model.motion_model.blend import Blend
-from flyby.core.motion.model.motion_model.motion_model import LineTurn, MotionModel, Pace
-from flyby.core.motion.timing.timing.torque import Borne, Torque
+from flyby.core.motion.model.blend import Blend
+from flyby.core.motion.model.motion_model import LineTurn, MotionModel, Pace
+from flyby.core.motion.timing.torque import Borne, Torque
 from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

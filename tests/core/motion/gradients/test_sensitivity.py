@@ -21,9 +21,9 @@ from flyby.core.motion.gradients.sensitivity import (
     sigma_of,
     tangents,
 )
-from flyby.core.motion.model.motion_model.blend import PARABOLA, Blend
-from flyby.core.motion.model.motion_model.motion_model import MotionModel, Overlap
-from flyby.core.motion.path.path.path import Path
+from flyby.core.motion.model.blend import PARABOLA, Blend
+from flyby.core.motion.model.motion_model import MotionModel, Overlap
+from flyby.core.motion.path.path import Path
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
 from flyby.core.motion.gradients.stamping_adjoint import StampGradient, stamp_adjoint
-from flyby.core.motion.timing.timing.stamping import Limits, Stamp, StampingError, stamp
+from flyby.core.motion.timing.stamping import Limits, Stamp, StampingError, stamp
 
 INPUTS = ("spacing", "a", "b", "lower", "upper", "ceiling")
 STEP = 1e-5

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.polynomial import polynomial as P
 
 from flyby.core.errors import InputError
-from flyby.core.motion.model.motion_model.blend import TANGENT_ARC, Blend
+from flyby.core.motion.model.blend import TANGENT_ARC, Blend
 
 SMOOTHSTEPS = {
     1: (0, 0, 3, -2),

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from flyby.core.errors import InputError
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.gradients.derivatives import Derivatives
-from flyby.core.motion.model.motion_model.consumption import SQUARED_TORQUE, Motors, SquaredTorque
-from flyby.core.motion.timing.timing.energy import energy_by_joint
+from flyby.core.motion.model.consumption import SQUARED_TORQUE, Motors, SquaredTorque
+from flyby.core.motion.timing.energy import energy_by_joint
 from flyby.core.program.move import MoveJ
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -9,7 +9,7 @@ import pytest
 from flyby.core.errors import InputError
 from flyby.core.motion.command.elasticity import Carried, Elasticity
 from flyby.core.motion.command.smoothing import Smoothing
-from flyby.core.motion.model.motion_model.motion_model import MotionModel, load_motion_model
+from flyby.core.motion.model.motion_model import MotionModel, load_motion_model
 
 BROKEN = {
     'period_s = "fast"': "period_s",

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.motion.model.motion_model.provenance import (
+from flyby.core.motion.model.provenance import (
     FitRecord,
     Provenance,
     provenance_text,

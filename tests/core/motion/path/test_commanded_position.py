@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError, MotionError, Span
-from flyby.core.motion.path.path.commanded_position import Standing
+from flyby.core.motion.path.commanded_position import Standing
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.motion.geometry.pieces import Sampling
-from flyby.core.motion.model.motion_model.blend import PARABOLA, Blend
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
-from flyby.core.motion.path.path.tcp_samples import States
-from flyby.core.motion.timing.timing.arc_length import ArcLength
-from flyby.core.motion.timing.timing.limits import interval_samples
+from flyby.core.motion.model.blend import PARABOLA, Blend
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.path.tcp_samples import States
+from flyby.core.motion.timing.arc_length import ArcLength
+from flyby.core.motion.timing.limits import interval_samples
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

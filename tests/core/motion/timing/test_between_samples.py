@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flyby.core.motion.path.path.tcp_samples import States
-from flyby.core.motion.timing.timing.between_samples import BETWEEN, lower_between, pull_between
+from flyby.core.motion.path.tcp_samples import States
+from flyby.core.motion.timing.between_samples import BETWEEN, lower_between, pull_between
 from flyby.core.program.move import MoveJ
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

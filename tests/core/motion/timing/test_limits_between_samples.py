@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from flyby.core.motion.geometry.pieces import Sampling
-from flyby.core.motion.model.motion_model.blend import TANGENT_ARC, Blend
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
+from flyby.core.motion.model.blend import TANGENT_ARC, Blend
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

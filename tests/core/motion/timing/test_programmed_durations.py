@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
 from flyby.core.motion.geometry.pieces import Sampling
-from flyby.core.motion.model.motion_model.motion_model import (
+from flyby.core.motion.model.motion_model import (
     DurationRule,
     MotionModel,
     load_motion_model,

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.gradients.derivatives import Derivatives, ProgramGradient
-from flyby.core.motion.model.motion_model.motion_model import MotionModel
-from flyby.core.motion.timing.timing.limits import interval_ends
-from flyby.core.motion.timing.timing.rests import InPosition, Rests
-from flyby.core.motion.timing.timing.timing import Timing
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.timing.limits import interval_ends
+from flyby.core.motion.timing.rests import InPosition, Rests
+from flyby.core.motion.timing.timing import Timing
 from flyby.core.program.move import Move, MoveC, MoveJ, MoveL, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

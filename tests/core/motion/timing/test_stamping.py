@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 from flyby.core.errors import InputError
-from flyby.core.motion.timing.timing.stamping import (
+from flyby.core.motion.timing.stamping import (
     Limits,
     Stamp,
     StampingError,
@@ -17,7 +17,7 @@ from flyby.core.motion.timing.timing.stamping import (
     joint_limits,
     stamp,
 )
-from flyby.core.motion.timing.timing.stamping_kernels import CEILING, SLOWDOWN
+from flyby.core.motion.timing.stamping_kernels import CEILING, SLOWDOWN
 
 RATES = ("a", "b", "lower", "upper")
 

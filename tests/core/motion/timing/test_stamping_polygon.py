@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
-from flyby.core.motion.timing.timing.stamping_polygon import greatest_sum
+from flyby.core.motion.timing.stamping_polygon import greatest_sum
 
 BOX = np.array([[1.0, 0.0, 3.0], [0.0, 1.0, 2.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 

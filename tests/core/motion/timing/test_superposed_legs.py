@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
 from flyby.core.motion.emulator.binding_limits import limit_shares
-from flyby.core.motion.model.motion_model.blend import TANGENT_ARC
-from flyby.core.motion.model.motion_model.motion_model import (
+from flyby.core.motion.model.blend import TANGENT_ARC
+from flyby.core.motion.model.motion_model import (
     LineTurn,
     MotionModel,
     Pace,
     load_motion_model,
 )
-from flyby.core.motion.timing.timing.superposed_legs import ZONE
+from flyby.core.motion.timing.superposed_legs import ZONE
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError, SourceError
-from flyby.core.source.text.files import files as module
+from flyby.core.source.text import files as module
 from flyby.core.source.text.files import SourceFile, SourceText, decode, read_source
 
 LINES = st.text(st.sampled_from("a;\n\r\tß"), max_size=40)

@@ -11,9 +11,9 @@ import pytest
 
 from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry
-from flyby.core.collision.scene.scene.scene import CollisionScene
+from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.errors import InputError, MotionError
-from flyby.core.motion.model.motion_model.consumption import SquaredTorque
+from flyby.core.motion.model.consumption import SquaredTorque
 from flyby.core.robot.inertia import Inertia, carried_inertia
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from flyby.core.robot.model import Robot

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flyby.core.collision.scene.scene.scene import CollisionScene
+from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import Radius
 from flyby.problems.free_motion.optimal_control import Effort, Surroundings, Task, optimize

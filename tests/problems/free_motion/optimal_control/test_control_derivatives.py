@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.arrays import FloatArray
-from flyby.core.motion.model.motion_model.consumption import SQUARED_TORQUE, Consumption, Motors
+from flyby.core.motion.model.consumption import SQUARED_TORQUE, Consumption, Motors
 from flyby.core.robot.inertia import Inertia
 from flyby.core.spatial.pose import Pose
 from flyby.core.sqp import NLP

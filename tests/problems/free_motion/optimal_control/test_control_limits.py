@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.arrays import FloatArray
-from flyby.core.motion.model.motion_model.consumption import Motors, SquaredTorque
+from flyby.core.motion.model.consumption import Motors, SquaredTorque
 from flyby.core.robot.inertia import Inertia
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_quaternion

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from flyby.core.errors import InputError
-from flyby.core.motion.model.motion_model.consumption import Motors, SquaredTorque
-from flyby.core.motion.timing.timing.stamping import StandingStillError
+from flyby.core.motion.model.consumption import Motors, SquaredTorque
+from flyby.core.motion.timing.stamping import StandingStillError
 from flyby.problems.free_motion.velocity_tuning import (
     Drive,
     FixedPath,
@@ -205,7 +205,7 @@ def test_toppra_agrees():
     ends = np.stack([knots[:-1], knots[1:]], -1)
     dq, ddq = spline(ends.ravel(), 1), spline(ends.ravel(), 2)
     dq, ddq = (part.reshape(400, 2, 2) for part in (dq, ddq))
-    from flyby.core.motion.timing.timing.stamping import joint_limits
+    from flyby.core.motion.timing.stamping import joint_limits
 
     path = FixedPath(
         joint_limits(np.diff(knots), dq, ddq, velocity, -acceleration, acceleration), dq, ddq

@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.timing.timing.stamping import Limits, joint_limits
-from flyby.core.motion.timing.timing.timing import Timing
+from flyby.core.motion.timing.stamping import Limits, joint_limits
+from flyby.core.motion.timing.timing import Timing
 from flyby.core.program.program import Program
 from flyby.core.program.zone import Radius
 from flyby.problems.free_motion.velocity_tuning import FixedPath, Rigid

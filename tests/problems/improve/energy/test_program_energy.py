@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from flyby.core.collision.proof.certificate import certify, scenes_of
 from flyby.core.errors import InputError, MotionError
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.model.motion_model.consumption import Motors, SquaredTorque
+from flyby.core.motion.model.consumption import Motors, SquaredTorque
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

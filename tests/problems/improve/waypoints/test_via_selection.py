@@ -15,7 +15,7 @@ from scipy.spatial import KDTree
 from flyby.core.arrays import FloatArray
 from flyby.core.collision.proof.certificate import certify, scenes_of
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.path.path.path import Path
+from flyby.core.motion.path.path import Path
 from flyby.core.program.move import Move, MoveJ, MoveL, Opaque
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

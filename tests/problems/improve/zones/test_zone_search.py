@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry, Mesh
-from flyby.core.collision.scene.scene.scene import CollisionScene
+from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.errors import MotionError
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import MoveC, MoveL
