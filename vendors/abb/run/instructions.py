@@ -12,11 +12,11 @@ from typing import Protocol
 
 from ....core.errors import InputError, SourceError
 from ....core.program.move import Wait
+from ....core.source.text.lexer import words
 from ..motion.moves import MOVES, MovesRun
 from ..motion.settings_instructions import SETTINGS, SettingsRun
 from ..motion.special_moves import SPECIAL_MOVES
 from ..motion.triggers import TRIGGER_DEFINITIONS, TRIGGER_MOVES
-from ..syntax.lexer import words
 from ..syntax.tree import Expression, Invoke, Name
 from ..values.arguments import bind
 from ..values.evaluator import Evaluator

@@ -6,7 +6,7 @@ WaitDO, WZDOSet, IODisable.
 
 from __future__ import annotations
 
-from ..syntax.lexer import words
+from ....core.source.text.lexer import words
 from ..syntax.tree import Invoke, Name, Text
 from ..values.arguments import bind
 from ..values.outputs import WRITING, held, write

@@ -19,12 +19,7 @@ from dataclasses import dataclass
 
 from ....core.source.text import cursor
 from ....core.source.text.files import SourceText, unbroken
-
-
-def words(text: str) -> frozenset[str]:
-    """The words of a text, for tables of names."""
-    return frozenset(text.split())
-
+from ....core.source.text.lexer import UNCLOSED, stray, words
 
 KEYWORDS = words(
     """alias and backward case connect const default div do else elseif endfor endfunc endif
@@ -167,12 +162,5 @@ def _stray(source: SourceText, position: int) -> Exception:
     blank = _BLANK.match(unbroken(source.text), position)
     start = blank.end() if blank else position
     character = source.text[start]
-    if character == '"':
-        return source.error("this string has no closing quote on its line", start)
-    if character == "\0" or not character.isprintable():
-        return source.error(
-            f"character {ord(character):#04x} does not belong in a RAPID text: the file is "
-            "binary or damaged",
-            start,
-        )
-    return source.error(f"{character!r} does not belong here", start)
+    message = UNCLOSED if character == '"' else stray(character, "a RAPID text")
+    return source.error(message, start)

@@ -13,8 +13,8 @@ import math
 
 import numpy as np
 
+from ....core.source.text.lexer import words
 from ....core.spatial.rotation import matrix_from_quaternion, quaternion_from_matrix
-from ..syntax.lexer import words
 from .operators import OperandError, cross, finite, hamilton
 from .records import Record
 from .text_functions import TEXT_FUNCTIONS, Computed

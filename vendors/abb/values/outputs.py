@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from ....core.source.execution.outputs import Outputs
-from ..syntax.lexer import words
+from ....core.source.text.lexer import words
 from ..syntax.tree import Expression
 from .scope import Scope
 from .types import Value

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from itertools import count
 
-from ....core.source.text.names import Names
+from ....core.source.write import declarations
+from ....core.source.write.declarations import Datum
 from ..values.records import Record
 from .formatting import literal
 from .numbers import number
@@ -26,82 +26,6 @@ STORAGE = {
 "RAPID Reference Manual", tooldata, wobjdata, loaddata: declared as persistent variables.
 """
 
-
-@dataclass(frozen=True, slots=True)
-class Datum:
-    """A value to be declared.
-
-    Args:
-        type: RAPID's data type.
-        text: the value's literal; of a triggdata, which has none, what defines it.
-        wanted: the name it had, None if it had none.
-        stem: what a name is made of if it had none.
-    """
-
-    type: str
-    text: str
-    wanted: str | None
-    stem: str
-
-    @classmethod
-    def of(cls, type_: str, record: Record, wanted: str | None, stem: str = "") -> Datum:
-        """A datum; names that differ in upper and lower case only are the same."""
-        return cls(type_, literal(record), wanted.casefold() if wanted else None, stem)
-
-
-class Declarations:
-    """Data in the order of their first use; names are given once all are known.
-
-    Names from the source go first, so that a made-up name never takes one away; a value without a
-    name takes that of an equal one.
-    """
-
-    def __init__(self) -> None:
-        self._spelling: dict[Datum, str | None] = {}
-
-    def add(self, type_: str, record: Record, wanted: str | None, stem: str = "") -> Datum:
-        """The datum of this value and name, declared from now on."""
-        datum = Datum.of(type_, record, wanted, stem)
-        self._spelling.setdefault(datum, wanted)
-        return datum
-
-    def add_undefined(self, type_: str, definition: str) -> Datum:
-        """A datum without an initial value; data of one definition are one."""
-        datum = Datum(type_, definition, None, "")
-        self._spelling.setdefault(datum, None)
-        return datum
-
-    def names(self, names: Names) -> dict[Datum, str]:
-        """A name for every datum."""
-        given: dict[Datum, str] = {}
-        equal: dict[tuple[str, str], str] = {}
-        for datum, wanted in self._spelling.items():
-            if wanted:
-                given[datum] = names.claim(wanted, FALLBACK[datum.type])
-                equal.setdefault((datum.type, datum.text), given[datum])
-        counters = {type_: _tens(stem) for type_, stem in COUNTED.items()}
-        for datum in self._spelling:
-            if datum in given:
-                continue
-            if (datum.type, datum.text) in equal:
-                given[datum] = equal[datum.type, datum.text]
-            elif datum.type in counters:
-                given[datum] = names.first_free(counters[datum.type])
-            else:
-                given[datum] = names.claim(datum.stem, FALLBACK[datum.type])
-        return given
-
-    def lines(self, names: dict[Datum, str]) -> list[str]:
-        """The declarations, by type and then by first use."""
-        texts = {names[datum]: datum for datum in self._spelling}
-        return [
-            f"{storage} {type_} {name}{_initial(datum)};"
-            for type_, storage in STORAGE.items()
-            for name, datum in texts.items()
-            if datum.type == type_
-        ]
-
-
 UNDEFINED = frozenset({"triggdata"})
 """Types without literals."""
 
@@ -119,8 +43,33 @@ COUNTED = {"jointtarget": "jp", "robtarget": "p", "triggdata": "trigg"}
 """Targets without a name are numbered in tens, as RobotStudio does it."""
 
 
-def _initial(datum: Datum) -> str:
-    return "" if datum.type in UNDEFINED else f" := {datum.text}"
+class Declarations(declarations.Declarations):
+    """The data of a module."""
+
+    types = tuple(STORAGE)
+
+    def add(self, type_: str, record: Record, wanted: str | None, stem: str = "") -> Datum:
+        """The datum of this value and name, declared from now on."""
+        return self.declare(datum(type_, record, wanted, stem), wanted)
+
+    def add_undefined(self, type_: str, definition: str) -> Datum:
+        """A datum without an initial value; data of one definition are one."""
+        return self.declare(Datum(type_, definition, None, "", FALLBACK[type_]), None)
+
+    def numbered(self) -> Mapping[str, Iterator[str]]:
+        """``p10``, ``p20``, …"""
+        return {type_: _tens(stem) for type_, stem in COUNTED.items()}
+
+    def line(self, datum: Datum, name: str) -> str:
+        """``CONST robtarget p10 := […];``"""
+        initial = "" if datum.type in UNDEFINED else f" := {datum.text}"
+        return f"{STORAGE[datum.type]} {datum.type} {name}{initial};"
+
+
+def datum(type_: str, record: Record, wanted: str | None, stem: str = "") -> Datum:
+    """A datum; names that differ in upper and lower case only are the same."""
+    folded = wanted.casefold() if wanted else None
+    return Datum(type_, literal(record), folded, stem, FALLBACK[type_])
 
 
 def _tens(stem: str) -> Iterator[str]:

@@ -17,9 +17,9 @@ from ....core.errors import InputError
 from ....core.program.event import Event, EventAnchor
 from ....core.program.move import Move, MoveJ
 from ....core.program.target import JointTarget
+from ....core.source.write.declarations import Datum
 from ....core.source.write.options import AS_COMMENTS, OpaqueStyle
 from ..values.records import MM
-from .declarations import Datum
 from .numbers import number
 from .operands import Operand, Operands
 

@@ -14,6 +14,7 @@ from ....core.program.speed import Speed
 from ....core.program.target import Configuration, JointTarget, PoseTarget
 from ....core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from ....core.program.zone import Fine, Radius, Zone
+from ....core.source.write.declarations import Datum
 from ..motion.configuration import AbbConfiguration
 from ..values.predefined import NAMES, SPEEDS, ZONES
 from ..values.records import (
@@ -28,7 +29,7 @@ from ..values.records import (
     work_object_record,
     zone_record,
 )
-from .declarations import Datum, Declarations, sized
+from .declarations import Declarations, sized
 from .formatting import literal
 from .options import RapidOptions, ZoneStyle
 

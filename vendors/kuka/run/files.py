@@ -13,7 +13,7 @@ from pathlib import Path
 
 from ....core.errors import FlybyError
 from ....core.source.text.files import SourceFile, read_source
-from ..syntax.lexer import words
+from ....core.source.text.lexer import words
 from ..values.library import CONFIG
 
 SUFFIXES = (".src", ".dat")

@@ -16,12 +16,7 @@ from dataclasses import dataclass
 
 from ....core.source.text import cursor
 from ....core.source.text.files import SourceText, unbroken
-
-
-def words(text: str) -> frozenset[str]:
-    """The words of a text, for tables of names."""
-    return frozenset(text.split())
-
+from ....core.source.text.lexer import UNCLOSED, stray, words
 
 KEYWORDS = words(
     """and anin anout b_and b_exor b_not b_or brake case circ circ_rel continue decl def default
@@ -139,13 +134,7 @@ def _stray(source: SourceText, position: int) -> Exception:
     start = blank.end() if blank else position
     character = source.text[start]
     if character == '"':
-        return source.error("this string has no closing quote on its line", start)
+        return source.error(UNCLOSED, start)
     if character == "'":
         return source.error("this is no number in quotes: 'B0101' and 'H1F' are", start)
-    if character == "\0" or not character.isprintable():
-        return source.error(
-            f"character {ord(character):#04x} does not belong in a KRL text: the file is binary or "
-            "damaged",
-            start,
-        )
-    return source.error(f"{character!r} does not belong here", start)
+    return source.error(stray(character, "a KRL text"), start)

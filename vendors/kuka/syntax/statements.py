@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ....core.errors import Span
+from ....core.source.text.lexer import words
 from .cursor import Cursor
 from .declarations import parse_declaration, parse_enum, parse_signal, parse_struc
 from .expression_tree import Call, Expression
 from .expressions import parse_expression, parse_name, parse_name_or_call
-from .lexer import END, ENUM, NAME, NEWLINE, words
+from .lexer import END, ENUM, NAME, NEWLINE
 from .tree import (
     Assign,
     Block,

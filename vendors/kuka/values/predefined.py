@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from ..syntax.lexer import words
+from ....core.source.text.lexer import words
 from .frames import null_frame
 from .scope import Cell
 from .values import Array, Choice, Struct, Value

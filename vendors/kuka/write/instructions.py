@@ -16,8 +16,9 @@ from ....core.program.program import Program
 from ....core.program.target import JointTarget, PoseTarget, Target
 from ....core.program.tool import Load
 from ....core.robot.model import Robot
+from ....core.source.write.declarations import Datum
 from ....core.spatial.pose import IDENTITY, Pose
-from .declarations import DataList, Datum
+from .declarations import DataList
 from .formatting import MM, e6axis, e6pos, frame, load
 from .numbers import number
 from .payload import flange_load

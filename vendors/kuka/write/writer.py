@@ -13,10 +13,11 @@ from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.model import Robot
 from ....core.source.text.files import lines_of
 from ....core.source.text.names import Names
+from ....core.source.write.declarations import Datum
 from ....core.source.write.options import OpaqueStyle
 from ..motion.configuration import KukaConfiguration, label
 from ..syntax.names import NAME_RULES
-from .declarations import DataList, Datum
+from .declarations import DataList
 from .formatting import ARM_AXES
 from .instructions import Line, Phrases, stated_positions, trigger
 from .numbers import number

@@ -16,13 +16,8 @@ from dataclasses import dataclass
 from ....core.errors import SourceError
 from ....core.source.text import cursor
 from ....core.source.text.files import unbroken
+from ....core.source.text.lexer import UNCLOSED, stray, words
 from .texts import Texts
-
-
-def words(text: str) -> frozenset[str]:
-    """The words of a text, for tables of names."""
-    return frozenset(text.split())
-
 
 KEYWORDS = words(
     """and break continue def elif else end enter_critical exit_critical False global halt if join
@@ -152,7 +147,7 @@ def _stray(texts: Texts, text: str, base: int, position: int) -> SourceError:
     character = text[start]
     at = start + base
     if character in "\"'":
-        return texts.error("this string has no closing quote on its line", at)
+        return texts.error(UNCLOSED, at)
     if character in "{}":
         return texts.error(
             f"'{character}' does not belong in a URScript: is this a template whose placeholders "
@@ -163,10 +158,5 @@ def _stray(texts: Texts, text: str, base: int, position: int) -> SourceError:
         return texts.error(f"{character} is no quote of URScript: write \" or '", at)
     if character == "<" and text.startswith("<?xml"):
         return texts.error("this is XML and no URScript: export the program as .script", at)
-    if character == "\0" or not character.isprintable():
-        return texts.error(
-            f"character {ord(character):#04x} does not belong in a URScript: the file is binary "
-            "or damaged (.urp files are compressed: export the program as .script)",
-            at,
-        )
-    return texts.error(f"{character!r} does not belong here", at)
+    instead = " (.urp files are compressed: export the program as .script)"
+    return texts.error(stray(character, "a URScript", instead), at)

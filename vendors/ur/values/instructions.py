@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..syntax.lexer import words
+from ....core.source.text.lexer import words
 
 
 @dataclass(frozen=True, slots=True)
