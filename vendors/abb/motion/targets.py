@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 NORM_TOLERANCE = 1e-3
 """A quaternion whose length is off by more is a mistake, no rounding."""
 EXACT = 1e-6
-"""What a `Pose` takes as it stands, and `literals` does: reading and writing keep the digits."""
+"""What a `Pose` takes as it stands, and `records` does: reading and writing keep the digits."""
 ROUNDING = 2e-5
 """What five written decimals leave of a quaternion's unit length: not worth a note."""
 

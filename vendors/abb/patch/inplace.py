@@ -14,7 +14,7 @@ from ....core.source.patch.uses import Kind, Use
 from ..syntax.tree import Name
 from ..values import predefined
 from ..write.operands import refuse_speed
-from .literals import ZONE_LEAVES, Leaf, leaves, millimetres_leaf, plain_leaf, with_radius
+from .literals import ZONE_NUMBERS, LiteralNumber, as_it_is, in_millimetres, numbers_of, with_radius
 from .places import Operand, Places
 
 Texts = Mapping[Span, str]
@@ -83,19 +83,21 @@ class InPlace:
         if len(numbers) == 1:
             return self._option_text(use, numbers[0])
         if isinstance(use.new, Fine | Radius):
-            return self._zone_texts(use) if len(numbers) == ZONE_LEAVES else None
+            return self._zone_texts(use) if len(numbers) == ZONE_NUMBERS else None
         if isinstance(use.new, Speed):
             refuse_speed(use.new)
             if use.new.duration is not None:
                 return None
-        found = leaves(use.new, use.old, self._axis_kinds)
-        return self._leaf_texts(found, numbers) if len(found) == len(numbers) else None
+        found = numbers_of(use.new, use.old, self._axis_kinds)
+        return self._number_texts(found, numbers) if len(found) == len(numbers) else None
 
-    def _leaf_texts(self, found: Sequence[Leaf], numbers: Sequence[Span | None]) -> Texts:
+    def _number_texts(
+        self, found: Sequence[LiteralNumber], numbers: Sequence[Span | None]
+    ) -> Texts:
         return {
-            span: leaf.text_for(self._places.text(span))
-            for leaf, span in zip(found, numbers, strict=True)
-            if span is not None and leaf.value is not None
+            span: number.text_for(self._places.text(span))
+            for number, span in zip(found, numbers, strict=True)
+            if span is not None and number.value is not None
         }
 
     def _zone_texts(self, use: Use) -> Texts | None:
@@ -109,32 +111,32 @@ class InPlace:
         finep = {truth: said if (said.lower() == "true") is stops else str(stops).upper()}
         if stops:
             return finep
-        found = leaves(use.new, use.old, self._axis_kinds)
-        return {**finep, **self._leaf_texts(found, use.origin.numbers)}
+        found = numbers_of(use.new, use.old, self._axis_kinds)
+        return {**finep, **self._number_texts(found, use.origin.numbers)}
 
-    def _option_text(self, use: Use, number: Span | None) -> Texts | None:
+    def _option_text(self, use: Use, span: Span | None) -> Texts | None:
         r"""The number of ``\V``, ``\T`` or ``\Z``."""
         operand = self._operand(use)
-        if number is None or len(operand.options) != 1:
+        if span is None or len(operand.options) != 1:
             return None
-        leaf = _option_leaf(operand, operand.options[0].option or "", use)
-        return None if leaf is None else self._leaf_texts([leaf], [number])
+        number = _option_number(operand, operand.options[0].option or "", use)
+        return None if number is None else self._number_texts([number], [span])
 
     def _operand(self, use: Use) -> Operand:
         return self._places.operand(use.statement, use.origin.span)
 
 
-def _option_leaf(operand: Operand, option: str, use: Use) -> Leaf | None:
+def _option_number(operand: Operand, option: str, use: Use) -> LiteralNumber | None:
     old, new = use.old, use.new
     if isinstance(old, Speed) and isinstance(new, Speed):
         if option == "t" and new.duration is not None:
             fits = alike(replace(old, duration=new.duration), new)
-            return plain_leaf(new.duration) if fits else None
+            return as_it_is(new.duration) if fits else None
         if option == "v" and new.tcp is not None:
-            return millimetres_leaf(new.tcp) if alike(replace(old, tcp=new.tcp), new) else None
+            return in_millimetres(new.tcp) if alike(replace(old, tcp=new.tcp), new) else None
     if option == "z" and isinstance(new, Radius) and isinstance(old, Radius):
         fits = alike(old, new) or alike(_resized(operand, old, new.tcp), new)
-        return millimetres_leaf(new.tcp) if fits else None
+        return in_millimetres(new.tcp) if fits else None
     return None
 
 

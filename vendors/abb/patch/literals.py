@@ -1,6 +1,6 @@
-"""The numbers of a move's part as they stand in its literal, leaf by leaf.
+"""The numbers of a move's part as they stand in its literal, one by one.
 
-A part of a move (target, auxiliary point, speed, zone) has the leaves of its RAPID record, left to
+A part of a move (target, auxiliary point, speed, zone) has the numbers of its RAPID record, left to
 right. Each knows what it is to be read as, so that it can be written as the shortest decimal that
 comes back unchanged, and left alone where the text already says it.
 """
@@ -21,12 +21,12 @@ from ..motion.configuration import AbbConfiguration
 from ..syntax.lexer import number_value
 from ..values.records import EXTERNAL_AXES, MM, UNUSED_AXIS, metres
 
-ZONE_LEAVES = 6
-JOINT_LEAVES = 12
+ZONE_NUMBERS = 6
+JOINT_NUMBERS = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Leaf:
+class LiteralNumber:
     """One number of a literal.
 
     Args:
@@ -59,8 +59,10 @@ class Leaf:
         return self.text
 
 
-def leaves(new: MovePart, old: MovePart | None, axis_kinds: Sequence[str]) -> tuple[Leaf, ...]:
-    """The leaves of a part.
+def numbers_of(
+    new: MovePart, old: MovePart | None, axis_kinds: Sequence[str]
+) -> tuple[LiteralNumber, ...]:
+    """The numbers of a part.
 
     Args:
         new: what the literal is to say; not a stop point, which has no numbers.
@@ -71,15 +73,15 @@ def leaves(new: MovePart, old: MovePart | None, axis_kinds: Sequence[str]) -> tu
         InputError: RAPID cannot say it.
     """
     if isinstance(new, PoseTarget):
-        return _pose_leaves(new, old if isinstance(old, PoseTarget) else None, axis_kinds)
+        return _pose_numbers(new, old if isinstance(old, PoseTarget) else None, axis_kinds)
     if isinstance(new, JointTarget):
-        if len(new.joints) != JOINT_LEAVES - EXTERNAL_AXES:
+        if len(new.joints) != JOINT_NUMBERS - EXTERNAL_AXES:
             raise InputError(f"a jointtarget has 6 arm axes, not {len(new.joints)}")
         return (*map(_degrees, new.joints), *_external(new.external, axis_kinds))
     if isinstance(new, Speed):
-        return _speed_leaves(new)
+        return _speed_numbers(new)
     if isinstance(new, Radius):
-        return _zone_leaves(new)
+        return _zone_numbers(new)
     raise InputError(f"RAPID has no zone by {type(new).__name__}: give it a radius (TCP distance)")
 
 
@@ -87,7 +89,7 @@ def record_text(new: MovePart, axis_kinds: Sequence[str]) -> str:
     """The literal of a part that is declared anew."""
     if isinstance(new, Fine):
         return "[TRUE,0,0,0,0,0,0]"
-    texts = [leaf.text for leaf in leaves(new, None, axis_kinds)]
+    texts = [number.text for number in numbers_of(new, None, axis_kinds)]
     if isinstance(new, Radius):
         return f"[FALSE,{','.join(texts)}]"
     if isinstance(new, Speed):
@@ -97,14 +99,14 @@ def record_text(new: MovePart, axis_kinds: Sequence[str]) -> str:
     return "[" + ",".join(f"[{','.join(next(rest) for _ in range(n))}]" for n in groups) + "]"
 
 
-def millimetres_leaf(value: float) -> Leaf:
+def in_millimetres(value: float) -> LiteralNumber:
     """A length in m, or a speed in m/s."""
-    return Leaf(value, value / MM, _metres)
+    return LiteralNumber(value, value / MM, _metres)
 
 
-def plain_leaf(value: float) -> Leaf:
+def as_it_is(value: float) -> LiteralNumber:
     """A number without a unit, or one that has the same unit on both sides."""
-    return Leaf(value, value, _same)
+    return LiteralNumber(value, value, _same)
 
 
 def _number(text: str) -> float:
@@ -120,45 +122,45 @@ def _same(value: float) -> float:
     return value
 
 
-def _degrees(value: float) -> Leaf:
-    return Leaf(value, math.degrees(value), math.radians)
+def _degrees(value: float) -> LiteralNumber:
+    return LiteralNumber(value, math.degrees(value), math.radians)
 
 
-def _pose_leaves(
+def _pose_numbers(
     new: PoseTarget, old: PoseTarget | None, axis_kinds: Sequence[str]
-) -> tuple[Leaf, ...]:
+) -> tuple[LiteralNumber, ...]:
     # A quaternion is of unit length as a whole: all four change, or none.
     kept = old is not None and old.pose.quaternion == new.pose.quaternion
-    rotation = [Leaf(v, v, _same, kept=kept) for v in new.pose.quaternion]
+    rotation = [LiteralNumber(v, v, _same, kept=kept) for v in new.pose.quaternion]
     return (
-        *map(millimetres_leaf, new.pose.position),
+        *map(in_millimetres, new.pose.position),
         *rotation,
         *_configuration(new.configuration),
         *_external(new.external, axis_kinds),
     )
 
 
-def _configuration(configuration: Configuration | None) -> list[Leaf]:
+def _configuration(configuration: Configuration | None) -> list[LiteralNumber]:
     if configuration is None:
-        return [Leaf(None, 0.0, _same)] * 4
+        return [LiteralNumber(None, 0.0, _same)] * 4
     if not isinstance(configuration, AbbConfiguration):
         raise InputError(f"{configuration} is no confdata: label the target for this robot")
     parts = (configuration.cf1, configuration.cf4, configuration.cf6, configuration.cfx)
-    return [plain_leaf(float(part)) for part in parts]
+    return [as_it_is(float(part)) for part in parts]
 
 
-def _external(values: Sequence[float], kinds: Sequence[str]) -> list[Leaf]:
+def _external(values: Sequence[float], kinds: Sequence[str]) -> list[LiteralNumber]:
     if len(values) > len(kinds):
         raise InputError(
             f"the target has {len(values)} external axes, but the robot that the program was read "
             f"for has {len(kinds)}: read it again with its robot named"
         )
     used = [
-        millimetres_leaf(value) if kind == "linear" else _degrees(value)
+        in_millimetres(value) if kind == "linear" else _degrees(value)
         for value, kind in zip(values, kinds, strict=False)
     ]
     # Where no axis is programmed some texts say 9E9 and others 0; both are read alike.
-    free = Leaf(UNUSED_AXIS, UNUSED_AXIS, _same, read=_unused)
+    free = LiteralNumber(UNUSED_AXIS, UNUSED_AXIS, _same, read=_unused)
     return [*used, *[free] * (EXTERNAL_AXES - len(used))]
 
 
@@ -166,18 +168,18 @@ def _unused(value: float) -> float:
     return UNUSED_AXIS if value == 0 or abs(value) >= UNUSED_AXIS else value
 
 
-def _speed_leaves(speed: Speed) -> tuple[Leaf, ...]:
+def _speed_numbers(speed: Speed) -> tuple[LiteralNumber, ...]:
     if speed.tcp is None or speed.reorientation is None:
         raise InputError("a speeddata states the speeds of TCP and reorientation: give both")
     return (
-        millimetres_leaf(speed.tcp),
+        in_millimetres(speed.tcp),
         _degrees(speed.reorientation),
-        millimetres_leaf(speed.external_linear or 0.0),
+        in_millimetres(speed.external_linear or 0.0),
         _degrees(speed.external_angular or 0.0),
     )
 
 
-def _zone_leaves(zone: Radius) -> tuple[Leaf, ...]:
+def _zone_numbers(zone: Radius) -> tuple[LiteralNumber, ...]:
     for what, size in (("reorientation", zone.reorientation), ("external", zone.external)):
         if size < zone.tcp:
             raise InputError(
@@ -190,11 +192,11 @@ def _zone_leaves(zone: Radius) -> tuple[Leaf, ...]:
         return max(zone.tcp, _metres(value))
 
     return (
-        millimetres_leaf(zone.tcp),
-        Leaf(zone.reorientation, zone.reorientation / MM, _metres, widened),
-        Leaf(zone.external, zone.external / MM, _metres, widened),
+        in_millimetres(zone.tcp),
+        LiteralNumber(zone.reorientation, zone.reorientation / MM, _metres, widened),
+        LiteralNumber(zone.external, zone.external / MM, _metres, widened),
         _degrees(zone.angle),
-        millimetres_leaf(zone.external_linear),
+        in_millimetres(zone.external_linear),
         _degrees(zone.external_angular),
     )
 

@@ -16,7 +16,7 @@ from ..values import predefined
 from ..values.records import MM
 from ..write.operands import refuse_speed
 from .additions import Additions
-from .literals import millimetres_leaf, record_text, with_radius
+from .literals import in_millimetres, record_text, with_radius
 from .places import Operand, Places
 
 TYPES = {
@@ -65,7 +65,7 @@ class Substitutes:
         if not timed and new.tcp is not None:
             for base, text in self._bases(use, operand):
                 if isinstance(base, Speed) and alike(replace(_bare(base), tcp=new.tcp), bare):
-                    return f"{text}\\V:={millimetres_leaf(new.tcp).text}"
+                    return f"{text}\\V:={in_millimetres(new.tcp).text}"
         return self._declared(use, _sized_stem(use, "v", new.tcp or 0.0)) + timed
 
     def _zone(self, use: Use, operand: Operand) -> str:
@@ -77,7 +77,7 @@ class Substitutes:
         if isinstance(new, Radius):
             for base, text in self._bases(use, operand):
                 if isinstance(base, Radius) and alike(with_radius(base, new.tcp), new):
-                    return f"{text}\\Z:={millimetres_leaf(new.tcp).text}"
+                    return f"{text}\\Z:={in_millimetres(new.tcp).text}"
         size = new.tcp if isinstance(new, Radius) else 0.0
         return self._declared(use, _sized_stem(use, "z", size))
 

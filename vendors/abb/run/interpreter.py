@@ -1,7 +1,7 @@
 """Runs a program: statements → the moves, waits and kept statements that the robot goes through.
 
 Values that only the running controller has (signals, clocks, an operator's answers) travel as
-`Unknown` through assignments; where a branch or a loop depends on one, `branching` decides, and
+`Unknown` through assignments; where a branch or a loop depends on one, `flow` decides, and
 where a move does, it is refused.
 """
 

@@ -1,7 +1,7 @@
 """RAPID's data types: what a value of each looks like, and which component stands where.
 
 Values are Python's: ``num`` and ``dnum`` are float, ``bool`` bool, ``string`` str, records and
-arrays tuples in RAPID's own order and units, as `literals` takes them. Numbers are kept in double
+arrays tuples in RAPID's own order and units, as `records` takes them. Numbers are kept in double
 precision, where a controller keeps a ``num`` in single.
 
 Component names: "RAPID Reference Manual", data types.
