@@ -114,7 +114,7 @@ def thousand_moves(case: str) -> Iterator[Figure]:
         plan = driver.plan(moves)
         stamped = driver.stamp(moves, plan)
         driver.energy(moves, stamped)
-        derivatives = Derivatives(driver, moves, stamped)
+        derivatives = Derivatives(moves, stamped)
         derivatives.duration()
         derivatives.energy()
 

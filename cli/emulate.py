@@ -28,7 +28,7 @@ from .options import (
 from .outputs import check_outputs, check_plot_name, write_all
 
 if TYPE_CHECKING:
-    from ..core.motion.emulator.controller import Run
+    from ..core.motion.emulator.run import Run
     from ..core.program.program import Program
     from ..core.program.target import JointTarget
     from ..core.robot.model import Robot

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..core.arrays import FloatArray
 from ..core.cell.cell import Cell
-from ..core.motion.emulator.controller import Run
+from ..core.motion.emulator.run import Run
 from .geometry import path_geometry
 from .solids import obstacle_triangles, robot_triangles, skeleton
 from .style import STYLE, figure_file

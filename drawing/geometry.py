@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 
 from ..core.arrays import FloatArray
-from ..core.motion.emulator.controller import Run
 from ..core.motion.emulator.move_figures import zone_reaches
+from ..core.motion.emulator.run import Run
 from ..core.motion.geometry.segments import ARC_SEGMENT, JOINT_SEGMENT
 from ..core.program.tool import WORLD
 from ..core.robot.chain_kernels import poses

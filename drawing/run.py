@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..core.arrays import FloatArray
-from ..core.motion.emulator.controller import Run
+from ..core.motion.emulator.run import Run
 from ..core.robot.model import Robot
 from .geometry import PathGeometry, path_geometry, tcp_speed
 from .style import LIMIT, NOMINAL, SPEED, STOP, STYLE, ZONE, figure_file

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from ..core.errors import FlybyError, InputError
-from ..core.motion.emulator.controller import Controller, Run
+from ..core.motion.emulator.controller import Controller
+from ..core.motion.emulator.run import Run
 from ..core.motion.model.motion_model import ArcTurn
 from ..core.program.move import MoveC
 from ..core.program.program import Program

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.arrays import FloatArray, IntArray
-from ..core.motion.emulator.controller import Run
+from ..core.motion.emulator.run import Run
 from ..core.motion.geometry.swivel import swivel
 from ..core.motion.model.motion_model import LineTurn, MotionModel, Overlap
 from ..core.program.move import Move, MoveC, MoveJ

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from ..errors import FlybyError, MotionError, SourceError
-from ..motion.emulator.controller import Controller, Run
+from ..motion.emulator.controller import Controller
+from ..motion.emulator.run import Run
 from ..program.move import Move, Statement
 from ..program.program import Program
 from ..program.target import JointTarget

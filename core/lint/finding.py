@@ -12,7 +12,7 @@ from ..program.program import Program
 
 if TYPE_CHECKING:
     from ..dialect import Wording
-    from ..motion.emulator.controller import Run
+    from ..motion.emulator.run import Run
     from ..robot.model import Robot
 
 Subject = TypeVar("Subject")

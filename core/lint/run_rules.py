@@ -8,9 +8,9 @@ import numpy as np
 
 from ..motion.emulator.binding_limits import limit_shares
 from ..motion.emulator.move_figures import lengths_and_speeds, zone_reaches
+from ..motion.geometry.corners import STOP
 from ..motion.geometry.segments import JOINT_SEGMENT, LINE_SEGMENT
-from ..motion.geometry.zones import STOP
-from ..motion.path.path import NEAR_SINGULAR
+from ..motion.path.building import NEAR_SINGULAR
 from ..program.move import MoveC, MoveJ
 from ..program.zone import Fine, Radius
 from ..robot.joint import JointKind

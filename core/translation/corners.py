@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from ..arrays import FloatArray
 from ..dialect import Dialect
+from ..motion.geometry.corners import POSITION, STOP, TURNING
 from ..motion.geometry.segments import JOINT_SEGMENT
-from ..motion.geometry.zones import POSITION, STOP, TURNING
 from ..motion.model.motion_model import Overlap
 from ..motion.path.path import OverlapError, Path, Route
 from ..program.program import Program

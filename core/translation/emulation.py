@@ -12,9 +12,9 @@ from ..errors import MotionError
 from ..motion.emulator.controller import Controller
 from ..motion.geometry.pieces import Sampling
 from ..motion.model.motion_model import MotionModel
-from ..motion.path.path import OverlapError, Path, Route, build_path
+from ..motion.path.building import build_path
+from ..motion.path.path import OverlapError, Path, Route
 from ..motion.path.route import RouteFinder
-from ..motion.timing.limits import interval_samples
 from ..motion.timing.timing import Timing
 from ..program.program import Program
 from ..program.target import JointTarget
@@ -130,7 +130,7 @@ class Peaks:
     def of(cls, timing: Timing) -> Peaks:
         """The peaks of a stamped path."""
         states, stamp, segment = timing.along.states, timing.stamp, timing.interval_segments
-        left = interval_samples(timing.path.pieces)
+        left = timing.path.pieces.interval_samples
         count = len(timing.path.route.moves)
         change = (stamp.x[1:] - stamp.x[:-1]) / (2 * timing.along.spacing)
         joint, peaks = np.zeros((count, states.dq.shape[1])), np.zeros((3, count))

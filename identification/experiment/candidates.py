@@ -11,7 +11,8 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.errors import FlybyError
-from ...core.motion.emulator.controller import Controller, Run
+from ...core.motion.emulator.controller import Controller
+from ...core.motion.emulator.run import Run
 from ...core.program.move import Move, MoveC, MoveJ
 from ...core.program.program import Program
 from ...core.program.speed import Speed

@@ -6,8 +6,9 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.errors import FlybyError
-from ...core.motion.emulator.controller import Controller, Run
+from ...core.motion.emulator.controller import Controller
 from ...core.motion.emulator.move_figures import zone_reaches
+from ...core.motion.emulator.run import Run
 from ...core.motion.model.motion_model import Overlap
 from ...core.program.move import MoveJ
 from ...core.program.program import Program

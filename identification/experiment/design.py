@@ -15,7 +15,8 @@ from ...core.collision.proof.certificate import certify, scenes_of
 from ...core.collision.proof.verdict import Certificate
 from ...core.collision.scene.scene import CollisionScene
 from ...core.errors import FlybyError, InputError
-from ...core.motion.emulator.controller import Controller, Run
+from ...core.motion.emulator.controller import Controller
+from ...core.motion.emulator.run import Run
 from ...core.program.move import Move, MoveC
 from ...core.program.program import Program
 from ...core.program.target import JointTarget, PoseTarget

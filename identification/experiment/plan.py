@@ -12,7 +12,7 @@ import numpy as np
 from ...core.arrays import FloatArray
 from ...core.collision.proof.verdict import Certificate
 from ...core.errors import InputError
-from ...core.motion.emulator.controller import Run
+from ...core.motion.emulator.run import Run
 from ...core.program.program import Program
 from ...core.program.tool import FLANGE, Tool
 from ...core.robot.model import Robot

@@ -13,8 +13,8 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from ...core.arrays import FloatArray
+from ...core.motion.command.commanded_motion import stamped_motion
 from ...core.motion.command.elasticity import RIGID
-from ...core.motion.command.ramps import stamped_motion
 from ...core.motion.command.smoothing import Motion, Smoothing, States
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.model.motion_model import MotionModel

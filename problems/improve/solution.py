@@ -11,8 +11,8 @@ import numpy as np
 from ...core.arrays import FloatArray
 from ...core.cell.floor import FLOOR
 from ...core.errors import InputError, Note
-from ...core.motion.emulator.controller import Controller, Run
-from ...core.motion.timing.limits import interval_samples
+from ...core.motion.emulator.controller import Controller
+from ...core.motion.emulator.run import Run
 from ...core.motion.timing.timing import Timing
 from ...core.program.program import Program
 from ...core.robot.model import Robot
@@ -233,7 +233,7 @@ def _between(index: int, before: FloatArray, after: FloatArray) -> Moved | None:
 def _peak_acceleration(timing: Timing) -> float:
     """p' σ̈ + p'' σ̇² at both ends of every interval."""
     states, stamp = timing.along.states, timing.stamp
-    left = interval_samples(timing.path.pieces)
+    left = timing.path.pieces.interval_samples
     ends = np.stack([left, left + 1], -1)
     x = np.stack([stamp.x[:-1], stamp.x[1:]], -1)[..., None]
     rate, bend = states.v[ends, :3], states.a[ends, :3]

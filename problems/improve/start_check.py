@@ -11,7 +11,8 @@ from ...core.cell.floor import FLOOR, LIFT
 from ...core.collision.proof.certificate import SceneOf, certify
 from ...core.collision.proof.verdict import Certificate, Verdict
 from ...core.errors import MotionError
-from ...core.motion.emulator.controller import Controller, Run
+from ...core.motion.emulator.controller import Controller
+from ...core.motion.emulator.run import Run
 
 _TOLD = 1e-4
 """m to which the clearance that there is is told."""

@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 from ...core.arrays import FloatArray
 from ...core.errors import MotionError
 from ...core.motion.command.trajectory import Trajectory
-from ...core.motion.emulator.controller import Controller, Run
+from ...core.motion.emulator.controller import Controller
+from ...core.motion.emulator.run import Run
 from ...core.motion.geometry.pieces import Sampling
 from ...core.motion.gradients.derivatives import Derivatives
 from ...core.motion.model.motion_model import LineTurn, MotionModel
@@ -204,7 +205,7 @@ class EmulationChecks(Subject):
     ) -> None:
         robot, run = self._drive(data, fly_by_zones(self.zones))
         controller, program = self.controller(robot), run.program
-        gradient = Derivatives(controller, program, run.timing).duration()
+        gradient = Derivatives(program, run.timing).duration()
         i = round(share * (len(program.moves) - 1))
         move = program.moves[i]
         if isinstance(move.target, JointTarget):

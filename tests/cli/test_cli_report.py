@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from flyby.cli.report import Report, make_report
 from flyby.core.arrays import FloatArray
-from flyby.core.motion.emulator.controller import Controller, Run
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.emulator.run import Run
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Statement, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

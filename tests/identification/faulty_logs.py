@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flyby.core.motion.emulator.controller import Controller, Run
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.emulator.run import Run
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import strategies as st
 from hypothesis.errors import Unsatisfiable
 
-from flyby.core.motion.emulator.controller import Controller, Run
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.emulator.run import Run
 from flyby.core.motion.geometry.pieces import Sampling
 from flyby.core.motion.gradients.derivatives import Derivatives
 from flyby.core.motion.model.blend import Blend

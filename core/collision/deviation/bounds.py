@@ -23,7 +23,8 @@ from numba import njit
 
 from ...arrays import FloatArray, IntArray
 from ...motion.command.smoothing import Smoothing
-from ...motion.emulator.controller import Controller, Run
+from ...motion.emulator.controller import Controller
+from ...motion.emulator.run import Run
 from ...motion.model.point_masses import filled
 from ...motion.path.path import Path
 from ...motion.timing.timing import Timing

@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
-from ...motion.command.ramps import way_slopes
-from ...motion.timing.limits import interval_samples
+from ...motion.command.commanded_motion import way_slopes
 from ...motion.timing.timing import Timing
 from .speed_bounds import Allowed
 
@@ -92,7 +91,7 @@ def _moving(
     part = slice(allowed.first, allowed.first + len(allowed.spacing))
     way, bent = _ways(timing, part)
     step = (z[:, 1] - z[:, 0]) * allowed.spacing[k]
-    end = interval_samples(timing.path.pieces)[part.stop - 1] + 1
+    end = timing.path.pieces.interval_samples[part.stop - 1] + 1
     middle = z.mean(axis=1)
     at = [_values(allowed.slope, k, share) for share in (z[:, 0], middle, z[:, 1])]
     spread = np.ptp(allowed.bend, axis=0)[k]
@@ -123,7 +122,7 @@ def _values(coefficients: FloatArray, k: IntArray, z: FloatArray) -> FloatArray:
 
 def _sigma(timing: Timing, k: IntArray, z: FloatArray) -> FloatArray:
     """(C,), σ at shares z of intervals k, as `Timing` has it."""
-    left = interval_samples(timing.path.pieces)[k]
+    left = timing.path.pieces.interval_samples[k]
     sigma, rate, spacing = timing.path.sigma, timing.along.rate, timing.along.spacing[k]
     rise = sigma[left + 1] - sigma[left]
     lead, tail = spacing / rate[left] - rise, rise - spacing / rate[left + 1]
@@ -135,7 +134,7 @@ def _ways(timing: Timing, part: slice) -> tuple[FloatArray, FloatArray]:
 
     Without ramp ℓ itself will do for λ.
     """
-    left, spacing = interval_samples(timing.path.pieces)[part], timing.along.spacing[part]
+    left, spacing = timing.path.pieces.interval_samples[part], timing.along.spacing[part]
     if timing.ramp == 0.0:
         return np.ones((len(left), 2)), np.zeros(len(left))
     slope, rate = way_slopes(timing), timing.along.rate

@@ -17,7 +17,6 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray
-from ...motion.timing.limits import interval_samples
 from ...motion.timing.timing import Timing
 
 _LOOSER = 1e-9
@@ -73,7 +72,7 @@ def greatest(timing: Timing) -> FloatArray:
 
 def coefficients(timing: Timing, part: slice) -> tuple[FloatArray, FloatArray]:
     """Bernstein coefficients of q' (5, K, N) and q'' (4, K, N) on K intervals."""
-    states, left = timing.along.states, interval_samples(timing.path.pieces)[part]
+    states, left = timing.along.states, timing.path.pieces.interval_samples[part]
     h = timing.along.spacing[part, None]
     q0, q1 = states.q[left], states.q[left + 1]
     v0, v1 = h * states.dq[left], h * states.dq[left + 1]

@@ -12,7 +12,8 @@ import numpy as np
 
 from ...cell.cell import Cell
 from ...errors import InputError
-from ...motion.emulator.controller import Controller, Run
+from ...motion.emulator.controller import Controller
+from ...motion.emulator.run import Run
 from ...motion.path.tcp_walk import JOINED
 from ...program.tool import Tool
 from ..deviation.bounds import Straying, parts_of

@@ -16,11 +16,10 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
+from ...motion.geometry.corners import POSITION
 from ...motion.geometry.curve_bounds import expand
-from ...motion.geometry.curves import Curves, parameter_jet
-from ...motion.geometry.zones import POSITION
+from ...motion.geometry.curves import Curves, Samples, parameter_jet
 from ...motion.path.path import Path
-from ...motion.path.tcp_samples import Samples
 from ...robot.chain import Chain
 from .boxes import Boxes
 from .tcp_enclosure import enclose

@@ -16,6 +16,7 @@ from numba import njit
 
 from ...arrays import FloatArray, IntArray
 from ...motion.geometry.curve_bounds import jerk_bounds
+from ...motion.geometry.curves import Samples, TcpCurves
 from ...motion.path.branch_proof import (
     LEAST,
     TubeWork,
@@ -24,15 +25,7 @@ from ...motion.path.branch_proof import (
     make_tube_work,
     stays_in_tube,
 )
-from ...motion.path.tcp_samples import (
-    CONVERGED,
-    SINGULAR,
-    Samples,
-    States,
-    TcpCurves,
-    make_scratch,
-    state_at,
-)
+from ...motion.path.tcp_samples import CONVERGED, SINGULAR, States, make_scratch, state_at
 from ...robot.chain import Chain
 from ...robot.chain_bounds import bias
 from ...robot.chain_kernels import jacobians

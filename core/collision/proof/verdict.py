@@ -10,9 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...motion.emulator.controller import Run
-from ...motion.path.path import NEAR_SINGULAR
-from ...motion.timing.limits import interval_samples
+from ...motion.emulator.run import Run
+from ...motion.path.building import NEAR_SINGULAR
 from ..scene.scene import CollisionScene
 from .enclosure import Span
 from .findings import Cause, Finding, Nearest
@@ -203,7 +202,7 @@ class Reader:
     def _time(self, sigma: float) -> float:
         """s, as trajectories have it; between samples as if the speed over σ were constant."""
         path, timing = self.run.path, self.run.timing
-        left = interval_samples(path.pieces)
+        left = path.pieces.interval_samples
         knots = np.stack([path.sigma[left], path.sigma[left + 1]], 1).ravel()
         times = np.stack([timing.begin, timing.end], 1).ravel()
         stamped = np.interp(np.array([sigma]), knots, times)

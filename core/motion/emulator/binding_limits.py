@@ -9,7 +9,7 @@ from ..timing.between_samples import BETWEEN, row_between
 from ..timing.limits import CENTRIPETAL, PathLimits
 from ..timing.stamping_kernels import CEILING, NEXT
 from ..timing.superposed_legs import ZONE
-from .controller import Run
+from .run import Run
 
 STOP, CORNER = "stop", "corner"
 PROGRAMMED = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,58 +13,36 @@ from ...program.move import Move
 from ...program.program import Program
 from ...program.target import JointTarget
 from ...robot.chain_kernels import poses
-from ...robot.inertia import Inertia
 from ...robot.joint import JointKind
 from ...robot.model import Robot
 from ...spatial.rotation import quaternion_from_matrix
 from ...vendor import Vendor
-from ..command.links_and_motors import driven, stretches
+from ..command.commanded_motion import driven, stretches
 from ..command.smoothing import Smoothing
 from ..command.trajectory import Trajectory, sample_times
 from ..geometry.pieces import Sampling
 from ..model.consumption import SQUARED_TORQUE, Consumption
 from ..model.motion_model import DurationRule, MotionModel
-from ..path.path import OverlapError, Path, build_path
+from ..path.building import build_path
+from ..path.path import OverlapError, Path
 from ..path.route import RouteFinder
 from ..timing.arc_length import ArcLength
-from ..timing.energy import Energy, energy
+from ..timing.energy import Energy, energy, loads_of
 from ..timing.limits import SegmentLimits
-from ..timing.programmed_durations import hold_durations, stamp_in_thirds, stamp_path
+from ..timing.programmed_durations import hold_durations, stamp_in_thirds
 from ..timing.rests import InPosition
 from ..timing.start_ramp import SUDDEN, StartRamp
-from ..timing.timing import Settling, Timing
-from ..timing.torque import WITHOUT_LIMIT, Shares
+from ..timing.timing import Settling, Timing, along_path, stamp_path
+from ..timing.torque import WITHOUT_LIMIT
+from ..timing.torque_rows import Shares
 from .limit_violations import excesses, torque_excesses
+from .run import Run
 
 _SKIPS = 10_000
 _LIMIT_SLACK = 1e-6
 """rad or m by which a path may pass a joint limit: rounding of programmed values."""
 _OTHER_TARGET = "choose another configuration or move the target"
 _DEGREES = 180 / np.pi
-
-
-@dataclass(frozen=True)
-class Run:
-    """Everything that came of driving a program.
-
-    Args:
-        program: what was driven.
-        path: its geometry.
-        timing: its stamp, before any smoothing in time.
-        trajectory: what the links do, and the motors, sampled at the controller's period.
-        notes: the program's own and all that was found on the way.
-    """
-
-    program: Program
-    path: Path
-    timing: Timing
-    trajectory: Trajectory
-    notes: tuple[Note, ...]
-
-    @property
-    def duration(self) -> float:
-        """Cycle time in s: from the first motion to rest after the last, waits included."""
-        return self.trajectory.duration
 
 
 class Controller:
@@ -172,7 +150,7 @@ class Controller:
         timed = [k for k, move in enumerate(moves) if move.speed.duration is not None]
         settling = self._settling(program, path)
         try:
-            along = ArcLength.of(path, self.robot.limits.acceleration)
+            along = along_path(path, self.robot.limits.acceleration)
             shares = self._shares(along)
             if not timed:
                 return stamp_path(path, along, limits, shares, settling)
@@ -222,18 +200,7 @@ class Controller:
         self, program: Program, timing: Timing, consumption: Consumption = SQUARED_TORQUE
     ) -> Energy:
         """The energy of a stamped path, before smoothing; see `energy` and what it raises."""
-        return energy(self.robot, timing, self.loads(program, timing.path), consumption)
-
-    def loads(self, program: Program, path: Path) -> list[Inertia | None]:
-        """What the flange carries on each segment: tool and payload."""
-        known: dict[object, Inertia | None] = {}
-        found = []
-        for move in self._moves(program, path):
-            key = move.tool, move.load
-            if key not in known:
-                known[key] = _carried(move)
-            found.append(known[key])
-        return found
+        return energy(self.robot, timing, loads_of(program, timing.path), consumption)
 
     def _moves(self, program: Program, path: Path) -> list[Move]:
         return [program.moves[i] for i in path.route.moves]
@@ -392,19 +359,3 @@ def _located(error: MotionError, program: Program) -> MotionError:
     if origin is None:
         return error
     return MotionError(error.message, error.move, origin.statement)
-
-
-def _carried(move: Move) -> Inertia | None:
-    """The tool's load and the payload as one body in the flange's frame."""
-    bodies = []
-    if move.tool.robot_held and move.tool.load is not None:
-        bodies.append(Inertia.of_load(move.tool.load))
-    if move.load is not None:
-        frame = move.tool.tcp if move.tool.robot_held else move.work_object.pose
-        bodies.append(Inertia.of_load(move.load, frame))
-    if not bodies:
-        return None
-    total = bodies[0]
-    for body in bodies[1:]:
-        total = total + body
-    return total

@@ -14,7 +14,7 @@ from ...robot.chain import Chain
 from ...robot.chain_kernels import motion
 from ..geometry.quintic import basis, bends, slopes
 from ..path.tcp_samples import States
-from ..timing.limits import SegmentLimits, interval_samples
+from ..timing.limits import SegmentLimits
 from ..timing.timing import Timing
 
 _EXCESS = 1.004
@@ -37,7 +37,7 @@ def excesses(timing: Timing, limits: SegmentLimits, axis_names: Sequence[str]) -
         axis_names: of the N axes.
     """
     path, owner = timing.path, timing.interval_segments
-    left = interval_samples(path.pieces)
+    left = path.pieces.interval_samples
     most, row = np.zeros(len(owner)), np.full(len(owner), -1)
     chains = path.route.chains
     turns = np.flatnonzero([a is not b for a, b in pairwise(chains)]) + 1
@@ -91,7 +91,7 @@ def torque_excesses(share: FloatArray, axis_names: Sequence[str]) -> list[Note]:
 def _why(timing: Timing, k: int) -> str:
     """What makes rates change so much within an interval."""
     path = timing.path
-    left = interval_samples(path.pieces)[k]
+    left = path.pieces.interval_samples[k]
     piece = path.pieces.sample_pieces[left]
     if path.conditioning[left : left + 2].min() < _NEAR_SINGULAR:
         return "near a singular configuration"

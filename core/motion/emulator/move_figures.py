@@ -6,11 +6,10 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...robot.chain_kernels import poses
-from ..geometry.zones import POSITION
-from ..geometry.zones import STOP as STOP_CORNER
+from ..geometry.corners import POSITION
+from ..geometry.corners import STOP as STOP_CORNER
 from ..path.path import Path
-from ..timing.limits import interval_samples
-from .controller import Run
+from .run import Run
 
 
 def lengths_and_speeds(run: Run) -> tuple[FloatArray, FloatArray]:
@@ -20,7 +19,7 @@ def lengths_and_speeds(run: Run) -> tuple[FloatArray, FloatArray]:
     f₁') / 12.
     """
     states, stamp, segment = run.timing.along.states, run.timing.stamp, run.timing.interval_segments
-    left = interval_samples(run.path.pieces)
+    left = run.path.pieces.interval_samples
     spacing = run.timing.along.spacing
     velocity, acceleration = states.v[:, :3], states.a[:, :3]
     rate = np.linalg.norm(velocity, axis=1)

@@ -19,8 +19,7 @@ from numba import njit
 
 from ...arrays import FloatArray
 from ...robot.lean import lean
-from ..path.tcp_samples import Samples, TcpCurves
-from .curves import ARC, LINE, Curves, parameter_jet
+from .curves import ARC, LINE, Curves, Samples, TcpCurves, parameter_jet
 
 Bounds = tuple[float, float, float]
 """Of the first, second and third derivative."""

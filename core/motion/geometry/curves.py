@@ -23,9 +23,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import FloatArray
+from ...arrays import FloatArray, IntArray
 from ...robot.lean import lean
-from ..model.blend import BASIS
 
 LINE, POLYNOMIAL, ARC = 0, 1, 2
 
@@ -54,7 +53,7 @@ class Curves(NamedTuple):
         return Curves(
             np.zeros(count, dtype=np.int64),
             window,
-            np.zeros((count, BASIS, dimension)),
+            np.zeros((count, len(coefficients), dimension)),
             np.zeros(count),
             np.ascontiguousarray(coefficients, dtype=float),
         )
@@ -62,6 +61,35 @@ class Curves(NamedTuple):
     def zeros_like(self) -> Curves:
         """A gradient to add to."""
         return Curves(self.kind, *(np.zeros_like(a) for a in self[1:]))
+
+
+class TcpCurves(NamedTuple):
+    """The curves of TCP-space motion, one set for a whole path.
+
+    Args:
+        position: D = 3, m in the work object.
+        turning: D = 6, the rotation vectors A and B of `orientation_curves`.
+        reference: (P, 3, 3), R_ref of each turning curve.
+        prescribed: D = number of prescribed axes.
+    """
+
+    position: Curves
+    turning: Curves
+    reference: FloatArray
+    prescribed: Curves
+
+
+class Samples(NamedTuple):
+    """Where a path is sampled: σ and, for each channel, which curve is evaluated there (S,)."""
+
+    sigma: FloatArray
+    position: IntArray
+    turning: IntArray
+    prescribed: IntArray
+
+    def last(self) -> Samples:
+        """The last sample alone."""
+        return Samples(self.sigma[-1:], self.position[-1:], self.turning[-1:], self.prescribed[-1:])
 
 
 @lean
@@ -150,7 +178,7 @@ def _basis(curves: Curves, piece: int, s: float, basis: FloatArray) -> int:
         basis[2, 0], basis[2, 1] = n, angle * c
         basis[2, 2], basis[2, 3] = -(angle**2) * n, -(angle**3) * c
         return 3
-    for i in range(1, BASIS):
+    for i in range(1, curves.coefficients.shape[0]):
         b0 = b1 = b2 = b3 = 0.0
         for j in range(curves.coefficients.shape[1] - 1, -1, -1):
             b3 = b3 * s + 3 * b2
@@ -158,7 +186,7 @@ def _basis(curves: Curves, piece: int, s: float, basis: FloatArray) -> int:
             b1 = b1 * s + b0
             b0 = b0 * s + curves.coefficients[i, j]
         basis[i, 0], basis[i, 1], basis[i, 2], basis[i, 3] = b0, b1, b2, b3
-    return BASIS
+    return len(curves.coefficients)
 
 
 @lean

@@ -12,20 +12,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import FloatArray
-from ..model.motion_model import MotionModel
+from ..model.blend import Blend, BlendGradient
+from .corners import JOINT_CORNER, POSITION
 from .curves import POLYNOMIAL, Curves
 from .layout import (
     Layout,
     LayoutGradient,
-    blend_slopes,
     blend_windows,
     pull_blend_windows,
     pull_segment_windows,
     segment_windows,
 )
 from .segments import JOINT_SEGMENT, EndsGradient, SegmentsGradient
-from .tcp_curves import BlendGradient
-from .zones import JOINT_CORNER, POSITION
 
 
 @dataclass
@@ -80,11 +78,11 @@ def pull_joint_legs(
         segments_bar.scale[which] -= np.sum(dq_bar * step, 1) / scale[:, 0] ** 2
 
 
-def make_joint_curves(layout: Layout, model: MotionModel, edges: Edges) -> Curves:
+def make_joint_curves(layout: Layout, blend: Blend, edges: Edges) -> Curves:
     """2 M − 1 curves: the joint moves', and from M on the corners'."""
     s = layout.segments
     count = len(s.scale)
-    curves = Curves.empty(2 * count - 1, s.delta_q.shape[1], model.joint.coefficients)
+    curves = Curves.empty(2 * count - 1, s.delta_q.shape[1], blend.coefficients)
     joint = (s.ends.kind == JOINT_SEGMENT)[:, None]
     curves.control[:count, 0] = np.where(joint, s.ends.q[:, 0], 0.0)
     curves.control[:count, 1] = s.delta_q
@@ -95,17 +93,17 @@ def make_joint_curves(layout: Layout, model: MotionModel, edges: Edges) -> Curve
     curves.control[count:, 1] = entry
     curves.control[count:, 2] = leave
     curves.control[count:, 3] = edges.q[:, 1] - edges.q[:, 0] - entry - leave
-    if model.joint.meets_curvature:
+    if blend.meets_curvature:
         curves.control[count:, 4] = before**2 * edges.ddq[:, 0]
         curves.control[count:, 5] = after**2 * edges.ddq[:, 1]
     curves.window[:count] = segment_windows(layout)
-    curves.window[count:] = blend_windows(layout, POSITION, blend_slopes(model.joint, count - 1))
+    curves.window[count:] = blend_windows(layout, POSITION, blend.slopes(count - 1))
     return curves
 
 
 def pull_joint_curves(
     layout: Layout,
-    model: MotionModel,
+    blend: Blend,
     edges: Edges,
     bar: Curves,
     layout_bar: LayoutGradient,
@@ -125,7 +123,7 @@ def pull_joint_curves(
     ends_bar.q[:, 0] += bar.control[:count, 0]
     segments_bar.delta_q += bar.control[:count, 1]
     pull_segment_windows(bar.window[:count], layout_bar, segments_bar)
-    slopes = blend_slopes(model.joint, count - 1)
+    slopes = blend.slopes(count - 1)
     slopes_bar = pull_blend_windows(layout, POSITION, slopes, bar.window[count:], layout_bar)
     blend_bar.slopes += slopes_bar.sum(0)
     blend_bar.coefficients += bar.coefficients
@@ -138,7 +136,7 @@ def pull_joint_curves(
         rate_bar = bar.control[count:, first] - close
         out.dq[:, side] += extent * rate_bar
         layout_bar.extent[:, POSITION, side] += np.sum(rate_bar * edges.dq[:, side], 1)
-        if model.joint.meets_curvature:
+        if blend.meets_curvature:
             bend_bar = bar.control[count:, second]
             out.ddq[:, side] += extent**2 * bend_bar
             layout_bar.extent[:, POSITION, side] += np.sum(

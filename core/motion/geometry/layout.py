@@ -11,11 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import FloatArray
-from ..model.blend import Blend
-from ..model.motion_model import MotionModel
+from ...arrays import FloatArray, IntArray
+from .corners import JOINT_CORNER, STOP, TCP_CORNER, Corners
 from .segments import Segments, SegmentsGradient
-from .zones import JOINT_CORNER, STOP, TCP_CORNER, Corners
 
 
 @dataclass(frozen=True)
@@ -68,12 +66,14 @@ def pull_layout(layout: Layout, bar: LayoutGradient, segments_bar: SegmentsGradi
     return bar.extent * scales[:, None, :]
 
 
-def flat_corners(layout: Layout, model: MotionModel) -> NDArray[np.bool_]:
+def flat_corners(kind: IntArray, tcp: bool, joint: bool) -> NDArray[np.bool_]:
     """(M − 1,), whether a corner's blend law is flat at its ends (α' = 0): its path then runs two
-    to three times as fast over σ at the waypoint as at the zone's edges."""
-    kind = layout.corners.kind
-    tcp = model.tcp.kind == "polynomial" and model.tcp.meets_curvature
-    joint = model.joint.meets_curvature
+    to three times as fast over σ at the waypoint as at the zone's edges.
+
+    Args:
+        kind: (M − 1,), of the corners.
+        tcp, joint: whether the laws of TCP positions and of joints are flat.
+    """
     return np.asarray(((kind == JOINT_CORNER) & joint) | ((kind == TCP_CORNER) & tcp))
 
 
@@ -127,8 +127,3 @@ def pull_blend_windows(
     bar.extent[:, channel, 0] += -start + length + turned * b
     bar.extent[:, channel, 1] += length - turned * a
     return np.stack([entry * a / (a + b), leave * b / (a + b)], -1)
-
-
-def blend_slopes(blend: Blend, count: int) -> FloatArray:
-    """Slopes (count, 2) of a polynomial blend."""
-    return np.tile(np.array([blend.entry_slope, blend.exit_slope]), (count, 1))

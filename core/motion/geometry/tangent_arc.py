@@ -7,19 +7,14 @@ prescribed axes follow the polynomial blend.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray
+from .corners import POSITION, TCP_CORNER, Corners
 from .curves import ARC, Curves
-from .layout import Layout
-from .segments import LINE_SEGMENT, SegmentsGradient
-from .zones import POSITION, TCP_CORNER
-
-if TYPE_CHECKING:
-    from .tcp_curves import Legs
+from .segments import LINE_SEGMENT, Segments, SegmentsGradient
 
 _STRAIGHT, _REVERSAL = 1e-4, np.pi - 1e-2
 """rad of deflection below and above which the circle degenerates and the polynomial is kept."""
@@ -83,12 +78,20 @@ class _Arc:
         return cls(lengths, first, second, zone, cosine, deflection, float(radius), inward)
 
 
-def tangent_arcs(layout: Layout, before: Legs, after: Legs) -> TangentArcs:
-    """Which corners become arcs."""
-    segments, corners = layout.segments, layout.corners
+def tangent_arcs(
+    segments: Segments, corners: Corners, start: FloatArray, into: FloatArray, out: FloatArray
+) -> TangentArcs:
+    """Which corners become arcs.
+
+    Args:
+        segments: M segments.
+        corners: the C = M − 1 corners.
+        start: (C, 3) m, where the zones begin.
+        into, out: (C, 3) m, the legs' own vectors, before and after the waypoints.
+    """
     straight = segments.ends.kind == LINE_SEGMENT
     live = (corners.kind == TCP_CORNER) & straight[:-1] & straight[1:]
-    step = np.stack([before.rate, after.rate], 1)
+    step = np.stack([into, out], 1)
     lengths = np.linalg.norm(step, axis=2)
     live &= (lengths > 1e-9).all(1)
     safe = np.where(lengths > 1e-9, lengths, 1.0)
@@ -101,7 +104,7 @@ def tangent_arcs(layout: Layout, before: Legs, after: Legs) -> TangentArcs:
     live &= (turn > _STRAIGHT) & (turn < _REVERSAL)
     live &= np.abs(radii[:, 0] - radii[:, 1]) < 1e-9 + 1e-6 * radii[:, 0]
     scale = np.stack([segments.scale[:-1], segments.scale[1:]], -1)
-    return TangentArcs(live, reach, step, scale, before.at)
+    return TangentArcs(live, reach, step, scale, start)
 
 
 def pull_tangent_arcs(

@@ -12,14 +12,12 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...spatial.rotation import matrix_from_rotation_vector
-from ..model.blend import Blend
-from ..model.motion_model import MotionModel
-from ..path.tcp_samples import TcpCurves
-from .curves import ARC, POLYNOMIAL, Curves
+from ..model.blend import Blend, BlendGradient
+from .corners import POSITION, PRESCRIBED, TCP_CORNER, TURNING
+from .curves import ARC, POLYNOMIAL, Curves, TcpCurves
 from .layout import (
     Layout,
     LayoutGradient,
-    blend_slopes,
     blend_windows,
     pull_blend_windows,
     pull_segment_windows,
@@ -27,7 +25,6 @@ from .layout import (
 )
 from .segments import EndsGradient, Segments, SegmentsGradient, left_jacobian
 from .tangent_arc import TangentArcs, pull_tangent_arcs, tangent_arcs
-from .zones import POSITION, PRESCRIBED, TCP_CORNER, TURNING
 
 
 @dataclass(frozen=True)
@@ -94,7 +91,7 @@ class TcpGeometry:
 
     Args:
         layout: σ of everything.
-        model: the vendor's blends.
+        blend: the law of positions.
         curves: 2 M − 1 curves of each channel.
         before, after: the legs at the entries and exits of the position zones.
         arcs: the tangent arcs, where the vendor blends by arcs.
@@ -102,7 +99,7 @@ class TcpGeometry:
     """
 
     layout: Layout
-    model: MotionModel
+    blend: Blend
     curves: TcpCurves
     before: Legs
     after: Legs
@@ -110,34 +107,39 @@ class TcpGeometry:
     slopes: FloatArray
 
 
-def make_tcp_curves(layout: Layout, model: MotionModel) -> TcpGeometry:
-    """The TCP curves of a path."""
+def make_tcp_curves(layout: Layout, blend: Blend, orientation: Blend) -> TcpGeometry:
+    """The TCP curves of a path.
+
+    Args:
+        layout: σ of everything.
+        blend, orientation: the laws of positions, and of orientations and prescribed axes.
+    """
     segments, corners = layout.segments, layout.corners
     if segments.joint_moves_alone:
-        return _no_curves(layout, model)
+        return _no_curves(layout, blend, orientation)
     count = len(segments.scale)
     reach = corners.reach
     before = _legs(segments, slice(None, -1), 1.0 - reach[:, POSITION, 0])
     after = _legs(segments, slice(1, None), reach[:, POSITION, 1])
-    arcs = tangent_arcs(layout, before, after) if model.tcp.kind == "arc" else None
-    slopes = np.stack(
-        [blend_slopes(blend, count - 1) for blend in (model.tcp, *(model.orientation,) * 2)]
-    )
-    position = Curves.empty(2 * count - 1, 3, model.tcp.coefficients)
+    arcs = None
+    if blend.kind == "arc":
+        arcs = tangent_arcs(segments, corners, before.at, before.rate, after.rate)
+    slopes = np.stack([law.slopes(count - 1) for law in (blend, orientation, orientation)])
+    position = Curves.empty(2 * count - 1, 3, blend.coefficients)
     position.kind[:count] = segments.shape
     position.angle[:count] = segments.angle
     position.control[:count, :3] = segments.position
     position.kind[count:] = POLYNOMIAL
-    position.control[count:] = _blend_controls(model.tcp, reach[:, POSITION], before, after)
+    position.control[count:] = _blend_controls(blend, reach[:, POSITION], before, after)
     if arcs is not None:
         arcs.write(position, slopes[POSITION], count)
-    turning = Curves.empty(2 * count - 1, 6, model.orientation.coefficients)
+    turning = Curves.empty(2 * count - 1, 6, orientation.coefficients)
     turning.control[:count, 1] = np.concatenate([segments.turn_a, segments.turn_b], 1)
     turning.kind[count:] = POLYNOMIAL
     _straight_controls(turning, count, reach[:, TURNING], *_turns(segments))
     reference = segments.ends.rotation[:, 0]
     prescribed = Curves.empty(
-        2 * count - 1, segments.delta_prescribed.shape[1], model.orientation.coefficients
+        2 * count - 1, segments.delta_prescribed.shape[1], orientation.coefficients
     )
     prescribed.control[:count, 0] = segments.ends.prescribed[:, 0]
     prescribed.control[:count, 1] = segments.delta_prescribed
@@ -149,22 +151,22 @@ def make_tcp_curves(layout: Layout, model: MotionModel) -> TcpGeometry:
         part.window[:count] = segment_windows(layout)
         part.window[count:] = blend_windows(layout, channel, slopes[channel])
     curves = TcpCurves(position, turning, np.concatenate([reference, reference[1:]]), prescribed)
-    return TcpGeometry(layout, model, curves, before, after, arcs, slopes)
+    return TcpGeometry(layout, blend, curves, before, after, arcs, slopes)
 
 
-def _no_curves(layout: Layout, model: MotionModel) -> TcpGeometry:
+def _no_curves(layout: Layout, blend: Blend, orientation: Blend) -> TcpGeometry:
     """Curves that stand still, for paths of joint moves, which evaluate none."""
     count = len(layout.segments.scale)
     rotation = layout.segments.ends.rotation[:, 0]
     axes = layout.segments.delta_prescribed.shape[1]
-    blends = (model.tcp, model.orientation, model.orientation)
+    blends = (blend, orientation, orientation)
     position, turning, prescribed = (
-        Curves.empty(2 * count - 1, dimension, blend.coefficients)
-        for dimension, blend in zip((3, 6, axes), blends, strict=True)
+        Curves.empty(2 * count - 1, dimension, law.coefficients)
+        for dimension, law in zip((3, 6, axes), blends, strict=True)
     )
     curves = TcpCurves(position, turning, np.concatenate([rotation, rotation[1:]]), prescribed)
     none = Legs(*(np.zeros((count - 1, 3)) for _ in range(4)))
-    return TcpGeometry(layout, model, curves, none, none, None, np.ones((3, count - 1, 2)))
+    return TcpGeometry(layout, blend, curves, none, none, None, np.ones((3, count - 1, 2)))
 
 
 def _blend_controls(blend: Blend, reach: FloatArray, before: Legs, after: Legs) -> FloatArray:
@@ -210,25 +212,6 @@ def _pull_straight(
     away = control_bar[:, 2]
     reach_bar = np.stack([np.sum(toward * into, 1), np.sum(away * out, 1)], -1)
     return reach_bar, reach[:, :1] * toward, reach[:, 1:] * away
-
-
-@dataclass
-class BlendGradient:
-    """Gradient with respect to a blend's numbers: basis coefficients (6, C) and slopes (2,)."""
-
-    coefficients: FloatArray
-    slopes: FloatArray
-
-    @classmethod
-    def zeros(cls, blend: Blend) -> BlendGradient:
-        """A gradient to add to."""
-        return cls(np.zeros_like(blend.coefficients), np.zeros(2))
-
-    def alpha_beta(self, blend: Blend) -> tuple[FloatArray, FloatArray]:
-        """The gradient of the coefficients of α and β."""
-        alpha, beta = blend.pull_coefficients(self.coefficients)
-        powers = np.arange(len(alpha))
-        return alpha + self.slopes[0] * (powers == 1) + self.slopes[1] * powers, beta
 
 
 def pull_tcp_curves(
@@ -294,7 +277,7 @@ def _pull_positions(
     reach = geometry.layout.corners.reach[:, POSITION]
     into, out = reach[:, :1], reach[:, 1:]
     e, entry, leave, close, k1, k2 = (bar.control[count:, i].copy() for i in range(6))
-    if not geometry.model.tcp.meets_curvature:
+    if not geometry.blend.meets_curvature:
         k1[:] = 0.0
         k2[:] = 0.0
     e, entry, leave = e - close, entry - close, leave - close

@@ -9,75 +9,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import FloatArray
 from ...errors import MotionError, Note
 from ...program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction, Zone
 from ...robot.chain import Chain
 from ..model.motion_model import MotionModel, OrientationZone, Overlap, Pace, Space
+from .corners import JOINT_CORNER, POSITION, TCP_CORNER, Corners, Room
 from .reach import Part, Reach, least
-from .segments import ARC_SEGMENT, JOINT_SEGMENT, EndsGradient, Segments, SegmentsGradient
+from .segments import ARC_SEGMENT, JOINT_SEGMENT, Segments
 from .sharp_corners import share_kept
 from .zone_exits import first_exit, tcp_apart
 
-STOP, TCP_CORNER, JOINT_CORNER = 0, 1, 2
-POSITION, TURNING, PRESCRIBED = 0, 1, 2
 _STILL = 1e-7
 """m of TCP path below which a move counts as pure reorientation."""
 _NOTHING = 1e-9
 """A reach below is no zone."""
-
-
-@dataclass(frozen=True, slots=True)
-class Room:
-    """How much larger the zones at a place could be before the vendor's rules cut them.
-
-    Args:
-        left: in m, or as a share of a segment; below zero where a rule cuts.
-        corner: index of the corner.
-    """
-
-    left: Reach
-    corner: int
-
-
-@dataclass
-class Corners:
-    """The zones at the M − 1 inner waypoints of M segments.
-
-    Args:
-        kind: (M − 1,) `STOP`, `TCP_CORNER` or `JOINT_CORNER`.
-        reach: (M − 1, 3, 2) of position, turning and prescribed axes; into the segment before
-            and the one after the waypoint.
-        sources: the same with derivatives.
-        overlapping: corners to be left out under `Overlap.SKIP`, because their zones overlap.
-        notes: zones cut short and refused.
-    """
-
-    kind: NDArray[np.int64]
-    reach: FloatArray
-    sources: list[tuple[tuple[Reach, Reach], ...]]
-    overlapping: tuple[int, ...] = ()
-    notes: list[Note] = field(default_factory=list)
-
-
-@dataclass
-class ZoneGradient:
-    """Gradient with respect to the radii and shares of the zones, by corner."""
-
-    tcp: FloatArray
-    reorientation: FloatArray
-    external: FloatArray
-    angle: FloatArray
-
-    @classmethod
-    def zeros(cls, count: int) -> ZoneGradient:
-        """A gradient to add to."""
-        return cls(*(np.zeros(count) for _ in range(4)))
 
 
 class ZonePlanner:
@@ -384,38 +332,3 @@ class ZonePlanner:
                 )
             found.append(corner)
         return tuple(found)
-
-
-def pull_corners(
-    corners: Corners,
-    reach_bar: FloatArray,
-    segments_bar: SegmentsGradient,
-    ends_bar: EndsGradient,
-    zones_bar: ZoneGradient,
-) -> None:
-    """Reverse of `ZonePlanner.corners`: carry the gradient (M − 1, 3, 2) of the reaches back."""
-    targets: dict[str, FloatArray] = {
-        "length": segments_bar.length,
-        "angle": zones_bar.angle,
-        "arc": segments_bar.angle,
-        "turn": segments_bar.turn,
-        "q0": ends_bar.q[:, 0],
-        "q1": ends_bar.q[:, 1],
-        "tcp": zones_bar.tcp,
-        "reorientation": zones_bar.reorientation,
-        "external": zones_bar.external,
-        "position0": ends_bar.position[:, 0],
-        "position1": ends_bar.position[:, 1],
-        "speed": ends_bar.speed,
-        "acceleration": ends_bar.acceleration,
-    }
-    for i, pairs in enumerate(corners.sources):
-        if corners.kind[i] == STOP:
-            continue
-        for channel, pair in enumerate(pairs):
-            for side, reach in enumerate(pair):
-                bar = reach_bar[i, channel, side]
-                if bar == 0.0:
-                    continue
-                for name, index, part in reach.parts:
-                    targets[name][index] += bar * part

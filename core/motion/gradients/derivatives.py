@@ -17,14 +17,13 @@ from ...errors import InputError
 from ...program.program import Program
 from ...program.target import JointTarget, PoseTarget
 from ...robot.chain_kernels import jacobians
-from ..emulator.controller import Controller
-from ..geometry.zones import ZoneGradient
+from ..geometry.corners import ZoneGradient
 from ..model.consumption import SQUARED_TORQUE, Consumption
 from ..path.configurations import located
 from ..path.path import Path
-from ..timing.energy import pull_energy
-from ..timing.limits import SpeedGradient, pull_path_limits, pull_turning
+from ..timing.energy import energy, loads_of, pull_energy
 from ..timing.timing import Timing
+from .limits_gradient import SpeedGradient, pull_path_limits, pull_turning
 from .path_gradient import RouteGradient, pull_path
 from .stamping_adjoint import stamp_adjoint
 from .timing_gradient import Seeds, pull_rests, seed_configuration
@@ -82,25 +81,24 @@ class Derivatives:
     """Derivatives of one driven program.
 
     Args:
-        controller: that drove it.
         program: what was driven.
-        timing: its stamp, from ``controller.stamp``.
+        timing: its stamp, from ``Controller.stamp``.
 
     Raises:
         InputError: a move has a fixed duration, whose derivative is not available.
     """
 
-    def __init__(self, controller: Controller, program: Program, timing: Timing) -> None:
+    def __init__(self, program: Program, timing: Timing) -> None:
         for i in timing.path.route.moves:
             if program.moves[i].speed.duration is not None:
                 raise InputError(
                     f"move {i + 1} has a fixed duration; derivatives of such programs are not "
                     "available: give it a speed"
                 )
-        self._controller = controller
         self._program = program
         self._timing = timing
         self._path: Path = timing.path
+        self._robot = timing.path.route.robot
 
     def duration(self) -> ProgramGradient:
         """Derivative of the cycle time, s."""
@@ -112,9 +110,10 @@ class Derivatives:
     def energy(self, consumption: Consumption = SQUARED_TORQUE) -> ProgramGradient:
         """Derivative of the energy, that of squared torques (N² m² s) if not said otherwise."""
         seeds = Seeds.zeros(self._timing)
-        made = self._controller.energy(self._program, self._timing, consumption)
+        loads = loads_of(self._program, self._path)
+        made = energy(self._robot, self._timing, loads, consumption)
         seeds.x[:], seeds.t[:], seeds.spacing[:] = pull_energy(
-            self._controller.robot, self._timing, made, seeds.states
+            self._robot, self._timing, made, seeds.states
         )
         return self._pull(seeds)
 
@@ -151,12 +150,13 @@ class Derivatives:
             speeds,
         )
         if shares_bar is not None:
-            controller = self._controller
-            controller.model.torque.pull(
-                controller.robot, timing.along.states[:3], shares_bar, seeds.states[:3]
+            path.model.torque.pull(
+                self._robot, timing.along.states[:3], shares_bar, seeds.states[:3]
             )
         sigma_bar = np.zeros(len(path.sigma))
-        states_bar = timing.along.pull(path, seeds.states, bar.spacing, sigma_bar)
+        states_bar = timing.along.pull(
+            path.pieces, path.sigma, path.states, seeds.states, bar.spacing, sigma_bar
+        )
         turn_bar = pull_turning(path.segments, turning_bar)
         return self._gather(pull_path(path, states_bar, sigma_bar, turn_bar), speeds)
 
@@ -250,7 +250,7 @@ class Derivatives:
         Axes that a target does not name keep the value that they had there.
         """
         route = self._path.route
-        arm = self._controller.robot.arm_size
+        arm = self._robot.arm_size
         named = arm + len(target.external)
         passed = np.zeros_like(q_bar)
         if isinstance(target, JointTarget):
@@ -277,7 +277,7 @@ class Derivatives:
             MotionError: the arm is singular there, so that the derivative does not exist.
         """
         if J.shape[1] != 6:
-            name, size = self._controller.robot.name, self._controller.robot.arm_size
+            name, size = self._robot.name, self._robot.arm_size
             problem = (
                 f"derivatives of pose targets need an arm of six or seven joints, {name} has {size}"
             )

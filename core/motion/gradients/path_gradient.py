@@ -7,14 +7,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...arrays import FloatArray
+from ..geometry.corners import POSITION, STOP, Corners, ZoneGradient
+from ..geometry.curves import Samples, TcpCurves
 from ..geometry.joint_curves import Edges, pull_joint_curves, pull_joint_legs
 from ..geometry.layout import LayoutGradient, pull_layout
 from ..geometry.segments import EndsGradient, SegmentsGradient, pull_segments
-from ..geometry.tcp_curves import BlendGradient, pull_tcp_curves
-from ..geometry.zones import POSITION, ZoneGradient, pull_corners
+from ..geometry.tcp_curves import pull_tcp_curves
+from ..model.blend import BlendGradient
+from ..path.building import edge_runs, stretches
 from ..path.joint_samples import pull_joint
-from ..path.path import Path, edge_runs, stretches
-from ..path.tcp_samples import Samples, States, TcpCurves, pull_tcp
+from ..path.path import Path
+from ..path.tcp_samples import States, pull_tcp
 
 
 @dataclass
@@ -97,10 +100,10 @@ def pull_path(
             tcp_bar,
             sigma_bar[rows],
         )
-    pieces.pull_sigma(sigma_bar, layout_bar)
+    pieces.pull_sigma(sigma_bar, layout_bar.waypoint, layout_bar.extent)
     edges_bar = pull_joint_curves(
         layout,
-        model,
+        model.joint,
         path.edges,
         joint_bar,
         layout_bar,
@@ -124,6 +127,41 @@ def pull_path(
     pull_corners(layout.corners, reach_bar, segments_bar, gradient.ends, gradient.zones)
     pull_segments(layout.segments, segments_bar, gradient.ends)
     return gradient
+
+
+def pull_corners(
+    corners: Corners,
+    reach_bar: FloatArray,
+    segments_bar: SegmentsGradient,
+    ends_bar: EndsGradient,
+    zones_bar: ZoneGradient,
+) -> None:
+    """Reverse of `ZonePlanner.corners`: carry the gradient (M − 1, 3, 2) of the reaches back."""
+    targets: dict[str, FloatArray] = {
+        "length": segments_bar.length,
+        "angle": zones_bar.angle,
+        "arc": segments_bar.angle,
+        "turn": segments_bar.turn,
+        "q0": ends_bar.q[:, 0],
+        "q1": ends_bar.q[:, 1],
+        "tcp": zones_bar.tcp,
+        "reorientation": zones_bar.reorientation,
+        "external": zones_bar.external,
+        "position0": ends_bar.position[:, 0],
+        "position1": ends_bar.position[:, 1],
+        "speed": ends_bar.speed,
+        "acceleration": ends_bar.acceleration,
+    }
+    for i, pairs in enumerate(corners.sources):
+        if corners.kind[i] == STOP:
+            continue
+        for channel, pair in enumerate(pairs):
+            for side, reach in enumerate(pair):
+                bar = reach_bar[i, channel, side]
+                if bar == 0.0:
+                    continue
+                for name, index, part in reach.parts:
+                    targets[name][index] += bar * part
 
 
 def _pull_edges(path: Path, bar: Edges, tcp_bar: TcpCurves, layout_bar: LayoutGradient) -> None:

@@ -18,9 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import FloatArray, IntArray
+from ..geometry.corners import POSITION, STOP
 from ..geometry.reach import Reach
 from ..geometry.segments import JOINT_SEGMENT
-from ..geometry.zones import POSITION, STOP
 from ..path.path import Path
 
 _GRID, _ZOOMS = 41, 3

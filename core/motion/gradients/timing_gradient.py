@@ -9,7 +9,6 @@ import numpy as np
 from ...arrays import FloatArray
 from ..geometry import quintic
 from ..path.tcp_samples import States
-from ..timing.limits import interval_ends
 from ..timing.timing import Timing
 
 
@@ -67,7 +66,7 @@ def pull_rests(timing: Timing, out: Seeds) -> None:
     entries = rests.entries
     if entries is None:
         return
-    ends = interval_ends(timing.path.pieces)
+    ends = timing.path.pieces.interval_ends
     for i in np.flatnonzero(rests.counted & (out.rests != 0.0)):
         bar, stop = float(out.rests[i]), rests.knot[i]
         out.t[stop] -= bar
@@ -107,7 +106,7 @@ def _pull_quintic(timing: Timing, k: int, z: float, w: FloatArray, out: Seeds) -
     """Reverse of w · q at share z of interval k: adds to the gradient of samples and spacing,
     returns that of z."""
     data, factors, powers = _data(timing, k)
-    ends = interval_ends(timing.path.pieces)[k]
+    ends = timing.path.pieces.interval_ends[k]
     values, length = quintic.basis(z), float(timing.along.spacing[k])
     for i, bar in enumerate((out.states.q, out.states.dq, out.states.ddq)):
         bar[ends] += np.outer((values * factors)[[i, 3 + i]], w)
@@ -127,7 +126,7 @@ def _velocity(timing: Timing, k: int, z: float, w: FloatArray) -> float:
 def _data(timing: Timing, k: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """q, q', q'' at both samples of interval k (6, N), what the quintic multiplies each with (6,),
     and the power of the interval's length in that (6,)."""
-    ends, states = interval_ends(timing.path.pieces)[k], timing.along.states
+    ends, states = timing.path.pieces.interval_ends[k], timing.along.states
     data = np.concatenate([part[[end]] for end in ends for part in states[:3]])
     powers = np.array([0, 1, 2, 0, 1, 2])
     return data, float(timing.along.spacing[k]) ** powers, powers

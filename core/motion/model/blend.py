@@ -97,6 +97,15 @@ class Blend:
             row[: len(polynomial)] = polynomial
         return table
 
+    def slopes(self, count: int) -> FloatArray:
+        """(count, 2), how fast so many blends leave their entry legs and join their exit legs."""
+        return np.tile(np.array([self.entry_slope, self.exit_slope]), (count, 1))
+
+    @property
+    def flat(self) -> bool:
+        """Whether α' vanishes at both ends, and the law is followed."""
+        return self.kind == "polynomial" and self.meets_curvature
+
     def pull_coefficients(self, gradient: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The gradient (6, D) of `coefficients`, carried back to ``alpha`` and ``beta``."""
         to_alpha, to_beta = self._pulls
@@ -125,6 +134,25 @@ class Blend:
             add(table[1], -_BUMP, i)
             add(table[2], _BUMP, i)
         return alpha.reshape(len(alpha), BASIS * size), beta.reshape(len(beta), BASIS * size)
+
+
+@dataclass
+class BlendGradient:
+    """Gradient with respect to a blend's numbers: basis coefficients (6, C) and slopes (2,)."""
+
+    coefficients: FloatArray
+    slopes: FloatArray
+
+    @classmethod
+    def zeros(cls, blend: Blend) -> BlendGradient:
+        """A gradient to add to."""
+        return cls(np.zeros_like(blend.coefficients), np.zeros(2))
+
+    def alpha_beta(self, blend: Blend) -> tuple[FloatArray, FloatArray]:
+        """The gradient of the coefficients of α and β."""
+        alpha, beta = blend.pull_coefficients(self.coefficients)
+        powers = np.arange(len(alpha))
+        return alpha + self.slopes[0] * (powers == 1) + self.slopes[1] * powers, beta
 
 
 PARABOLA = Blend()

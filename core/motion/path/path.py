@@ -1,12 +1,7 @@
-"""The geometry of a driven program: q(σ) with zones, sampled.
-
-A path is built in one direction (ends → segments → corners → layout → curves → samples) and
-pulled back in the other by `path_gradient`.
-"""
+"""The geometry of a driven program as values: its route, and q(σ) with zones, sampled."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,28 +12,15 @@ from ...errors import MotionError, Note
 from ...program.zone import Zone
 from ...robot.chain import Chain
 from ...robot.model import Robot
-from ...robot.singularities import nearest_singularity
+from ..geometry.corners import Corners
 from ..geometry.curves import Curves
-from ..geometry.joint_curves import Edges, make_joint_curves
+from ..geometry.joint_curves import Edges
 from ..geometry.layout import Layout, flat_corners
-from ..geometry.pieces import Pieces, Sampling, cut
-from ..geometry.segments import JOINT_SEGMENT, Ends, Segments, make_segments
-from ..geometry.tcp_curves import TcpGeometry, make_tcp_curves
-from ..geometry.zones import JOINT_CORNER, POSITION, Corners, ZonePlanner
+from ..geometry.pieces import Pieces
+from ..geometry.segments import Ends, Segments
+from ..geometry.tcp_curves import TcpGeometry
 from ..model.motion_model import MotionModel
-from .joint_samples import sample_joint
-from .tcp_samples import Samples, States, TcpCurves
-from .tcp_walk import JOINED, sample_tcp
-from .unreachable import why_stranded
-
-_LEAD = 8
-"""Steps in which inverse kinematics walks from a waypoint to the edge of its zone."""
-NEAR_SINGULAR = 1e-3
-"""Ratio of pivots of the Jacobian below which a stretch is reported as near a singularity."""
-_MISSED = 0.01
-"""rad or m by which joints may go on between samples otherwise than these tell."""
-_FINER, _FINEST = 4, 8000
-"""How many times finer samples are made that miss something; most even intervals of a piece."""
+from .tcp_samples import States
 
 
 class OverlapError(MotionError):
@@ -131,6 +113,12 @@ class Path:
         return self.layout.segments
 
     @property
+    def flat_corners(self) -> NDArray[np.bool_]:
+        """(M − 1,), corners whose blend law is flat at its ends."""
+        model = self.model
+        return flat_corners(self.corners.kind, model.tcp.flat, model.joint.meets_curvature)
+
+    @property
     def corners(self) -> Corners:
         """The zones."""
         return self.layout.corners
@@ -139,288 +127,3 @@ class Path:
         """(S,), index of the move that each sample belongs to."""
         moves = np.array(self.route.moves, dtype=np.int64)
         return moves[self.pieces.segment[self.pieces.sample_pieces]]
-
-
-def zone_pieces(path: Path, corners: IntArray) -> IntArray:
-    """(C, 3), the first piece, the first behind the waypoint and the last piece of C zones of the
-    TCP (of the joints, where joints are blended)."""
-    layout, edge = path.layout, path.pieces.edge
-    middle = 0.5 * (edge[1:] + edge[:-1])
-    at = layout.waypoint[corners + 1]
-    before, after = layout.extent[corners, POSITION].T
-    places = np.stack([at - before, at, at + after], -1)
-    return np.asarray(np.searchsorted(middle, places) - np.array([0, 0, 1]))
-
-
-def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
-    """The path along a route of at least one segment.
-
-    Raises:
-        OverlapError: blends overlap.
-        MotionError: a zone that cannot be emulated, or a stretch that the arm cannot follow.
-    """
-    segments = make_segments(route.ends)
-    planner = ZonePlanner(segments, route.chains, model, route.moves)
-    corners = planner.corners(route.zones)
-    if corners.overlapping:
-        raise OverlapError(route.moves[corners.overlapping[0]], corners.overlapping)
-    layout = Layout.of(segments, corners)
-    tcp = make_tcp_curves(layout, model)
-    edges = Edges.of_joint_legs(layout)
-    for run in edge_runs(route, layout):
-        states, _ = _follow(route, layout, tcp.curves, run)
-        for array, part in ((edges.q, states.q), (edges.dq, states.dq), (edges.ddq, states.ddq)):
-            array[run.corner, run.side] = part[-1]
-    joint = make_joint_curves(layout, model, edges)
-    flat = flat_corners(layout, model)
-    pieces = cut(layout, tcp.curves, joint, route.paces, flat, sampling)
-    sigma, states, conditioning = _sampled(route, layout, tcp.curves, joint, edges, pieces)
-    while (coarse := _coarse(pieces, sigma, states)).any():
-        _check_fine_enough(route, layout, pieces, sigma, states, coarse)
-        pieces = pieces.refined(coarse, _FINER)
-        sigma, states, conditioning = _sampled(route, layout, tcp.curves, joint, edges, pieces)
-    _check_joined(route, pieces, states.q)
-    notes = (*route.notes, *corners.notes, *_singular_notes(route, pieces, states.q, conditioning))
-    return Path(route, model, layout, tcp, joint, edges, pieces, sigma, states, conditioning, notes)
-
-
-def _sampled(
-    route: Route, layout: Layout, curves: TcpCurves, joint: Curves, edges: Edges, pieces: Pieces
-) -> tuple[FloatArray, States, FloatArray]:
-    """σ (S,), states and conditioning (S,) of the samples."""
-    sigma = pieces.sigma()
-    states = States.zeros(len(sigma), route.ends.q.shape[2])
-    conditioning = np.ones(len(sigma))
-    for stretch in stretches(route, layout, pieces):
-        view = states.rows(stretch.start, stretch.stop)
-        piece = pieces.sample_pieces[stretch.start : stretch.stop]
-        at = sigma[stretch.start : stretch.stop]
-        if stretch.joint_space:
-            sample_joint(stretch.chain, joint, pieces.curve[piece, POSITION], at, view)
-            continue
-        run = _tcp_run(route, layout, edges, pieces, stretch, piece, at)
-        found, pivots = _follow(route, layout, curves, run)
-        lead = len(run.samples.sigma) - len(at)
-        for target, source in zip(view, found, strict=True):
-            target[:] = source[lead:]
-        conditioning[stretch.start : stretch.stop] = pivots[lead:]
-    return sigma, states, conditioning
-
-
-def _coarse(pieces: Pieces, sigma: FloatArray, states: States) -> NDArray[np.bool_]:
-    """(P,), pieces on which joints turn between samples in a way that the samples do not show.
-
-    Next to a singular configuration axes turn by half a turn within a fraction of a millimetre;
-    timing and motion between samples are made of what samples tell.
-    """
-    left = np.delete(np.arange(len(sigma)), pieces.first_sample[1:] - 1)
-    h = (sigma[left + 1] - sigma[left])[:, None]
-    told = 0.5 * h * (states.dq[left] + states.dq[left + 1])
-    told += h**2 / 12 * (states.ddq[left] - states.ddq[left + 1])
-    missed = np.abs(states.q[left + 1] - states.q[left] - told).max(axis=1) > _MISSED
-    coarse = np.zeros(len(pieces.segment), dtype=np.bool_)
-    coarse[pieces.sample_pieces[left[missed]]] = True
-    return coarse & ~pieces.joint_space
-
-
-def _check_fine_enough(
-    route: Route,
-    layout: Layout,
-    pieces: Pieces,
-    sigma: FloatArray,
-    states: States,
-    coarse: NDArray[np.bool_],
-) -> None:
-    """Refuse a path on which joints turn within less than the finest samples show."""
-    worst = np.flatnonzero(coarse & (_FINER * pieces.even > _FINEST))
-    if not len(worst):
-        return
-    first = pieces.first_sample[worst[0] : worst[0] + 2]
-    q = states.q[first[0] : first[1]]
-    apart = np.abs(np.diff(q, axis=0))
-    row, axis = np.unravel_index(np.argmax(apart), apart.shape)
-    k, at = int(pieces.segment[worst[0]]), sigma[first[0] + row : first[0] + row + 2]
-    share, length = (at - layout.waypoint[k]) / layout.segments.scale[k], layout.segments.length[k]
-    kind = nearest_singularity(route.robot, q[row])
-    of, remedy = ("", "use a joint move") if kind is None else (f" of the {kind.name}", kind.remedy)
-    raise MotionError(
-        f"joint {route.robot.axis_names[axis]} would have to turn by {apart[row, axis]:.3g} (rad "
-        f"or m) within {1e3 * float(np.diff(share)[0]) * length:.2g} mm, after "
-        f"{100 * share[0]:.0f} % of the move: the path passes a singular configuration{of} too "
-        f"near to be driven; {remedy}",
-        route.moves[k],
-    )
-
-
-@dataclass(frozen=True)
-class TcpRun:
-    """Samples for inverse kinematics to follow, from a configuration near the first one."""
-
-    chain: Chain
-    samples: Samples
-    seed: FloatArray
-    segment: IntArray
-    corner: int = -1
-    side: int = 0
-
-
-def _nominal(chain: Chain, sigma: FloatArray, segment: int, seed: FloatArray) -> TcpRun:
-    index = np.full(len(sigma), segment, dtype=np.int64)
-    return TcpRun(chain, Samples(sigma, index, index, index), seed, index)
-
-
-def edge_runs(route: Route, layout: Layout) -> Iterator[TcpRun]:
-    """From the waypoint to the edge of its zone, wherever a TCP leg is blended in joint space."""
-    for i in np.flatnonzero(layout.corners.kind == JOINT_CORNER):
-        for side, near, sign in ((0, 1, -1.0), (1, 0, 1.0)):
-            segment = int(i) + side
-            if route.ends.kind[segment] == JOINT_SEGMENT:
-                continue
-            at = layout.waypoint[i + 1]
-            edge = at + sign * layout.extent[i, POSITION, side]
-            run = _nominal(
-                route.chains[segment],
-                np.linspace(at, edge, _LEAD + 1),
-                segment,
-                route.ends.q[segment, near],
-            )
-            yield TcpRun(run.chain, run.samples, run.seed, run.segment, int(i), side)
-
-
-@dataclass(frozen=True)
-class Stretch:
-    """Consecutive samples of one space and one chain."""
-
-    chain: Chain
-    joint_space: bool
-    first_piece: int
-    start: int
-    stop: int
-
-
-def stretches(route: Route, layout: Layout, pieces: Pieces) -> Iterator[Stretch]:
-    """The stretches of a path, in its order."""
-    first = pieces.first_sample
-    begin = 0
-    count = len(pieces.segment)
-    for p in range(1, count + 1):
-        chain = route.chains[pieces.segment[begin]]
-        if p < count:
-            same_space = pieces.joint_space[p] == pieces.joint_space[begin]
-            if same_space and route.chains[pieces.segment[p]] is chain:
-                continue
-        space = bool(pieces.joint_space[begin])
-        yield Stretch(chain, space, begin, int(first[begin]), int(first[p]))
-        begin = p
-
-
-def _tcp_run(
-    route: Route,
-    layout: Layout,
-    edges: Edges,
-    pieces: Pieces,
-    stretch: Stretch,
-    piece: IntArray,
-    sigma: FloatArray,
-) -> TcpRun:
-    """A stretch with what leads to its first sample."""
-    segment = int(pieces.segment[stretch.first_piece])
-    curve = pieces.curve[piece]
-    samples = [sigma, *(curve[:, channel] for channel in range(3))]
-    start = layout.waypoint[segment]
-    seed = route.ends.q[segment, 0]
-    if sigma[0] > start:
-        # The stretch follows a corner blended in joint space, which ends at its own edge.
-        if segment > 0 and layout.corners.kind[segment - 1] == JOINT_CORNER:
-            seed = edges.q[segment - 1, 1]
-        else:
-            lead = np.linspace(start, sigma[0], _LEAD + 1)
-            index = np.full(len(lead), segment, dtype=np.int64)
-            samples = [
-                np.concatenate([lead, sigma]),
-                *(np.concatenate([index, channel]) for channel in samples[1:]),
-            ]
-    arrays = [np.ascontiguousarray(array) for array in samples]
-    owners = np.concatenate([np.full(len(arrays[0]) - len(sigma), segment), pieces.segment[piece]])
-    return TcpRun(stretch.chain, Samples(*arrays), seed, owners)
-
-
-def _follow(
-    route: Route, layout: Layout, curves: TcpCurves, run: TcpRun
-) -> tuple[States, FloatArray]:
-    """Inverse kinematics along a run: states and conditioning."""
-    count = len(run.samples.sigma)
-    states = States.zeros(count, len(run.seed))
-    pivots = np.ones(count)
-    if len(route.solved) != 6:
-        raise MotionError(
-            f"inverse kinematics needs six axes to solve for, this arm offers {len(route.solved)}; "
-            "only joint moves can be driven",
-            route.moves[int(run.segment[0])],
-        )
-    failed, short, reached = sample_tcp(
-        run.chain,
-        route.solved,
-        route.prescribed,
-        curves,
-        run.samples,
-        np.ascontiguousarray(run.seed),
-        states,
-        pivots,
-    )
-    if failed >= 0:
-        k = int(run.segment[failed])
-        share = (reached - layout.waypoint[k]) / layout.segments.scale[k]
-        length = float(layout.segments.length[k])
-        message = why_stranded(route.robot, states.q[failed], float(share), length, short)
-        raise MotionError(message, route.moves[k])
-    return states, pivots
-
-
-def _check_joined(route: Route, pieces: Pieces, q: FloatArray) -> None:
-    """Refuse a path on which the joints jump from one piece to the next, or at its stops."""
-    first, ends = pieces.first_sample, route.ends.q
-    arrive = np.concatenate([ends[:1, 0], ends[:, 1]])
-    leave = np.concatenate([ends[:, 0], ends[-1:, 1]])
-    left = np.concatenate([arrive[:1], q[first[1:] - 1]])
-    right = np.concatenate([q[first[:-1]], leave[-1:]])
-    apart = np.abs(right - left)
-    # At stops a route may join what lies apart (see `flyby.problems.improve.zones.neighbourhood`).
-    stops = np.flatnonzero(pieces.stop)
-    waypoint = pieces.source[stops, 0]
-    apart[stops] = np.maximum(
-        np.abs(left[stops] - arrive[waypoint]), np.abs(right[stops] - leave[waypoint])
-    )
-    # A comparison that holds for what is not a number, too.
-    torn = np.flatnonzero(~(apart.max(axis=1) <= JOINED))
-    if not len(torn):
-        return
-    here = int(torn[0])
-    axis = int(np.argmax(apart[here]))
-    raise MotionError(
-        f"joint {route.robot.axis_names[axis]} would have to jump by {apart[here, axis]:.3g} (rad "
-        "or m) at its end: rounded by its zone, the path passes a singular configuration on "
-        "another side than without; make the zone smaller, a stop point, or use a joint move",
-        route.moves[int(pieces.segment[max(here - 1, 0)])],
-    )
-
-
-def _singular_notes(
-    route: Route, pieces: Pieces, q: FloatArray, conditioning: FloatArray
-) -> list[Note]:
-    """One note for every move with a stretch near a singularity."""
-    segment = pieces.segment[pieces.sample_pieces]
-    notes = []
-    for k in np.unique(segment[conditioning < NEAR_SINGULAR]):
-        rows = np.flatnonzero(segment == k)
-        worst = rows[np.argmin(conditioning[rows])]
-        kind = nearest_singularity(route.robot, q[worst])
-        of = "" if kind is None else f" of the {kind.name}"
-        notes.append(
-            Note(
-                f"near a singular configuration{of} (conditioning {conditioning[worst]:.1e}): "
-                "joints move fast here, and the controller may stop",
-                route.moves[int(k)],
-            )
-        )
-    return notes

@@ -25,7 +25,8 @@ from ...robot.chain import Chain
 from ...robot.chain_kernels import pose
 from ...robot.model import Robot
 from ...robot.work_chain import work_chain
-from ...spatial.rotation import arc_angle, cross_length
+from ..geometry.corners import Corners
+from ..geometry.curves import Samples, TcpCurves
 from ..geometry.layout import Layout
 from ..geometry.segments import (
     ARC_SEGMENT,
@@ -36,11 +37,12 @@ from ..geometry.segments import (
     make_segments,
 )
 from ..geometry.tcp_curves import make_tcp_curves
-from ..geometry.zones import Corners
-from ..model.motion_model import ArcTurn, LineTurn, MotionModel
+from ..model.blend import PARABOLA
+from ..model.motion_model import ArcTurn, LineTurn
 from .configurations import ConfigurationFinder, Label, located
 from .path import Route
-from .tcp_samples import CONVERGED, Samples, States, TcpCurves
+from .route_checks import check_near, half_turns, is_arc
+from .tcp_samples import CONVERGED, States
 from .tcp_walk import sample_tcp
 from .unreachable import why_stranded
 
@@ -48,13 +50,6 @@ if TYPE_CHECKING:
     from ...dialect import ArcRules
 
 _START = -1
-_FURTHEST = 1e3
-"""m from the frame that it is given in beyond which a target, tool or work object is a mistake."""
-_HALF_TURN = np.radians(179.9)
-"""A turn about one axis from which on rounding decides the way round."""
-_COLLINEAR = 1e-4
-_ROUNDING = 1e-6
-"""rad by which an arc may be longer than controllers drive it: programs round their points."""
 _STRAIGHT = (
     "the three points of the arc lie on a line: it is driven as the line. Some controllers stop "
     "there: use a linear move"
@@ -143,7 +138,7 @@ class RouteFinder:
             raise _no_move(program)
         for i, move in enumerate(moves):
             if i not in skipped:
-                _check_near(move, i)
+                check_near(move, i)
         notes: list[Note] = []
         q = self._start(program, start, notes)
         legs = _Legs(0 if notes else None)
@@ -240,7 +235,7 @@ class RouteFinder:
                 auxiliary = move.via.pose.matrix()
                 via[k], via_rotation[k] = auxiliary[:3, 3], auxiliary[:3, :3]
                 follows[k] = self._arc_turn.follows(move.orientation)
-                arc = _is_arc(move, i, (position[k], via[k], position[k + 1]), self._arcs)
+                arc = is_arc(move, i, (position[k], via[k], position[k + 1]), self._arcs)
                 if arc:
                     kind[k] = ARC_SEGMENT
                 else:
@@ -341,7 +336,7 @@ class RouteFinder:
                 zones[-1], owners[-1] = here.zone, move
             if move != legs.at_start:
                 notes.append(Note("goes nowhere: it is at its target already", move))
-        notes += _half_turns(segments, keep, legs.moves)
+        notes += half_turns(segments, keep, legs.moves)
         notes += [Note(_STRAIGHT, move) for move in legs.straight]
         which = np.flatnonzero(keep)
         speeds = [program.moves[legs.moves[k]].speed for k in which]
@@ -364,82 +359,6 @@ class RouteFinder:
 def _span(program: Program, move: int | None) -> Span | None:
     origin = None if move is None else program.moves[move].origin
     return None if origin is None else origin.statement
-
-
-def _check_near(move: Move, i: int) -> None:
-    """Refuse what no robot reaches, before lengths are computed that no number holds."""
-    places = {"tool": move.tool.tcp.position, "work object": move.work_object.pose.position}
-    if not isinstance(move.target, JointTarget):
-        places["target"] = move.target.pose.position
-    if isinstance(move, MoveC):
-        places["auxiliary point"] = move.via.pose.position
-    for name, position in places.items():
-        furthest = max(map(abs, position))
-        if not furthest <= _FURTHEST:
-            raise located(
-                move,
-                i,
-                f"the {name} lies {furthest:.3g} m away, beyond any robot's reach (at most "
-                f"{_FURTHEST:g} m are taken): check its coordinates and their unit",
-            )
-
-
-def _half_turns(segments: Segments, keep: NDArray[np.bool_], moves: Sequence[int]) -> list[Note]:
-    """Notes of the linear moves that turn the tool by half a turn."""
-    turns = np.linalg.norm(np.stack([segments.turn_a, segments.turn_b]), axis=2).max(axis=0)
-    half = (segments.ends.kind == LINE_SEGMENT) & keep & (turns > _HALF_TURN)
-    return [
-        Note(
-            "turns the tool by half a turn: rounding decides the way round; put a target between",
-            moves[k],
-        )
-        for k in map(int, np.flatnonzero(half))
-    ]
-
-
-def _is_arc(
-    move: Move, i: int, points: tuple[FloatArray, FloatArray, FloatArray], rules: ArcRules | None
-) -> bool:
-    """Whether start, auxiliary point and end (3,) make an arc, and no line.
-
-    Raises:
-        MotionError: they make neither, or an arc that the vendor's controllers do not drive.
-    """
-    start, via, end = points
-    a, b = via - start, end - start
-    sizes = float(np.linalg.norm(a)), float(np.linalg.norm(b)), float(np.linalg.norm(end - via))
-    if min(sizes) < 1e-6:
-        raise located(
-            move,
-            i,
-            "two of the three points of the arc are the same (nearer than 0.001 mm): an arc needs "
-            "three different points",
-        )
-    if rules is not None and min(sizes[:2]) < rules.least_chord:
-        raise located(
-            move,
-            i,
-            f"the controller stops at {rules.name}: a point of the arc is less than "
-            f"{1e3 * rules.least_chord:g} mm from its start; move the point, or take the arc out",
-        )
-    if cross_length(a, b) < _COLLINEAR * sizes[0] * sizes[1]:
-        if 0.0 < float(a @ b) < sizes[1] ** 2:
-            return False
-        raise located(
-            move,
-            i,
-            "the three points of the arc lie on a line, and the auxiliary point not between the "
-            "others: move it, or use a linear move",
-        )
-    swept = arc_angle(start, via, end)
-    if rules is not None and swept > rules.longest + _ROUNDING:
-        raise located(
-            move,
-            i,
-            f"the controller stops at {rules.name}: an arc of {math.degrees(swept):.0f}° is above "
-            f"the {math.degrees(rules.longest):.0f}° that it drives; split it in two",
-        )
-    return True
 
 
 def _waypoints(program: Program) -> dict[int, _Waypoint]:
@@ -476,7 +395,7 @@ def _nominal(segments: Segments) -> TcpCurves:
     count = len(segments.scale)
     corners = Corners(np.zeros(count - 1, dtype=np.int64), np.zeros((count - 1, 3, 2)), [])
     unit = replace(segments, scale=np.ones(count))
-    return make_tcp_curves(Layout.of(unit, corners), MotionModel()).curves
+    return make_tcp_curves(Layout.of(unit, corners), PARABOLA, PARABOLA).curves
 
 
 def _no_move(program: Program) -> MotionError:

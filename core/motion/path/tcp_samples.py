@@ -23,7 +23,7 @@ from ...robot.chain_kernels import acceleration_gradient, jacobian, motion, velo
 from ...robot.lean import lean
 from ...robot.linear import factor, solve, solve_transposed
 from ...robot.tracking import pose_error
-from ..geometry.curves import Curves, evaluate, pull
+from ..geometry.curves import Samples, TcpCurves, evaluate, pull
 from ..geometry.orientation_curves import orientation, pull_orientation
 
 _ITERATIONS = 30
@@ -32,35 +32,6 @@ CONVERGED = 1e-9
 _LONGEST_STEP = 0.3
 SINGULAR = 1e-8
 """Ratio of pivots of the Jacobian below which a sample counts as singular."""
-
-
-class TcpCurves(NamedTuple):
-    """The curves of TCP-space motion, one set for a whole path.
-
-    Args:
-        position: D = 3, m in the work object.
-        turning: D = 6, the rotation vectors A and B of `turning`.
-        reference: (P, 3, 3), R_ref of each turning curve.
-        prescribed: D = number of prescribed axes.
-    """
-
-    position: Curves
-    turning: Curves
-    reference: FloatArray
-    prescribed: Curves
-
-
-class Samples(NamedTuple):
-    """Where a path is sampled: σ and, for each channel, which curve is evaluated there (S,)."""
-
-    sigma: FloatArray
-    position: IntArray
-    turning: IntArray
-    prescribed: IntArray
-
-    def last(self) -> Samples:
-        """The last sample alone."""
-        return Samples(self.sigma[-1:], self.position[-1:], self.turning[-1:], self.prescribed[-1:])
 
 
 class States(NamedTuple):

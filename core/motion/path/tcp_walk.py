@@ -17,17 +17,9 @@ from ...robot.chain_kernels import jacobian
 from ...robot.lean import lean
 from ...robot.tracking import pose_error, track
 from ..geometry.curve_bounds import bound_jerk, make_taylor
+from ..geometry.curves import Samples, TcpCurves
 from .branch_proof import LEAST, TubeWork, invert, make_tube_work, stays_in_tube
-from .tcp_samples import (
-    CONVERGED,
-    SINGULAR,
-    Samples,
-    Scratch,
-    States,
-    TcpCurves,
-    make_scratch,
-    state_at,
-)
+from .tcp_samples import CONVERGED, SINGULAR, Scratch, States, make_scratch, state_at
 
 JOINED = 1e-5
 """rad or m by which configurations of one place may differ: what Newton's method leaves of a pose

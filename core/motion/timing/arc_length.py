@@ -18,13 +18,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
-from ..geometry.layout import flat_corners
-from ..geometry.zones import JOINT_CORNER, POSITION
-from ..path.path import Path, zone_pieces
+from ..geometry.corners import JOINT_CORNER, POSITION
+from ..geometry.layout import Layout
+from ..geometry.pieces import Pieces
 from ..path.tcp_samples import States
-from .limits import interval_samples
 
 _FLOOR = 0.01
 """ε² as a share of the mean of |x'|² at a zone's two edges."""
@@ -54,42 +54,59 @@ class ArcLength:
     weights: FloatArray
 
     @classmethod
-    def of(cls, path: Path, acceleration: FloatArray) -> ArcLength:
+    def of(
+        cls,
+        layout: Layout,
+        pieces: Pieces,
+        flat: NDArray[np.bool_],
+        sigma: FloatArray,
+        samples: States,
+        acceleration: FloatArray,
+    ) -> ArcLength:
         """The samples of a path.
 
         Args:
-            path: the path.
+            layout, pieces: of the path.
+            flat: (M − 1,), corners whose blend law is flat at its ends.
+            sigma: (S,), of the samples.
+            samples: (S,), with respect to σ.
             acceleration: (N,) rad/s² or m/s², the axes' limits.
         """
-        zones, weights = _zones(path), 1.0 / acceleration**2
-        count = len(path.sigma)
+        zones, weights = _zones(layout, pieces, flat), 1.0 / acceleration**2
+        count = len(sigma)
         rate, change = np.ones(count), np.zeros(count)
-        states = States(path.states.q, *(array.copy() for array in path.states[1:]))
-        _even(path.states, path.sigma, zones, weights, rate, change, states)
-        left = interval_samples(path.pieces)
+        states = States(samples.q, *(array.copy() for array in samples[1:]))
+        _even(samples, sigma, zones, weights, rate, change, states)
+        left = pieces.interval_samples
         spacing = np.empty(len(left))
-        _measure(path.sigma, left, rate, change, spacing)
+        _measure(sigma, left, rate, change, spacing)
         return cls(states, rate, spacing, zones, weights)
 
     def pull(
-        self, path: Path, bar: States, spacing_bar: FloatArray, sigma_bar: FloatArray
+        self,
+        pieces: Pieces,
+        sigma: FloatArray,
+        samples: States,
+        bar: States,
+        spacing_bar: FloatArray,
+        sigma_bar: FloatArray,
     ) -> States:
-        """Reverse of `of`: the gradient with respect to ``path.states``.
+        """Reverse of `of`: the gradient with respect to ``samples``.
 
         Args:
-            path: the path.
+            pieces, sigma, samples: as in `of`.
             bar: gradient with respect to ``states``; used up.
             spacing_bar: (K,).
             sigma_bar: (S,), added to.
         """
-        count = len(path.sigma)
+        count = len(sigma)
         rate, change = np.ones(count), np.zeros(count)
-        scratch = States(*(np.empty_like(array) for array in path.states))
-        _even(path.states, path.sigma, self.zones, self.weights, rate, change, scratch)
+        scratch = States(*(np.empty_like(array) for array in samples))
+        _even(samples, sigma, self.zones, self.weights, rate, change, scratch)
         rate_bar, change_bar = np.zeros(count), np.zeros(count)
         _pull_measure(
-            path.sigma,
-            interval_samples(path.pieces),
+            sigma,
+            pieces.interval_samples,
             rate,
             change,
             spacing_bar,
@@ -98,8 +115,8 @@ class ArcLength:
             change_bar,
         )
         _pull_even(
-            path.states,
-            path.sigma,
+            samples,
+            sigma,
             self.zones,
             self.weights,
             rate,
@@ -112,13 +129,12 @@ class ArcLength:
         return bar
 
 
-def _zones(path: Path) -> IntArray:
+def _zones(layout: Layout, pieces: Pieces, flat: NDArray[np.bool_]) -> IntArray:
     """Samples and space of every zone that has an extent and whose law is flat at its ends."""
-    pieces, layout, model = path.pieces, path.layout, path.model
-    live = np.flatnonzero(flat_corners(layout, model))
+    live = np.flatnonzero(flat)
     extent = layout.extent[live, POSITION]
-    live = live[(extent > 0).all(axis=1)]
-    first, _, last = zone_pieces(path, live).T
+    live, extent = (part[(extent > 0).all(axis=1)] for part in (live, extent))
+    first, _, last = pieces.around(layout.waypoint[live + 1], extent).T
     joint = layout.corners.kind[live] == JOINT_CORNER
     samples = pieces.first_sample
     return np.stack([samples[first], samples[last + 1] - 1, joint], -1).astype(np.int64)

@@ -14,11 +14,13 @@ from numpy.typing import NDArray
 
 from ...arrays import FloatArray
 from ...errors import InputError
+from ...program.move import Move
+from ...program.program import Program
 from ...robot.inertia import Inertia
 from ...robot.model import Robot
 from ..model.consumption import SQUARED_TORQUE, Consumption
+from ..path.path import Path
 from ..path.tcp_samples import States
-from .limits import interval_samples
 from .timing import Timing
 
 
@@ -39,6 +41,35 @@ class Energy:
     motion: tuple[FloatArray, FloatArray, FloatArray]
     loads: tuple[Inertia | None, ...]
     consumption: Consumption = SQUARED_TORQUE
+
+
+def loads_of(program: Program, path: Path) -> list[Inertia | None]:
+    """What the flange carries on each segment of a program's path: tool and payload."""
+    known: dict[object, Inertia | None] = {}
+    found = []
+    for index in path.route.moves:
+        move = program.moves[index]
+        key = move.tool, move.load
+        if key not in known:
+            known[key] = _carried(move)
+        found.append(known[key])
+    return found
+
+
+def _carried(move: Move) -> Inertia | None:
+    """The tool's load and the payload as one body in the flange's frame."""
+    bodies = []
+    if move.tool.robot_held and move.tool.load is not None:
+        bodies.append(Inertia.of_load(move.tool.load))
+    if move.load is not None:
+        frame = move.tool.tcp if move.tool.robot_held else move.work_object.pose
+        bodies.append(Inertia.of_load(move.load, frame))
+    if not bodies:
+        return None
+    total = bodies[0]
+    for body in bodies[1:]:
+        total = total + body
+    return total
 
 
 def energy(
@@ -97,7 +128,7 @@ def by_load(
 
 def _motion(timing: Timing) -> tuple[FloatArray, FloatArray, FloatArray]:
     states = timing.along.states
-    left = interval_samples(timing.path.pieces)
+    left = timing.path.pieces.interval_samples
     ends = np.stack([left, left + 1], -1)
     x = np.stack([timing.stamp.x[:-1], timing.stamp.x[1:]], -1)[..., None]
     u = timing.stamp.u[:, None, None]
@@ -111,7 +142,7 @@ def pull_energy(
     """Gradient of the energy: adds to that of ``timing.along.states``, returns those of x (K + 1,),
     t (K + 1,) and the intervals' spacing (K,)."""
     states, stamp = timing.along.states, timing.stamp
-    left = interval_samples(timing.path.pieces)
+    left = timing.path.pieces.interval_samples
     ends = np.stack([left, left + 1], -1)
     steps = timing.end - timing.begin
     halves = 0.5 * steps[:, None, None]

@@ -23,42 +23,19 @@ from ...robot.joint import JointKind
 from ...robot.model import Robot
 from ..geometry.pieces import Pieces
 from ..geometry.segments import JOINT_SEGMENT, Segments
-from ..geometry.swivel import pull_turn_shares, turn_shares
-from ..gradients import stamping_adjoint
+from ..geometry.swivel import turn_shares
 from ..model.motion_model import MotionModel
 from ..path.tcp_samples import States
 from . import stamping
-from .between_samples import lower_between, pull_between
-from .rates import pull_rates, pull_sideways, rates, sideways
-from .superposed_legs import lower_ceilings, pull_ceilings, room_along
-from .torque import Shares
-from .torque_rows import pull_torque_rows, torque_rows
+from .between_samples import lower_between
+from .rates import rates, sideways
+from .superposed_legs import lower_ceilings, room_along
+from .torque_rows import Shares, torque_rows
 
 _TOGETHER = 20_000
 """Intervals whose rows of torque are made in one go."""
 CENTRIPETAL = -3
 """Stands for a row in `PathLimits.binding` where centripetal acceleration is the ceiling."""
-
-
-@dataclass
-class SpeedGradient:
-    """Gradient with respect to the numbers of each segment's speed, (M,) each."""
-
-    tcp: FloatArray
-    reorientation: FloatArray
-    external_linear: FloatArray
-    external_angular: FloatArray
-    joint: FloatArray
-    joint_fraction: FloatArray
-    tcp_acceleration: FloatArray
-    reorientation_acceleration: FloatArray
-    joint_acceleration: FloatArray
-    joint_acceleration_fraction: FloatArray
-
-    @classmethod
-    def zeros(cls, count: int) -> SpeedGradient:
-        """A gradient to add to."""
-        return cls(*(np.zeros(count) for _ in cls.__dataclass_fields__))
 
 
 @dataclass(frozen=True)
@@ -113,28 +90,6 @@ class SegmentLimits:
         velocity = self.velocity.copy()
         velocity[list(segments)] *= factor
         return replace(self, velocity=velocity)
-
-    def pull(
-        self,
-        velocity_bar: FloatArray,
-        acceleration_bar: FloatArray,
-        torque_bar: FloatArray,
-        out: SpeedGradient,
-    ) -> FloatArray:
-        """Reverse of `of`: adds to the gradient of the speeds, returns that (M,) of `turning`."""
-        out.joint_acceleration_fraction += torque_bar
-        turning_bar = np.zeros(len(self.turning))
-        for bars, values, sources in (
-            (velocity_bar, self.velocity, self.velocity_source),
-            (acceleration_bar, self.acceleration, self.acceleration_source),
-        ):
-            bars[:, -1] /= self.turning
-            turning_bar -= bars[:, -1] * np.where(bars[:, -1] == 0.0, 0.0, values[:, -1])
-            for k, j in zip(*np.nonzero(bars), strict=True):
-                source = sources[k][j]
-                if source is not None:
-                    getattr(out, source[0])[k] += bars[k, j] * source[1]
-        return turning_bar
 
 
 def _turning(segments: Segments) -> FloatArray:
@@ -331,7 +286,7 @@ def path_limits(
     if known is None:
         np.negative(upper, out=lower)
     if known is None and shares is not None:
-        ends, left = interval_ends(pieces), _torque_left(pieces, limits)
+        ends, left = pieces.interval_ends, torque_left(pieces, limits)
         for first in range(0, count, _TOGETHER):
             part = slice(first, first + _TOGETHER)
             made = torque_rows(shares, ends[part], left[part])
@@ -341,153 +296,6 @@ def path_limits(
     return PathLimits(found, limited, shares, zones, binding)
 
 
-def _torque_left(pieces: Pieces, limits: SegmentLimits) -> FloatArray:
+def torque_left(pieces: Pieces, limits: SegmentLimits) -> FloatArray:
     """(K,), the share of the torques' limits that may be used in each interval."""
     return limits.torque[np.repeat(pieces.segment, pieces.intervals)]
-
-
-def interval_samples(pieces: Pieces) -> IntArray:
-    """(K,), index of the sample at the left end of each interval."""
-    piece = np.repeat(np.arange(len(pieces.segment)), pieces.intervals)
-    return np.arange(len(piece)) + piece
-
-
-def interval_ends(pieces: Pieces) -> IntArray:
-    """(K, 2), index of the samples at both ends of each interval."""
-    left = interval_samples(pieces)
-    return np.stack([left, left + 1], -1)
-
-
-@njit(cache=True, error_model="numpy")
-def _pull_fill(
-    states: States,
-    first_sample: IntArray,
-    first_interval: IntArray,
-    segment: IntArray,
-    velocity: FloatArray,
-    acceleration: FloatArray,
-    centripetal: float,
-    room: FloatArray,
-    binding: IntArray,
-    a_bar: FloatArray,
-    b_bar: FloatArray,
-    bound_bar: FloatArray,
-    ceiling_bar: FloatArray,
-    states_bar: States,
-    velocity_bar: FloatArray,
-    acceleration_bar: FloatArray,
-) -> None:
-    """Reverse of `_fill`."""
-    axes = states.q.shape[1]
-    rate, bend = np.empty(axes + 2), np.empty(axes + 2)
-    rate_bar, bend_bar = np.empty(axes + 2), np.empty(axes + 2)
-    for p in range(segment.size):
-        s = segment[p]
-        count = first_interval[p + 1] - first_interval[p]
-        for i in range(count + 1):
-            k = first_sample[p] + i
-            knot = first_interval[p] + i
-            rate_bar[:] = 0.0
-            bend_bar[:] = 0.0
-            j = binding[knot, 1]
-            live = binding[knot, 0] == k and ceiling_bar[knot] != 0.0
-            if live and j == CENTRIPETAL:
-                x = centripetal * acceleration[s, axes] / sideways(states, k)
-                pull_sideways(states, k, -x / sideways(states, k) * ceiling_bar[knot], states_bar)
-                acceleration_bar[s, axes] += x / acceleration[s, axes] * ceiling_bar[knot]
-            if live and 0 <= j < axes + 2:
-                rates(states, k, axes, rate, bend)
-                x = (velocity[s, j] / rate[j]) ** 2
-                rate_bar[j] -= 2 * x / rate[j] * ceiling_bar[knot]
-                velocity_bar[s, j] += 2 * x / velocity[s, j] * ceiling_bar[knot]
-            for end in range(2):
-                interval = knot - end
-                if interval < first_interval[p] or interval >= first_interval[p + 1]:
-                    continue
-                for j in range(axes + 2):
-                    if acceleration[s, j] < np.inf:
-                        rate_bar[j] += a_bar[interval, end, j]
-                        bend_bar[j] += b_bar[interval, end, j]
-                        times = room[p] if j >= axes else 1.0
-                        acceleration_bar[s, j] += times * bound_bar[interval, end, j]
-            pull_rates(states, k, axes, rate_bar, bend_bar, states_bar)
-
-
-def pull_path_limits(
-    states: States,
-    pieces: Pieces,
-    limits: SegmentLimits,
-    made: PathLimits,
-    bar: stamping_adjoint.StampGradient,
-    states_bar: States,
-    speeds_bar: SpeedGradient,
-) -> tuple[Shares | None, FloatArray]:
-    """Reverse of `path_limits`; adds to the gradients of states, speeds and, in ``bar``, spacing.
-
-    Returns:
-        The gradients of the shares of torque, None without, and of the segments' `turning` (M,).
-    """
-    velocity_bar = np.zeros_like(limits.velocity)
-    acceleration_bar = np.zeros_like(limits.acceleration)
-    torque_bar = np.zeros_like(limits.torque)
-    shape = (len(made.rows.spacing), 2, limits.acceleration.shape[1])
-    a_bar, b_bar, bound_bar = (np.zeros(shape) for _ in range(3))
-    plain = len(made.limited)
-    a_bar[:, :, made.limited] = bar.a[:, :, :plain]
-    b_bar[:, :, made.limited] = bar.b[:, :, :plain]
-    bound_bar[:, :, made.limited] = (bar.upper - bar.lower)[:, :, :plain]
-    pull_between(
-        states,
-        made.rows.spacing,
-        pieces,
-        limits.velocity,
-        made.rows.ceiling,
-        made.binding,
-        bar.ceiling,
-        states_bar,
-        bar.spacing,
-        velocity_bar,
-    )
-    pull_ceilings(
-        states,
-        made.rows.spacing,
-        pieces,
-        limits.acceleration,
-        made.zones,
-        made.binding,
-        bar.ceiling,
-        states_bar,
-        bar.spacing,
-        acceleration_bar,
-    )
-    _pull_fill(
-        states,
-        pieces.first_sample,
-        pieces.first_interval,
-        pieces.segment,
-        limits.velocity,
-        limits.acceleration,
-        limits.centripetal,
-        room_along(made.zones, pieces),
-        made.binding,
-        a_bar,
-        b_bar,
-        bound_bar,
-        bar.ceiling,
-        states_bar,
-        velocity_bar,
-        acceleration_bar,
-    )
-    shares_bar = None
-    if made.shares is not None:
-        ends, left = interval_ends(pieces), _torque_left(pieces, limits)
-        shares_bar, left_bar = pull_torque_rows(made.shares, ends, left, bar)
-        np.add.at(torque_bar, np.repeat(pieces.segment, pieces.intervals), left_bar)
-    turning_bar = limits.pull(velocity_bar, acceleration_bar, torque_bar, speeds_bar)
-    return shares_bar, turning_bar
-
-
-def pull_turning(segments: Segments, turning_bar: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Gradients (M, 3) of the segments' turns a and b from that of `SegmentLimits.turning`."""
-    bar = np.where(segments.ends.swivels, turning_bar, 0.0)
-    return pull_turn_shares(segments.turn_a, segments.turn_b, bar)

@@ -7,46 +7,18 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import FloatArray
-from ...errors import MotionError
 from ..geometry.segments import JOINT_SEGMENT, TURN_LENGTH, Segments
 from ..path.path import Path
 from .arc_length import ArcLength
-from .limits import PathLimits, SegmentLimits, path_limits
-from .stamping import StampingError, stamp
-from .superposed_legs import superposed_zones
-from .timing import Settling, Timing
-from .torque import Shares
+from .limits import SegmentLimits
+from .timing import Settling, Timing, stamp_path
+from .torque_rows import Shares
 
 _DURATION_ROUNDS = 60
 _DURATION_MET = 1e-6
 _THIRDS_ROUNDS = 4
 _MOST_OFF = 0.05
 """Share of a time by which it is aimed beside it: more is no matter of samples."""
-
-
-def stamp_path(
-    path: Path,
-    along: ArcLength,
-    limits: SegmentLimits,
-    shares: Shares | None,
-    settling: Settling,
-    known: PathLimits | None = None,
-) -> Timing:
-    """The fastest timing of a path within its limits; ``known`` ones but for velocities, if any.
-
-    Raises:
-        MotionError: the limits leave a move no speed.
-    """
-    zones = superposed_zones(path)
-    made = path_limits(along.states, along.spacing, path.pieces, limits, zones, shares, known)
-    try:
-        found = stamp(made.rows)
-    except StampingError as error:
-        knot = min(error.knot, len(made.rows.spacing) - 1)
-        piece = int(np.searchsorted(path.pieces.first_interval, knot, "right")) - 1
-        move = path.route.moves[int(path.pieces.segment[piece])]
-        raise MotionError(f"the limits leave it no speed: {error.message}", move) from error
-    return Timing.of(path, limits, along, made, found, settling)
 
 
 def stamp_in_thirds(

@@ -21,10 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
+from ..geometry.pieces import Pieces
 from ..geometry.quintic import basis
-from ..path.path import Path
 from .arc_length import ArcLength
-from .limits import interval_ends
 from .stamping import Stamp
 
 _HALVINGS = 52
@@ -89,7 +88,7 @@ class Rests:
     @classmethod
     def of(
         cls,
-        path: Path,
+        pieces: Pieces,
         along: ArcLength,
         stamp: Stamp,
         most: float,
@@ -98,18 +97,18 @@ class Rests:
         """The rests of a stamped path.
 
         Args:
-            path: the geometry.
+            pieces: of the path.
             along: its samples, as they were stamped.
             stamp: times without rests.
             most: s.
             in_position: what is waited for; None rests for ``most`` in any case.
         """
-        stops = np.flatnonzero(path.pieces.stop[1:-1]) + 1
-        knot = path.pieces.first_interval[stops]
+        stops = np.flatnonzero(pieces.stop[1:-1]) + 1
+        knot = pieces.first_interval[stops]
         longest, none = np.full(len(knot), most), np.zeros(len(knot))
         if in_position is None:
             return cls(knot, longest, most, None, none, None, none > 0.0)
-        entries = _entries(path, along, stamp, knot, in_position.window)
+        entries = _entries(pieces, along, stamp, knot, in_position.window)
         approach = stamp.t[knot] - entries.t
         left = in_position.time - approach
         counted = (left > 0.0) & (left < most)
@@ -123,10 +122,12 @@ class Rests:
         return np.clip(self.in_position.time - self.approach / rate, 0.0, self.most)
 
 
-def _entries(path: Path, along: ArcLength, stamp: Stamp, knot: IntArray, window: float) -> Entries:
+def _entries(
+    pieces: Pieces, along: ArcLength, stamp: Stamp, knot: IntArray, window: float
+) -> Entries:
     """When the axes are within a window round each stop for good."""
     begin = np.concatenate([np.zeros(min(len(knot), 1), dtype=np.int64), knot[:-1]])
-    ends, q = interval_ends(path.pieces), along.states.q
+    ends, q = pieces.interval_ends, along.states.q
     rest = q[ends[knot - 1, 1]]
     stop = np.repeat(np.arange(len(knot)), knot - begin)
     away = np.abs(q[ends[: len(stop), 0]] - rest[stop]).max(axis=1)

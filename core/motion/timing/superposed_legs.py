@@ -24,11 +24,10 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from ..geometry.curves import ARC
+from ..geometry.corners import POSITION, TCP_CORNER
+from ..geometry.curves import ARC, Curves
+from ..geometry.layout import Layout
 from ..geometry.pieces import Pieces
-from ..geometry.zones import POSITION, TCP_CORNER
-from ..model.motion_model import Pace
-from ..path.path import Path, zone_pieces
 from ..path.tcp_samples import States
 from .rates import pull_rates, rates
 
@@ -36,15 +35,13 @@ ZONE = -2
 """What stands for a row in `limits.PathLimits.binding` where the ceiling is a zone's."""
 
 
-def superposed_zones(path: Path) -> IntArray:
-    """(Z, 4), first piece, first behind the waypoint and last piece of each zone that is driven so,
-    and whether it is a tangent arc."""
-    if path.model.pace is not Pace.SUPERPOSED:
-        return np.zeros((0, 4), dtype=np.int64)
-    pieces = zone_pieces(path, np.flatnonzero(path.corners.kind == TCP_CORNER))
-    curve = path.pieces.curve[pieces[:, 0], POSITION]
-    arc = path.tcp.curves.position.kind[curve] == ARC
-    return np.column_stack([pieces, arc]).astype(np.int64)
+def superposed_zones(layout: Layout, pieces: Pieces, position: Curves) -> IntArray:
+    """(Z, 4), first piece, first behind the waypoint and last piece of each zone of the TCP, and
+    whether it is a tangent arc: those that are driven so where legs are superposed."""
+    corners = np.flatnonzero(layout.corners.kind == TCP_CORNER)
+    zones = pieces.around(layout.waypoint[corners + 1], layout.extent[corners, POSITION])
+    arc = position.kind[pieces.curve[zones[:, 0], POSITION]] == ARC
+    return np.column_stack([zones, arc]).astype(np.int64)
 
 
 def room_along(zones: IntArray, pieces: Pieces) -> FloatArray:

@@ -8,13 +8,17 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
+from ...errors import MotionError
+from ..model.motion_model import Pace
 from ..path.path import Path
 from ..path.tcp_samples import States
 from .arc_length import ArcLength
-from .limits import PathLimits, SegmentLimits, interval_samples
+from .limits import PathLimits, SegmentLimits, path_limits
 from .rests import InPosition, Rests
-from .stamping import Stamp
+from .stamping import Stamp, StampingError, stamp
 from .start_ramp import SUDDEN, StartRamp
+from .superposed_legs import superposed_zones
+from .torque_rows import Shares
 
 _ROUNDING = 1e-12
 """s, by which times may be off."""
@@ -94,7 +98,7 @@ class Timing:
         first = pieces.first_interval
         wait = np.zeros(first[-1] + 1)
         wait[first[waypoint_edge]] = path.route.dwell[pieces.source[waypoint_edge, 0]]
-        rests = Rests.of(path, along, stamp, settling.stop, settling.in_position)
+        rests = Rests.of(path.pieces, along, stamp, settling.stop, settling.in_position)
         wait[rests.knot] += rests.length
         wait[-1] += settling.end
         # A wait at a knot comes before the interval that leaves it.
@@ -167,7 +171,7 @@ class Timing:
             interval,
             self.begin,
             self.end,
-            interval_samples(self.path.pieces),
+            self.path.pieces.interval_samples,
             self.path.sigma,
             self.along.rate,
             self.along.spacing,
@@ -240,3 +244,41 @@ def _drive(
             slope, bend = slope / length, bend / length**2
             dq[i, j] = slope * rate if moving else 0.0
             ddq[i, j] = bend * rate * rate + slope * u if moving else 0.0
+
+
+def along_path(path: Path, acceleration: FloatArray) -> ArcLength:
+    """The samples of a path over the parameter that is stamped.
+
+    Args:
+        path: the path.
+        acceleration: (N,) rad/s² or m/s², the axes' limits.
+    """
+    flat = path.flat_corners
+    return ArcLength.of(path.layout, path.pieces, flat, path.sigma, path.states, acceleration)
+
+
+def stamp_path(
+    path: Path,
+    along: ArcLength,
+    limits: SegmentLimits,
+    shares: Shares | None,
+    settling: Settling,
+    known: PathLimits | None = None,
+) -> Timing:
+    """The fastest timing of a path within its limits; ``known`` ones but for velocities, if any.
+
+    Raises:
+        MotionError: the limits leave a move no speed.
+    """
+    zones = np.zeros((0, 4), dtype=np.int64)
+    if path.model.pace is Pace.SUPERPOSED:
+        zones = superposed_zones(path.layout, path.pieces, path.tcp.curves.position)
+    made = path_limits(along.states, along.spacing, path.pieces, limits, zones, shares, known)
+    try:
+        found = stamp(made.rows)
+    except StampingError as error:
+        knot = min(error.knot, len(made.rows.spacing) - 1)
+        piece = int(np.searchsorted(path.pieces.first_interval, knot, "right")) - 1
+        move = path.route.moves[int(path.pieces.segment[piece])]
+        raise MotionError(f"the limits leave it no speed: {error.message}", move) from error
+    return Timing.of(path, limits, along, made, found, settling)

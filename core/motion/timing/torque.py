@@ -20,7 +20,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -31,6 +31,7 @@ from ...robot.chain import Chain
 from ...robot.chain_kernels import acceleration_gradient, jacobians, motions, velocity_gradient
 from ...robot.model import Robot
 from ..model.point_masses import chain_to_axis, filled, row_of
+from .torque_rows import Shares
 
 _TOGETHER = 20_000
 """Samples whose Jacobians are made in one go."""
@@ -52,15 +53,6 @@ class Borne:
     def entry(self) -> dict[str, Any]:
         """As the file has it."""
         return {"joint": self.joint, "share_s2_per_m2": self.share}
-
-
-class Shares(NamedTuple):
-    """Shares of torque along a path, T = a u + b x + h and |T| ≤ 1 - fade x, (S, L) each."""
-
-    a: FloatArray
-    b: FloatArray
-    h: FloatArray
-    fade: FloatArray
 
 
 @dataclass(frozen=True)

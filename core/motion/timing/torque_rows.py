@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...arrays import FloatArray, IntArray
-from ..gradients.stamping_adjoint import StampGradient
-from .torque import Shares
+
+
+class Shares(NamedTuple):
+    """Shares of torque along a path, T = a u + b x + h and |T| ≤ 1 - fade x, (S, L) each."""
+
+    a: FloatArray
+    b: FloatArray
+    h: FloatArray
+    fade: FloatArray
 
 
 def torque_rows(
@@ -30,25 +39,3 @@ def torque_rows(
         np.concatenate([-most * (1 + held), -none], axis=2),
         np.concatenate([none, most * (1 - held)], axis=2),
     )
-
-
-def pull_torque_rows(
-    shares: Shares, ends: IntArray, most: FloatArray, bar: StampGradient
-) -> tuple[Shares, FloatArray]:
-    """Reverse of `torque_rows`, whose rows are the last of the stamp's.
-
-    Returns:
-        The gradients of the shares and of ``most`` (K,).
-    """
-    count = shares.h.shape[1]
-    held, fade, below = shares.h[ends], shares.fade[ends], slice(-2 * count, -count)
-    a_bar = bar.a[:, :, below] + bar.a[:, :, -count:]
-    b_bar = bar.b[:, :, below] + bar.b[:, :, -count:]
-    more = bar.b[:, :, -count:] - bar.b[:, :, below]
-    lower, upper = bar.lower[:, :, below], bar.upper[:, :, -count:]
-    most_bar = np.sum(upper * (1 - held) - lower * (1 + held) + more * fade, axis=(1, 2))
-    most = most[:, None, None]
-    out = Shares(*(np.zeros_like(part) for part in shares))
-    for part, seed in zip(out, (a_bar, b_bar, -most * (upper + lower), most * more), strict=True):
-        np.add.at(part, ends, seed)
-    return out, np.asarray(most_bar)

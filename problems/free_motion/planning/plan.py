@@ -9,7 +9,8 @@ from ....core.cell.cell import Cell
 from ....core.collision.proof.certificate import SceneOf, certify, scenes_of
 from ....core.collision.proof.verdict import Certificate
 from ....core.errors import InputError, MotionError
-from ....core.motion.emulator.controller import Controller, Run
+from ....core.motion.emulator.controller import Controller
+from ....core.motion.emulator.run import Run
 from ....core.program.move import MoveJ
 from ....core.program.program import Program
 from ....core.program.speed import Speed

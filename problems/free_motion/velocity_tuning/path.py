@@ -22,8 +22,7 @@ from ....core.arrays import FloatArray
 from ....core.errors import InputError
 from ....core.motion.emulator.binding_limits import row_names
 from ....core.motion.emulator.controller import Controller
-from ....core.motion.timing.energy import by_load
-from ....core.motion.timing.limits import interval_ends
+from ....core.motion.timing.energy import by_load, loads_of
 from ....core.motion.timing.stamping import Limits
 from ....core.motion.timing.timing import Timing
 from ....core.program.program import Program
@@ -96,11 +95,11 @@ class FixedPath:
             program: what was driven.
             timing: its stamp; the path and the limits count, not the times.
         """
-        ends = interval_ends(timing.path.pieces)
+        ends = timing.path.pieces.interval_ends
         states = timing.along.states
         q, dq, ddq = (np.ascontiguousarray(part[ends]) for part in states[:3])
         robot = controller.robot
-        loads = controller.loads(program, timing.path)
+        loads = loads_of(program, timing.path)
         rigid = None
         if robot.links:
             rigid = rigid_torques(robot, q, dq, ddq, loads, timing.interval_segments)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.motion.emulator.controller import Controller
-from ....core.motion.timing.energy import by_load
+from ....core.motion.timing.energy import by_load, loads_of
 from ....core.motion.timing.timing import Settling, Timing
 from ....core.program.program import Program
 from .task import Task
@@ -140,7 +140,7 @@ class Tuned:
         interval = np.clip(np.searchsorted(own.begin, t, "right") - 1, 0, None)
         segment = own.interval_segments[interval]
         torque = np.empty_like(q)
-        for load, rows in by_load(controller.loads(program, timing.path), segment):
+        for load, rows in by_load(loads_of(program, timing.path), segment):
             torque[rows] = controller.robot.inverse_dynamics(q[rows], dq[rows], ddq[rows], load)
         for j, drive in enumerate(self.task.drives):
             torque[:, j] += drive.inertia * ddq[:, j] + drive.viscous * dq[:, j]

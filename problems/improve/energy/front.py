@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from ....core.arrays import FloatArray
 from ....core.collision.proof.verdict import Certificate
 from ....core.errors import Note
-from ....core.motion.emulator.controller import Controller, Run
+from ....core.motion.emulator.controller import Controller
+from ....core.motion.emulator.run import Run
 from ....core.motion.model.consumption import Consumption
 from ....core.motion.timing.energy import energy_by_joint
 from ....core.program.program import Program

@@ -83,7 +83,7 @@ class Evaluated:
     @cached_property
     def derivatives(self) -> Derivatives:
         """Of the driven program."""
-        return Derivatives(self.problem.controller, self.program, self.timing)
+        return Derivatives(self.program, self.timing)
 
 
 @dataclass(frozen=True, eq=False)

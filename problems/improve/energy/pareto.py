@@ -16,7 +16,8 @@ from ....core.cell.cell import Cell
 from ....core.collision.proof.certificate import certify, scenes_of
 from ....core.dialect import Dialect
 from ....core.errors import InputError, Note
-from ....core.motion.emulator.controller import Controller, Run
+from ....core.motion.emulator.controller import Controller
+from ....core.motion.emulator.run import Run
 from ....core.program.program import Program
 from ..solution import RESOLUTION
 from ..start_check import check_start

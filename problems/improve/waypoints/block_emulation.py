@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from ....core.arrays import FloatArray, IntArray
 from ....core.errors import MotionError, Note
 from ....core.motion.emulator.controller import Controller
+from ....core.motion.geometry.corners import Room
 from ....core.motion.geometry.segments import left_jacobian
-from ....core.motion.geometry.zones import Room, ZonePlanner
+from ....core.motion.geometry.zones import ZonePlanner
 from ....core.motion.gradients.sensitivity import (
     Directions,
     Places,

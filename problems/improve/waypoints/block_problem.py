@@ -163,7 +163,7 @@ class BlockProblem:
             MotionError: a pose target is singular.
         """
         drive, variables = point.drive, self.block.variables
-        made = Derivatives(self._controller, drive.program, drive.timing)
+        made = Derivatives(drive.program, drive.timing)
         total = np.zeros(variables.size)
         if self._weight > 0.0:
             total += self._weight / self._time * variables.gradient(made.duration(), point.x)

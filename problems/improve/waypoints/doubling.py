@@ -12,8 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from ....core.motion.geometry.corners import POSITION
 from ....core.motion.geometry.segments import JOINT_SEGMENT, LINE_SEGMENT
-from ....core.motion.geometry.zones import POSITION
 from ....core.motion.path.path import Path
 from ....core.program.move import Move, MoveC, MoveJ, MoveL, Statement
 from ....core.program.program import Program

@@ -13,7 +13,8 @@ from ....core.arrays import FloatArray
 from ....core.collision.proof.certificate import SceneOf, certify
 from ....core.collision.proof.verdict import Certificate, Verdict
 from ....core.errors import MotionError
-from ....core.motion.emulator.controller import Controller, Run
+from ....core.motion.emulator.controller import Controller
+from ....core.motion.emulator.run import Run
 from ....core.motion.gradients.sensitivity import Places
 from ....core.program.program import Program
 from ..nonsmooth_sqp import Memory, Settings, search, violation

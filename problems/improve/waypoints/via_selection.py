@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....core.collision.proof.verdict import Certificate
-from ....core.motion.emulator.controller import Run
+from ....core.motion.emulator.run import Run
 from ....core.program.move import Opaque, Wait
 from ....core.program.program import Program
 from .blocks import stretches

@@ -8,8 +8,8 @@ import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.collision.deviation.bounds import Straying, stretches
-from ....core.motion.emulator.controller import Controller, Run
-from ....core.motion.timing.limits import interval_samples
+from ....core.motion.emulator.controller import Controller
+from ....core.motion.emulator.run import Run
 
 _TOGETHER = 100
 """Segments that are looked at together."""
@@ -25,7 +25,7 @@ def segment_strays(controller: Controller, run: Run, moves: Sequence[int]) -> Fl
             all of them.
     """
     waypoint, straying = run.path.layout.waypoint, Straying.of(controller, run)
-    left = run.path.sigma[interval_samples(run.path.pieces)]
+    left = run.path.sigma[run.path.pieces.interval_samples]
     most = np.zeros((len(waypoint) - 1, run.path.q.shape[1]))
     for first in range(0, len(most), _TOGETHER):
         ends = waypoint[first : first + _TOGETHER + 1]

@@ -17,7 +17,8 @@ from ....core.cell.cell import Cell
 from ....core.collision.proof.certificate import SceneOf, certify, scenes_of
 from ....core.collision.proof.verdict import Certificate
 from ....core.errors import FlybyError, MotionError, Note
-from ....core.motion.emulator.controller import Controller, Run
+from ....core.motion.emulator.controller import Controller
+from ....core.motion.emulator.run import Run
 from ....core.program.program import Program
 from ....core.program.zone import Radius, Zone
 from ..reading_back import ReadBack, read_as_written

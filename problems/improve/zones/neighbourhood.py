@@ -15,12 +15,13 @@ from numba import njit
 
 from ....core.arrays import FloatArray, IntArray
 from ....core.errors import MotionError
+from ....core.motion.geometry.corners import POSITION, STOP, Corners
 from ....core.motion.geometry.pieces import Sampling
 from ....core.motion.geometry.segments import Ends, make_segments
-from ....core.motion.geometry.zones import POSITION, STOP, Corners, ZonePlanner
+from ....core.motion.geometry.zones import ZonePlanner
 from ....core.motion.model.motion_model import MotionModel
-from ....core.motion.path.path import Path, Route, build_path
-from ....core.motion.timing.limits import interval_samples
+from ....core.motion.path.building import build_path
+from ....core.motion.path.path import Path, Route
 from ....core.program.zone import FINE, Zone
 from ....core.robot.chain import Chain
 from ....core.robot.model import Robot
@@ -195,7 +196,7 @@ def _part(path: Path, number: int) -> CornerPath:
     segment, layout, pieces = 2 * number, path.layout, path.pieces
     mine = np.flatnonzero((pieces.segment == segment) | (pieces.segment == segment + 1))
     first, last = int(mine[0]), int(mine[-1]) + 1
-    sample = interval_samples(pieces)[pieces.first_interval[first] : pieces.first_interval[last]]
+    sample = pieces.interval_samples[pieces.first_interval[first] : pieces.first_interval[last]]
     begin, end = int(pieces.first_sample[first]), int(pieces.first_sample[last])
     at = layout.waypoint[segment + 1]
     before, after = layout.extent[segment].max(axis=0)

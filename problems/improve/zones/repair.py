@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 import numpy as np
 
 from ....core.collision.proof.verdict import Certificate
-from ....core.motion.emulator.controller import Run
+from ....core.motion.emulator.run import Run
 from ....core.program.program import Program
 from ....core.program.zone import Fine, Zone
 from ..rounding import Rounding

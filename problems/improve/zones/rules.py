@@ -14,8 +14,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ....core.motion.geometry.corners import STOP
 from ....core.motion.geometry.segments import ARC_SEGMENT, JOINT_SEGMENT, Segments, make_segments
-from ....core.motion.geometry.zones import STOP
 from ....core.motion.model.motion_model import MotionModel, Overlap
 from ....core.motion.path.path import Route
 from ....core.program.zone import ContourFraction, Radius

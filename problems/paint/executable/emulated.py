@@ -9,7 +9,8 @@ from scipy import sparse
 
 from ....core.arrays import FloatArray, IntArray
 from ....core.errors import Note
-from ....core.motion.emulator.controller import Controller, Run
+from ....core.motion.emulator.controller import Controller
+from ....core.motion.emulator.run import Run
 from ....core.program.program import Program
 from ....core.spatial.rotation import matrix_from_quaternion
 from ..spray.trajectory import PaintTrajectory

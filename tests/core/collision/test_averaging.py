@@ -12,7 +12,7 @@ from flyby.core.collision.deviation.averaging import Averages
 from flyby.core.collision.deviation.averaging_kernels import tail
 from flyby.core.collision.deviation.earliest_times import Course
 from flyby.core.collision.deviation.speed_bounds import Allowed, greatest
-from flyby.core.motion.command.ramps import ramped
+from flyby.core.motion.command.commanded_motion import ramped
 from flyby.core.motion.command.smoothing import Smoothing
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.timing.timing import Timing

@@ -16,7 +16,8 @@ from flyby.core.collision.proof.certificate import TOLERANCE, certify, certify_s
 from flyby.core.collision.proof.verdict import Certificate, Verdict
 from flyby.core.errors import InputError, MotionError
 from flyby.core.motion.command.elasticity import Elasticity
-from flyby.core.motion.emulator.controller import Controller, Run
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.emulator.run import Run
 from flyby.core.motion.geometry.pieces import Sampling
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveC, MoveJ, MoveL

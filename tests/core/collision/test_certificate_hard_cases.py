@@ -13,7 +13,8 @@ from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry, Mesh, Triangles
 from flyby.core.collision.proof.certificate import certify, scenes_of
 from flyby.core.collision.proof.verdict import Certificate, Verdict
-from flyby.core.motion.emulator.controller import Controller, Run
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.emulator.run import Run
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program

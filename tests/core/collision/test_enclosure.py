@@ -11,9 +11,9 @@ from flyby.core.arrays import FloatArray
 from flyby.core.collision.proof.enclosure import Enclosure, Intervals
 from flyby.core.errors import MotionError
 from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.geometry.corners import POSITION
 from flyby.core.motion.geometry.curves import parameter_jet
 from flyby.core.motion.geometry.pieces import Sampling
-from flyby.core.motion.geometry.zones import POSITION
 from flyby.core.motion.model.blend import PARABOLA, TANGENT_ARC, Blend
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.path.path import Path

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flyby.core.motion.emulator.controller import Controller, Run
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.emulator.run import Run
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.identification.fit import ParameterSet, PreparedRun, fit
 from flyby.identification.logs import LoggedRun, clean

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.motion.command.ramps import stamped_motion
+from flyby.core.motion.command.commanded_motion import stamped_motion
 from flyby.core.motion.emulator.controller import Controller
 from flyby.identification.fit.crew import Crew
 from flyby.identification.fit.emulation import Nuisance, RunEmulator, commanded

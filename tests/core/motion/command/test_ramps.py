@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.motion.command.ramps import stamped_motion
+from flyby.core.motion.command.commanded_motion import stamped_motion
 from flyby.core.motion.model.motion_model import MotionModel, load_motion_model
 from flyby.core.program.move import MoveL
 from flyby.core.program.program import Program

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flyby.core.motion.geometry.zones import POSITION
+from flyby.core.motion.geometry.corners import POSITION
 from flyby.core.motion.gradients.derivatives import Derivatives
 from flyby.core.motion.model.blend import TANGENT_ARC
 from flyby.core.motion.model.motion_model import MotionModel, Pace
@@ -79,7 +79,7 @@ def test_derivatives_are_those_of_difference_quotients(abb, speed, acceleration)
     program = corner(abb, *numbers)
     path = controller.plan(program)
     assert path.notes
-    made = Derivatives(controller, program, controller.stamp(program, path)).duration()
+    made = Derivatives(program, controller.stamp(program, path)).duration()
     turned = LEG * np.array([-np.sin(2.1), np.cos(2.1), 0.0])
     by_number = [
         made.position[1] @ turned,

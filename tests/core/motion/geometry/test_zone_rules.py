@@ -8,17 +8,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import MotionError
-from flyby.core.motion.geometry.segments import EndsGradient, SegmentsGradient, make_segments
-from flyby.core.motion.geometry.zones import (
+from flyby.core.motion.geometry.corners import (
     JOINT_CORNER,
     POSITION,
     STOP,
     TCP_CORNER,
     TURNING,
     ZoneGradient,
-    ZonePlanner,
-    pull_corners,
 )
+from flyby.core.motion.geometry.segments import EndsGradient, SegmentsGradient, make_segments
+from flyby.core.motion.geometry.zones import ZonePlanner
+from flyby.core.motion.gradients.path_gradient import pull_corners
 from flyby.core.motion.model.motion_model import MotionModel, OrientationZone, Overlap
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program

@@ -152,7 +152,7 @@ class Quantities:
         self.sample = 2 * len(path.sigma) // 3
         self.time = 0.37 * timing.duration
         self.weights = np.resize(WEIGHTS, robot.size)
-        derivatives = Derivatives(controller, program, timing)
+        derivatives = Derivatives(program, timing)
         self.gradients = [
             derivatives.duration(),
             derivatives.configuration(self.sample, self.weights),
@@ -411,7 +411,7 @@ def test_any_direction(seed: int) -> None:
     far = (duration(3 * STEP) - duration(-3 * STEP)) / (6 * STEP)
     assume(abs(near - far) < 1e-5 * (1 + abs(near)))
     timing = controller.stamp(base, controller.plan(base))
-    gradient = Derivatives(controller, base, timing).duration()
+    gradient = Derivatives(base, timing).duration()
     exact = np.sum(gradient.position * direction) + 0.1 * np.sum(gradient.zone * direction[:, 0])
     assert exact == pytest.approx(near, rel=1e-5, abs=1e-5)
 
@@ -421,4 +421,4 @@ def test_a_fixed_duration_is_refused() -> None:
     controller = Controller(VENDOR, ROBOT)
     timing = controller.stamp(timed, controller.plan(timed))
     with pytest.raises(InputError, match="move 1 has a fixed duration"):
-        Derivatives(controller, timed, timing)
+        Derivatives(timed, timing)

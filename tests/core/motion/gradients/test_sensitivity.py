@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from flyby.core.arrays import FloatArray
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.geometry.zones import Room, ZonePlanner
+from flyby.core.motion.geometry.corners import Room
+from flyby.core.motion.geometry.zones import ZonePlanner
 from flyby.core.motion.gradients.sensitivity import (
     Directions,
     Places,

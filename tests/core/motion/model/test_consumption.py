@@ -56,7 +56,7 @@ def test_derivatives_are_difference_quotients(name, speeds):
     consumption, step = CONSUMPTIONS[name], 1e-6
     made = program(*speeds)
     timing = CONTROLLER.stamp(made, CONTROLLER.plan(made))
-    found = Derivatives(CONTROLLER, made, timing).energy(consumption)
+    found = Derivatives(made, timing).energy(consumption)
     slopes = [
         found.speed.tcp[0],
         found.speed.joint_acceleration_fraction[0],

@@ -14,7 +14,8 @@ from flyby.core.cell.cell import Cell
 from flyby.core.collision.proof.certificate import certify, scenes_of
 from flyby.core.collision.proof.verdict import Verdict
 from flyby.core.errors import MotionError
-from flyby.core.motion.emulator.controller import Controller, Run
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.emulator.run import Run
 from flyby.core.motion.path.tcp_walk import JOINED
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program

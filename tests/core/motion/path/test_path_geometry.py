@@ -11,7 +11,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.geometry.zones import POSITION, STOP, TURNING
+from flyby.core.motion.geometry.corners import POSITION, STOP, TURNING
 from flyby.core.motion.model.blend import TANGENT_ARC, Blend
 from flyby.core.motion.model.motion_model import MotionModel, OrientationZone, Overlap
 from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL

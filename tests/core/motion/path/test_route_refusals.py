@@ -69,7 +69,7 @@ def test_no_derivative_at_a_singular_target(abb) -> None:
     program = Program(moves, start=JointTarget(tuple(map(float, abb.home))))
     timing = controller.stamp(program, controller.plan(program))
     with pytest.raises(MotionError, match="move 1: the arm is singular at the target"):
-        Derivatives(controller, program, timing).duration()
+        Derivatives(program, timing).duration()
 
 
 @pytest.fixture(scope="module")

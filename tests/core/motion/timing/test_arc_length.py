@@ -11,8 +11,7 @@ from flyby.core.motion.geometry.pieces import Sampling
 from flyby.core.motion.model.blend import PARABOLA, Blend
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.path.tcp_samples import States
-from flyby.core.motion.timing.arc_length import ArcLength
-from flyby.core.motion.timing.limits import interval_samples
+from flyby.core.motion.timing.timing import along_path
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -79,14 +78,14 @@ def test_the_parabola_keeps_its_parameter(arm) -> None:
     run = arm.controller(model(PARABOLA)).run(joint_program(arm, 0.3 * arm.leg))
     assert len(run.timing.along.zones) == 0
     np.testing.assert_array_equal(run.timing.along.states.dq, run.path.states.dq)
-    left = interval_samples(run.path.pieces)
+    left = run.path.pieces.interval_samples
     np.testing.assert_array_equal(run.timing.along.spacing, np.diff(run.path.sigma)[left])
 
 
 @pytest.mark.parametrize("kind", sorted(PROGRAMS))
 def test_sigma_passes_every_sample_at_its_time(arm, kind) -> None:
     run = arm.controller(model(SECOND)).run(PROGRAMS[kind](arm, 0.3 * arm.leg))
-    left = interval_samples(run.path.pieces)
+    left = run.path.pieces.interval_samples
     q, _, _, sigma = run.timing.states_at(run.timing.begin)
     np.testing.assert_allclose(sigma, run.path.sigma[left], atol=1e-9)
     np.testing.assert_allclose(q, run.path.q[left], atol=1e-9)
@@ -100,7 +99,7 @@ def test_reverse_equals_differences(arm, seed, kind) -> None:
     rng = np.random.default_rng(seed)
     path = arm.controller(model(SECOND)).plan(PROGRAMS[kind](arm, 0.3 * arm.leg))
     limits = arm.robot.limits.acceleration
-    along = ArcLength.of(path, limits)
+    along = along_path(path, limits)
     bar = States(*(rng.normal(size=array.shape) for array in path.states))
     spacing_bar = rng.normal(size=len(along.spacing))
     change = States(*(rng.normal(size=array.shape) for array in path.states))
@@ -108,7 +107,7 @@ def test_reverse_equals_differences(arm, seed, kind) -> None:
     def value(step: float) -> float:
         for array, direction in zip(path.states, change, strict=True):
             array += step * direction
-        found = ArcLength.of(path, limits)
+        found = along_path(path, limits)
         total = sum(float(np.sum(b * a)) for b, a in zip(bar, found.states, strict=True))
         for array, direction in zip(path.states, change, strict=True):
             array -= step * direction
@@ -117,6 +116,8 @@ def test_reverse_equals_differences(arm, seed, kind) -> None:
     step = 1e-6
     expected = (value(step) - value(-step)) / (2 * step)
     copied = States(*(array.copy() for array in bar))
-    pulled = along.pull(path, copied, spacing_bar, np.zeros(len(path.sigma)))
+    pulled = along.pull(
+        path.pieces, path.sigma, path.states, copied, spacing_bar, np.zeros(len(path.sigma))
+    )
     got = sum(float(np.sum(p * c)) for p, c in zip(pulled, change, strict=True))
     assert got == pytest.approx(expected, rel=1e-5, abs=1e-3)

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.gradients.derivatives import Derivatives, ProgramGradient
 from flyby.core.motion.model.motion_model import MotionModel
-from flyby.core.motion.timing.limits import interval_ends
 from flyby.core.motion.timing.rests import InPosition, Rests
 from flyby.core.motion.timing.timing import Timing
 from flyby.core.program.move import Move, MoveC, MoveJ, MoveL, Wait
@@ -110,7 +109,7 @@ def test_rests_end_a_time_after_the_axes_came_into_the_window(program, model) ->
     assert ((rests.length >= 0.0) & (rests.length <= MOST)).all()
     left = model.in_position_time - (stamp.t[rests.knot] - entries.t)
     np.testing.assert_allclose(rests.length, np.clip(left, 0.0, MOST), atol=1e-12)
-    ends = interval_ends(timing.path.pieces)
+    ends = timing.path.pieces.interval_ends
     for i, stop in enumerate(rests.knot):
         place = timing.path.q[ends[stop - 1, 1]]
         late = timing.begin[stop - 1] - stamp.t[stop - 1]
@@ -153,7 +152,7 @@ def test_rests_of_slower_motions_are_foretold(program, model, share, rate) -> No
     of = slower.stamp
     stamp = replace(of, x=rate**2 * of.x, t=of.t / rate)
     waited = InPosition(model.in_position, model.in_position_time)
-    late = Rests.of(slower.path, slower.along, stamp, slower.rests.most, waited)
+    late = Rests.of(slower.path.pieces, slower.along, stamp, slower.rests.most, waited)
     np.testing.assert_allclose(slower.rests.where_time_runs(rate), late.length, atol=1e-9)
 
 
@@ -264,7 +263,7 @@ class Quotients:
         return (self.values(step) - self.values(-step)) / (2 * step)
 
     def check(self, exact: Callable[[ProgramGradient], float]) -> None:
-        made = Derivatives(Controller(ABB, ROBOT, self.model), self.along(0.0), self.timing)
+        made = Derivatives(self.along(0.0), self.timing)
         told = [made.duration(), made.configuration_at(self.t, self.weights)]
         np.testing.assert_allclose([*map(exact, told)], self.at(STEP), rtol=2e-5, atol=2e-5)
 

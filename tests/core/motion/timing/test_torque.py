@@ -13,7 +13,8 @@ from flyby.core.collision.deviation.speed_bounds import greatest
 from flyby.core.errors import InputError, MotionError
 from flyby.core.motion.emulator.binding_limits import interval_limits
 from flyby.core.motion.model.motion_model import MotionModel, load_motion_model
-from flyby.core.motion.timing.torque import Borne, Shares, Torque
+from flyby.core.motion.timing.torque import Borne, Torque
+from flyby.core.motion.timing.torque_rows import Shares
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

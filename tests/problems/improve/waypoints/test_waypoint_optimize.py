@@ -14,7 +14,8 @@ from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.collision.proof.certificate import certify, scenes_of
 from flyby.core.errors import InputError, MotionError
-from flyby.core.motion.emulator.controller import Controller, Run
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.emulator.run import Run
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import FINE, Radius

@@ -233,7 +233,7 @@ def test_gradients_are_those_of_the_duration() -> None:
 
     changed = variables.applied(x)
     timing = CONTROLLER.stamp(changed, CONTROLLER.plan(changed))
-    made = variables.gradient(Derivatives(CONTROLLER, changed, timing).duration(), x)
+    made = variables.gradient(Derivatives(changed, timing).duration(), x)
     d = random.uniform(-1, 1, variables.size) * variables.scale
     step = 1e-5
     quotient = (duration(x + step * d) - duration(x - step * d)) / (2 * step)

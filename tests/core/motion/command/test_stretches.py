@@ -7,7 +7,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from flyby.core.motion.command import links_and_motors as driven
+from flyby.core.motion.command import commanded_motion as driven
 from flyby.core.motion.command.elasticity import Carried, Elasticity
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveJ, MoveL, Wait

@@ -1,0 +1,35 @@
+"""What came of driving a program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ...errors import Note
+from ...program.program import Program
+from ..command.trajectory import Trajectory
+from ..path.path import Path
+from ..timing.timing import Timing
+
+
+@dataclass(frozen=True)
+class Run:
+    """Everything that came of driving a program.
+
+    Args:
+        program: what was driven.
+        path: its geometry.
+        timing: its stamp, before any smoothing in time.
+        trajectory: what the links do, and the motors, sampled at the controller's period.
+        notes: the program's own and all that was found on the way.
+    """
+
+    program: Program
+    path: Path
+    timing: Timing
+    trajectory: Trajectory
+    notes: tuple[Note, ...]
+
+    @property
+    def duration(self) -> float:
+        """Cycle time in s: from the first motion to rest after the last, waits included."""
+        return self.trajectory.duration

@@ -1,0 +1,63 @@
+"""The zones at the inner waypoints of a path: where each is blended and how far it reaches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import FloatArray
+from ...errors import Note
+from .reach import Reach
+
+STOP, TCP_CORNER, JOINT_CORNER = 0, 1, 2
+POSITION, TURNING, PRESCRIBED = 0, 1, 2
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """How much larger the zones at a place could be before the vendor's rules cut them.
+
+    Args:
+        left: in m, or as a share of a segment; below zero where a rule cuts.
+        corner: index of the corner.
+    """
+
+    left: Reach
+    corner: int
+
+
+@dataclass
+class Corners:
+    """The zones at the M − 1 inner waypoints of M segments.
+
+    Args:
+        kind: (M − 1,) `STOP`, `TCP_CORNER` or `JOINT_CORNER`.
+        reach: (M − 1, 3, 2) of position, turning and prescribed axes; into the segment before
+            and the one after the waypoint.
+        sources: the same with derivatives.
+        overlapping: corners to be left out under `Overlap.SKIP`, because their zones overlap.
+        notes: zones cut short and refused.
+    """
+
+    kind: NDArray[np.int64]
+    reach: FloatArray
+    sources: list[tuple[tuple[Reach, Reach], ...]]
+    overlapping: tuple[int, ...] = ()
+    notes: list[Note] = field(default_factory=list)
+
+
+@dataclass
+class ZoneGradient:
+    """Gradient with respect to the radii and shares of the zones, by corner."""
+
+    tcp: FloatArray
+    reorientation: FloatArray
+    external: FloatArray
+    angle: FloatArray
+
+    @classmethod
+    def zeros(cls, count: int) -> ZoneGradient:
+        """A gradient to add to."""
+        return cls(*(np.zeros(count) for _ in range(4)))

@@ -1,0 +1,225 @@
+"""Reverse of `flyby.core.motion.timing.limits`: rows and ceilings, carried back to samples and
+speeds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from ...arrays import FloatArray, IntArray
+from ..geometry.pieces import Pieces
+from ..geometry.segments import Segments
+from ..geometry.swivel import pull_turn_shares
+from ..path.tcp_samples import States
+from ..timing.between_samples import pull_between
+from ..timing.limits import CENTRIPETAL, PathLimits, SegmentLimits, torque_left
+from ..timing.rates import pull_rates, pull_sideways, rates, sideways
+from ..timing.superposed_legs import pull_ceilings, room_along
+from ..timing.torque_rows import Shares
+from .stamping_adjoint import StampGradient
+
+
+@dataclass
+class SpeedGradient:
+    """Gradient with respect to the numbers of each segment's speed, (M,) each."""
+
+    tcp: FloatArray
+    reorientation: FloatArray
+    external_linear: FloatArray
+    external_angular: FloatArray
+    joint: FloatArray
+    joint_fraction: FloatArray
+    tcp_acceleration: FloatArray
+    reorientation_acceleration: FloatArray
+    joint_acceleration: FloatArray
+    joint_acceleration_fraction: FloatArray
+
+    @classmethod
+    def zeros(cls, count: int) -> SpeedGradient:
+        """A gradient to add to."""
+        return cls(*(np.zeros(count) for _ in cls.__dataclass_fields__))
+
+
+def _pull_segment_limits(
+    limits: SegmentLimits,
+    velocity_bar: FloatArray,
+    acceleration_bar: FloatArray,
+    torque_bar: FloatArray,
+    out: SpeedGradient,
+) -> FloatArray:
+    """Reverse of `SegmentLimits.of`: adds to the gradient of the speeds, returns that (M,) of
+    `turning`."""
+    out.joint_acceleration_fraction += torque_bar
+    turning_bar = np.zeros(len(limits.turning))
+    for bars, values, sources in (
+        (velocity_bar, limits.velocity, limits.velocity_source),
+        (acceleration_bar, limits.acceleration, limits.acceleration_source),
+    ):
+        bars[:, -1] /= limits.turning
+        turning_bar -= bars[:, -1] * np.where(bars[:, -1] == 0.0, 0.0, values[:, -1])
+        for k, j in zip(*np.nonzero(bars), strict=True):
+            source = sources[k][j]
+            if source is not None:
+                getattr(out, source[0])[k] += bars[k, j] * source[1]
+    return turning_bar
+
+
+def _pull_torque_rows(
+    shares: Shares, ends: IntArray, most: FloatArray, bar: StampGradient
+) -> tuple[Shares, FloatArray]:
+    """Reverse of `torque_rows.torque_rows`, whose rows are the last of the stamp's.
+
+    Returns:
+        The gradients of the shares and of ``most`` (K,).
+    """
+    count = shares.h.shape[1]
+    held, fade, below = shares.h[ends], shares.fade[ends], slice(-2 * count, -count)
+    a_bar = bar.a[:, :, below] + bar.a[:, :, -count:]
+    b_bar = bar.b[:, :, below] + bar.b[:, :, -count:]
+    more = bar.b[:, :, -count:] - bar.b[:, :, below]
+    lower, upper = bar.lower[:, :, below], bar.upper[:, :, -count:]
+    most_bar = np.sum(upper * (1 - held) - lower * (1 + held) + more * fade, axis=(1, 2))
+    most = most[:, None, None]
+    out = Shares(*(np.zeros_like(part) for part in shares))
+    for part, seed in zip(out, (a_bar, b_bar, -most * (upper + lower), most * more), strict=True):
+        np.add.at(part, ends, seed)
+    return out, np.asarray(most_bar)
+
+
+@njit(cache=True, error_model="numpy")
+def _pull_fill(
+    states: States,
+    first_sample: IntArray,
+    first_interval: IntArray,
+    segment: IntArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    centripetal: float,
+    room: FloatArray,
+    binding: IntArray,
+    a_bar: FloatArray,
+    b_bar: FloatArray,
+    bound_bar: FloatArray,
+    ceiling_bar: FloatArray,
+    states_bar: States,
+    velocity_bar: FloatArray,
+    acceleration_bar: FloatArray,
+) -> None:
+    """Reverse of `limits._fill`."""
+    axes = states.q.shape[1]
+    rate, bend = np.empty(axes + 2), np.empty(axes + 2)
+    rate_bar, bend_bar = np.empty(axes + 2), np.empty(axes + 2)
+    for p in range(segment.size):
+        s = segment[p]
+        count = first_interval[p + 1] - first_interval[p]
+        for i in range(count + 1):
+            k = first_sample[p] + i
+            knot = first_interval[p] + i
+            rate_bar[:] = 0.0
+            bend_bar[:] = 0.0
+            j = binding[knot, 1]
+            live = binding[knot, 0] == k and ceiling_bar[knot] != 0.0
+            if live and j == CENTRIPETAL:
+                x = centripetal * acceleration[s, axes] / sideways(states, k)
+                pull_sideways(states, k, -x / sideways(states, k) * ceiling_bar[knot], states_bar)
+                acceleration_bar[s, axes] += x / acceleration[s, axes] * ceiling_bar[knot]
+            if live and 0 <= j < axes + 2:
+                rates(states, k, axes, rate, bend)
+                x = (velocity[s, j] / rate[j]) ** 2
+                rate_bar[j] -= 2 * x / rate[j] * ceiling_bar[knot]
+                velocity_bar[s, j] += 2 * x / velocity[s, j] * ceiling_bar[knot]
+            for end in range(2):
+                interval = knot - end
+                if interval < first_interval[p] or interval >= first_interval[p + 1]:
+                    continue
+                for j in range(axes + 2):
+                    if acceleration[s, j] < np.inf:
+                        rate_bar[j] += a_bar[interval, end, j]
+                        bend_bar[j] += b_bar[interval, end, j]
+                        times = room[p] if j >= axes else 1.0
+                        acceleration_bar[s, j] += times * bound_bar[interval, end, j]
+            pull_rates(states, k, axes, rate_bar, bend_bar, states_bar)
+
+
+def pull_path_limits(
+    states: States,
+    pieces: Pieces,
+    limits: SegmentLimits,
+    made: PathLimits,
+    bar: StampGradient,
+    states_bar: States,
+    speeds_bar: SpeedGradient,
+) -> tuple[Shares | None, FloatArray]:
+    """Reverse of `path_limits`; adds to the gradients of states, speeds and, in ``bar``, spacing.
+
+    Returns:
+        The gradients of the shares of torque, None without, and of the segments' `turning` (M,).
+    """
+    velocity_bar = np.zeros_like(limits.velocity)
+    acceleration_bar = np.zeros_like(limits.acceleration)
+    torque_bar = np.zeros_like(limits.torque)
+    shape = (len(made.rows.spacing), 2, limits.acceleration.shape[1])
+    a_bar, b_bar, bound_bar = (np.zeros(shape) for _ in range(3))
+    plain = len(made.limited)
+    a_bar[:, :, made.limited] = bar.a[:, :, :plain]
+    b_bar[:, :, made.limited] = bar.b[:, :, :plain]
+    bound_bar[:, :, made.limited] = (bar.upper - bar.lower)[:, :, :plain]
+    pull_between(
+        states,
+        made.rows.spacing,
+        pieces,
+        limits.velocity,
+        made.rows.ceiling,
+        made.binding,
+        bar.ceiling,
+        states_bar,
+        bar.spacing,
+        velocity_bar,
+    )
+    pull_ceilings(
+        states,
+        made.rows.spacing,
+        pieces,
+        limits.acceleration,
+        made.zones,
+        made.binding,
+        bar.ceiling,
+        states_bar,
+        bar.spacing,
+        acceleration_bar,
+    )
+    _pull_fill(
+        states,
+        pieces.first_sample,
+        pieces.first_interval,
+        pieces.segment,
+        limits.velocity,
+        limits.acceleration,
+        limits.centripetal,
+        room_along(made.zones, pieces),
+        made.binding,
+        a_bar,
+        b_bar,
+        bound_bar,
+        bar.ceiling,
+        states_bar,
+        velocity_bar,
+        acceleration_bar,
+    )
+    shares_bar = None
+    if made.shares is not None:
+        ends, left = pieces.interval_ends, torque_left(pieces, limits)
+        shares_bar, left_bar = _pull_torque_rows(made.shares, ends, left, bar)
+        np.add.at(torque_bar, np.repeat(pieces.segment, pieces.intervals), left_bar)
+    turning_bar = _pull_segment_limits(
+        limits, velocity_bar, acceleration_bar, torque_bar, speeds_bar
+    )
+    return shares_bar, turning_bar
+
+
+def pull_turning(segments: Segments, turning_bar: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Gradients (M, 3) of the segments' turns a and b from that of `SegmentLimits.turning`."""
+    bar = np.where(segments.ends.swivels, turning_bar, 0.0)
+    return pull_turn_shares(segments.turn_a, segments.turn_b, bar)
