@@ -140,7 +140,7 @@ class Neighbourhoods:
         return np.zeros((0, 2)) if not trials else self._corners(trials).reach[::2, POSITION]
 
     def kinds(self, trials: Sequence[tuple[int, Zone]]) -> IntArray:
-        """What the corner of each trial is (K,): see `flyby.core.motion.geometry.zones.Corners`."""
+        """(K,), what the corner of each trial is; see `flyby.core.motion.geometry.corners`."""
         return np.zeros(0, dtype=np.int64) if not trials else self._corners(trials).kind[::2]
 
     def _corners(self, trials: Sequence[tuple[int, Zone]]) -> Corners:
