@@ -2,79 +2,44 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from ....core.errors import Span
 from ....core.program.speed import Speed
 from ....core.program.zone import Fine, Radius
 from ....core.source.patch.edits import alike
-from ....core.source.patch.uses import Kind, Use
+from ....core.source.patch.plan import Texts, Wish
+from ....core.source.patch.uses import Use
 from ..syntax.tree import Name
 from ..values import predefined
 from ..write.operands import refuse_speed
 from .literals import ZONE_NUMBERS, LiteralNumber, as_it_is, in_millimetres, numbers_of, with_radius
 from .places import Operand, Places
 
-Texts = Mapping[Span, str]
-"""What shall stand at a span; what is not named may say what it likes."""
 
-
-class InPlace:
-    """Finds what the literals of a program would have to say.
+class RapidLiterals:
+    """What the literals of a program would have to say.
 
     Args:
-        uses: all parts of all moves.
         places: the program's files.
         axis_kinds: of the external axes.
     """
 
-    def __init__(self, uses: Iterable[Use], places: Places, axis_kinds: Sequence[str]) -> None:
+    def __init__(self, places: Places, axis_kinds: Sequence[str]) -> None:
         self._places = places
         self._axis_kinds = axis_kinds
-        self._readers: defaultdict[Span, list[Use]] = defaultdict(list)
-        self._wanted: dict[tuple[int, Kind], Texts | None] = {}
-        self._votes: dict[Span, dict[str, list[int]]] = {}
-        for use in uses:
-            for span in filter(None, use.origin.numbers):
-                self._readers[span].append(use)
 
-    def wanted(self, use: Use) -> Texts | None:
-        """What the literal that ``use`` reads must say; None if no numbers in it can say it."""
-        key = (use.index, use.kind)
-        if key not in self._wanted:
-            self._wanted[key] = self._texts(use)
-        return self._wanted[key]
+    def text(self, span: Span) -> str:
+        """What stands at a place."""
+        return self._places.text(span)
 
-    def changed(self, use: Use) -> Texts | None:
-        """The part of `wanted` that the text does not say yet."""
-        wanted = self.wanted(use)
-        if wanted is None:
-            return None
-        return {span: text for span, text in wanted.items() if text != self._places.text(span)}
-
-    def against(self, use: Use, texts: Texts) -> list[int]:
-        """The moves that want the literal of ``use`` to say anything else than ``texts``."""
-        moves = {
-            move
-            for span, text in texts.items()
-            for other, voters in self._votes_on(span).items()
-            if other != text
-            for move in voters
-        }
-        return sorted(moves - {use.index})
-
-    def _votes_on(self, span: Span) -> dict[str, list[int]]:
-        if span not in self._votes:
-            votes: defaultdict[str, list[int]] = defaultdict(list)
-            for use in self._readers[span]:
-                wanted = self.wanted(use)
-                text = "" if wanted is None else wanted.get(span)
-                if text is not None:
-                    votes[text].append(use.index)
-            self._votes[span] = votes
-        return self._votes[span]
+    def wish(self, use: Use) -> Wish:
+        """See `core.source.patch.plan.Literals.wish`."""
+        texts = self._texts(use)
+        if texts is not None:
+            return Wish(texts)
+        return Wish({s: self.text(s) for s in use.origin.numbers if s is not None}, complete=False)
 
     def _texts(self, use: Use) -> Texts | None:
         numbers = use.origin.numbers

@@ -16,22 +16,21 @@ New data are ``LOCAL CONST`` beside those of the same type in the module of the 
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Collection, Iterator, Sequence
 
-from ....core.errors import InputError, Span
+from ....core.errors import InputError
 from ....core.program.move import Move
 from ....core.program.origin import Ownership
 from ....core.program.program import Program
 from ....core.program.zone import Fine
-from ....core.source.patch.edits import Edit, alike, listed, patched, reading_of
-from ....core.source.patch.uses import Kind, Use, uses
+from ....core.source.patch.edits import Edit, alike, patched, reading_of
+from ....core.source.patch.plan import Plan, first_possible
+from ....core.source.patch.uses import Use, uses
 from ....core.source.reading import Files
-from ....core.source.write.options import PatchOptions, Sharing
+from ....core.source.write.options import PatchOptions
 from ..syntax.tree import Aggregate, Name
 from .additions import Additions
-from .inplace import InPlace, Texts
+from .inplace import RapidLiterals
 from .places import Operand, Places
 from .substitutes import Substitutes
 
@@ -56,127 +55,60 @@ def patch(program: Program, options: PatchOptions, axis_kinds: Sequence[str] = (
     parts = uses(before, program, _other_change)
     places = Places(reading.files)
 
-    def attempt(in_place: tuple[Ownership, ...]) -> Files:
-        edits = _Plan(parts, places, options, axis_kinds, in_place).edits()
-        return patched(program, reading, edits)
+    def attempt(in_place: Collection[Ownership]) -> Files:
+        plan = Plan(parts, RapidLiterals(places, axis_kinds), options, in_place)
+        return patched(program, reading, _Edits(plan, places, axis_kinds).all())
 
-    first, *others = _IN_PLACE[options.shared]
-    try:
-        return attempt(first)
-    except InputError as error:
-        for in_place in others:
-            with suppress(InputError):
-                return attempt(in_place)
-        raise error
+    return first_possible(options, attempt)
 
 
-_LITERALS = (Ownership.OWNED, Ownership.SHARED)
-_IN_PLACE: dict[Sharing, list[tuple[Ownership, ...]]] = {
-    Sharing.REFUSE: [_LITERALS],
-    # Where expressions read what was changed in place, the moves get data of their own.
-    Sharing.OWN: [_LITERALS, (Ownership.OWNED,), ()],
-}
-"""Whose literals are changed where they stand: what is tried, in turn."""
-
-
-class _Plan:
+class _Edits:
     """Finds the edits.
 
     Args:
-        parts: all parts of all moves.
+        plan: what changes in place.
         places: the program's files.
-        options: how.
         axis_kinds: of the external axes.
-        in_place: whose literals may be changed where they stand.
     """
 
-    def __init__(
-        self,
-        parts: Sequence[Use],
-        places: Places,
-        options: PatchOptions,
-        axis_kinds: Sequence[str],
-        in_place: tuple[Ownership, ...],
-    ) -> None:
-        self._changes = [use for use in parts if use.changes]
+    def __init__(self, plan: Plan, places: Places, axis_kinds: Sequence[str]) -> None:
+        self._plan = plan
         self._places = places
-        self._options = options
-        self._in_place = in_place
-        self._literals = InPlace(parts, places, axis_kinds)
         self._additions = Additions(places)
         self._substitutes = Substitutes(places, self._additions, axis_kinds)
-        self._executions: defaultdict[tuple[Span, Kind], list[Use]] = defaultdict(list)
-        for use in parts:
-            self._executions[use.statement, use.kind].append(use)
 
-    def edits(self) -> list[Edit]:
+    def all(self) -> list[Edit]:
         """All edits.
 
         Raises:
             FlybyError: a change has no place.
         """
-        found = [edit for use in self._changes for edit in self._edits_for(use)]
+        found = [edit for use in self._plan.changes for edit in self._edits_for(use)]
         return [*found, *self._additions.edits()]
 
     def _edits_for(self, use: Use) -> Iterator[Edit]:
+        plan = self._plan
         try:
-            texts, against = self._in_literal(use)
-            if texts is not None and not against and not self._stops_alone(use):
-                yield from (Edit(span, text, use.index) for span, text in texts.items())
+            possible = plan.changeable(use) and plan.wish(use).complete
+            against = plan.against(use) if possible else []
+            if possible and not against and not self._stops_alone(use):
+                for span, text in plan.texts(use).items():
+                    yield Edit(span, text, use.index)
                 return
             operand = self._places.operand(use.statement, use.origin.span)
-            self._check_allowed(use, operand, against)
-            self._check_executions(use)
+            if use.origin.ownership is Ownership.DERIVED and not _plain_stop(operand):
+                plan.check_computed()
+            elif against:
+                plan.check_shared(use, against)
+            plan.check_executions(use)
             text = self._substitutes.text(use, operand)
         except InputError as error:
             raise use.error(str(error)) from None
         yield Edit(operand.span, text, use.index)
 
-    def _in_literal(self, use: Use) -> tuple[Texts | None, list[int]]:
-        """What its literal has to say, and the moves that are against it."""
-        if use.origin.ownership not in self._in_place or not use.origin.numbers:
-            return None, []
-        texts = self._literals.changed(use)
-        return texts, [] if texts is None else self._literals.against(use, texts)
-
-    def _check_allowed(self, use: Use, operand: Operand, against: list[int]) -> None:
-        """Refuse a new operand that the user has not asked for."""
-        origin, options = use.origin, self._options
-        if origin.ownership is Ownership.DERIVED:
-            if options.derived is Sharing.REFUSE and not _plain_stop(operand):
-                raise use.error(
-                    "the program computes it, so there is no number to change: have a datum put "
-                    "in the expression's place (--own; in Python derived=own), or leave it as it is"
-                )
-        elif against and options.shared is Sharing.REFUSE:
-            datum = origin.datum or "the literal"
-            raise use.error(
-                f"{datum} is read by {listed(against)} as well, and that is to have another "
-                "value: change them all alike, or give the move a datum of its own (--own; in "
-                "Python shared=own)"
-            )
-
     def _stops_alone(self, use: Use) -> bool:
         """``fine`` at the instruction says that its zone has become a stop; a datum need not."""
-        return isinstance(use.new, Fine) and not self._dissenters(use)
-
-    def _dissenters(self, use: Use) -> list[int]:
-        """Moves of the same instruction that are to have another value."""
-        return [
-            other.index
-            for other in self._executions[use.statement, use.kind]
-            if not alike(other.new, use.new)
-        ]
-
-    def _check_executions(self, use: Use) -> None:
-        """What stands at the move holds for all executions of the instruction."""
-        others = self._dissenters(use)
-        if others:
-            raise use.error(
-                "the instruction is executed several times, and a datum there would hold for "
-                f"{listed(others)} too, which is to have another value: change them all alike, or "
-                "none"
-            )
+        return isinstance(use.new, Fine) and not self._plan.dissenters(use)
 
 
 _SETTINGS = ("tcp_acceleration", "joint_acceleration_fraction", "jerk_fraction")
