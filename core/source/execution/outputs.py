@@ -57,3 +57,11 @@ class Outputs:
         if found is not None:
             self.asked.append(name)
         return found
+
+    def mark(self) -> int:
+        """Now, for `asked_since`."""
+        return len(self.asked)
+
+    def asked_since(self, mark: int) -> frozenset[str]:
+        """The outputs of which somebody was told the value since then."""
+        return frozenset(self.asked[mark:])

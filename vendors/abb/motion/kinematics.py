@@ -44,16 +44,12 @@ class RobotFunctions:
         position: of the robot.
         convert: makes tools, frames and targets.
         settings: that hold now.
-        known: whether there is a robot to ask.
     """
 
-    def __init__(
-        self, position: Position, convert: Converter, settings: SettingsInForce, known: bool
-    ) -> None:
+    def __init__(self, position: Position, convert: Converter, settings: SettingsInForce) -> None:
         self._position = position
         self._convert = convert
         self._settings = settings
-        self._known = known
 
     def table(self) -> dict[str, Special]:
         """name → function."""
@@ -207,7 +203,7 @@ class RobotFunctions:
     def _unknown(self, evaluator: Evaluates, call: Call, why: str | None) -> Unknown:
         if why is None:
             unmoved = "the robot has not moved yet: give a start"
-            why = "name the robot" if not self._known else unmoved
+            why = "name the robot" if self._position.robot is None else unmoved
         key = evaluator.answers.key(call.span)
         return Unknown(f"the value of {call.text}() ({why})", call.span, key)
 

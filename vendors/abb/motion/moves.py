@@ -17,6 +17,7 @@ from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import WORLD, Load, Tool, WorkObject
 from ....core.program.zone import FINE, Zone
 from ....core.source.execution.provenance import Part
+from ....core.source.execution.transcript import MoveParts, Transcript
 from ..syntax.tree import Expression, Invoke, Name
 from ..values.arguments import Bound, bind
 from ..values.evaluator import Evaluator
@@ -24,7 +25,6 @@ from ..values.located import Located
 from ..values.provenance import Literal, source_of_literal
 from ..values.records import PER_METRE, Record
 from ..values.scope import Scope
-from ..values.transcript import Output, Sources
 from ..values.types import (
     JOINTTARGET,
     ROBTARGET,
@@ -47,12 +47,12 @@ class MovesRun(Protocol):
     """What instructions that move the robot need of a run."""
 
     evaluator: Evaluator
-    out: Output
+    out: Transcript
     settings: SettingsInForce
     convert: Converter
     position: Position
 
-    def emit_move(self, move: Move, sources: Sources) -> None:
+    def emit_move(self, move: Move, parts: MoveParts) -> None:
         """Put a move at the end of the program."""
 
 
@@ -286,8 +286,8 @@ def _datum_name(found: Located, expression: Expression) -> str | None:
 
 def read_move(
     run: MovesRun, form: Form, bound: Bound, scope: Scope, events: tuple[Event, ...] = ()
-) -> tuple[Move, Sources]:
-    """The move of an instruction, and the sources of its numbers.
+) -> tuple[Move, MoveParts, Record]:
+    """The move of an instruction, the sources of its numbers, and its target as it stands.
 
     Raises:
         SourceError: a part of it is not declared, not known, or not emulated.
@@ -299,20 +299,21 @@ def read_move(
         joints, part = reader.joint_target(form.kind == "external")
         common = reader.common()
         move: Move = MoveJ(joints, *_fields(common), events=events)
-        return move, _sources(run, bound, reader, common, part)
+        return move, _parts(bound, common, part), reader.record
     if form.kind == "circular":
         arc = _arc_orientation(run, bound)
         via, via_part = reader.pose_target("CirPoint", settings.check_linear)
         target, part = reader.pose_target("ToPoint", settings.check_linear)
         common = reader.common()
         move = MoveC(target, *_fields(common), events=events, via=via, orientation=arc)
-        return move, _sources(run, bound, reader, common, part, via_part)
+        return move, _parts(bound, common, part, via_part), reader.record
     joint = form.kind == "joint"
     follow = settings.check_joint if joint else settings.check_linear
     target, part = reader.pose_target("ToPoint", follow)
     common = reader.common()
     kind = MoveJ if joint else MoveL
-    return kind(target, *_fields(common), events=events), _sources(run, bound, reader, common, part)
+    move = kind(target, *_fields(common), events=events)
+    return move, _parts(bound, common, part), reader.record
 
 
 def bind_move(invoke: Invoke, form: Form) -> Bound:
@@ -338,14 +339,14 @@ def drive(
     """
     if bound is None:
         bound = bind_move(invoke, form)
-    move, sources = read_move(run, form, bound, scope, events)
+    move, parts, record = read_move(run, form, bound, scope, events)
     reads = run.evaluator.reads
-    for part in (sources.target, sources.speed, sources.zone, sources.via):
+    for part in (parts.target, parts.speed, parts.zone, parts.via):
         for source in filter(None, part.sources if part is not None else ()):
             reads.by_move(source, run.out.move_index)
-    run.emit_move(move, sources)
-    run.position.moved(move, sources.statement, sources.record)
-    return sources.record
+    run.emit_move(move, parts)
+    run.position.moved(move, parts.statement, record)
+    return record
 
 
 def _plain(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
@@ -363,7 +364,7 @@ def _note_singularity(run: MovesRun, form: Form, bound: Bound) -> None:
             "use SingArea \\Off or \\Wrist",
             bound.span,
         )
-    run.out.note_once(
+    run.out.notes.once(
         "singularity",
         f"SingArea \\{name} lets the controller turn the tool a little off between the points; it "
         "is emulated as \\Off, with the programmed orientation",
@@ -385,16 +386,8 @@ def _fields(common: _Common) -> tuple[Speed, Zone, Tool, WorkObject, Load | None
     return common.speed, common.zone, common.tool, common.work_object, common.load
 
 
-def _sources(
-    run: MovesRun,
-    bound: Bound,
-    reader: _MoveReader,
-    common: _Common,
-    target: Part,
-    via: Part | None = None,
-) -> Sources:
-    parts = (target, common.speed_part, common.zone_part, via)
-    return Sources(bound.span, *parts, record=reader.record)
+def _parts(bound: Bound, common: _Common, target: Part, via: Part | None = None) -> MoveParts:
+    return MoveParts(bound.span, target, common.speed_part, common.zone_part, via)
 
 
 MOVES: dict[str, MovesHandler] = dict.fromkeys(FORMS, _plain)

@@ -13,13 +13,13 @@ from typing import Protocol
 
 from ....core.errors import SourceError
 from ....core.program.move import ArcOrientation
+from ....core.source.execution.transcript import Transcript
 from ....core.spatial.pose import Pose
 from ..syntax.tree import Expression, Invoke
 from ..values.arguments import Bound, bind
 from ..values.evaluator import Evaluator
 from ..values.records import UNUSED_AXIS
 from ..values.scope import Scope
-from ..values.transcript import Output
 from ..values.types import BOOL, EXTJOINT, POSE, ROBTARGET, find_unknown
 from .kinematics import RobotFunctions
 from .settings import SettingsInForce
@@ -35,7 +35,7 @@ class SettingsRun(Protocol):
     """What instructions that set motion need of a run."""
 
     evaluator: Evaluator
-    out: Output
+    out: Transcript
     settings: SettingsInForce
     convert: Converter
     functions: RobotFunctions
@@ -75,7 +75,7 @@ def _acc_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     if not all(0 < ramp <= 100 for ramp in ramps):
         raise SourceError(f"{bound.text}: a ramp is in (0, 100], not {min(ramps):g}", bound.span)
     if len(set(ramps)) > 1:
-        run.out.note_once(
+        run.out.notes.once(
             "finepointramp",
             "AccSet ramps differently towards fine points: the smaller ramp is taken everywhere",
             bound.span,
@@ -112,7 +112,7 @@ def _path_acc_lim(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     if limits and min(limits) <= 0:
         raise SourceError("PathAccLim: a limit is above zero", bound.span)
     if len(limits) == 1 or (limits and limits[0] != limits[1]):
-        run.out.note_once(
+        run.out.notes.once(
             "pathacclim",
             "PathAccLim limits acceleration and deceleration differently: the smaller limit is "
             "taken for both",
@@ -140,7 +140,7 @@ def _grip_load(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
         load = run.convert.load(run.evaluator, expression, scope)
     else:
         message = f"GripLoad: the payload is {unknown.reason}; none is taken"
-        run.out.note_once("payload", message, invoke.span)
+        run.out.notes.once("payload", message, invoke.span)
     run.settings.now = replace(run.settings.now, load=load)
 
 

@@ -53,7 +53,7 @@ def _search(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     where = "at its end; answer the point if the program computes with it"
     if answer is not None:
         where = "where the answers say"
-    run.out.count(f"{invoke.text} is taken to find its point {where}", invoke.span)
+    run.out.notes.count(f"{invoke.text} is taken to find its point {where}", invoke.span)
     inner = scope
     if answer is not None and any(option in bound.options for option in _STOPS):
         inner = scope.inner(scope.where)
@@ -115,7 +115,7 @@ def _process(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     data = tuple(f"Data{number + 1}" for number in range(count - len(head) - len(tail)))
     form = Form(kind, (*head, *data, *tail), _PROCESS_OPTIONS)
     bound = bind_move(invoke, form)
-    run.out.count(
+    run.out.notes.count(
         f"{invoke.text} is read as a move at its programmed speed: process data (a weld's own "
         "speed, weaving, waiting times) are not emulated",
         invoke.span,

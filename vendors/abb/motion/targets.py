@@ -6,11 +6,12 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, TypeVar
 
-from ....core.errors import InputError, SourceError, Span
+from ....core.errors import InputError, Note, SourceError, Span
 from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import Load, Tool, WorkObject
 from ....core.program.zone import FINE, Zone
+from ....core.source.execution.transcript import Notes
 from ....core.spatial.pose import Pose, Quaternion
 from ..syntax.tree import Expression, Name
 from ..values.evaluator import Evaluator
@@ -29,7 +30,6 @@ from ..values.records import (
     zone_value,
 )
 from ..values.scope import Scope, unknown_name
-from ..values.transcript import Output
 from ..values.types import LOADDATA, ORIENT, POSE, TOOLDATA, WOBJDATA, RecordType, Type, Value
 from .configuration import AbbConfiguration
 from .settings import SettingsInForce
@@ -54,21 +54,32 @@ class Converter:
 
     Args:
         settings: that hold for them.
-        out: takes the notes.
+        notes: takes what is to be said.
         external_axes: ``"linear"`` or ``"rotating"`` for eax_a, eax_b, … of the robot; None if
             the robot is not known.
     """
 
     def __init__(
-        self, settings: SettingsInForce, out: Output, external_axes: Sequence[str] | None
+        self, settings: SettingsInForce, notes: Notes, external_axes: Sequence[str] | None
     ) -> None:
         for kind in external_axes or ():
             if kind not in AXIS_KINDS:
                 raise InputError(f"an external axis is 'linear' or 'rotating', not {kind!r}")
         self._settings = settings
-        self._out = out
+        self._notes = notes
         self._axes = external_axes
+        self._quaternions: dict[Span, float] = {}
         self._made: dict[tuple[object, ...], object] = {}
+
+    def notes(self) -> tuple[Note, ...]:
+        """What is to be said about quaternions that had to be scaled to unit length."""
+        if not self._quaternions:
+            return ()
+        worst = max(self._quaternions.values())
+        first, count = next(iter(self._quaternions)), len(self._quaternions)
+        what = "a quaternion is" if count == 1 else f"{count} quaternions are"
+        message = f"{what} not of unit length (by {worst:.1g} at most): normalised"
+        return (Note(message, span=first),)
 
     # ------------------------------------------------------- tools, frames, loads
 
@@ -87,7 +98,7 @@ class Converter:
         if value[2][0] != UNDEFINED_MASS:
             return value
         message = f"the load of tool {name} is not defined (mass -1): none is taken"
-        self._out.note_once(f"load of {name}", message, span)
+        self._notes.once(f"load of {name}", message, span)
         return (*value[:2], LOAD0)
 
     def work_object(self, found: Located, expression: Expression) -> WorkObject:
@@ -297,7 +308,7 @@ class Converter:
                     "(external_axes=('linear',) or ('rotating',))",
                     span,
                 )
-        self._out.note_once(
+        self._notes.once(
             "external axes",
             "external axes are sent to 0 everywhere; they are taken as not there (9E9 says so)",
             span,
@@ -330,7 +341,7 @@ class Converter:
                 span,
             )
         if error > ROUNDING:
-            self._out.note_quaternion(error, span)
+            self._quaternions.setdefault(span, error)
         return orient if error <= EXACT else tuple(v / length for v in orient)
 
     @staticmethod
@@ -359,10 +370,8 @@ def axis_kinds(robot: Robot | None) -> tuple[str, ...] | None:
 def undeclared(kind: str, name: Name, type_: Type, scope: Scope) -> SourceError:
     """The error that a datum of a move is not declared, with the nearest of its type."""
     known: list[str] = []
-    inner: Scope | None = scope
-    while inner is not None:
+    for inner in scope.outwards():
         known += [cell.name for cell in inner.cells.values() if cell.type == type_]
-        inner = inner.outer
     otherwise = (
         "declare it, name the file that declares it, or put it beside this one, or answer it in a "
         f"file (--io): [values] {name.text} = …"

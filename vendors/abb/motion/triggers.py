@@ -83,7 +83,7 @@ def _define(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     run.evaluator.assign(target, data, scope)
     if invoke.name == "triggspeed":
         why = "it sets an output in proportion to the speed, and the scale along the path"
-        run.out.count(f"{invoke.text} is kept as an event: {why}", invoke.span)
+        run.out.notes.count(f"{invoke.text} is kept as an event: {why}", invoke.span)
 
 
 def _event(text: str, anchor: EventAnchor, distance: float, time: float, span: Span) -> Event:
@@ -98,7 +98,7 @@ def _number(run: MovesRun, bound: Bound, expression: Expression, scope: Scope) -
     value = run.evaluator.evaluate(expression, scope)
     if isinstance(value, Unknown):
         message = f"{bound.text}: where the event is depends on {value.reason}: taken as 0"
-        run.out.note_once("event", message, expression.span)
+        run.out.notes.once("event", message, expression.span)
         return 0.0
     wrong = mismatch(value, NUM)
     if wrong is not None or not isinstance(value, float):
@@ -163,7 +163,7 @@ def _events_of(
         return tuple(event for one in found for event in one.events)
     text = run.out.text_of(expression.span)
     message = f"the trigger data {text} are not known: the event is taken to be at the target"
-    run.out.note_once(f"trigger {text.lower()}", message, expression.span)
+    run.out.notes.once(f"trigger {text.lower()}", message, expression.span)
     return (Event(text, span=expression.span),)
 
 
@@ -209,7 +209,7 @@ def _action_move(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     text = kind + ",".join(run.out.text_of(e.span) for e in extra)
     if "ProcName" in bound.names:
         message = f"{invoke.text} calls {text} on its way, which is not run"
-        run.out.count(message, invoke.span)
+        run.out.notes.count(message, invoke.span)
     drive(run, form, invoke, scope, (Event(text, span=invoke.span),), bound)
     if "Signal" in bound.names:
         write(run.evaluator, bound.named("Signal"), None, scope)

@@ -242,7 +242,7 @@ def end_loop(run: Interpreter, span: Span, body: Block, scope: Scope) -> None:
     out = next((block for block in exits if run.flow.may_leave(block, body)), None)
     if out is not None:
         message = "a loop ends by what is not known: one pass is read, and then its way out"
-        run.out.note_once(f"loop {span.start}", message, span)
+        run.out.notes.once(f"loop {span.start}", message, span)
         run.run_block(out, scope)
     elif _waits_for_others(run, body):
         _let_others_write(run)

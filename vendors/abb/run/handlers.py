@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import NoReturn, Protocol
 
 from ....core.errors import Span
+from ....core.source.execution.transcript import Transcript
 from ..syntax.tree import Argument, Invoke
 from ..values.evaluator import Evaluator
 from ..values.scope import Scope
-from ..values.transcript import Output
 
 
 class Keeping(Protocol):
@@ -25,7 +25,7 @@ class Running(Protocol):
     """Evaluates arguments, notes, calls routines and ends the program."""
 
     evaluator: Evaluator
-    out: Output
+    out: Transcript
 
     def call_named(
         self, name: str, arguments: tuple[Argument, ...], scope: Scope, span: Span

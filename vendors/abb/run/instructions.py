@@ -159,9 +159,8 @@ def _wait_time(run: Running, invoke: Invoke, scope: Scope) -> None:
     value = run.evaluator.evaluate(bound.value(0), scope)
     unknown = find_unknown(value)
     if unknown is not None:
-        run.out.keep(
-            invoke, f"its time depends on {unknown.reason} and is taken as zero", stops=True
-        )
+        why = f"its time depends on {unknown.reason} and is taken as zero"
+        run.out.keep(invoke.span, invoke.text, why, stops=True)
         return
     wrong = mismatch(value, NUM)
     if wrong is not None or not isinstance(value, float):
@@ -229,7 +228,7 @@ def _data_by_name(run: Running, invoke: Invoke, scope: Scope) -> None:
     given = bound.value(1)
     found = scope.find(named.lower()) if isinstance(named, str) else None
     if found is None or bound.options:
-        run.out.keep(invoke, "the datum that it names is not known here")
+        run.out.keep(invoke.span, invoke.text, "the datum that it names is not known here")
         if invoke.name == "getdataval" and isinstance(given, Name):
             reason = f"what {invoke.text} gave {given.text}"
             run.evaluator.fill(given, Unknown(reason, invoke.span, given.text), scope)

@@ -18,6 +18,7 @@ from ....core.program.move import Move
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.answers import Course
 from ....core.source.execution.limits import Meter
+from ....core.source.execution.transcript import MoveParts, Transcript
 from ....core.source.reading import ReadOptions
 from ..motion.kinematics import RobotFunctions
 from ..motion.position import Position
@@ -45,7 +46,6 @@ from ..syntax.tree import (
 from ..values.data import Globals
 from ..values.evaluator import Evaluator
 from ..values.scope import Cell, Scope, unknown_name
-from ..values.transcript import Output, Sources
 from ..values.types import STRING, Unknown, Value, interpreted, mismatch
 from .analysis import Flow
 from .calls import pass_arguments, present
@@ -86,14 +86,13 @@ class Interpreter:
     ) -> None:
         self.data = data
         self.settings = SettingsInForce()
-        self.out = Output(texts)
+        self.out = Transcript(lambda span: texts[span.file][span.start : span.end])
         self.course = Course(options.answers)
         self.meter = Meter(options.limits, options.executed)
         self.flow = Flow(data)
-        self.convert = Converter(self.settings, self.out, external_axes)
+        self.convert = Converter(self.settings, self.out.notes, external_axes)
         self.position = Position(options.robot, external_axes, options.start)
-        known = options.robot is not None
-        self.functions = RobotFunctions(self.position, self.convert, self.settings, known)
+        self.functions = RobotFunctions(self.position, self.convert, self.settings)
         # Expressions call routines, which evaluate expressions: no reference holds the two
         # together, so that a run is gone, with the syntax tree, as soon as it is over.
         host = proxy(self)
@@ -116,7 +115,12 @@ class Interpreter:
 
     def notes(self) -> tuple[Note, ...]:
         """What is to be said about the run."""
-        return (*self.data.notes, *self.out.notes(), *self.course.notes())
+        return (
+            *self.data.notes,
+            *self.out.notes.notes(),
+            *self.convert.notes(),
+            *self.course.notes(),
+        )
 
     # ------------------------------------------------------ for instruction handlers
 
@@ -125,18 +129,18 @@ class Interpreter:
         """The routine that is being run."""
         return self._frames[-1]
 
-    def emit_move(self, move: Move, sources: Sources) -> None:
+    def emit_move(self, move: Move, parts: MoveParts) -> None:
         """Put a move at the end of the program.
 
         Raises:
             SourceError: there are too many.
         """
-        self.meter.move(sources.statement)
-        self.out.emit_move(move, sources)
+        self.meter.move(parts.statement)
+        self.out.emit_move(move, parts)
 
     def finish(self, message: str, span: Span) -> NoReturn:
         """End the program here, with a note."""
-        self.out.note_once("end", message, span)
+        self.out.notes.once("end", message, span)
         raise _Finished
 
     # -------------------------------------------------------------------- statements
@@ -209,11 +213,11 @@ class Interpreter:
             if trap is not None:
                 home = self.data.scope_of(trap).home
                 self.evaluator.outputs.share(self.flow.signals_written(trap.body, home))
-            self.out.keep(statement, KEPT["connect"].why)
+            self.out.keep(statement.span, "CONNECT", KEPT["connect"].why)
             return
         if statement.word == "placeholder":
             message = "statements that are not filled in (<SMT>) are stepped over"
-            self.out.count(message, statement.span)
+            self.out.notes.count(message, statement.span)
             return
         what = {
             "raise": "RAISE hands an error to a handler, and error handlers are not run",
@@ -245,7 +249,8 @@ class Interpreter:
             self._call(routine, statement.arguments, scope, statement.span)
         elif self.course.skips(statement.text):
             self.evaluator.outputs.forget()
-            self.out.keep(statement, "it is skipped, as the answers say", stops=False)
+            why = "it is skipped, as the answers say"
+            self.out.keep(statement.span, statement.text, why)
         else:
             raise self._refusal(statement)
 
@@ -263,7 +268,7 @@ class Interpreter:
                 self.evaluator.evaluate(argument.value, scope)
         if kept.writes:
             self._fill(statement, scope)
-        self.out.keep(statement, kept.why, kept.stops)
+        self.out.keep(statement.span, statement.text, kept.why, kept.stops)
         for argument in statement.arguments:
             flag = argument.value
             if argument.option == "timeflag" and isinstance(flag, Name) and scope.find(flag.name):
@@ -282,7 +287,7 @@ class Interpreter:
 
     def note_undeclared(self, name: Name) -> None:
         message = f"'{name.text}' is written and not declared in what is at hand: it is taken to "
-        self.out.count(message + "be declared in a module that is not", name.span)
+        self.out.notes.count(message + "be declared in a module that is not", name.span)
 
     def _refusal(self, statement: Invoke) -> SourceError:
         reason = REFUSED.get(statement.name)
@@ -351,11 +356,11 @@ class Interpreter:
         for declaration in routine.declarations:
             self.data.declare(declaration, scope)
         self.meter.call(routine.text, span)
-        where, self.out.where = self.out.where, scope.where
+        where, self.out.notes.where = self.out.notes.where, scope.where
         self._frames.append(Frame(routine, outer.home, main=not self._frames))
         if routine.handlers:
             kinds = ", ".join(h.upper() for h in routine.handlers)
-            self.out.note_once("handlers", f"handlers are not run: {kinds}", routine.span)
+            self.out.notes.once("handlers", f"handlers are not run: {kinds}", routine.span)
         try:
             self.run_block(routine.body, scope)
         except _Returned as returned:
@@ -366,7 +371,7 @@ class Interpreter:
             ) from None
         finally:
             self.meter.back()
-            self.out.where = where
+            self.out.notes.where = where
             self._frames.pop()
             for cell, target in back:
                 self._hand_back(cell, target, caller)

@@ -7,6 +7,7 @@ states, else values that are not known.
 
 from __future__ import annotations
 
+from ....core.source.execution.suppose import Parts, Supposing
 from ..syntax.traversal import calls_in, names_in
 from ..syntax.tree import Call, Expression, Invoke, Name, Operation, Unary
 from ..values.arguments import bind
@@ -24,48 +25,41 @@ def wait_until(run: Keeping, invoke: Invoke, scope: Scope) -> None:
     """``WaitUntil [\\InPos] Cond [\\MaxTime] [\\TimeFlag] …`` ("RAPID Reference Manual")."""
     condition = bind(invoke, ("Cond",), (*_OPTIONS, *_LOOKS)).value(0)
     run.keep(invoke, scope)
-    _suppose(run, condition, True, scope)
+    Supposing(
+        run.evaluator.outputs,
+        _parts,
+        lambda part: _holds(run, part, scope),
+        lambda datum, other: _equate(run, datum, other, scope),
+        lambda part: _forget(run, part, scope),
+    ).suppose(condition)
 
 
-def _suppose(run: Keeping, condition: Expression, holds: bool, scope: Scope) -> None:
-    """Give data the values with which a condition that does not hold does (or does not)."""
-    if any(call.name not in READING for call in calls_in(condition)):
-        return
-    outputs = run.evaluator.outputs
-    outputs.asked.clear()
-    value = run.evaluator.evaluate(condition, scope)
-    if value is holds or isinstance(value, Unknown):
-        return
-    asked = frozenset(outputs.asked)
+def _parts(condition: Expression) -> Parts[Expression]:
+    """What a condition is made of; it is evaluated once if it calls more than outputs."""
+    asks = any(call.name not in READING for call in calls_in(condition))
     if isinstance(condition, Unary) and condition.operator == "not":
-        _suppose(run, condition.operand, not holds, scope)
-    elif isinstance(condition, Operation) and _all_must(condition, holds):
-        for operand in (condition.first, *(operand for _, operand in condition.rest)):
-            _suppose(run, operand, holds, scope)
-    elif not _stated(run, condition, holds, scope):
-        outputs.forget(asked)
-        _forget(run, condition, scope)
+        return Parts(negated=condition.operand, asks=asks)
+    if not isinstance(condition, Operation):
+        return Parts(asks=asks)
+    operators = {operator for operator, _ in condition.rest}
+    operands = (condition.first, *(operand for _, operand in condition.rest))
+    if operators == {"and"}:
+        return Parts(all_of=operands, asks=asks)
+    if operators == {"or"}:
+        return Parts(any_of=operands, asks=asks)
+    if len(operands) == 2 and operators <= {"=", "<>"}:
+        return Parts(sides=(operands[0], operands[1]), equal=operators == {"="}, asks=asks)
+    return Parts(asks=asks)
 
 
-def _all_must(condition: Operation, holds: bool) -> bool:
-    """Whether every part of a conjunction, or of a disjunction, is to be the same."""
-    word = "and" if holds else "or"
-    return all(operator == word for operator, _ in condition.rest)
+def _holds(run: Keeping, condition: Expression, scope: Scope) -> bool | None:
+    value = run.evaluator.evaluate(condition, scope)
+    return None if isinstance(value, Unknown) else value is True
 
 
-def _stated(run: Keeping, condition: Expression, holds: bool, scope: Scope) -> bool:
-    """``flag`` and ``n = 1`` say which value the datum has."""
-    if isinstance(condition, Name):
-        return _give(run, condition, holds, scope)
-    if not isinstance(condition, Operation) or len(condition.rest) != 1:
-        return False
-    operator, second = condition.rest[0]
-    if operator != ("=" if holds else "<>"):
-        return False
-    return any(
-        _give(run, datum, run.evaluator.evaluate(other, scope), scope)
-        for datum, other in ((condition.first, second), (second, condition.first))
-    )
+def _equate(run: Keeping, datum: Expression, other: Expression | bool, scope: Scope) -> bool:
+    value = other if isinstance(other, bool) else run.evaluator.evaluate(other, scope)
+    return _give(run, datum, value, scope)
 
 
 def _give(run: Keeping, datum: Expression, value: Value, scope: Scope) -> bool:

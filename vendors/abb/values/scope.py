@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
+from ....core.source.execution import scopes
 from ..syntax.tree import Declaration, Routine
 from .provenance import Literal
 from .types import Type, Value
@@ -62,28 +62,14 @@ NOWHERE = Home("")
 
 
 @dataclass(eq=False, slots=True)
-class Scope:
-    """Names and their cells; what is not found is looked up in ``outer``.
+class Scope(scopes.Scope[Cell]):
+    """Names (lower case) and their cells.
 
     Args:
-        where: for messages and notes: ``PROC pick``, ``MODULE main``.
         home: the module that the text belongs to.
     """
 
-    where: str
-    cells: dict[str, Cell] = field(default_factory=dict)
-    outer: Scope | None = None
     home: Home = NOWHERE
-
-    def find(self, name: str) -> Cell | None:
-        """The cell that a name (lower case) stands for."""
-        scope: Scope | None = self
-        while scope is not None:
-            cell = scope.cells.get(name)
-            if cell is not None:
-                return cell
-            scope = scope.outer
-        return None
 
     def inner(self, where: str) -> Scope:
         """An empty scope inside this one."""
@@ -91,12 +77,7 @@ class Scope:
 
     def names(self) -> set[str]:
         """All names that are found from here, as declared."""
-        found: set[str] = set()
-        scope: Scope | None = self
-        while scope is not None:
-            found.update(cell.name for cell in scope.cells.values())
-            scope = scope.outer
-        return found
+        return {cell.name for scope in self.outwards() for cell in scope.cells.values()}
 
 
 ELSEWHERE = "if it stands in another module, name that file too, or put it beside this one"
@@ -104,7 +85,4 @@ ELSEWHERE = "if it stands in another module, name that file too, or put it besid
 
 def unknown_name(kind: str, name: str, known: Iterable[str], otherwise: str = ELSEWHERE) -> str:
     """The message for a name that is not declared, with the nearest ones that are."""
-    spellings = {k.lower(): k for k in known if k.lower() != name.lower()}
-    near = difflib.get_close_matches(name.lower(), spellings, n=3, cutoff=0.6)
-    offer = f"did you mean {' or '.join(spellings[n] for n in near)}? If not: " if near else ""
-    return f"unknown {kind} '{name}': {offer}{otherwise}"
+    return scopes.unknown_name(kind, name, known, otherwise)

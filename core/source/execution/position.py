@@ -1,0 +1,153 @@
+"""Where the robot stands: what a program asks of its own position.
+
+The commanded position answers: the last target. In the tool and frame in which it was programmed
+it is known from the text; in others as long as both stand on fixed frames; else, and for joint
+values, the robot's kinematics are asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol
+
+from ...errors import Span
+from ...program.move import Move, MoveJ
+from ...program.speed import Speed
+from ...program.target import JointTarget, PoseTarget
+from ...program.tool import FLANGE, WORLD, Tool, WorkObject
+from ...robot.model import Robot
+from ...spatial.pose import Pose
+
+if TYPE_CHECKING:
+    from ...arrays import FloatArray
+
+
+class Follower(Protocol):
+    """Kinematics of a robot that goes from target to target."""
+
+    @property
+    def known(self) -> bool:
+        """Whether it is known where the robot stands."""
+        ...
+
+    def moved(self, move: Move, statement: Span | None = None) -> Any:
+        """The robot has driven a move."""
+        ...
+
+    def joints(self) -> FloatArray:
+        """The configuration (N,)."""
+        ...
+
+    def pose(self, tool: Tool, frame: WorkObject) -> Pose:
+        """The pose of a tool in a frame."""
+        ...
+
+    def solve(self, move: MoveJ) -> FloatArray:
+        """The configuration (N,) in which a move would end."""
+        ...
+
+
+Follow = Callable[[Robot, JointTarget | None], Follower]
+"""Begins to follow a robot that stands somewhere, or nobody knows where."""
+NO_ROBOT = "name the robot: its kinematics tell"
+NO_START = "the robot has not moved yet: give a start"
+
+
+class Position:
+    """Follows the robot from target to target; kinematics are solved when they are asked for.
+
+    Args:
+        robot: None if none is named.
+        start: where it stands at first; None if nobody knows.
+        follow: begins to follow a robot.
+
+    Attributes:
+        asked: how often the program has asked where the robot stands.
+        last: the last move; None before the first.
+    """
+
+    def __init__(self, robot: Robot | None, start: JointTarget | None, follow: Follow) -> None:
+        self.robot = robot
+        self.start = start
+        self.asked = 0
+        self.last: Move | None = None
+        self._begin = follow
+        self._follower: Follower | None = None
+        self._ahead: list[tuple[Move, Span]] = []
+
+    @property
+    def tool(self) -> Tool:
+        """The tool that was moved last."""
+        return FLANGE if self.last is None else self.last.tool
+
+    @property
+    def work_object(self) -> WorkObject:
+        """The work object that was moved in last."""
+        return WORLD if self.last is None else self.last.work_object
+
+    def moved(self, move: Move, statement: Span) -> None:
+        """The robot has driven to the target of a move."""
+        self.last = move
+        if self.robot is not None:
+            self._ahead.append((move, statement))
+
+    def why_unknown(self) -> str:
+        """What is missing where nobody knows where the robot stands."""
+        return NO_ROBOT if self.robot is None else NO_START
+
+    def pose(self, tool: Tool, frame: WorkObject) -> Pose | None:
+        """The pose of a tool in a frame; None if it is not known (see `why_unknown`).
+
+        Raises:
+            FlybyError: a target on the way cannot be reached.
+        """
+        self.asked += 1
+        last = self.last
+        if last is not None and isinstance(last.target, PoseTarget):
+            if (last.tool.tcp, last.work_object.pose) == (tool.tcp, frame.pose):
+                return last.target.pose
+            if _fixed(last.work_object) and _fixed(frame):
+                flange = last.work_object.pose @ last.target.pose @ last.tool.tcp.inverse()
+                return frame.pose.inverse() @ flange @ tool.tcp
+        follower = self._follow()
+        return None if follower is None or not follower.known else follower.pose(tool, frame)
+
+    def joints(self) -> FloatArray | None:
+        """The configuration (N,), the arm's joints first; None if it is not known.
+
+        Raises:
+            FlybyError: a target on the way cannot be reached.
+        """
+        self.asked += 1
+        follower = self._follow()
+        return None if follower is None or not follower.known else follower.joints()
+
+    def forward(self, target: JointTarget, tool: Tool, frame: WorkObject) -> Pose | None:
+        """The pose of a tool at joint values; None without a robot."""
+        return None if self.robot is None else self._begin(self.robot, target).pose(tool, frame)
+
+    def solve(self, target: PoseTarget, tool: Tool, frame: WorkObject) -> FloatArray | None:
+        """The configuration (N,) at a pose, as near as can be; None without a robot.
+
+        Raises:
+            FlybyError: the pose, or a target before it, cannot be reached.
+        """
+        follower = self._follow()
+        if follower is None:
+            return None
+        return follower.solve(MoveJ(target, Speed(tcp=1.0), tool=tool, work_object=frame))
+
+    def _follow(self) -> Follower | None:
+        """The follower, when all moves have been driven; None without a robot."""
+        if self.robot is None:
+            return None
+        if self._follower is None:
+            self._follower = self._begin(self.robot, self.start)
+        for move, statement in self._ahead:
+            self._follower.moved(move, statement)
+        self._ahead.clear()
+        return self._follower
+
+
+def _fixed(frame: WorkObject) -> bool:
+    return not frame.robot_held and frame.moved_by is None

@@ -1,0 +1,160 @@
+"""What a run leaves: statements in order, the sources of the moves' numbers, notes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+from ...errors import Note, Span
+from ...program.move import Move, Opaque, Statement, Wait
+from ...program.origin import MoveOrigin
+from .provenance import Part, Reads
+
+_SHOWN = 4
+"""Names that a note on kept statements lists."""
+
+
+@dataclass(frozen=True, slots=True)
+class MoveParts:
+    """The parts of a move before all reads of the run are known.
+
+    Args:
+        statement: the motion instruction.
+        target, speed, zone: of the move.
+        via: of an arc.
+    """
+
+    statement: Span
+    target: Part
+    speed: Part
+    zone: Part
+    via: Part | None = None
+
+
+@dataclass
+class _Group:
+    """Statements of one kind: the place of the first, and how often each name came."""
+
+    span: Span
+    counts: dict[str, int] = field(default_factory=dict)
+
+
+class Notes:
+    """What is to be said about a run: one note for a kind of thing.
+
+    Attributes:
+        where: the routine that runs, in which a kind is noted once: ``PROC pick``; empty for once
+            in the program.
+    """
+
+    def __init__(self) -> None:
+        self.where = ""
+        self._once: dict[tuple[str, str], Note] = {}
+        self._counted: dict[str, tuple[Note, int]] = {}
+        self._groups: dict[str, _Group] = {}
+
+    def once(self, kind: str, message: str, span: Span) -> None:
+        """A note, unless one of this kind was taken before."""
+        where = f" (in {self.where})" if self.where else ""
+        self._once.setdefault((self.where, kind), Note(message + where, span=span))
+
+    def count(self, message: str, span: Span) -> None:
+        """A note, given once with the number of times that it held."""
+        first, count = self._counted.get(message.lower(), (Note(message, span=span), 0))
+        self._counted[message.lower()] = first, count + 1
+
+    def group(self, kind: str, name: str, span: Span) -> None:
+        """A statement was kept and not carried out; one note for all that do the same.
+
+        Args:
+            kind: what such statements do: "set outputs".
+            name: of the instruction.
+        """
+        counts = self._groups.setdefault(kind, _Group(span)).counts
+        counts[name] = counts.get(name, 0) + 1
+
+    def notes(self) -> tuple[Note, ...]:
+        """All notes, those about kept statements last."""
+        notes = list(self._once.values())
+        for note, count in self._counted.values():
+            times = f" ({count} times, here first)" if count > 1 else ""
+            notes.append(replace(note, message=note.message + times))
+        for kind, group in self._groups.items():
+            count = sum(group.counts.values())
+            names = list(group.counts)
+            shown = ", ".join(names[:_SHOWN]) + (", …" if len(names) > _SHOWN else "")
+            times = "" if count == 1 else f" ({count} statements, here first)"
+            message = f"statements that {kind} are kept and not carried out: {shown}{times}"
+            notes.append(Note(message, span=group.span))
+        return tuple(notes)
+
+
+class Transcript:
+    """Collects what a run goes through.
+
+    Args:
+        text_of: the text that stands at a place, from which kept statements are cut.
+    """
+
+    def __init__(self, text_of: Callable[[Span], str]) -> None:
+        self.text_of = text_of
+        self.notes = Notes()
+        self.parts: list[MoveParts] = []
+        self._statements: list[Statement] = []
+
+    @property
+    def move_index(self) -> int:
+        """Index of the move that is being read, or comes next."""
+        return len(self.parts)
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the robot stands: nothing was carried out yet, or the last statement stops it."""
+        last = self._statements[-1] if self._statements else None
+        return last is None or isinstance(last, Wait) or (isinstance(last, Opaque) and last.stops)
+
+    def emit(self, statement: Wait | Opaque) -> None:
+        """Put a statement that is no move at the end of the program."""
+        self._statements.append(statement)
+
+    def emit_move(self, move: Move, parts: MoveParts) -> None:
+        """Put a move at the end of the program."""
+        self._statements.append(move)
+        self.parts.append(parts)
+
+    def keep(self, span: Span, name: str, why: str, stops: bool = False) -> None:
+        """Keep a statement as it stands, with one note per kind, at the first of them.
+
+        Args:
+            span: of the statement.
+            name: of the instruction, for the note.
+            why: it is not carried out; empty for no note.
+            stops: whether the robot stops at it.
+        """
+        self.emit(Opaque(self.text_of(span), stops, span))
+        if why:
+            self.notes.count(f"{name} is kept and not carried out: {why}", span)
+
+    def statements(self, reads: Reads) -> tuple[Statement, ...]:
+        """What was carried out, each move with the origin of its numbers.
+
+        Args:
+            reads: all reads of the run.
+        """
+        parts = enumerate(self.parts)
+        return tuple(
+            statement
+            if isinstance(statement, Wait | Opaque)
+            else replace(statement, origin=_origin(reads, *next(parts)))
+            for statement in self._statements
+        )
+
+
+def _origin(reads: Reads, index: int, parts: MoveParts) -> MoveOrigin:
+    return MoveOrigin(
+        parts.statement,
+        reads.origin(parts.target, index),
+        reads.origin(parts.speed, index),
+        reads.origin(parts.zone, index),
+        None if parts.via is None else reads.origin(parts.via, index),
+    )
