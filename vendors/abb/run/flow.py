@@ -5,18 +5,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import NoReturn, Protocol
 
 from ....core.errors import InputError, SourceError, Span
+from ....core.source.execution.answers import Course
+from ....core.source.execution.limits import Meter
+from ....core.source.execution.transcript import Transcript
 from ..syntax.traversal import calls_in, labels_of
 from ..syntax.tree import Block, Expression, For, If, Routine, Test, While
+from ..values.evaluator import Evaluator
 from ..values.operators import OperandError, apply
 from ..values.scope import Cell, Home, Scope
 from ..values.types import NUM, Unknown, Value, find_unknown
-
-if TYPE_CHECKING:
-    from .interpreter import Interpreter
-
+from .analysis import Flow
 
 _SKIPPED = "a branch whose condition is not known"
 
@@ -47,7 +48,27 @@ class Frame:
         return self.labels
 
 
-def run_if(run: Interpreter, statement: If, scope: Scope) -> None:
+class Carrying(Protocol):
+    """What branches and loops need of a run."""
+
+    evaluator: Evaluator
+    out: Transcript
+    course: Course
+    meter: Meter
+    flow: Flow
+
+    @property
+    def frame(self) -> Frame:
+        """The routine that is being run."""
+
+    def run_block(self, block: Block, scope: Scope) -> None:
+        """Execute statements in order."""
+
+    def finish(self, message: str, span: Span) -> NoReturn:
+        """End the program here, with a note."""
+
+
+def run_if(run: Carrying, statement: If, scope: Scope) -> None:
     """``IF``: the first branch whose condition holds."""
     for number, branch in enumerate(statement.branches):
         value = run.evaluator.evaluate(branch.condition, scope)
@@ -63,7 +84,7 @@ def run_if(run: Interpreter, statement: If, scope: Scope) -> None:
         run.run_block(statement.otherwise, scope)
 
 
-def run_test(run: Interpreter, test: Test, scope: Scope) -> None:
+def run_test(run: Carrying, test: Test, scope: Scope) -> None:
     """``TEST``: the first case that has the value."""
     subject = run.evaluator.evaluate(test.subject, scope)
     for number, case in enumerate(test.cases):
@@ -89,7 +110,7 @@ def _equal(subject: Value, value: Value, expression: Expression) -> bool:
         raise SourceError(f"TEST: {error}", expression.span) from None
 
 
-def _possible(run: Interpreter, statement: If, first: int, scope: Scope) -> list[bool]:
+def _possible(run: Carrying, statement: If, first: int, scope: Scope) -> list[bool]:
     """Which of the branches from ``first`` on, and of ELSE, may be taken if none before is."""
     possible: list[bool] = []
     certain = False
@@ -100,7 +121,7 @@ def _possible(run: Interpreter, statement: If, first: int, scope: Scope) -> list
     return [*possible, not certain]
 
 
-def _foreseen(run: Interpreter, condition: Expression, scope: Scope) -> Value | None:
+def _foreseen(run: Carrying, condition: Expression, scope: Scope) -> Value | None:
     """The value of a condition that may not come up; None if only its turn will tell."""
     if any(True for _ in calls_in(condition)):
         return None
@@ -111,7 +132,7 @@ def _foreseen(run: Interpreter, condition: Expression, scope: Scope) -> Value | 
 
 
 def _choose(
-    run: Interpreter,
+    run: Carrying,
     blocks: Sequence[Block],
     otherwise: Block | None,
     possible: Sequence[bool],
@@ -144,7 +165,7 @@ def _choose(
         run.run_block(chosen, scope)
 
 
-def run_for(run: Interpreter, loop: For, scope: Scope) -> None:
+def run_for(run: Carrying, loop: For, scope: Scope) -> None:
     """``FOR``; without STEP the controller counts down where it has to."""
     bounds = [run.evaluator.evaluate(e, scope) for e in (loop.start, loop.stop)]
     given = run.evaluator.evaluate(loop.step, scope) if loop.step is not None else None
@@ -157,7 +178,7 @@ def run_for(run: Interpreter, loop: For, scope: Scope) -> None:
 
 
 def _counts(
-    run: Interpreter, loop: For, start: Value, stop: Value, given: Value | None
+    run: Carrying, loop: For, start: Value, stop: Value, given: Value | None
 ) -> Iterator[Value]:
     """The values that the loop's variable takes."""
     values = (start, stop, 0.0 if given is None else given)
@@ -178,7 +199,7 @@ def _counts(
         yield unknown if first is None or step is None else first + number * step
 
 
-def _number_or_none(run: Interpreter, value: Value, loop: For) -> float | None:
+def _number_or_none(run: Carrying, value: Value, loop: For) -> float | None:
     if isinstance(value, Unknown):
         return None
     run.evaluator.check(value, NUM, "FOR", loop.span)
@@ -186,7 +207,7 @@ def _number_or_none(run: Interpreter, value: Value, loop: For) -> float | None:
     return value
 
 
-def run_while(run: Interpreter, loop: While, scope: Scope) -> None:
+def run_while(run: Carrying, loop: While, scope: Scope) -> None:
     """``WHILE``; a loop without an end is read for one pass."""
     left: int | None = None
     most: int | None = None
@@ -225,14 +246,14 @@ def run_while(run: Interpreter, loop: While, scope: Scope) -> None:
             waits = passed
 
 
-def _ends_by_what_was_skipped(run: Interpreter, loop: While) -> bool:
+def _ends_by_what_was_skipped(run: Carrying, loop: While) -> bool:
     """Whether only branches that were not taken, as their conditions are not known, end a loop."""
     span = loop.span
     skipped = [block for at, block in run.frame.exits.values() if span.start <= at < span.end]
     return bool(skipped) and run.flow.decided_by(loop, skipped, run.frame.home)
 
 
-def end_loop(run: Interpreter, span: Span, body: Block, scope: Scope) -> None:
+def end_loop(run: Carrying, span: Span, body: Block, scope: Scope) -> None:
     """After one pass of a loop that ends by none of its conditions.
 
     It is left by the way out that was not taken as its condition is not known; without any way out
@@ -250,19 +271,19 @@ def end_loop(run: Interpreter, span: Span, body: Block, scope: Scope) -> None:
         run.finish("the program is an endless loop: one pass is read", span)
 
 
-def jump_back(run: Interpreter, between: Block) -> None:
+def jump_back(run: Carrying, between: Block) -> None:
     """A jump back that a condition decides: a wait, if nothing moves the robot on the way."""
     if not run.flow.moves(between, run.frame.home) and _waits_for_others(run, between):
         _let_others_write(run)
 
 
-def _let_others_write(run: Interpreter) -> None:
+def _let_others_write(run: Carrying) -> None:
     outputs = run.evaluator.outputs
     outputs.forget(outputs.asked)
     outputs.asked.clear()
 
 
-def _waits_for_others(run: Interpreter, body: Block) -> bool:
+def _waits_for_others(run: Carrying, body: Block) -> bool:
     """Whether a loop reads outputs that only somebody else can change, to end or to do nothing."""
     home, asked = run.frame.home, set(run.evaluator.outputs.asked)
     if not asked or asked & run.flow.signals_written(body, home):
