@@ -5,14 +5,16 @@ Source: "The URScript Programming Language", modules internals and urmath.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import Protocol
 
 from ....core.errors import InputError, SourceError
 from ....core.program.tool import FLANGE, Tool
 from ....core.spatial.pose import Pose
 from ..syntax.tree import Argument, Call, Expression
+from ..values.answers import answer, given
 from ..values.arguments import bind
-from ..values.evaluator import answered
+from ..values.evaluator import Evaluation, evaluate, plain
 from ..values.located import Located
 from ..values.poses import pose_of, value_of
 from ..values.scope import Scope
@@ -27,9 +29,8 @@ from ..values.values import (
     numbers,
 )
 from .configuration import UrConfiguration
-
-if TYPE_CHECKING:
-    from ..run.interpreter import Interpreter
+from .position import Position
+from .settings import Settings
 
 _SIX = 6
 INVERSE = "get_inverse_kin"
@@ -37,81 +38,89 @@ INVERSE_PARAMETERS = ("x", "qnear", "maxPositionError", "maxOrientationError", "
 _ACTIVE = "active_tcp"
 
 
+class KinematicsRun(Evaluation, Protocol):
+    """What questions about the robot ask of a run."""
+
+    settings: Settings
+
+    @property
+    def position(self) -> Position:
+        """Where the robot stands."""
+
+
 def _as_pose(value: Value) -> Value:
     """An answer of six numbers, where a pose is asked for."""
     return UrPose(*value) if isinstance(value, tuple) and len(value) == _SIX else value
 
 
-def _tcp_pose(run: Interpreter, call: Call, scope: Scope) -> Located:
+def _tcp_pose(run: KinematicsRun, call: Call, scope: Scope) -> Located:
     return _pose(run, call, run.settings.tool)
 
 
-def _flange_pose(run: Interpreter, call: Call, scope: Scope) -> Located:
+def _flange_pose(run: KinematicsRun, call: Call, scope: Scope) -> Located:
     return _pose(run, call, FLANGE)
 
 
-def _pose(run: Interpreter, call: Call, tool: Tool) -> Located:
-    given = run.calls.given(call)
-    if given is not None:
-        return Located(_as_pose(answered(given)))
-    span = run.texts.span(call.start, call.end)
-    pose = run.position.pose(tool, f"{call.name}()", span)
+def _pose(run: KinematicsRun, call: Call, tool: Tool) -> Located:
+    told = given(run, call)
+    if told is not None:
+        return Located(_as_pose(told))
+    pose = run.position.pose(tool, f"{call.name}()", run.texts.span_of(call))
     return Located(pose if isinstance(pose, Unknown) else value_of(pose))
 
 
-def _joints(run: Interpreter, call: Call, scope: Scope) -> Located:
-    given = run.calls.given(call)
-    if given is not None:
-        return Located(answered(given))
-    span = run.texts.span(call.start, call.end)
-    return Located(run.position.joints(f"{call.name}()", span))
+def _joints(run: KinematicsRun, call: Call, scope: Scope) -> Located:
+    told = given(run, call)
+    if told is None:
+        told = run.position.joints(f"{call.name}()", run.texts.span_of(call))
+    return Located(told)
 
 
-def _steady(run: Interpreter, call: Call, scope: Scope) -> Located:
+def _steady(run: KinematicsRun, call: Call, scope: Scope) -> Located:
     """``is_steady()``: what stands behind a move is read when the robot has come to rest."""
-    given = run.calls.given(call)
-    return Located(True if given is None else answered(given))
+    told = given(run, call)
+    return Located(True if told is None else told)
 
 
-def _tcp_offset(run: Interpreter, call: Call, scope: Scope) -> Located:
+def _tcp_offset(run: KinematicsRun, call: Call, scope: Scope) -> Located:
     if not run.settings.stated:
-        return Located(run.calls.answer(call, "the TCP of the installation"))
+        return Located(answer(run, call, "the TCP of the installation"))
     return Located(value_of(run.settings.tcp))
 
 
-def _forward(run: Interpreter, call: Call, scope: Scope) -> Located:
+def _forward(run: KinematicsRun, call: Call, scope: Scope) -> Located:
     """``get_forward_kin(q, tcp)``; without q where the robot stands."""
-    given = bind(call, ("q", "tcp"), 0, run.texts)
-    tool = _tool(run, given.get("tcp"), scope)
+    arguments = bind(call, ("q", "tcp"), 0, run.texts)
+    tool = _tool(run, arguments.get("tcp"), scope)
     if isinstance(tool, Unknown):
         return Located(tool)
-    if "q" not in given:
+    if "q" not in arguments:
         return _pose(run, call, tool)
-    value = run.evaluator.plain(given["q"].value, scope)
+    value = plain(run, arguments["q"].value, scope)
     unknown = find_unknown(value)
     if unknown is not None:
         return Located(unknown)
     joints = numbers(value, _SIX)
-    span = run.texts.span(call.start, call.end)
     if joints is None:
-        raise SourceError(f"get_forward_kin takes six joint values, not {describe(value)}", span)
+        raise run.texts.error_at(
+            f"get_forward_kin takes six joint values, not {describe(value)}", call
+        )
+    span = run.texts.span_of(call)
     pose = run.position.forward(tuple(joints), tool, "get_forward_kin", span)
     return Located(pose if isinstance(pose, Unknown) else value_of(pose))
 
 
-def _inverse(run: Interpreter, call: Call, scope: Scope) -> Located:
-    given = run.calls.given(call)
-    if given is not None:
-        return Located(answered(given))
-    return Located(solution(run, call, scope))
+def _inverse(run: KinematicsRun, call: Call, scope: Scope) -> Located:
+    told = given(run, call)
+    return Located(solution(run, call, scope) if told is None else told)
 
 
-def _has_solution(run: Interpreter, call: Call, scope: Scope) -> Located:
-    given = run.calls.given(call)
-    if given is not None:
-        return Located(answered(given))
+def _has_solution(run: KinematicsRun, call: Call, scope: Scope) -> Located:
+    told = given(run, call)
+    if told is not None:
+        return Located(told)
     found = solution(run, call, scope)
-    span = run.texts.span(call.start, call.end)
+    span = run.texts.span_of(call)
     if isinstance(found, Unknown):
         return Located(found)
     if not run.position.has_robot:
@@ -120,65 +129,67 @@ def _has_solution(run: Interpreter, call: Call, scope: Scope) -> Located:
     return Located(run.position.solve(found.pose, found.tcp, near, span) is not None)
 
 
-def solution(run: Interpreter, call: Call, scope: Scope) -> Solution | Unknown:
+def solution(run: KinematicsRun, call: Call, scope: Scope) -> Solution | Unknown:
     """What ``get_inverse_kin(x, qnear, maxPositionError, maxOrientationError, tcp)`` finds."""
-    given = bind(call, INVERSE_PARAMETERS, 1, run.texts)
-    span = run.texts.span(call.start, call.end)
-    value = run.evaluator.evaluate(given["x"].value, scope)
+    arguments = bind(call, INVERSE_PARAMETERS, 1, run.texts)
+    value = evaluate(run, arguments["x"].value, scope)
     unknown = find_unknown(value)
-    tool = _tool(run, given.get("tcp"), scope)
-    if unknown is not None or isinstance(tool, Unknown):
-        return unknown or tool  # type: ignore[return-value]
-    near = _near(run, call, given.get("qnear"), scope)
+    tool = _tool(run, arguments.get("tcp"), scope)
+    if unknown is not None:
+        return unknown
+    if isinstance(tool, Unknown):
+        return tool
+    near = _near(run, call, arguments.get("qnear"), scope)
     if isinstance(near, Unknown):
         return near
-    return Solution(_checked_pose(run, value, given["x"].value), tool.tcp, near, span)
+    pose = _checked_pose(run, value, arguments["x"].value)
+    return Solution(pose, tool.tcp, near, run.texts.span_of(call))
 
 
 def _near(
-    run: Interpreter, call: Call, qnear: Argument | None, scope: Scope
+    run: KinematicsRun, call: Call, qnear: Argument | None, scope: Scope
 ) -> UrConfiguration | Unknown | None:
     """What a solution shall be near to; None where nobody knows where the robot stands."""
     if qnear is not None:
-        nearby = run.evaluator.evaluate(qnear.value, scope)
+        nearby = evaluate(run, qnear.value, scope)
         if run.position.is_here(nearby):
             return None
         return find_unknown(nearby) or to_near(run, nearby, qnear.value)
     if not (run.position.has_robot and run.position.known):
         return None
-    here = run.position.joints(call.name, run.span_of(call))
+    here = run.position.joints(call.name, run.texts.span_of(call))
     return None if isinstance(here, Unknown) else UrConfiguration(here)
 
 
-def to_near(run: Interpreter, value: Value, node: Expression) -> UrConfiguration:
+def to_near(run: KinematicsRun, value: Value, node: Expression) -> UrConfiguration:
     """A ``qnear``: six joint values.
 
     Raises:
         SourceError: it is something else.
     """
     if isinstance(value, Solution):
-        value = joints_of(run, value)
+        value = joints_of(run.position, value)
     unknown = find_unknown(value)
     joints = numbers(value, _SIX)
     if joints is None or isinstance(value, UrPose):
         what = f"depends on {unknown.reason}" if unknown else f"is {describe(value)}"
-        raise SourceError(f"qnear takes six joint values, but it {what}", run.evaluator.span(node))
+        raise run.texts.error_at(f"qnear takes six joint values, but it {what}", node)
     return UrConfiguration(tuple(joints))
 
 
-def joints_of(run: Interpreter, found: Solution) -> Value:
+def joints_of(position: Position, found: Solution) -> Value:
     """The joint values of a solution.
 
     Raises:
         SourceError: the pose cannot be reached.
     """
-    if not run.position.has_robot:
+    if not position.has_robot:
         return Unknown(
             "get_inverse_kin, for which the robot's kinematics are needed (name the robot)",
             found.span,
         )
     near = found.near if isinstance(found.near, UrConfiguration) else None
-    joints = run.position.solve(found.pose, found.tcp, near, found.span)
+    joints = position.solve(found.pose, found.tcp, near, found.span)
     if joints is None:
         raise SourceError(
             "get_inverse_kin: the pose cannot be reached by this robot with this TCP", found.span
@@ -186,30 +197,29 @@ def joints_of(run: Interpreter, found: Solution) -> Value:
     return joints
 
 
-def _tool(run: Interpreter, argument: Argument | None, scope: Scope) -> Tool | Unknown:
+def _tool(run: KinematicsRun, argument: Argument | None, scope: Scope) -> Tool | Unknown:
     """The TCP that a call names; the one in force if it names none."""
     if argument is None:
         return run.settings.tool
-    value = run.evaluator.evaluate(argument.value, scope)
+    value = evaluate(run, argument.value, scope)
     unknown = find_unknown(value)
     if unknown is not None:
         return unknown
     if isinstance(value, str):
         if value == _ACTIVE:
             return run.settings.tool
-        span = run.texts.span(argument.start, argument.end)
-        return Unknown(f"the TCP '{value}' of the installation", span)
+        return Unknown(f"the TCP '{value}' of the installation", run.texts.span_of(argument))
     return Tool("tcp", _checked_pose(run, value, argument.value))
 
 
-def _checked_pose(run: Interpreter, value: Value, node: Expression) -> Pose:
+def _checked_pose(run: KinematicsRun, value: Value, node: Expression) -> Pose:
     try:
         return pose_of(value, "the argument")
     except (ValueFault, InputError) as fault:
-        raise SourceError(str(fault), run.evaluator.span(node)) from None
+        raise run.texts.error_at(fault, node) from None
 
 
-KINEMATICS = {
+KINEMATICS: dict[str, Callable[[KinematicsRun, Call, Scope], Located]] = {
     **dict.fromkeys(
         ("get_actual_tcp_pose", "get_target_tcp_pose", "get_target_waypoint", "tool_pose"),
         _tcp_pose,
@@ -230,3 +240,4 @@ KINEMATICS = {
     INVERSE: _inverse,
     "get_inverse_kin_has_solution": _has_solution,
 }
+"""Function that asks for the robot's position or kinematics → what carries it out."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from ....core.errors import InputError, SourceError, Span
 from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
@@ -16,10 +16,11 @@ from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget, Target
 from ....core.program.tool import Tool
 from ....core.program.zone import FINE, Radius, Zone
-from ....core.source.execution.provenance import Part
+from ....core.source.execution.provenance import ELSEWHERE, Part
 from ....core.spatial.pose import Pose
 from ..syntax.tree import Argument, Call, Expression
 from ..values.arguments import bind
+from ..values.evaluator import locate
 from ..values.located import NOTHING, Located
 from ..values.poses import pose_of
 from ..values.provenance import Sources, covering
@@ -36,10 +37,7 @@ from ..values.values import (
 )
 from .arcs import carried_along
 from .configuration import UrConfiguration
-from .kinematics import INVERSE, INVERSE_PARAMETERS
-
-if TYPE_CHECKING:
-    from ..run.interpreter import Interpreter
+from .kinematics import INVERSE, INVERSE_PARAMETERS, KinematicsRun, solution, to_near
 
 _SIX = 6
 
@@ -93,6 +91,20 @@ class MoveParts:
         return parts if self.via is None else [*parts, self.via]
 
 
+class MovesRun(KinematicsRun, Protocol):
+    """What moves ask of a run."""
+
+    @property
+    def move_index(self) -> int:
+        """Index of the move that is being read."""
+
+    def emit_move(self, move: Move, parts: MoveParts) -> None:
+        """Put a move at the end of the program."""
+
+    def note(self, kind: str, message: str, span: Span) -> None:
+        """A note, unless one of this kind was taken before."""
+
+
 @lru_cache(maxsize=1024)
 def _speed(function: str, a: float, v: float, t: float) -> Speed:
     """The speed that a move's arguments give; programs have few."""
@@ -113,7 +125,7 @@ def _blend(radius: float) -> Radius:
     return Radius(radius, radius, radius)
 
 
-def move(run: Interpreter, call: Call, scope: Scope) -> Located:
+def move(run: MovesRun, call: Call, scope: Scope) -> Located:
     """Carry out a move."""
     _MoveReader(run, call, scope).read()
     return NOTHING
@@ -122,7 +134,7 @@ def move(run: Interpreter, call: Call, scope: Scope) -> Located:
 class _MoveReader:
     """Reads one call of a move."""
 
-    def __init__(self, run: Interpreter, call: Call, scope: Scope) -> None:
+    def __init__(self, run: MovesRun, call: Call, scope: Scope) -> None:
         self.run = run
         self.call = call
         self.scope = scope
@@ -130,13 +142,13 @@ class _MoveReader:
         self.signature = SIGNATURES[call.name]
         names = self.signature.names
         self.given = bind(call, names, len(self.signature.targets), run.texts)
-        self.span = run.span_of(call)
+        self.span = run.texts.span_of(call)
         self.tool = self._tool()
 
     def read(self) -> None:
         """Put the move at the end of the program."""
         run = self.run
-        run.evaluator.reader = run.move_index
+        run.literals.reader = run.move_index
         *vias, last = [self._target(self.given[name]) for name in self.signature.targets]
         numbers_ = {name: self._number(name) for name in self.signature.others}
         values = {name: value for name, (value, _) in numbers_.items()}
@@ -149,7 +161,7 @@ class _MoveReader:
             vias[0][1] if vias else None,
         )
         common = speed, zone, self.tool, run.position.base
-        run.evaluator.reader = -1
+        run.literals.reader = ELSEWHERE
         if vias:
             run.emit_move(*self._arc(vias[0], last, values["mode"], parts, common))
             return
@@ -162,7 +174,7 @@ class _MoveReader:
         if settings.unknown is not None:
             raise self._refusal("the TCP of the move", settings.unknown, self.span)
         if not settings.stated:
-            self.run.notebook.once(
+            self.run.note(
                 "tcp",
                 "no set_tcp stands before the first move: the flange is taken for the TCP, where "
                 "a controller has the TCP of its installation; write set_tcp(p[…]) before it",
@@ -174,11 +186,11 @@ class _MoveReader:
 
     def _target(self, argument: Argument) -> tuple[Target, Part]:
         expression = argument.value
-        span = self.texts.span(expression.start, expression.end)
+        span = self.texts.span_of(expression)
         if self._is_inverse(expression):
             assert isinstance(expression, Call)
             return self._inverse(expression, span)
-        found = self.run.evaluator.locate(expression, self.scope)
+        found = locate(self.run, expression, self.scope)
         value = found.value
         name = argument.name or "target"
         if isinstance(value, Solution):
@@ -208,42 +220,40 @@ class _MoveReader:
     def _inverse(self, call: Call, span: Span) -> tuple[Target, Part]:
         given = bind(call, INVERSE_PARAMETERS, 1, self.texts)
         if "tcp" in given:
-            solution = self.run.solution(call, self.scope)
-            if isinstance(solution, Unknown):
-                raise self._refusal("target", solution, span)
-            return self._solution(solution), Part(span)
-        found = self.run.evaluator.locate(given["x"].value, self.scope)
-        self._known(found, f"the pose of {INVERSE}", span)
-        pose = self._pose(found.value, given["x"].value)
-        sources = covering(found.sources, _SIX)
+            found = solution(self.run, call, self.scope)
+            if isinstance(found, Unknown):
+                raise self._refusal("target", found, span)
+            return self._solution(found), Part(span)
+        goal = locate(self.run, given["x"].value, self.scope)
+        self._known(goal, f"the pose of {INVERSE}", span)
+        pose = self._pose(goal.value, given["x"].value)
+        sources = covering(goal.sources, _SIX)
         near = None
         if "qnear" in given:
-            near = self.run.evaluator.locate(given["qnear"].value, self.scope)
+            near = locate(self.run, given["qnear"].value, self.scope)
         if near is None or self.run.position.is_here(near.value):
             kept = sources if any(sources) else ()
-            return PoseTarget(pose, name=found.name), Part(span, kept)
+            return PoseTarget(pose, name=goal.name), Part(span, kept)
         if isinstance(near.value, Unknown):
             raise self._refusal("qnear", near.value, span)
-        configuration = self.run.near(near.value, given["qnear"].value)
+        configuration = to_near(self.run, near.value, given["qnear"].value)
         sources = (*sources, *covering(near.sources, _SIX))
-        target = PoseTarget(pose, configuration, name=found.name)
+        target = PoseTarget(pose, configuration, name=goal.name)
         return target, Part(span, sources if any(sources) else ())
 
-    def _solution(self, solution: Solution) -> PoseTarget:
+    def _solution(self, found: Solution) -> PoseTarget:
         """The pose that inverse kinematics was asked for, for the TCP in force."""
-        pose = solution.pose
-        if solution.tcp != self.tool.tcp:
-            pose = pose @ solution.tcp.inverse() @ self.tool.tcp
-        near = solution.near
+        pose = found.pose
+        if found.tcp != self.tool.tcp:
+            pose = pose @ found.tcp.inverse() @ self.tool.tcp
+        near = found.near
         return PoseTarget(pose, near if isinstance(near, UrConfiguration) else None)
 
     def _pose(self, value: object, expression: Expression) -> Pose:
         try:
             return pose_of(value, "the target")  # type: ignore[arg-type]
-        except ValueFault as fault:
-            raise self.run.evaluator.fault(fault, expression) from None
-        except InputError as error:
-            raise SourceError(str(error), self.run.evaluator.span(expression)) from None
+        except (ValueFault, InputError) as error:
+            raise self.texts.error_at(error, expression) from None
 
     def _known(self, found: Located, what: str, span: Span) -> None:
         unknown = find_unknown(found.value)
@@ -263,9 +273,9 @@ class _MoveReader:
         argument = self.given.get(name)
         if argument is None:
             return self.signature.others[name], Located(None)
-        found = self.run.evaluator.locate(argument.value, self.scope)
+        found = locate(self.run, argument.value, self.scope)
         if not is_number(found.value):
-            span = self.texts.span(argument.start, argument.end)
+            span = self.texts.span_of(argument)
             self._known(found, f"'{name}' of {self.call.name}", span)
             raise SourceError(
                 f"'{name}' of {self.call.name} is a number, not {describe(found.value)}", span
@@ -352,4 +362,4 @@ class _MoveReader:
             )
         else:
             return
-        self.run.notebook.once(name, message, self.span)
+        self.run.note(name, message, self.span)

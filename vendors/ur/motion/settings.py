@@ -6,12 +6,30 @@ set_payload_mass, set_payload_cog, set_target_payload.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Protocol
 
+from ....core.errors import InputError
 from ....core.program.tool import FLANGE, Load, Tool
 from ....core.spatial.pose import IDENTITY, Pose, Quaternion, Vector3
-from ..values.values import Unknown, Value, ValueFault, describe, is_number, numbers
+from ..syntax.tree import Call
+from ..values.arguments import bind
+from ..values.evaluator import Evaluation, evaluate
+from ..values.instructions import Kept
+from ..values.located import NOTHING, Located
+from ..values.poses import pose_of
+from ..values.scope import Scope
+from ..values.values import (
+    Unknown,
+    Value,
+    ValueFault,
+    describe,
+    find_unknown,
+    is_number,
+    numbers,
+)
 
 DEFAULT_NAME = "tcp"
 
@@ -106,3 +124,92 @@ def _principal(inertia: tuple[float, ...]) -> tuple[Vector3, Quaternion]:
     a, b, c = (max(float(m), 0.0) for m in moments)
     w, x, y, z = (float(v) for v in quaternion_from_matrix(axes))
     return (a, b, c), (w, x, y, z)
+
+
+# ------------------------------------------------------------------- calls that set them
+
+
+class SettingsRun(Evaluation, Protocol):
+    """What the calls that change settings ask of a run."""
+
+    settings: Settings
+
+    def keep(self, call: Call, entry: Kept, name: str) -> Value:
+        """Keep a call as it stands; what it returns."""
+
+
+Change = Callable[[Settings, dict[str, Value]], Settings]
+
+
+def _set_tcp(settings: Settings, values: dict[str, Value]) -> Settings:
+    name = values.get("tcp_name")
+    return replace(
+        settings,
+        tcp=pose_of(values["pose"], "the TCP"),
+        name=name if isinstance(name, str) and name else DEFAULT_NAME,
+        stated=True,
+        unknown=None,
+    )
+
+
+def _set_payload(settings: Settings, values: dict[str, Value]) -> Settings:
+    """Without a centre of gravity the TCP is it; the payload has no inertia of its own."""
+    centre = centre_of(values["cog"]) if "cog" in values else None
+    return replace(settings, mass=mass_of(values["m"]), centre=centre, inertia=(0.0,) * 6)
+
+
+def _set_target_payload(settings: Settings, values: dict[str, Value]) -> Settings:
+    inertia = inertia_of(values["inertia"]) if "inertia" in values else (0.0,) * 6
+    return replace(_set_payload(settings, values), inertia=inertia)
+
+
+def _set_payload_mass(settings: Settings, values: dict[str, Value]) -> Settings:
+    return replace(settings, mass=mass_of(values["m"]))
+
+
+def _set_payload_cog(settings: Settings, values: dict[str, Value]) -> Settings:
+    return replace(settings, centre=centre_of(values["CoG"]))
+
+
+_CALLS: dict[str, tuple[Change, tuple[str, ...], int]] = {
+    "set_tcp": (_set_tcp, ("pose", "tcp_name"), 1),
+    "set_payload": (_set_payload, ("m", "cog"), 1),
+    "set_target_payload": (
+        _set_target_payload,
+        ("m", "cog", "inertia", "transition_time"),
+        2,
+    ),
+    "set_payload_mass": (_set_payload_mass, ("m",), 1),
+    "set_payload_cog": (_set_payload_cog, ("CoG", "transition_time"), 1),
+}
+
+
+_UNKNOWN_PAYLOAD = Kept("set a payload that is not known, where the one before stays in force")
+
+
+def change(run: SettingsRun, call: Call, scope: Scope) -> Located:
+    """Carry out a call of `CALLS`.
+
+    Raises:
+        SourceError: its arguments are no such setting.
+    """
+    made, parameters, required = _CALLS[call.name]
+    given = bind(call, parameters, required, run.texts)
+    values = {name: evaluate(run, a.value, scope) for name, a in given.items()}
+    unknown = find_unknown(tuple(values.values()))
+    if unknown is not None and call.name == "set_tcp":
+        run.settings = replace(run.settings, stated=True, unknown=unknown)
+        return NOTHING
+    if unknown is not None:
+        run.keep(call, _UNKNOWN_PAYLOAD, call.name)
+        return NOTHING
+    try:
+        run.settings = made(run.settings, values)
+        _ = run.settings.tool
+    except (ValueFault, InputError) as error:
+        raise run.texts.error_at(f"{call.name}: {error}", call) from None
+    return NOTHING
+
+
+CALLS = frozenset(_CALLS)
+"""Names of the functions that `change` carries out."""

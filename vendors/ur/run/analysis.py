@@ -37,7 +37,7 @@ from ..values.instructions import MOVES, REFUSED
 from ..values.outputs import written_by
 
 
-class Flow:
+class Analysis:
     """Asks statements, and the functions that they call, what they do.
 
     A name stands for all functions of that name, wherever they are defined.

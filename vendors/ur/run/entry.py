@@ -29,7 +29,7 @@ def run_program(run: Interpreter, blocks: Sequence[Block], main: str, entry: str
         SourceError: there is no such function, or none that is clearly the first.
     """
     for block in blocks:
-        run.hoist(block, run.root)
+        run.root.define(block)
     name = PurePath(main.replace("\\", "/")).stem
     with suppress(Finished):
         if entry is not None:

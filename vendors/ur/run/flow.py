@@ -1,4 +1,6 @@
-"""Loops, and when they end where the text alone does not say it.
+"""Branches and loops, and when a loop ends where the text alone does not say it.
+
+Of the branches whose condition is not known, `Course.branch` takes one.
 
 A loop whose condition is not known runs as often as `Course.passes` says. One whose condition
 stays fulfilled is followed while it gets on: while something that its condition or one of its
@@ -8,90 +10,155 @@ its condition is not known, or by nothing, and then the program ends there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import NoReturn, Protocol
 
 from ....core.errors import Span
-from ....core.program.move import Opaque
-from ..syntax.traversal import way_out
-from ..syntax.tree import Block, Constant, Expression, Number, While
+from ....core.program.move import Opaque, Wait
+from ....core.source.execution.limits import Meter
+from ....core.source.execution.outputs import Outputs
+from ..syntax.traversal import returns, way_out
+from ..syntax.tree import Block, Constant, Expression, If, Number, While
+from ..values.evaluator import Evaluation, condition
 from ..values.located import Located
 from ..values.scope import Scope
 from ..values.values import Unknown, Value
-from .exits import Break, Continue, Finished, Returned
-
-if TYPE_CHECKING:
-    from .interpreter import Interpreter
+from .analysis import Analysis
+from .exits import Break, Continue, Finished, Frame, OpenExit, Returned
 
 _PASSES = 1000
 _MOVING_PASSES = 100
 """Passes after which a loop is left that an unknown condition might have ended."""
 
 
-@dataclass(frozen=True, slots=True)
-class OpenExit:
-    """A branch that was not taken, since its condition is not known, and that may end a loop.
+class FlowRun(Evaluation, Protocol):
+    """What branches and loops ask of a run.
 
-    Args:
-        word: by what.
-        written: variables that it writes; empty if it holds the ``word`` itself.
-        reason: what the condition depends on.
-        outputs: that it writes.
+    Attributes:
+        exits: branches not taken that may end the loop that runs.
+        decisions: how often something was decided that is not known.
     """
 
-    word: str
-    written: frozenset[str]
-    reason: Unknown
-    outputs: frozenset[str] = frozenset()
+    exits: list[OpenExit]
+    decisions: int
+
+    @property
+    def analysis(self) -> Analysis:
+        """What can be said of statements without running them."""
+
+    @property
+    def meter(self) -> Meter:
+        """Counts what is executed."""
+
+    @property
+    def outputs(self) -> Outputs:
+        """What the program has set."""
+
+    @property
+    def frames(self) -> list[Frame]:
+        """The functions that run."""
+
+    @property
+    def move_index(self) -> int:
+        """Index of the move that comes next."""
+
+    def state(self) -> list[Value]:
+        """What, beside variables, decides how the program goes on."""
+
+    def emit(self, statement: Wait | Opaque) -> None:
+        """Put a statement that is no move at the end of the program."""
+
+    def run_block(self, block: Block, scope: Scope) -> None:
+        """Execute statements in order."""
+
+    def finish(self, message: str, span: Span) -> NoReturn:
+        """End the program here, with a note."""
 
 
-class Loops:
-    """The loops of one run."""
+# ---------------------------------------------------------------------------- branches
 
-    def __init__(self, run: Interpreter) -> None:
-        self._run = run
-        self.exits: list[OpenExit] = []
 
-    def open_by(self, body: Block, reason: Unknown) -> None:
-        """A branch that may end a loop is not taken."""
-        word, written = way_out(body), self._run.flow.writes(body)
-        if word is not None:
-            self.exits.append(OpenExit(word, frozenset(), reason))
+def branch(run: FlowRun, statement: If, scope: Scope) -> None:
+    """``if … elif … else … end``"""
+    for index, one in enumerate(statement.branches):
+        fulfilled = condition(run, one.condition, scope)
+        if isinstance(fulfilled, Unknown):
+            _undecided(run, statement, index, fulfilled, scope)
             return
-        outputs = frozenset(self._run.flow.outputs_written(body))
-        if written or outputs:
-            self.exits.append(OpenExit("break", written, reason, outputs))
+        if fulfilled:
+            run.run_block(one.body, scope)
+            return
+    if statement.otherwise is not None:
+        run.run_block(statement.otherwise, scope)
 
-    def carry_out(self, loop: While, scope: Scope) -> None:
-        """``while condition: … end``"""
-        outer, self.exits = self.exits, []
-        _Passes(self._run, loop, scope).carry_out()
-        self.exits = outer + [e for e in self.exits if e.word != "break" or e.written or e.outputs]
 
-    def head(self, loop: While) -> Span:
-        """The first word of a loop, for its line."""
-        return self._run.texts.span(loop.start, loop.start + len("while"))
+def _undecided(run: FlowRun, statement: If, first: int, reason: Unknown, scope: Scope) -> None:
+    """The condition of branch ``first`` is not known."""
+    bodies = [one.body for one in statement.branches]
+    if statement.otherwise is not None:
+        bodies.append(statement.otherwise)
+    main = len(run.frames) <= 1
+    possible = [
+        k >= first and run.analysis.can_be_taken(body) and not run.analysis.ends(body, main)
+        for k, body in enumerate(bodies)
+    ]
+    run.decisions += 1
+    head = run.texts.span(statement.start, statement.start + len("if"))
+    taken = run.course.branch(head, reason.reason, possible)
+    otherwise = statement.otherwise
+    if taken == 0 and otherwise is not None and not run.analysis.ends(otherwise, main):
+        taken = len(bodies)
+    for k, body in enumerate(bodies[first:], first + 1):
+        if returns(body) and run.frames and run.frames[-1].open is None:
+            run.frames[-1].open = reason
+        if k != taken:
+            _leave_open(run, body, reason, scope)
+    if taken:
+        run.run_block(bodies[taken - 1], scope)
+
+
+def _leave_open(run: FlowRun, body: Block, reason: Unknown, scope: Scope) -> None:
+    """A branch is not taken: it may end a loop, and what only it makes is not known."""
+    word, written = way_out(body), run.analysis.writes(body)
+    outputs = frozenset(run.analysis.outputs_written(body))
+    if word is not None:
+        run.exits.append(OpenExit(word, frozenset(), reason))
+    elif written or outputs:
+        run.exits.append(OpenExit("break", written, reason, outputs))
+    for name in run.analysis.assigns(body):
+        if scope.find(name) is None:
+            scope.own(name).value = reason
+
+
+# ------------------------------------------------------------------------------- loops
+
+
+def loop(run: FlowRun, statement: While, scope: Scope) -> None:
+    """``while condition: … end``"""
+    outer, run.exits = run.exits, []
+    _Passes(run, statement, scope).carry_out()
+    run.exits = outer + [e for e in run.exits if e.word != "break" or e.written or e.outputs]
 
 
 class _Passes:
     """One execution of a loop."""
 
-    def __init__(self, run: Interpreter, loop: While, scope: Scope) -> None:
+    def __init__(self, run: FlowRun, loop: While, scope: Scope) -> None:
         self._run = run
         self._loop = loop
         self._scope = scope
+        self._head = run.texts.span(loop.start, loop.start + len("while"))
         self._count = 0
         self._left: int | None = None  # passes, once the end of the loop is found to be open
         self._waits = 0  # passes that were nothing but a wait for others
         self._first_move = run.move_index
         self._waited: frozenset[str] = frozenset()  # outputs that the condition read
-        self._decisive = run.flow.decisive_names(loop)
+        self._decisive = run.analysis.decisive_names(loop)
 
     def carry_out(self) -> None:
         run, loop = self._run, self._loop
         while True:
             run.outputs.asked.clear()
-            fulfilled = run.evaluator.condition(loop.condition, self._scope)
+            fulfilled = condition(run, loop.condition, self._scope)
             self._waited = frozenset(run.outputs.asked)
             if isinstance(fulfilled, Unknown):
                 if self._left is None:
@@ -108,7 +175,7 @@ class _Passes:
                 return
             except Continue:
                 pass
-            run.meter.statement(run.span_of(loop))
+            run.meter.statement(run.texts.span_of(loop))
             self._count += 1
             self._left = None if self._left is None else self._left - 1
             if fulfilled is True and self._ends(self._state() != before):
@@ -138,7 +205,7 @@ class _Passes:
         return self._count >= (_MOVING_PASSES if moving else _PASSES)
 
     def _open_exit(self) -> OpenExit | None:
-        for found in self._run.loops.exits:
+        for found in self._run.exits:
             if found.outputs & self._waited:
                 return found
             if not found.written and found.outputs:
@@ -157,21 +224,21 @@ class _Passes:
             return
         waited = self._waited.union(run.outputs.asked)
         if waited and not endless:
-            if not waited & run.flow.outputs_written(loop.body):
+            if not waited & run.analysis.outputs_written(loop.body):
                 run.outputs.forget(waited)  # somebody else is to change what the loop waits for
                 self._waits = self._count
             return
-        text = run.texts.cut(loop.condition.start, loop.condition.end)[:40]
+        text = run.texts.text_of(loop.condition)[:40]
         moving = run.move_index > self._first_move
         passes = "one pass is" if self._count == 1 else f"{self._count} passes are"
         what = f"{passes} read" if moving else "the program ends there"
-        run.finish(f"nothing ends the loop 'while {text}': {what}", run.loops.head(loop))
+        run.finish(f"nothing ends the loop 'while {text}': {what}", self._head)
 
     def _state(self) -> list[Value]:
         """What decides how the loop goes on."""
         if self._decisive is None:
             values = self._scope.values()
-            self._run.work(len(values), self._run.span_of(self._loop))
+            self._run.work(len(values), self._run.texts.span_of(self._loop))
             return [*values, *self._run.state()]
         cells = [self._scope.find(name) for name in self._decisive]
         return [None if cell is None else cell.value for cell in cells]
@@ -180,14 +247,13 @@ class _Passes:
         """How often the loop runs, where its end is not known."""
         run = self._run
         run.decisions += 1
-        moving = run.flow.moves(self._loop.body)
-        return run.course.passes(run.loops.head(self._loop), reason.reason, moving)
+        moving = run.analysis.moves(self._loop.body)
+        return run.course.passes(self._head, reason.reason, moving)
 
     def _keep_if_waiting(self) -> None:
         if self._count == 0:
-            span = self._run.span_of(self._loop)
-            text = self._run.texts.cut(self._loop.start, self._loop.end)
-            self._run.emit(Opaque(text, stops=True, span=span))
+            texts, loop = self._run.texts, self._loop
+            self._run.emit(Opaque(texts.text_of(loop), stops=True, span=texts.span_of(loop)))
 
 
 def _always(condition: Expression) -> bool:

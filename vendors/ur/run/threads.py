@@ -8,25 +8,26 @@ the robot is by then.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import NoReturn, Protocol
 
 from ....core.errors import SourceError, Span
-from ....core.program.move import Opaque
-from ..syntax.tree import Run, ThreadEnd
+from ....core.program.move import Opaque, Wait
+from ....core.source.execution.outputs import Outputs
+from ..syntax.tree import Call, Run, ThreadEnd
+from ..values.evaluator import Evaluation, evaluate
 from ..values.instructions import Kept
 from ..values.scope import Cell, Function, Scope
 from ..values.values import ThreadHandle, Unknown, Value
+from .analysis import Analysis
 from .exits import Finished
-
-if TYPE_CHECKING:
-    from .interpreter import Interpreter
 
 _STARTED = Kept("start threads that leave the robot alone")
 
 
 @dataclass
-class _Started:
+class Started:
     """A thread that was started.
 
     Args:
@@ -46,118 +47,148 @@ class _Started:
     outputs: frozenset[str] = frozenset()
 
 
-class Threads:
-    """The threads of one run."""
+class ThreadsRun(Evaluation, Protocol):
+    """What threads ask of a run."""
 
-    def __init__(self, run: Interpreter) -> None:
-        self._run = run
-        self._started: list[_Started] = []
-        self._inside: list[str] = []
+    @property
+    def analysis(self) -> Analysis:
+        """What can be said of statements without running them."""
 
-    def check_free(self, span: Span) -> None:
-        """Raises:
-        SourceError: a thread without an end moves the robot already.
-        """
-        for thread in self._started:
-            if thread.endless:
-                raise SourceError(
-                    f"the program moves the robot while thread {thread.name} moves it in a loop "
-                    "without end: choose one of them as the entry",
-                    span,
-                )
+    @property
+    def outputs(self) -> Outputs:
+        """What the program has set."""
 
-    def waited(self) -> None:
-        """The program lets time pass."""
-        for thread in self._started:
-            thread.waited = True
+    @property
+    def decisions(self) -> int:
+        """How often something was decided that is not known."""
 
-    def start(self, run: Run, scope: Scope) -> Value:
-        """``run name()``"""
-        interpreter = self._run
-        call = run.call
-        span = interpreter.texts.span(run.start, run.end)
-        function = scope.function(call.name)
-        if function is None:
-            raise SourceError(f"there is no thread '{call.name}' to run", span)
-        moving = interpreter.flow.function_moves(call.name)
-        thread = _Started(call.name, moving)
-        if moving:
-            self._carry_out(function, run, scope, thread, span)
-        else:
-            interpreter.calls.keep_call(run, _STARTED, call.name)
-            thread.written = self._mark(function)
-            thread.outputs = frozenset(interpreter.flow.function_outputs(call.name))
-            interpreter.outputs.share(thread.outputs)
-        thread.decided = interpreter.decisions
-        self._started.append(thread)
-        return ThreadHandle(call.name, len(self._started))
+    @property
+    def threads(self) -> list[Started]:
+        """The threads that were started."""
 
-    def end(self, statement: ThreadEnd, scope: Scope) -> None:
-        """``join handle``, ``kill handle``"""
-        interpreter = self._run
-        span = interpreter.texts.span(statement.start, statement.end)
-        handle = interpreter.evaluator.evaluate(statement.handle, scope)
-        thread = None
-        if isinstance(handle, ThreadHandle) and handle.number:
-            thread = self._started[handle.number - 1]
-        if thread is None or not thread.moving:
-            self._keep(statement, span, statement.word == "join")
-            self._release(thread, span)
-        elif statement.word == "kill":
-            self._kill(thread, span)
-        elif thread.endless:
-            interpreter.finish(f"thread {thread.name}, which is waited for, never ends", span)
+    @property
+    def inside(self) -> list[str]:
+        """Names of the threads that are being carried out."""
 
-    def _kill(self, thread: _Started, span: Span) -> None:
-        decided = self._run.decisions
-        if thread.endless or thread.waited or decided != thread.decided:
+    def enter(self, function: Function, call: Call, caller: Scope) -> object:
+        """Run one of the program's own functions."""
+
+    def keep(self, call: Run, entry: Kept, name: str) -> Value:
+        """Keep the start of a thread as it stands."""
+
+    def emit(self, statement: Wait | Opaque) -> None:
+        """Put a statement that is no move at the end of the program."""
+
+    def note(self, kind: str, message: str, span: Span) -> None:
+        """A note, unless one of this kind was taken before."""
+
+    def finish(self, message: str, span: Span) -> NoReturn:
+        """End the program here, with a note."""
+
+
+def check_free(threads: Iterable[Started], span: Span) -> None:
+    """Refuse a move while a thread without an end moves the robot.
+
+    Raises:
+        SourceError: there is one.
+    """
+    for thread in threads:
+        if thread.endless:
+            raise SourceError(
+                f"the program moves the robot while thread {thread.name} moves it in a loop "
+                "without end: choose one of them as the entry",
+                span,
+            )
+
+
+def start(run: ThreadsRun, node: Run, scope: Scope) -> Value:
+    """``run name()``
+
+    Raises:
+        SourceError: there is no such thread, or it starts itself.
+    """
+    name = node.call.name
+    function = scope.function(name)
+    if function is None:
+        raise run.texts.error_at(f"there is no thread '{name}' to run", node)
+    thread = Started(name, run.analysis.function_moves(name))
+    if thread.moving:
+        _carry_out(run, function, node, scope, thread)
+    else:
+        run.keep(node, _STARTED, name)
+        thread.written = _mark(run.analysis, function)
+        thread.outputs = frozenset(run.analysis.function_outputs(name))
+        run.outputs.share(thread.outputs)
+    thread.decided = run.decisions
+    run.threads.append(thread)
+    return ThreadHandle(name, len(run.threads))
+
+
+def _carry_out(
+    run: ThreadsRun, function: Function, node: Run, scope: Scope, thread: Started
+) -> None:
+    name = thread.name
+    if name in run.inside:
+        raise run.texts.error_at(f"thread {name} starts itself", node)
+    run.note(
+        f"thread {name}",
+        f"thread {name} moves the robot: it is carried out where it is started, as if the "
+        "program waited for its end",
+        run.texts.span_of(node),
+    )
+    run.inside.append(name)
+    try:
+        run.enter(function, node.call, scope)
+    except Finished:
+        thread.endless = True
+    finally:
+        run.inside.pop()
+
+
+def _mark(analysis: Analysis, function: Function) -> tuple[Cell, ...]:
+    """What a running thread writes has no known value."""
+    name = function.definition.name
+    for variable in analysis.thread_makes(name):
+        function.scope.root().own(variable)
+    found = map(function.scope.find, analysis.thread_writes(name))
+    cells = tuple(cell for cell in found if cell is not None)
+    for cell in cells:
+        cell.writer = name
+    return cells
+
+
+def end(run: ThreadsRun, statement: ThreadEnd, scope: Scope) -> None:
+    """``join handle``, ``kill handle``
+
+    Raises:
+        SourceError: a thread is killed that moves the robot.
+        Finished: a thread is waited for that never ends.
+    """
+    span = run.texts.span_of(statement)
+    handle = evaluate(run, statement.handle, scope)
+    thread = None
+    if isinstance(handle, ThreadHandle) and handle.number:
+        thread = run.threads[handle.number - 1]
+    if thread is None or not thread.moving:
+        stops = statement.word == "join"
+        run.emit(Opaque(run.texts.text_of(statement), stops, span))
+        if thread is not None:
+            _release(run.outputs, thread, span)
+    elif statement.word == "kill":
+        if thread.endless or thread.waited or run.decisions != thread.decided:
             raise SourceError(
                 f"thread {thread.name} moves the robot and is stopped on the way: where the robot "
                 "is by then is only known at run time",
                 span,
             )
+    elif thread.endless:
+        run.finish(f"thread {thread.name}, which is waited for, never ends", span)
 
-    def _carry_out(
-        self, function: Function, run: Run, scope: Scope, thread: _Started, span: Span
-    ) -> None:
-        interpreter = self._run
-        name = thread.name
-        if name in self._inside:
-            raise SourceError(f"thread {name} starts itself", span)
-        interpreter.notebook.once(
-            f"thread {name}",
-            f"thread {name} moves the robot: it is carried out where it is started, as if the "
-            "program waited for its end",
-            span,
-        )
-        self._inside.append(name)
-        try:
-            interpreter.calls.enter(function, run.call, scope)
-        except Finished:
-            thread.endless = True
-        finally:
-            self._inside.pop()
 
-    def _mark(self, function: Function) -> tuple[Cell, ...]:
-        """What a running thread writes has no known value."""
-        name, flow = function.definition.name, self._run.flow
-        for variable in flow.thread_makes(name):
-            function.scope.root().own(variable)
-        found = map(function.scope.find, flow.thread_writes(name))
-        cells = tuple(cell for cell in found if cell is not None)
-        for cell in cells:
-            cell.writer = name
-        return cells
-
-    def _release(self, thread: _Started | None, span: Span) -> None:
-        if thread is None:
-            return
-        self._run.outputs.release(thread.outputs)
-        for cell in thread.written:
-            cell.writer = None
-            cell.value = Unknown(f"what thread {thread.name} has written", span)
-            cell.sources = ()
-
-    def _keep(self, statement: ThreadEnd, span: Span, stops: bool) -> None:
-        texts = self._run.texts
-        self._run.emit(Opaque(texts.cut(statement.start, statement.end), stops, span))
+def _release(outputs: Outputs, thread: Started, span: Span) -> None:
+    """A thread has ended: what it has written stays unknown, and is the program's again."""
+    outputs.release(thread.outputs)
+    for cell in thread.written:
+        cell.writer = None
+        cell.value = Unknown(f"what thread {thread.name} has written", span)
+        cell.sources = ()

@@ -4,9 +4,22 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
+from typing import Protocol
 
 from ....core.errors import SourceError, Span
 from ....core.source.text.files import SourceFile, SourceText
+
+
+class Node(Protocol):
+    """What stands between two offsets: a node of the tree."""
+
+    @property
+    def start(self) -> int:
+        """Of its first character."""
+
+    @property
+    def end(self) -> int:
+        """Behind its last character."""
 
 
 class Texts:
@@ -23,6 +36,7 @@ class Texts:
         for source in self.sources:
             self.bases.append(base)
             base += len(source.text) + 1
+        self._spans: dict[tuple[int, int], Span] = {}
         self._only = self.sources[0] if len(self.sources) == 1 else None
 
     def span(self, start: int, end: int) -> Span:
@@ -32,6 +46,14 @@ class Texts:
         which = self._which(start)
         base = self.bases[which]
         return self.sources[which].span(start - base, end - base)
+
+    def span_of(self, node: Node) -> Span:
+        """Where a node stands; the same ones are asked for in every pass of a loop."""
+        place = node.start, node.end
+        span = self._spans.get(place)
+        if span is None:
+            span = self._spans[place] = self.span(*place)
+        return span
 
     def spans(self, places: Sequence[tuple[int, int]]) -> tuple[Span, ...]:
         """The spans of several stretches, in order, that most often stand on one line."""
@@ -51,6 +73,14 @@ class Texts:
         which = self._which(start)
         base = self.bases[which]
         return self.sources[which].text[start - base : end - base]
+
+    def text_of(self, node: Node) -> str:
+        """A node as it stands."""
+        return self.cut(node.start, node.end)
+
+    def error_at(self, message: object, node: Node) -> SourceError:
+        """An error at a node, to be raised."""
+        return SourceError(str(message), self.span_of(node))
 
     def error(self, message: str, start: int, end: int | None = None) -> SourceError:
         """An error at ``start``, to be raised."""

@@ -4,102 +4,80 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ....core.errors import SourceError
-from ..syntax.tree import Assign, Expression, Index, Member, Name, Place
+from ..syntax.tree import Expression, Index, Member, Name, Place
 from .elements import replaced, whole
-from .evaluator import Evaluator
-from .located import Host, Located
+from .evaluator import Evaluation, locate, no_member, plain
+from .located import Located
 from .provenance import Sources, elements
 from .scope import Cell, Scope
 from .values import Solution, Struct, Unknown, Value, ValueFault
 
 
-class Assignments:
-    """Changes variables.
+def store(run: Evaluation, target: Place, found: Located, scope: Scope, storage: str = "") -> None:
+    """Give a variable, or a part of it, another value.
 
     Args:
-        evaluator: of the expressions that are assigned.
-        host: see `Host`.
+        run: that the assignment belongs to.
+        target: what is assigned.
+        found: the value.
+        scope: where names are looked up.
+        storage: ``global``, ``local`` or empty.
 
-    Attributes:
-        changes: how often a variable got another value.
+    Raises:
+        SourceError: the target has no such part.
     """
+    if isinstance(target, Name):
+        cell = _cell(target.text, scope, storage)
+        cell.value = found.value
+        cell.sources = _named(found.sources, target.text)
+        return
+    base = _place(run, target.base)
+    holder = locate(run, base, scope)
+    if isinstance(target, Index):
+        changed = _with_element(run, target, holder, found, scope)
+    else:
+        changed = Located(_with_member(run, target, holder.value, found.value))
+        run.literals.consume(found.sources)
+    store(run, base, changed, scope)
 
-    def __init__(self, evaluator: Evaluator, host: Host) -> None:
-        self.changes = 0
-        self._evaluator = evaluator
-        self._host = host
 
-    def carry_out(self, assign: Assign, scope: Scope) -> None:
-        """``target = value``
+def _place(run: Evaluation, expression: Expression) -> Place:
+    if isinstance(expression, Name | Index | Member):
+        return expression
+    raise run.texts.error_at("this cannot be assigned: it is no variable", expression)
 
-        Raises:
-            SourceError: the value is none, or the target has no such part.
-        """
-        found = self._evaluator.locate(assign.value, scope)
-        self.store(assign.target, found, scope, assign.storage)
 
-    def store(self, target: Place, found: Located, scope: Scope, storage: str = "") -> None:
-        """Give a variable, or a part of it, another value.
+def _with_element(
+    run: Evaluation, target: Index, holder: Located, found: Located, scope: Scope
+) -> Located:
+    value = holder.value
+    if isinstance(value, Solution):
+        value = run.joints(value)
+    indices = [plain(run, index, scope) for index in target.indices]
+    unknown = next((v for v in (value, *indices) if isinstance(v, Unknown)), None)
+    if unknown is not None:
+        run.literals.consume(found.sources)
+        return Located(unknown)
+    if isinstance(value, tuple):
+        run.work(len(value), run.texts.span_of(target))
+    try:
+        changed = replaced(value, indices, found.value)
+    except ValueFault as fault:
+        raise run.texts.error_at(fault, target) from None
+    if len(indices) != 1 or not isinstance(value, tuple) or len(found.sources) > 1:
+        run.literals.consume(found.sources)
+        return Located(changed)
+    sources = list(elements(holder.sources, len(value)))
+    sources[whole(indices[0])] = found.sources[0] if found.sources else None
+    return Located(changed, tuple(sources) if any(sources) else ())
 
-        Args:
-            storage: ``global``, ``local`` or empty.
 
-        Raises:
-            SourceError: the target has no such part.
-        """
-        if isinstance(target, Name):
-            cell = _cell(target.text, scope, storage)
-            self.changes += cell.value != found.value
-            cell.value = found.value
-            cell.sources = _named(found.sources, target.text)
-            return
-        base = self._place(target.base)
-        holder = self._evaluator.locate(base, scope)
-        if isinstance(target, Index):
-            changed = self._with_element(target, holder, found, scope)
-        else:
-            changed = Located(self._with_member(target, holder.value, found.value))
-            self._evaluator.consume(found.sources)
-        self.store(base, changed, scope)
-
-    def _place(self, expression: Expression) -> Place:
-        if isinstance(expression, Name | Index | Member):
-            return expression
-        raise SourceError(
-            "this cannot be assigned: it is no variable", self._evaluator.span(expression)
-        )
-
-    def _with_element(
-        self, target: Index, holder: Located, found: Located, scope: Scope
-    ) -> Located:
-        value = holder.value
-        if isinstance(value, Solution):
-            value = self._host.joints(value)
-        indices = [self._evaluator.plain(index, scope) for index in target.indices]
-        unknown = next((v for v in (value, *indices) if isinstance(v, Unknown)), None)
-        if unknown is not None:
-            self._evaluator.consume(found.sources)
-            return Located(unknown)
-        if isinstance(value, tuple):
-            self._host.work(len(value), self._evaluator.span(target))
-        try:
-            changed = replaced(value, indices, found.value)
-        except ValueFault as fault:
-            raise self._evaluator.fault(fault, target) from None
-        if len(indices) != 1 or not isinstance(value, tuple) or len(found.sources) > 1:
-            self._evaluator.consume(found.sources)
-            return Located(changed)
-        sources = list(elements(holder.sources, len(value)))
-        sources[whole(indices[0])] = found.sources[0] if found.sources else None
-        return Located(changed, tuple(sources) if any(sources) else ())
-
-    def _with_member(self, target: Member, value: Value, part: Value) -> Value:
-        if isinstance(value, Unknown):
-            return value
-        if not isinstance(value, Struct) or target.name not in value.names:
-            raise self._evaluator.no_member(target, value)
-        return value.with_part(target.name, part)
+def _with_member(run: Evaluation, target: Member, value: Value, part: Value) -> Value:
+    if isinstance(value, Unknown):
+        return value
+    if not isinstance(value, Struct) or target.name not in value.names:
+        raise no_member(run, target, value)
+    return value.with_part(target.name, part)
 
 
 def _cell(name: str, scope: Scope, storage: str) -> Cell:

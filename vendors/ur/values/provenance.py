@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ....core.errors import Span
+from ....core.source.execution.provenance import ELSEWHERE, Reads
 from ..syntax.texts import Texts
 from ..syntax.tree import Constant, Expression, Number, Numbers, Text
 
@@ -38,6 +39,37 @@ class Literal:
 Sources = tuple[Literal | None, ...]
 """Of a value: one literal that it stands in as a whole; or, for a list of which only elements
 stand in literals, one or None for each element; empty if it is computed."""
+
+
+@dataclass
+class SourceReads:
+    """Who reads which literals while a program runs.
+
+    Args:
+        texts: that the literals stand in.
+
+    Attributes:
+        reads: all of them.
+        reader: index of the move whose arguments are evaluated, or `ELSEWHERE`.
+    """
+
+    texts: Texts
+    reads: Reads = field(default_factory=Reads)
+    reader: int = ELSEWHERE
+    _literals: dict[int, Literal | None] = field(default_factory=dict)
+
+    def consume(self, sources: Sources) -> None:
+        """An expression computes with values that have sources."""
+        for source in sources:
+            if source is not None:
+                self.reads.by_expression(source, self.reader)
+
+    def literal(self, expression: Expression) -> Literal | None:
+        """The source that an expression is, None if it computes anything."""
+        key = expression.start
+        if key not in self._literals:
+            self._literals[key] = literal(expression, self.texts)
+        return self._literals[key]
 
 
 def elements(sources: Sources, count: int) -> Sources:

@@ -12,7 +12,7 @@ import difflib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from ..syntax.tree import Define
+from ..syntax.tree import Block, Define
 from .provenance import Sources
 from .values import Value
 
@@ -32,7 +32,7 @@ class Cell:
     writer: str | None = None
 
 
-@dataclass(eq=False, slots=True)
+@dataclass(frozen=True, slots=True)
 class Function:
     """A ``def``, ``sec`` or ``thread`` and the scope that its text stands in."""
 
@@ -47,12 +47,14 @@ class Scope:
     Args:
         where: for notes: the function's name.
         outer: the scope that the function's text stands in; None for the whole program.
+        cells: its variables by name.
+        functions: those that its text defines, by name.
     """
 
     where: str
     outer: Scope | None = None
     cells: dict[str, Cell] = field(default_factory=dict)
-    functions: dict[str, Function] = field(default_factory=dict)
+    functions: dict[str, Define] = field(default_factory=dict)
 
     def find(self, name: str) -> Cell | None:
         """The variable of a name."""
@@ -66,8 +68,19 @@ class Scope:
 
     def function(self, name: str) -> Function | None:
         """The function, secondary program or thread of a name."""
-        found = (scope.functions.get(name) for scope in self._outwards())
-        return next(filter(None, found), None)
+        scope: Scope | None = self
+        while scope is not None:
+            define = scope.functions.get(name)
+            if define is not None:
+                return Function(define, scope)
+            scope = scope.outer
+        return None
+
+    def define(self, block: Block) -> None:
+        """Make the functions known that a block defines."""
+        for statement in block:
+            if isinstance(statement, Define):
+                self.functions[statement.name] = statement
 
     def values(self) -> list[Value]:
         """Values of all variables that are found from here."""
