@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 
 from ....core.errors import Span
 from ....core.program.speed import Speed
@@ -14,6 +13,7 @@ from ....core.program.zone import Angle, ContourFraction, Radius, SpeedFraction,
 from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
 from ....core.source.patch.edits import TOLERANCE, alike
+from ....core.source.patch.plan import Texts, Wish
 from ....core.source.patch.uses import Kind, Use
 from ....core.source.text.numerals import shortest
 from ..motion.configuration import KukaConfiguration
@@ -22,8 +22,6 @@ from ..write.formatting import EXTERNAL_AXES, MM
 from ..write.numbers import number
 from ..write.speeds import zone_settings
 from .places import Places
-
-Texts = Mapping[Span, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,70 +39,37 @@ class Component:
     text: Callable[[str], str]
 
 
-@dataclass(frozen=True, slots=True)
-class Wanted:
-    """What a part's literals must say.
+class KrlLiterals:
+    """What the literals of a program would have to say.
 
     Args:
-        texts: at each place.
-        missing: components that change and that no literal states.
-    """
-
-    texts: Texts
-    missing: tuple[Component, ...] = field(default=())
-
-
-class InPlace:
-    """Finds what the literals of a program would have to say.
-
-    Args:
-        uses: all parts of all moves.
         places: the program's files.
         robot: for the kinds of its external axes.
     """
 
-    def __init__(self, uses: Iterable[Use], places: Places, robot: Robot) -> None:
+    def __init__(self, places: Places, robot: Robot) -> None:
         self._places = places
         self._robot = robot
-        self._readers: defaultdict[Span, list[Use]] = defaultdict(list)
-        self._wanted: dict[tuple[int, Kind], Wanted] = {}
-        for use in uses:
-            for span in set(filter(None, use.origin.numbers)):
-                self._readers[span].append(use)
 
-    def wanted(self, use: Use) -> Wanted:
-        """What the literals that ``use`` reads must say."""
-        key = (use.index, use.kind)
-        if key not in self._wanted:
-            self._wanted[key] = self._find(use)
-        return self._wanted[key]
+    def text(self, span: Span) -> str:
+        """What stands at a place."""
+        return self._places.text(span)
 
-    def changed(self, use: Use) -> Texts:
-        """The part of `wanted` that the text does not say yet."""
-        texts = self.wanted(use).texts
-        return {span: text for span, text in texts.items() if text != self._places.text(span)}
+    def wish(self, use: Use) -> Wish:
+        """See `core.source.patch.plan.Literals.wish`."""
+        texts, missing = self._find(use)
+        return Wish(texts, complete=not missing)
 
-    def against(self, texts: Texts) -> list[int]:
-        """The moves that read one of the literals and want it to say something else."""
-        return sorted(
-            {
-                other.index
-                for span, text in texts.items()
-                for other in self._readers[span]
-                if self.wanted(other).texts.get(span) != text
-            }
-        )
+    def missing(self, use: Use) -> Sequence[Component]:
+        """The components that change and that no literal states."""
+        return self._find(use)[1]
 
-    def readers(self, span: Span) -> list[Use]:
-        """The parts that read a literal."""
-        return self._readers[span]
-
-    def _find(self, use: Use) -> Wanted:
+    def _find(self, use: Use) -> tuple[Texts, Sequence[Component]]:
         numbers = use.origin.numbers
         found = list(self._components(use))
         if len(found) != len(numbers):
-            changed = tuple(c for c in found if c.changes)
-            return Wanted({s: self._places.text(s) for s in numbers if s is not None}, changed)
+            present = {s: self._places.text(s) for s in numbers if s is not None}
+            return present, [c for c in found if c.changes]
         texts: dict[Span, str] = {}
         missing: list[Component] = []
         for component, span in zip(found, numbers, strict=True):
@@ -116,7 +81,7 @@ class InPlace:
             if texts.get(span, new) != new:
                 missing.append(component)  # one literal for two numbers that part
             texts[span] = new
-        return Wanted(texts, tuple(missing))
+        return texts, missing
 
     def _components(self, use: Use) -> Iterator[Component]:
         old, new = use.old, use.new

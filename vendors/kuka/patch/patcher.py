@@ -18,26 +18,26 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from ....core.errors import FlybyError, InputError, Span
+from ....core.errors import InputError, Span
 from ....core.program.move import Move
 from ....core.program.origin import Ownership
 from ....core.program.program import Program
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.zone import Fine, Zone
 from ....core.robot.model import Robot
-from ....core.source.patch.edits import Edit, alike, listed, patched, reading_of, with_one_distance
+from ....core.source.patch.edits import Edit, listed, patched, reading_of, with_one_distance
+from ....core.source.patch.plan import Plan, Texts, first_possible
 from ....core.source.patch.uses import Kind, Use, uses
 from ....core.source.reading import Files
-from ....core.source.write.options import PatchOptions, Sharing
+from ....core.source.write.options import PatchOptions
 from ..write.formatting import e6axis, e6pos
 from ..write.speeds import approximation, zone_settings
 from .additions import Additions, Motion, settings_of
 from .inline_forms import shown_approximation, shown_velocity, words_of
-from .inplace import InPlace, Texts, Wanted, literals_of
+from .inplace import KrlLiterals, literals_of
 from .places import Places
 
 _WORDS = re.compile(r"(?i)(?:[ \t]+C_(?:PTP|DIS|ORI|VEL|SPL))+[ \t]*$")
@@ -64,86 +64,69 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
     parts = uses(reading.again({}), program, _other_change)
     places = Places(reading.files)
 
-    def attempt(in_place: Sequence[Ownership]) -> Files:
-        plan = _Plan(parts, places, reading.options.robot or robot, chosen, in_place)
-        return patched(program, reading, plan.edits())
+    robot = reading.options.robot or robot
 
-    first, *others = _IN_PLACE[chosen.shared]
-    try:
-        return attempt(first)
-    except FlybyError as error:
-        for in_place in others:
-            with suppress(FlybyError):
-                return attempt(in_place)
-        raise error
+    def attempt(in_place: Collection[Ownership]) -> Files:
+        literals = KrlLiterals(places, robot)
+        plan = Plan(parts, literals, chosen, in_place)
+        return patched(program, reading, _Edits(plan, literals, parts, places, robot).all())
+
+    return first_possible(chosen, attempt)
 
 
-_LITERALS = (Ownership.OWNED, Ownership.SHARED)
-_IN_PLACE: dict[Sharing, list[tuple[Ownership, ...]]] = {
-    Sharing.REFUSE: [_LITERALS],
-    # Where expressions read what was changed in place, the moves get numbers of their own.
-    Sharing.OWN: [_LITERALS, (Ownership.OWNED,)],
-}
-"""Whose literals are changed where they stand: what is tried, in turn."""
-
-
-class _Plan:
+class _Edits:
     """Finds the edits.
 
     Args:
+        plan: what changes in place.
+        literals: of the program.
         parts: all parts of all moves.
         places: the program's files.
         robot: for the kinds of its external axes.
-        options: what may be done.
-        in_place: whose literals may be changed where they stand.
     """
 
     def __init__(
         self,
+        plan: Plan,
+        literals: KrlLiterals,
         parts: Sequence[Use],
         places: Places,
         robot: Robot,
-        options: PatchOptions,
-        in_place: Sequence[Ownership],
     ) -> None:
-        self._changeable = in_place
-        self._parts = parts
+        self._plan = plan
+        self._literals = literals
         self._places = places
         self._robot = robot
-        self._options = options
-        self._literals = InPlace(parts, places, robot)
         self._additions = Additions(places, _motions(parts))
-        self._executions: defaultdict[tuple[Span, Kind], list[Use]] = defaultdict(list)
-        for use in parts:
-            self._executions[use.statement, use.kind].append(use)
 
-    def edits(self) -> list[Edit]:
+    def all(self) -> list[Edit]:
         """All edits.
 
         Raises:
             FlybyError: a change has no place.
         """
-        changed = [use for use in self._parts if use.changes]
-        found = [edit for use in changed for edit in self._edits_for(use)]
+        found = [edit for use in self._plan.changes for edit in self._edits_for(use)]
         return [*found, *self._additions.edits()]
 
     def _edits_for(self, use: Use) -> list[Edit]:
+        plan = self._plan
         try:
             if isinstance(use.new, Zone):
                 list(zone_settings(use.new))  # refuses what KRL cannot say
             if use.kind is Kind.ZONE and type(use.old) is not type(use.new):
                 return list(self._another_approximation(use))
-            wanted = self._literals.wanted(use)
-            texts = self._literals.changed(use)
-            against = self._literals.against(texts)
-            changeable = use.origin.ownership in self._changeable
-            if changeable and not wanted.missing and not against:
-                return list(self._in_place(use, texts))
-            completed = self._completed(use, wanted) if changeable and not against else None
-            if completed is not None:
-                return [*self._in_place(use, texts), completed]
-            self._check_allowed(use, against)
-            self._check_executions(use)
+            against = plan.against(use)
+            if plan.changeable(use) and not against:
+                if plan.wish(use).complete:
+                    return list(self._in_place(use, plan.texts(use)))
+                completed = self._completed(use)
+                if completed is not None:
+                    return [*self._in_place(use, plan.texts(use)), completed]
+            if use.origin.ownership is Ownership.DERIVED or not any(use.origin.numbers):
+                plan.check_computed()
+            else:
+                plan.check_shared(use, against)
+            plan.check_executions(use)
             return list(self._own(use))
         except InputError as error:
             raise use.error(str(error)) from None
@@ -159,17 +142,18 @@ class _Plan:
                     if place != span:
                         yield Edit(place, shown, use.index)
 
-    def _completed(self, use: Use, wanted: Wanted) -> Edit | None:
+    def _completed(self, use: Use) -> Edit | None:
         """Components put into the aggregate that leaves them out; None if there is none."""
         known = [span for span in use.origin.numbers if span is not None]
         if use.kind not in (Kind.TARGET, Kind.VIA) or not known:
             return None
         last = max(known, key=lambda span: span.end)
         rest = self._rest_of_aggregate(last)
-        names = {c.name for c in wanted.missing}
+        missing = self._literals.missing(use)
+        names = {c.name for c in missing}
         if rest is None or len(known) + len(names) > len(use.origin.numbers):
             return None
-        items = "".join(f",{c.name} {c.text('')}" for c in wanted.missing)
+        items = "".join(f",{c.name} {c.text('')}" for c in missing)
         place = self._places.span(last.file, last.end + rest, last.end + rest)
         return Edit(place, items, use.index)
 
@@ -181,36 +165,6 @@ class _Plan:
         return closing if closing >= 0 and not rest[:closing].strip() else None
 
     # ------------------------------------------------------------- numbers of their own
-
-    def _check_allowed(self, use: Use, against: list[int]) -> None:
-        literal = any(span is not None for span in use.origin.numbers)
-        if not literal or use.origin.ownership is Ownership.DERIVED:
-            if self._options.derived is Sharing.REFUSE:
-                raise InputError(
-                    "the program computes it, or no literal in its files states it, so there is no "
-                    "number to change: have the move get its own (--own; in "
-                    "Python derived=own), or leave it"
-                )
-        elif self._options.shared is Sharing.REFUSE:
-            who = f"is read by {listed(against)} as well, and that is to have another value"
-            raise InputError(
-                f"{use.origin.datum or 'the literal'} "
-                f"{who if against else 'does not state all of it'}: change all alike, or have "
-                "the move get its own (--own; in Python shared=own)"
-            )
-
-    def _check_executions(self, use: Use) -> None:
-        """What stands at the move holds for all executions of the instruction."""
-        others = [
-            other.index
-            for other in self._executions[use.statement, use.kind]
-            if not alike(other.new, use.new)
-        ]
-        if others:
-            raise InputError(
-                "the instruction is executed several times, and what is put there would hold for "
-                f"{listed(others)} too, which is to have another value: change them all alike"
-            )
 
     def _own(self, use: Use) -> Iterator[Edit]:
         if use.kind in (Kind.TARGET, Kind.VIA):
@@ -251,7 +205,7 @@ class _Plan:
 
     def _another_approximation(self, use: Use) -> Iterator[Edit]:
         """Stop → fly-by point, back, or another kind of approximation."""
-        self._check_executions(use)
+        self._plan.check_executions(use)
         words = "" if isinstance(use.new, Fine) else approximation(use.move).strip()
         form = self._places.form(use.statement)
         if form is not None:
@@ -288,7 +242,7 @@ class _Plan:
             )
         (statement,) = (v for k, v in settings_of(use.move).items() if k.startswith("$APO"))
         text = statement.partition("=")[2]
-        others = [other.index for other in self._literals.readers(span)]
+        others = [other.index for other in self._plan.readers(span)]
         standing = self._places.text(span)
         if others and float(standing) != float(text):
             raise InputError(
