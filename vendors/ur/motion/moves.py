@@ -17,6 +17,7 @@ from ....core.program.target import JointTarget, PoseTarget, Target
 from ....core.program.tool import Tool
 from ....core.program.zone import FINE, Radius, Zone
 from ....core.source.execution.provenance import ELSEWHERE, Part
+from ....core.source.execution.transcript import MoveParts, Transcript
 from ....core.spatial.pose import Pose
 from ..syntax.tree import Argument, Call, Expression
 from ..values.arguments import bind
@@ -75,34 +76,15 @@ SIGNATURES = {
 _SPEED = ("a", "v", "t")
 
 
-@dataclass(frozen=True, slots=True)
-class MoveParts:
-    """The parts of a move before all reads of the run are known."""
-
-    statement: Span
-    target: Part
-    speed: Part
-    zone: Part
-    via: Part | None = None
-
-    def all(self) -> list[Part]:
-        """Those that there are."""
-        parts = [self.target, self.speed, self.zone]
-        return parts if self.via is None else [*parts, self.via]
-
-
 class MovesRun(KinematicsRun, Protocol):
     """What moves ask of a run."""
 
     @property
-    def move_index(self) -> int:
-        """Index of the move that is being read."""
+    def out(self) -> Transcript:
+        """What the run leaves."""
 
     def emit_move(self, move: Move, parts: MoveParts) -> None:
         """Put a move at the end of the program."""
-
-    def note(self, kind: str, message: str, span: Span) -> None:
-        """A note, unless one of this kind was taken before."""
 
 
 @lru_cache(maxsize=1024)
@@ -148,7 +130,7 @@ class _MoveReader:
     def read(self) -> None:
         """Put the move at the end of the program."""
         run = self.run
-        run.literals.reader = run.move_index
+        run.literals.reader = run.out.move_index
         *vias, last = [self._target(self.given[name]) for name in self.signature.targets]
         numbers_ = {name: self._number(name) for name in self.signature.others}
         values = {name: value for name, (value, _) in numbers_.items()}
@@ -174,7 +156,7 @@ class _MoveReader:
         if settings.unknown is not None:
             raise self._refusal("the TCP of the move", settings.unknown, self.span)
         if not settings.stated:
-            self.run.note(
+            self.run.out.notes.once(
                 "tcp",
                 "no set_tcp stands before the first move: the flange is taken for the TCP, where "
                 "a controller has the TCP of its installation; write set_tcp(p[…]) before it",
@@ -362,4 +344,4 @@ class _MoveReader:
             )
         else:
             return
-        self.run.note(name, message, self.span)
+        self.run.out.notes.once(name, message, self.span)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from ....core.errors import InputError, SourceError
-from ....core.program.move import Opaque, Wait
+from ....core.program.move import Wait
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.provenance import ELSEWHERE
@@ -23,7 +23,7 @@ from ..values.instructions import ADD_ONS, MOVES, REFUSED, Kept, asks, kept, kno
 from ..values.lists import METHODS
 from ..values.located import NOTHING, Located
 from ..values.outputs import READING, WRITING, held, write
-from ..values.scope import Cell, Function, Scope, near_names
+from ..values.scope import Cell, Function, Scope, did_you_mean
 from ..values.values import Struct, Unknown, Value, describe, is_number
 from .exits import Frame, OpenExit, Returned
 from .threads import Started
@@ -69,9 +69,6 @@ class CallsRun(MovesRun, SettingsRun, Protocol):
     def keep(self, call: Call | MethodCall, entry: Kept, name: str) -> Value:
         """Keep a call as it stands; what it returns."""
 
-    def emit(self, statement: Wait | Opaque) -> None:
-        """Put a statement that is no move at the end of the program."""
-
     def run_block(self, block: Block, scope: Scope) -> None:
         """Execute statements in order."""
 
@@ -115,7 +112,7 @@ def enter(run: CallsRun, function: Function, node: Call, caller: Scope) -> Locat
     """Run one of the program's own functions; what it returns."""
     define = function.definition
     span = run.texts.span_of(node)
-    scope = Scope(define.name, function.scope)
+    scope = Scope(define.name, outer=function.scope)
     _pass_arguments(run, function, node, caller, scope)
     run.entered.add(define.name)
     run.meter.call(define.name, span)
@@ -175,7 +172,7 @@ def _sleep(run: CallsRun, node: Call, scope: Scope) -> Located:
     for thread in run.threads:
         thread.waited = True
     try:
-        run.emit(Wait(float(value), run.texts.span_of(node)))
+        run.out.emit(Wait(float(value), run.texts.span_of(node)))
     except InputError as error:
         raise run.texts.error_at(f"sleep: {error}", node) from None
     return NOTHING
@@ -230,7 +227,7 @@ def _other(run: CallsRun, node: Call, scope: Scope) -> Value:
 def _unknown(run: CallsRun, node: Call, scope: Scope) -> SourceError:
     known = scope.function_names() | COMPUTED.keys() | _HANDLERS.keys() | known_names()
     return run.texts.error_at(
-        f"nobody declares the function '{node.name}': {near_names(node.name, known)}it might "
+        f"nobody declares the function '{node.name}': {did_you_mean(node.name, known)}it might "
         "move the robot, so it is not stepped over. Name the file that defines it, or, if it "
         f'leaves the robot alone, answer [calls] "{node.name}" = "skip"',
         node,

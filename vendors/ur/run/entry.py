@@ -48,7 +48,7 @@ def _run_top(run: Interpreter, blocks: Sequence[Block], stem: str) -> str:
     defines = [s for s in blocks[-1] if isinstance(s, Define)]
     for block in blocks:
         run.run_top(tuple(s for s in block if not isinstance(s, Define)))
-    if run.move_index or not defines or any(d.name in run.entered for d in defines):
+    if run.out.move_index or not defines or any(d.name in run.entered for d in defines):
         return stem
     define = _first(defines, stem, run)
     _start(run, define)

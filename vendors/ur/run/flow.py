@@ -13,9 +13,9 @@ from __future__ import annotations
 from typing import NoReturn, Protocol
 
 from ....core.errors import Span
-from ....core.program.move import Opaque, Wait
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
+from ....core.source.execution.transcript import Transcript
 from ..syntax.traversal import returns, way_out
 from ..syntax.tree import Block, Constant, Expression, If, Number, While
 from ..values.evaluator import Evaluation, condition
@@ -58,14 +58,11 @@ class FlowRun(Evaluation, Protocol):
         """The functions that run."""
 
     @property
-    def move_index(self) -> int:
-        """Index of the move that comes next."""
+    def out(self) -> Transcript:
+        """What the run leaves."""
 
     def state(self) -> list[Value]:
         """What, beside variables, decides how the program goes on."""
-
-    def emit(self, statement: Wait | Opaque) -> None:
-        """Put a statement that is no move at the end of the program."""
 
     def run_block(self, block: Block, scope: Scope) -> None:
         """Execute statements in order."""
@@ -150,7 +147,7 @@ class _Passes:
         self._count = 0
         self._left: int | None = None  # passes, once the end of the loop is found to be open
         self._waits = 0  # passes that were nothing but a wait for others
-        self._first_move = run.move_index
+        self._first_move = run.out.move_index
         self._waited: frozenset[str] = frozenset()  # outputs that the condition read
         self._decisive = run.analysis.decisive_names(loop)
 
@@ -201,7 +198,7 @@ class _Passes:
         return True
 
     def _long(self) -> bool:
-        moving = self._run.move_index > self._first_move
+        moving = self._run.out.move_index > self._first_move
         return self._count >= (_MOVING_PASSES if moving else _PASSES)
 
     def _open_exit(self) -> OpenExit | None:
@@ -229,7 +226,7 @@ class _Passes:
                 self._waits = self._count
             return
         text = run.texts.text_of(loop.condition)[:40]
-        moving = run.move_index > self._first_move
+        moving = run.out.move_index > self._first_move
         passes = "one pass is" if self._count == 1 else f"{self._count} passes are"
         what = f"{passes} read" if moving else "the program ends there"
         run.finish(f"nothing ends the loop 'while {text}': {what}", self._head)
@@ -252,8 +249,7 @@ class _Passes:
 
     def _keep_if_waiting(self) -> None:
         if self._count == 0:
-            texts, loop = self._run.texts, self._loop
-            self._run.emit(Opaque(texts.text_of(loop), stops=True, span=texts.span_of(loop)))
+            self._run.out.keep(self._run.texts.span_of(self._loop), "while", "", stops=True)
 
 
 def _always(condition: Expression) -> bool:

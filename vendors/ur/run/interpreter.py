@@ -9,19 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import replace
 from typing import Any, NoReturn
 
 from ....core.errors import Note, Span
-from ....core.program.move import Move, Opaque, Wait
+from ....core.program.move import Move
 from ....core.program.move import Statement as ProgramStatement
-from ....core.program.origin import MoveOrigin
 from ....core.source.execution.answers import Course
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
+from ....core.source.execution.transcript import MoveParts, Transcript
 from ....core.source.reading import ReadOptions
 from ..motion.kinematics import joints_of
-from ..motion.moves import MoveParts
 from ..motion.position import Position
 from ..motion.settings import Settings
 from ..syntax.texts import Texts
@@ -51,7 +49,6 @@ from ..values.values import Solution, Unknown, Value
 from . import calls, flow, threads
 from .analysis import Analysis
 from .exits import Break, Continue, Finished, Frame, OpenExit, Returned
-from .notes import Notebook
 
 _ELEMENTS_PER_STATEMENT = 100
 """Elements of a list that are copied in the time of a statement."""
@@ -96,9 +93,7 @@ class Interpreter:
         self.entered: set[str] = set()
         self.threads: list[threads.Started] = []
         self.inside: list[str] = []
-        self._notebook = Notebook()
-        self._statements: list[ProgramStatement] = []
-        self._parts: list[MoveParts] = []
+        self.out = Transcript(texts.text)
         self._carried = 0
 
     # --------------------------------------------------------------------- the run
@@ -125,7 +120,7 @@ class Interpreter:
         Raises:
             Finished: always.
         """
-        self.note("end", message, span)
+        self.out.notes.once("end", message, span)
         raise Finished
 
     def state(self) -> list[Value]:
@@ -133,15 +128,6 @@ class Interpreter:
         return [self.position.asked, str(self.settings)]
 
     # ------------------------------------------------------------- what was executed
-
-    @property
-    def move_index(self) -> int:
-        """Index of the move that is being read, or comes next."""
-        return len(self._parts)
-
-    def emit(self, statement: Wait | Opaque) -> None:
-        """Put a statement that is no move at the end of the program."""
-        self._statements.append(statement)
 
     def emit_move(self, move: Move, parts: MoveParts) -> None:
         """Put a move at the end of the program.
@@ -151,11 +137,10 @@ class Interpreter:
         """
         self.meter.move(parts.statement)
         threads.check_free(self.threads, parts.statement)
-        for part in parts.all():
+        for part in filter(None, (parts.target, parts.via, parts.speed, parts.zone)):
             for source in filter(None, part.sources):
-                self.literals.reads.by_move(source, self.move_index)
-        self._statements.append(move)
-        self._parts.append(parts)
+                self.literals.reads.by_move(source, self.out.move_index)
+        self.out.emit_move(move, parts)
         self.position.moved(move, parts.statement)
 
     def keep(self, call: Call | MethodCall | Run, entry: Kept, name: str) -> Value:
@@ -169,40 +154,20 @@ class Interpreter:
         if isinstance(statement, Assign) and statement.value is call:
             node = statement
         span = self.texts.span_of(node)
-        self.emit(Opaque(self.texts.text_of(node), entry.stops, span))
+        self.out.keep(span, name, "", entry.stops)
         if entry.kind:
-            self._notebook.kept(entry.kind, name, span)
+            self.out.notes.group(entry.kind, name, span)
         if isinstance(call, Run):
             return Unknown(f"what {name} returns", span)
         return answer(self, call, name)
 
-    def note(self, kind: str, message: str, span: Span) -> None:
-        """A note, unless one of this kind was taken before."""
-        self._notebook.once(kind, message, span)
-
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""
-        parts = enumerate(self._parts)
-        return tuple(
-            statement
-            if isinstance(statement, Wait | Opaque)
-            else replace(statement, origin=self._origin(*next(parts)))
-            for statement in self._statements
-        )
+        return self.out.statements(self.literals.reads)
 
     def notes(self) -> tuple[Note, ...]:
         """What is to be said about the run."""
-        return (*self.course.notes(), *self._notebook.notes())
-
-    def _origin(self, index: int, parts: MoveParts) -> MoveOrigin:
-        reads = self.literals.reads
-        return MoveOrigin(
-            parts.statement,
-            reads.origin(parts.target, index),
-            reads.origin(parts.speed, index),
-            reads.origin(parts.zone, index),
-            None if parts.via is None else reads.origin(parts.via, index),
-        )
+        return (*self.course.notes(), *self.out.notes.notes())
 
     # ------------------------------------------------------------- what expressions do
 

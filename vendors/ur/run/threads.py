@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import NoReturn, Protocol
 
 from ....core.errors import SourceError, Span
-from ....core.program.move import Opaque, Wait
 from ....core.source.execution.outputs import Outputs
+from ....core.source.execution.transcript import Transcript
 from ..syntax.tree import Call, Run, ThreadEnd
 from ..values.evaluator import Evaluation, evaluate
 from ..values.instructions import Kept
@@ -59,6 +59,10 @@ class ThreadsRun(Evaluation, Protocol):
         """What the program has set."""
 
     @property
+    def out(self) -> Transcript:
+        """What the run leaves."""
+
+    @property
     def decisions(self) -> int:
         """How often something was decided that is not known."""
 
@@ -75,12 +79,6 @@ class ThreadsRun(Evaluation, Protocol):
 
     def keep(self, call: Run, entry: Kept, name: str) -> Value:
         """Keep the start of a thread as it stands."""
-
-    def emit(self, statement: Wait | Opaque) -> None:
-        """Put a statement that is no move at the end of the program."""
-
-    def note(self, kind: str, message: str, span: Span) -> None:
-        """A note, unless one of this kind was taken before."""
 
     def finish(self, message: str, span: Span) -> NoReturn:
         """End the program here, with a note."""
@@ -130,7 +128,7 @@ def _carry_out(
     name = thread.name
     if name in run.inside:
         raise run.texts.error_at(f"thread {name} starts itself", node)
-    run.note(
+    run.out.notes.once(
         f"thread {name}",
         f"thread {name} moves the robot: it is carried out where it is started, as if the "
         "program waited for its end",
@@ -171,7 +169,7 @@ def end(run: ThreadsRun, statement: ThreadEnd, scope: Scope) -> None:
         thread = run.threads[handle.number - 1]
     if thread is None or not thread.moving:
         stops = statement.word == "join"
-        run.emit(Opaque(run.texts.text_of(statement), stops, span))
+        run.out.keep(span, statement.word, "", stops)
         if thread is not None:
             _release(run.outputs, thread, span)
     elif statement.word == "kill":

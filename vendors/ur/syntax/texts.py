@@ -74,6 +74,11 @@ class Texts:
         base = self.bases[which]
         return self.sources[which].text[start - base : end - base]
 
+    def text(self, span: Span) -> str:
+        """What stands at a place."""
+        text = next(source.text for source in self.sources if source.file == span.file)
+        return text[span.start : span.end]
+
     def text_of(self, node: Node) -> str:
         """A node as it stands."""
         return self.cut(node.start, node.end)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ..syntax.texts import Texts
 from ..syntax.tree import Argument, Call, MethodCall
-from .scope import near_names
+from .scope import did_you_mean
 
 
 def bind(
@@ -44,7 +44,7 @@ def _misfit(call: Call | MethodCall, parameters: Sequence[str], name: str | None
         return f"{call.name} takes {count}, not {len(call.arguments)}: {_form(call, parameters)}"
     if name in parameters:
         return f"{call.name}: the argument '{name}' is given twice"
-    offer = near_names(name, parameters)
+    offer = did_you_mean(name, parameters)
     return f"{call.name} has no argument '{name}': {offer}{_form(call, parameters)}"
 
 

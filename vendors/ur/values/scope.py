@@ -8,13 +8,17 @@ outside. Source: "The URScript Programming Language", scoping rules.
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection
 from dataclasses import dataclass, field
 
+from ....core.source.execution import scopes
+from ....core.source.execution.scopes import near_names
 from ..syntax.tree import Block, Define
 from .provenance import Sources
 from .values import Value
+
+_OFFERED = 3
+"""Names that a message offers."""
 
 
 @dataclass(eq=False, slots=True)
@@ -41,39 +45,21 @@ class Function:
 
 
 @dataclass(eq=False, slots=True)
-class Scope:
-    """Names of one running function; what is not found is looked up in ``outer``.
+class Scope(scopes.Scope[Cell]):
+    """Names of one running function; ``outer`` is the scope that the function's text stands in.
 
     Args:
-        where: for notes: the function's name.
-        outer: the scope that the function's text stands in; None for the whole program.
-        cells: its variables by name.
         functions: those that its text defines, by name.
     """
 
-    where: str
-    outer: Scope | None = None
-    cells: dict[str, Cell] = field(default_factory=dict)
     functions: dict[str, Define] = field(default_factory=dict)
-
-    def find(self, name: str) -> Cell | None:
-        """The variable of a name."""
-        scope: Scope | None = self
-        while scope is not None:
-            cell = scope.cells.get(name)
-            if cell is not None:
-                return cell
-            scope = scope.outer
-        return None
 
     def function(self, name: str) -> Function | None:
         """The function, secondary program or thread of a name."""
-        scope: Scope | None = self
-        while scope is not None:
+        for scope in self.outwards():
             define = scope.functions.get(name)
             if define is not None:
                 return Function(define, scope)
-            scope = scope.outer
         return None
 
     def define(self, block: Block) -> None:
@@ -84,7 +70,7 @@ class Scope:
 
     def values(self) -> list[Value]:
         """Values of all variables that are found from here."""
-        return [cell.value for scope in self._outwards() for cell in scope.cells.values()]
+        return [cell.value for scope in self.outwards() for cell in scope.cells.values()]
 
     def own(self, name: str) -> Cell:
         """The variable of this very scope, made if there is none."""
@@ -92,24 +78,16 @@ class Scope:
 
     def root(self) -> Scope:
         """The scope of the whole program."""
-        *_, outermost = self._outwards()
+        *_, outermost = self.outwards()
         return outermost
 
     def function_names(self) -> set[str]:
         """Names of all functions that are found from here."""
-        return {name for scope in self._outwards() for name in scope.functions}
-
-    def _outwards(self) -> Iterator[Scope]:
-        """This scope and all that enclose it."""
-        scope: Scope | None = self
-        while scope is not None:
-            yield scope
-            scope = scope.outer
+        return {name for scope in self.outwards() for name in scope.functions}
 
 
-def near_names(name: str, known: Iterable[str]) -> str:
-    """``did you mean …?`` for a name, or nothing if none is near; upper and lower case aside."""
-    spelled = {other.casefold(): other for other in sorted(known)}
-    matches = difflib.get_close_matches(name.casefold(), spelled, n=3, cutoff=0.75)
-    near = [spelled[match] for match in matches]
-    return f"did you mean {' or '.join(near)}? " if near else ""
+def did_you_mean(name: str, known: Collection[str]) -> str:
+    """``did you mean …?`` for a name, or nothing if none is near; another case is nearest."""
+    near = [n for n in sorted(known) if n.casefold() == name.casefold() and n != name]
+    near += near_names(name, known)
+    return f"did you mean {' or '.join(near[:_OFFERED])}? " if near else ""
