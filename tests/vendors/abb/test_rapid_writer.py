@@ -256,10 +256,7 @@ def test_predefined_data_are_found_in_any_case() -> None:
     assert predefined.zone("Z10") == Radius(
         0.01, 0.015, 0.015, math.radians(1.5), 0.015, math.radians(1.5), "z10"
     )
-    assert predefined.tool("Tool0") == Tool()
-    assert predefined.work_object("WOBJ0") == WorkObject()
     assert predefined.speed("v25") is None and predefined.zone("z25") is None
-    assert predefined.tool("v10") is None and predefined.work_object("tool0") is None
 
 
 @pytest.mark.parametrize("name", predefined.SPEEDS)

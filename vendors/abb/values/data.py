@@ -7,9 +7,8 @@ from types import MappingProxyType
 
 from ....core.errors import Note, SourceError, Span
 from ..syntax.tree import AliasDefinition, Declaration, Module, RecordDefinition, Routine
-from .constants import CONSTANTS, USER_CLOCK, USER_NUMBERS
 from .library import Library
-from .predefined import RECORDS
+from .predefined import CONSTANTS, RECORDS, USER_CLOCK, USER_NUMBERS
 from .scope import Cell, Home, Scope
 from .types import BUILT_IN, NUM, Foreign, RecordType, Type, Unknown
 

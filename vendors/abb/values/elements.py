@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from ....core.errors import SourceError, Span
 from ..syntax.tree import Name
+from .located import Located
 from .scope import Cell
 from .types import Foreign, Scalar, Type, Unknown, Value, interpreted, mismatch
 
@@ -55,6 +56,40 @@ def component(step: str, type_: Type, dimensions: tuple[int, ...], name: Name) -
         )
         raise SourceError(f"{name.text} has no component '{step}': {what}", name.span)
     return list(type_.components).index(step), type_.components[step]
+
+
+def located_part(
+    cell: Cell, value: Value, path: Sequence[str | tuple[int, ...]], name: Name
+) -> Located:
+    """An element or component of a datum, with the place that it was read from.
+
+    Args:
+        cell: the datum.
+        value: of all of it, but for the elements that were written of late.
+        path: components and indices.
+        name: of the part, for messages.
+
+    Raises:
+        SourceError: there is no such part.
+    """
+    source = None if path[0] in cell.overwritten else cell.source
+    type_: Type = cell.type
+    dimensions = cell.dimensions
+    for step in path:
+        if isinstance(step, tuple):
+            check_index(step, dimensions, name)
+            dimensions = ()
+            label = "{" + ",".join(str(i) for i in step) + "}"
+            for place, index in enumerate(step):
+                value = item(value, index - 1)
+                shown = label if place == len(step) - 1 else ""
+                source = source.part(index - 1, shown) if source else None
+            value = cell.elements.get(step, value)
+        else:
+            position, type_ = component(step, type_, dimensions, name)
+            value = item(value, position)
+            source = source.part(position, f".{step}") if source else None
+    return Located(value, source, cell, type=type_)
 
 
 def replaced(

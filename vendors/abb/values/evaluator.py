@@ -26,17 +26,15 @@ from ..syntax.tree import (
     Unary,
 )
 from .answers import Answers, like_signals
-from .checks import check_known, check_type
 from .data import Globals
 from .elements import (
     array_mismatch,
     check_index,
     check_size,
-    component,
     element,
     filled,
     gathered,
-    item,
+    located_part,
     replaced,
 )
 from .function_calls import SPECIAL, Special, function_value
@@ -44,7 +42,17 @@ from .located import Located
 from .operators import OperandError, apply, negate
 from .provenance import Literal, source_of_literal
 from .scope import Cell, Scope
-from .types import BOOL, NUM, Foreign, Type, Unknown, Value, interpreted
+from .types import (
+    BOOL,
+    NUM,
+    Foreign,
+    Type,
+    Unknown,
+    Value,
+    check_known,
+    check_type,
+    interpreted,
+)
 
 
 class Host(Protocol):
@@ -352,24 +360,7 @@ class Evaluator:
         path = self._path(name, scope)
         if isinstance(path, Unknown):
             return Located(path, None, cell)
-        source = None if path[0] in cell.overwritten else cell.source
-        type_: Type = cell.type
-        dimensions = cell.dimensions
-        for step in path:
-            if isinstance(step, tuple):
-                check_index(step, dimensions, name)
-                dimensions = ()
-                label = "{" + ",".join(str(i) for i in step) + "}"
-                for place, index in enumerate(step):
-                    value = item(value, index - 1)
-                    shown = label if place == len(step) - 1 else ""
-                    source = source.part(index - 1, shown) if source else None
-                value = cell.elements.get(step, value)
-            else:
-                position, type_ = component(step, type_, dimensions, name)
-                value = item(value, position)
-                source = source.part(position, f".{step}") if source else None
-        return Located(value, source, cell, type=type_)
+        return located_part(cell, value, path, name)
 
     def _path(self, name: Name, scope: Scope) -> list[str | tuple[int, ...]] | Unknown:
         path: list[str | tuple[int, ...]] = []

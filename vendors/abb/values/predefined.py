@@ -6,17 +6,23 @@ abb_motion_program_exec; a RAPID generator that cites the manual).
 
 RAPID does not tell upper from lower case: every table has lower-case keys, and the look-ups
 take a name in any case.
+
+Constants: data types dionum, errnum, btnres, buttondata, symnum, opnum and the predefined string
+data of StrFind. Those whose numbers no public text states are not here; they are compared with
+nothing but values that are not known either.
 """
 
 from __future__ import annotations
 
+import string
 from collections.abc import Mapping
 from types import MappingProxyType
 
 from ....core.program.speed import Speed
-from ....core.program.tool import FLANGE, WORLD, Tool, WorkObject
+from ....core.program.tool import FLANGE, WORLD
 from ....core.program.zone import Zone
 from .records import LOAD0, VMAX, Record, speed_value, tool_record, work_object_record, zone_value
+from .types import NUM, STRING, Type, Value
 
 _V_TCP = (
     *(5, 10, 20, 30, 40, 50, 60, 80, 100, 150, 200, 300, 400, 500, 600, 800, 1000),
@@ -66,6 +72,37 @@ RECORDS: Mapping[str, Mapping[str, Record]] = MappingProxyType(
 
 NAMES = frozenset(name for records in RECORDS.values() for name in records)
 
+
+def _numbers(**values: float) -> dict[str, tuple[Type, Value]]:
+    return {name: (NUM, float(value)) for name, value in values.items()}
+
+
+def _counted(names: str, first: int = 0) -> dict[str, tuple[Type, Value]]:
+    return _numbers(**{name: first + i for i, name in enumerate(names.split())})
+
+
+USER_NUMBERS = ("reg1", "reg2", "reg3", "reg4", "reg5")
+USER_CLOCK = "clock1"
+"""Variables that the system module ``user`` of every new controller declares."""
+
+CONSTANTS: Mapping[str, tuple[Type, Value]] = MappingProxyType(
+    {
+        **_numbers(pi=3.141592653589793, low=0, high=1, edge=2, eof_num=9.998e36, eof_bin=-1),
+        **_counted("run_undef run_cont_cycle run_instr_fwd run_instr_bwd run_sim run_step_move"),
+        **_counted("op_undef op_auto op_man_prog op_man_test"),
+        **_counted("resunkwn resok resabort resretry resignore rescancel resyes resno"),
+        **_counted("btnok btnabrtrtryign btnokcancel btnretrycancel btnyesno btnyesnocancel"),
+        **_numbers(btnnone=-1),
+        **_counted("iconnone iconinfo iconwarning iconerror"),
+        **_counted("lt lteq eq noteq gteq gt", 1),
+        "str_digit": (STRING, string.digits),
+        "str_lower": (STRING, string.ascii_lowercase),
+        "str_upper": (STRING, string.ascii_uppercase),
+        "str_white": (STRING, " \t\r\n"),
+    }
+)
+"""lower-case name → type and value."""
+
 _SPEED_VALUES = {name: speed_value(record, name) for name, record in SPEEDS.items()}
 _ZONE_VALUES = {name: zone_value(record, name) for name, record in ZONES.items()}
 
@@ -78,13 +115,3 @@ def speed(name: str) -> Speed | None:
 def zone(name: str) -> Zone | None:
     """The predefined zone called ``name``, None if there is none."""
     return _ZONE_VALUES.get(name.casefold())
-
-
-def tool(name: str) -> Tool | None:
-    """The bare flange for ``tool0``, else None."""
-    return FLANGE if name.casefold() == FLANGE.name else None
-
-
-def work_object(name: str) -> WorkObject | None:
-    """The world for ``wobj0``, else None."""
-    return WORLD if name.casefold() == WORLD.name else None
