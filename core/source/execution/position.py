@@ -104,8 +104,11 @@ class Position:
         self.asked += 1
         last = self.last
         if last is not None and isinstance(last.target, PoseTarget):
-            if (last.tool.tcp, last.work_object.pose) == (tool.tcp, frame.pose):
-                return last.target.pose
+            if last.work_object.pose == frame.pose:
+                if last.tool.tcp == tool.tcp:
+                    return last.target.pose
+                if _fixed(last.work_object) and _fixed(frame):
+                    return last.target.pose @ last.tool.tcp.inverse() @ tool.tcp
             if _fixed(last.work_object) and _fixed(frame):
                 flange = last.work_object.pose @ last.target.pose @ last.tool.tcp.inverse()
                 return frame.pose.inverse() @ flange @ tool.tcp
