@@ -1,4 +1,4 @@
-"""Searches of one optimisation, in several processes where the system can fork."""
+"""One task done for many jobs, in several processes where the system can fork."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _task: Callable[[object], object] | None = None
 """What the workers do; they inherit it by forking."""
 
 
-class Crew(Generic[Job, Answer]):
+class WorkerPool(Generic[Job, Answer]):
     """Workers that all do one task.
 
     Args:
@@ -78,7 +78,9 @@ class Crew(Generic[Job, Answer]):
 
 
 @contextmanager
-def crew(task: Callable[[Job], Answer], workers: int, jobs: int) -> Iterator[Crew[Job, Answer]]:
+def worker_pool(
+    task: Callable[[Job], Answer], workers: int, jobs: int
+) -> Iterator[WorkerPool[Job, Answer]]:
     """Workers for a task.
 
     Args:
@@ -89,14 +91,14 @@ def crew(task: Callable[[Job], Answer], workers: int, jobs: int) -> Iterator[Cre
     global _task
     count = min(workers, jobs)
     if count < 2 or "fork" not in multiprocessing.get_all_start_methods():
-        yield Crew(task, None)
+        yield WorkerPool(task, None)
         return
     _task = task  # type: ignore[assignment]
     pool = ProcessPoolExecutor(
         count, mp_context=multiprocessing.get_context("fork"), initializer=_deaf
     )
     try:
-        yield Crew(task, pool)
+        yield WorkerPool(task, pool)
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
         _task = None

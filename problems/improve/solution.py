@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core.arrays import FloatArray
-from ...core.cell.floor import FLOOR
 from ...core.errors import InputError, Note
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.emulator.run import Run
@@ -19,7 +18,6 @@ from ...core.robot.model import Robot
 from ...core.spatial.rotation import rotation_vector
 
 if TYPE_CHECKING:
-    from ...core.collision.proof.certificate import SceneOf
     from ...core.collision.proof.verdict import Certificate
 
 
@@ -148,30 +146,6 @@ class Solution:
         clearances = [None if m.clearance is None else 1e3 * m.clearance for m in (before, after)]
         rows.append(Row("proven clearance", "mm", *clearances))
         return tuple(rows)
-
-
-def scene_notes(scenes: SceneOf, program: Program) -> tuple[Note, ...]:
-    """What a user should know of the shapes that a program has been looked at with.
-
-    Args:
-        scenes: the cell with each tool.
-        program: whose tools count.
-    """
-    tools = dict.fromkeys(move.tool for move in program.moves)
-    around = [obstacle.name for tool in tools for obstacle in scenes(tool).cell.obstacles]
-    notes = [note for tool in tools for note in scenes(tool).notes]
-    if FLOOR in around:
-        notes.append(
-            Note(
-                "nothing is known of tools and surroundings: it is proven that the arm touches "
-                f"neither itself nor {FLOOR}, and that TCPs stay above it"
-            )
-        )
-    elif not around:
-        notes.append(
-            Note("nothing stands around the robot: it is proven that it does not touch itself")
-        )
-    return tuple(dict.fromkeys(notes))
 
 
 def measure(controller: Controller, run: Run, certificate: Certificate | None = None) -> Measures:

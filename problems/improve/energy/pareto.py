@@ -19,6 +19,7 @@ from ....core.errors import InputError, Note
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
 from ....core.program.program import Program
+from ...reading_back import ReadBack
 from ..solution import RESOLUTION
 from ..start_check import check_start
 from ..waypoints import optimize_waypoints, optimize_zones
@@ -30,7 +31,7 @@ from ..waypoints.variables import Variables, make_variables
 from .front import Front, Point, without_dominated
 from .options import Effort, Goal, Progress, Report, Scope, Task
 from .pacing import make_pacing
-from .solve_round_verify import LATE, Bench, Candidate, Finished, ReadBack
+from .solve_round_verify import LATE, Bench, Candidate, Finished
 
 _FASTEST = 1e-3
 """Share of the shortest time that the fastest program may take longer, to be frugal in it."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -16,6 +15,7 @@ from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
 from ....core.motion.gradients.sensitivity import Places
 from ....core.program.program import Program
+from ...reading_back import ReadBack
 from ..nonsmooth_sqp import Memory, Settings, search, violation
 from ..rounding import STEP
 from ..waypoints.block_emulation import crowd, rooms_of
@@ -26,9 +26,6 @@ from ..waypoints.variables import Variables
 from .options import Effort, Goal, Task
 from .paced_problem import Evaluated, Fixed, PacedProblem
 from .pacing import Pacing
-
-ReadBack = Callable[[Program], Program]
-"""Writes a program and reads what was written."""
 
 _COARSE, _FINE = 2, 4
 """Density of places of a search and of a refinement."""

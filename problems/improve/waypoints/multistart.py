@@ -15,7 +15,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from ....core.worker_pool import Crew, crew
+from ....core.worker_pool import WorkerPool, worker_pool
 from ..nonsmooth_sqp import Memory
 from .solve_round_verify import FEASIBLE, FINE_BOX, Answer, Job, Stage, Workshop, work
 from .starts import starting_points, variations
@@ -73,8 +73,8 @@ def improve(shop: Workshop, report: Report | None = None) -> Improved:
             until then is proven, and nothing more is searched.
     """
     jobs = _first(shop)
-    with crew(partial(work, shop), shop.effort.processes, len(jobs)) as team:
-        made = _Improvement(shop, team, report)
+    with worker_pool(partial(work, shop), shop.effort.processes, len(jobs)) as pool:
+        made = _Improvement(shop, pool, report)
         try:
             made.search(jobs)
             made.vary()
@@ -92,16 +92,18 @@ class _Improvement:
 
     Args:
         shop, report: as above.
-        team: who works.
+        pool: does the searches.
 
     Attributes:
         best: proven values of each block.
         over: whether the user has ended the work.
     """
 
-    def __init__(self, shop: Workshop, team: Crew[Job, Answer], report: Report | None) -> None:
+    def __init__(
+        self, shop: Workshop, pool: WorkerPool[Job, Answer], report: Report | None
+    ) -> None:
         self._shop = shop
-        self._team = team
+        self._pool = pool
         self._report = report
         self._found: list[Answer] = []
         self.best: list[Answer | None] = [None] * len(shop.blocks)
@@ -156,7 +158,7 @@ class _Improvement:
             return self.over and stage not in ("refining", "proving")
 
         before = len(self._found)
-        answers = self._team.answers(jobs, tell) if jobs else []
+        answers = self._pool.answers(jobs, tell) if jobs else []
         # In the order of the jobs, whichever was done first.
         self._found[before:] = [answer for answer in answers if answer is not None]
 

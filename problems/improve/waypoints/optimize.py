@@ -14,8 +14,9 @@ from ....core.motion.emulator.run import Run
 from ....core.program.move import Move
 from ....core.program.program import Program
 from ....core.program.zone import Fine
-from ..reading_back import ReadBack, read_as_written
-from ..solution import RESOLUTION, Solution, measure, moved_points, scene_notes
+from ...reading_back import ReadBack, read_as_written
+from ...scene_notes import scene_notes
+from ..solution import RESOLUTION, Solution, measure, moved_points
 from ..start_check import check_start
 from .block_emulation import drivable
 from .blocks import Block, cut

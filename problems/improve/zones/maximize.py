@@ -21,8 +21,9 @@ from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
 from ....core.program.program import Program
 from ....core.program.zone import Radius, Zone
-from ..reading_back import ReadBack, read_as_written
-from ..solution import RESOLUTION, Solution, measure, scene_notes
+from ...reading_back import ReadBack, read_as_written
+from ...scene_notes import scene_notes
+from ..solution import RESOLUTION, Solution, measure
 from ..start_check import check_start
 from .changes import ZoneChange, changes
 from .clearing import Clearing

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +13,8 @@ from ....core.collision.scene.scene import CollisionScene
 from ....core.errors import Note
 from ....core.motion.emulator.controller import Controller
 from ....core.program.program import Program
-from ...improve.solution import scene_notes
+from ...reading_back import ReadBack
+from ...scene_notes import scene_notes
 from ..coating.coat import Coat
 from ..coating.deposition import Deposition
 from ..painting import Painting, Stage
@@ -29,9 +29,6 @@ from .writing import DriveOptions, with_run_in
 
 _BUDGET = 400_000
 """Distances measured for the proof: a minute's worth. Usually some thousand are enough."""
-
-ReadBack = Callable[[Program], Program]
-"""The program as the controller would read it from its text: numbers rounded."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from ....core.cell.mesh_file import check_extent, read_scene
 from ....core.errors import InputError, Note
 from .mesh_repair import find_edges, repair
 from .part import Part
-from .rays.rays import RayEngine, make_rays
+from .rays.engine import RayEngine, make_rays
 from .region import skin
 from .resolution import refined
 

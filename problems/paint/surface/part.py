@@ -15,7 +15,8 @@ from ....core.arrays import BoolArray, FloatArray, IntArray
 from ....core.errors import InputError, Note
 from ....core.spatial.pose import Pose
 from .mesh_repair import Edges, face_normals, find_edges
-from .rays.rays import RayEngine, Rays, make_rays
+from .rays.engine import RayEngine, make_rays
+from .rays.rays import Rays
 from .samples import SurfaceSamples
 
 SHARP = np.deg2rad(50.0)

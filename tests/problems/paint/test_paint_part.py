@@ -18,7 +18,7 @@ from flyby.core.spatial.pose import Pose
 from flyby.problems.paint.surface.loading import load_part, make_part
 from flyby.problems.paint.surface.mesh_repair import face_normals, find_edges
 from flyby.problems.paint.surface.part import Part
-from flyby.problems.paint.surface.rays.rays import RayEngine, make_rays
+from flyby.problems.paint.surface.rays.engine import RayEngine, make_rays
 from flyby.problems.paint.surface.region import facing, grown_from, seen_from, within_box
 from flyby.problems.paint.surface.resolution import coarsened, refined
 from flyby.validation.surfaces import fender as fenders

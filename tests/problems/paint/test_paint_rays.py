@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from flyby.core.arrays import FloatArray
 from flyby.core.errors import InputError
-from flyby.problems.paint.surface.rays.rays import RayEngine, make_rays
+from flyby.problems.paint.surface.rays.engine import RayEngine, make_rays
 from flyby.validation.surfaces.sheets import saddle
 
 ENGINES = [

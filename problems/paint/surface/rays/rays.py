@@ -1,16 +1,9 @@
-"""Rays against a part's triangles: what they meet first, what lies between, what is nearest.
-
-`make_rays` chooses the engine: Intel's Embree where the package ``embreex`` is installed, else
-the compiled tree of `rays_bvh`. Both answer alike up to rounding: Embree finds the triangle in
-single precision, and the point on it is worked out again in double.
-"""
+"""Rays against a part's triangles: what they meet first, what lies between, what is nearest."""
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from abc import ABC, abstractmethod
-from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -130,38 +123,6 @@ class Rays(ABC):
     @abstractmethod
     def _nearest(self, points: FloatArray) -> tuple[IntArray, FloatArray]:
         """Triangle and point of the mesh nearest to each point."""
-
-
-class RayEngine(StrEnum):
-    """Who traces the rays."""
-
-    AUTO = "auto"
-    """Embree where it is installed, else the tree."""
-    EMBREE = "embree"
-    TREE = "tree"
-
-
-def make_rays(vertices: FloatArray, faces: IntArray, engine: RayEngine = RayEngine.AUTO) -> Rays:
-    """Queries on a mesh.
-
-    Args:
-        vertices: (V, 3) m.
-        faces: (F, 3).
-        engine: see `RayEngine`.
-
-    Raises:
-        InputError: there is no triangle, or Embree is asked for and not installed.
-    """
-    installed = importlib.util.find_spec("embreex") is not None
-    if engine is RayEngine.EMBREE and not installed:
-        raise InputError("the ray engine 'embree' needs the package embreex: pip install embreex")
-    if engine is RayEngine.TREE or not installed:
-        from .bvh import BvhRays
-
-        return BvhRays(vertices, faces)
-    from .embree import EmbreeRays
-
-    return EmbreeRays(vertices, faces)
 
 
 def _rays(origins: FloatArray, directions: FloatArray) -> tuple[FloatArray, FloatArray]:

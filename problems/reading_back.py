@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 
-from ...core.errors import FlybyError, Note, Span
-from ...core.program.move import Move
-from ...core.program.origin import Origin
-from ...core.program.program import Program
+from ..core.errors import FlybyError, Note, Span
+from ..core.program.move import Move
+from ..core.program.origin import Origin
+from ..core.program.program import Program
 
 ReadBack = Callable[[Program], Program]
 """Writes a program and reads what was written.
