@@ -22,6 +22,11 @@ from .uses import Kind, Use
 
 Texts = Mapping[Span, str]
 """What shall stand at a span."""
+Said = Callable[[Use], object]
+
+
+def _value(use: Use) -> object:
+    return use.new
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,12 +120,17 @@ class Plan:
             }
         )
 
-    def dissenters(self, use: Use) -> list[int]:
-        """Moves of the same instruction that are to have another value."""
+    def dissenters(self, use: Use, said: Said = _value) -> list[int]:
+        """Moves of the same instruction that are to have another value.
+
+        Args:
+            use: of the instruction.
+            said: what of a part stands at the instruction.
+        """
         return [
             other.index
             for other in self._executions[use.statement, use.kind]
-            if not alike(other.new, use.new)
+            if not alike(said(other), said(use))
         ]
 
     def check_computed(self) -> None:
@@ -154,13 +164,17 @@ class Plan:
                 "have the move get its own (--own; in Python shared=own)"
             )
 
-    def check_executions(self, use: Use) -> None:
+    def check_executions(self, use: Use, said: Said = _value) -> None:
         """What stands at the move holds for all executions of the instruction.
+
+        Args:
+            use: of the instruction.
+            said: what of a part stands at the instruction.
 
         Raises:
             InputError: one of them is to have another value.
         """
-        others = self.dissenters(use)
+        others = self.dissenters(use, said)
         if others:
             raise InputError(
                 "the instruction is executed several times, and what is put there would hold for "

@@ -18,6 +18,8 @@ from ..syntax.tree import Argument, Assign, Block, Call, Define, Evaluate, Expre
 from ..values.arguments import bind
 
 TARGET, POSE, QNEAR, VIA = "target", "pose", "qnear", "via"
+PUT_IN = ("a", "v", "t", "r")
+"""Arguments that may be put in, in the order in which they stand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +37,10 @@ class MoveCall:
     def takes(self, name: str) -> bool:
         """Whether it has such an argument beside its targets."""
         return name in SIGNATURES[self.call.name].others
+
+    def can_be_put_in(self, name: str) -> bool:
+        """Whether an argument is not written, and has a place where it could be."""
+        return name in PUT_IN and self.written(name) is None
 
     def written(self, name: str) -> Expression | None:
         """The expression of an argument; None if it is not written.
@@ -77,7 +83,12 @@ class MoveCalls:
     """
 
     def __init__(self, files: Files) -> None:
+        self._texts = {name: file.text for name, file in files.items()}
         self._files = {name: _File(file) for name, file in files.items()}
+
+    def text(self, span: Span) -> str:
+        """What stands at a place."""
+        return self._texts[span.file][span.start : span.end]
 
     def at(self, statement: Span) -> MoveCall:
         """The call of a move's statement.
