@@ -499,6 +499,12 @@ def branch(condition):
         (f"grip=FALSE\nGRP(1,2)\n{branch('grip')}", [1, 9]),
         # Somebody else changes what the program waits for.
         (f"grip=TRUE\nWAIT FOR NOT grip\n{branch('NOT grip')}", [1, 9]),
+        (f"grip=TRUE\nWAIT FOR NOT grip\n{branch('grip')}", [9]),
+        (f"grip=TRUE\n$OUT[4]=FALSE\nWAIT FOR NOT grip AND $OUT[4]\n{branch('$OUT[4]')}", [1, 9]),
+        (f"i=2\nWAIT FOR i==5\n{branch('i<>5')}", [9]),
+        (f"i=2\nWAIT FOR (i==5) OR (i==6)\n{branch('i==2')}", [1, 9]),
+        (f"grip=TRUE\nWAIT FOR 0 < 1\n{branch('NOT grip')}", [9]),
+        (f"i=2\nWAIT FOR $IN[1] AND (i==5)\n{branch('i==2')}", [9]),
         (f"grip=TRUE\nWHILE grip\nWAIT SEC 0.1\nENDWHILE\n{branch('NOT grip')}", [1, 9]),
         (f"grip=TRUE\nREPEAT\nWAIT SEC 0.1\nUNTIL grip==FALSE\n{P[9]}", [9]),
         (f"grip=TRUE\nWHILE grip\n{P[3]}\nENDWHILE\n{P[9]}", [3, 9]),

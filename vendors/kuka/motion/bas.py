@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ....core.errors import SourceError, Span
+from ....core.source.execution.transcript import Notes
 from ..syntax.expression_tree import Call, Constant, Expression
 from ..values.config_data import ConfigData
 from ..values.data import Data
@@ -18,7 +19,6 @@ from ..values.frames import null_frame
 from ..values.scope import Scope
 from ..values.types import convert
 from ..values.values import Array, Choice, Struct, Unknown, Value, left_open, shown
-from .output import Output
 
 AXES = 6
 Command = Callable[["Basis", Value | None, Span], None]
@@ -31,7 +31,7 @@ class Basis:
         data: the system variables.
         evaluator: for arguments.
         config: the data of ``$CONFIG.DAT``.
-        output: takes notes.
+        notes: takes notes.
         changed: is told that system variables have other values now.
     """
 
@@ -40,13 +40,13 @@ class Basis:
         data: Data,
         evaluator: Evaluator,
         config: ConfigData,
-        output: Output,
+        notes: Notes,
         changed: Callable[[], None],
     ) -> None:
         self._data = data
         self._evaluator = evaluator
         self._config = config
-        self._output = output
+        self._notes = notes
         self._changed = changed
 
     def invoke(self, call: Call, scope: Scope) -> None:
@@ -62,7 +62,7 @@ class Basis:
             raise SourceError(f"{call.text} begins with a command, as #INITMOV", call.span)
         handler = _COMMANDS.get(command)
         if handler is None:
-            self._output.note_once(
+            self._notes.once(
                 f"bas {command}",
                 f"{call.text}(#{command.upper()}) is stepped over: it sets nothing that is "
                 "emulated",
@@ -130,7 +130,7 @@ class Basis:
         """A speed of the TCP, cut to ``DEF_VEL_CP``."""
         most = self.default("DEF_VEL_CP")
         if isinstance(value, int | float) and isinstance(most, int | float) and value > most:
-            self._output.note_once(
+            self._notes.once(
                 "DEF_VEL_CP",
                 f"a path speed of {value:g} m/s is cut to DEF_VEL_CP={most:g} m/s",
                 span,

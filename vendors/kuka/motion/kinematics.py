@@ -10,6 +10,7 @@ from ....core.program.speed import Speed
 from ....core.program.target import JointTarget
 from ....core.robot.joint import ExternalRole
 from ....core.robot.model import Robot
+from ....core.source.execution.transcript import Notes
 from ..syntax.expression_tree import Call, Name
 from ..values.evaluator import Evaluator
 from ..values.frames import frame_of
@@ -17,7 +18,6 @@ from ..values.scope import Scope
 from ..values.values import Struct, Unknown, Value, find_unknown
 from .frames import Placements
 from .inline_forms import Function
-from .output import Output
 from .position import Position
 from .targets import Targets
 
@@ -31,7 +31,7 @@ class Kinematics:
         placements: tool and base in force.
         targets: makes targets of positions and axis values.
         position: follows the robot.
-        output: takes notes.
+        notes: takes notes.
     """
 
     def __init__(
@@ -41,14 +41,14 @@ class Kinematics:
         placements: Placements,
         targets: Targets,
         position: Position,
-        output: Output,
+        notes: Notes,
     ) -> None:
         self._robot = robot
         self._evaluator = evaluator
         self._placements = placements
         self._targets = targets
         self._position = position
-        self._output = output
+        self._notes = notes
 
     def functions(self) -> Mapping[str, Function]:
         """By lower-case name."""
@@ -84,7 +84,7 @@ class Kinematics:
         offset = arguments[2] if len(arguments) > 2 else None
         made = offset.copy() if isinstance(offset, Struct) else Struct("frame")
         made.moved_by = tables[0]
-        self._output.note_once(
+        self._notes.once(
             "EK",
             f"{call.text}: the base is on {tables[0]}, at its place in the robot's cell",
             call.span,

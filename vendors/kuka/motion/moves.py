@@ -15,7 +15,9 @@ from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import Load, Tool, WorkObject
 from ....core.program.zone import Zone
+from ....core.source.execution.limits import Meter
 from ....core.source.execution.provenance import Part
+from ....core.source.execution.transcript import MoveParts, Transcript
 from ..syntax.expression_tree import Expression, Flat, Name
 from ..syntax.tree import Motion
 from ..values.data import Data
@@ -29,7 +31,6 @@ from ..values.types import AXES, FRAME_FIELDS, POSES, KrlTypeError, convert
 from ..values.values import Pending, Struct, Unknown, Value, copied, shown
 from .arcs import beyond
 from .frames import Placements
-from .output import Output, Parts
 from .position import Position
 from .settings import Set, Settings
 from .targets import AXIS_NUMBERS, POSE_NUMBERS, Found, Targets, is_axes
@@ -56,7 +57,8 @@ class MotionReader:
         targets: makes targets of positions and axis values.
         position: follows the robot.
         triggers: what happens on the way.
-        output: takes the moves.
+        meter: counts moves.
+        transcript: takes the moves.
         changed: is told that system variables have other values now.
     """
 
@@ -69,7 +71,8 @@ class MotionReader:
         targets: Targets,
         position: Position,
         triggers: Triggers,
-        output: Output,
+        meter: Meter,
+        transcript: Transcript,
         changed: Callable[[], None],
     ) -> None:
         self._data = data
@@ -79,7 +82,8 @@ class MotionReader:
         self._targets = targets
         self._position = position
         self._triggers = triggers
-        self._output = output
+        self._meter = meter
+        self._transcript = transcript
         self._changed = changed
         self._literals: dict[tuple[int, bool, bool], Found] = {}
 
@@ -142,7 +146,7 @@ class MotionReader:
         if not isinstance(value, Unknown) or value.here is None:
             return False
         moves, asked_in = value.here
-        return moves == self._output.move_index and (
+        return moves == self._transcript.move_index and (
             asked_in is None or asked_in == self._placements.current(motion.span)
         )
 
@@ -152,13 +156,13 @@ class MotionReader:
         It is kept so that it goes nowhere wherever it is written, whatever the datum holds there.
         """
         at = motion.targets[-1].span
-        text, target = self._output.text(motion.span), self._output.text(at)
+        text, target = self._transcript.text_of(motion.span), self._transcript.text_of(at)
         if target.lower() not in POSITION:
             place = "$AXIS_ACT" if joint else "$POS_ACT"
             begin = at.start - motion.span.start
             text = text[:begin] + place + text[begin + len(target) :]
-        self._output.emit(Opaque(text, not motion.approximation, motion.span))
-        self._output.note_once(
+        self._transcript.emit(Opaque(text, not motion.approximation, motion.span))
+        self._transcript.notes.once(
             "stays",
             f"{motion.word.upper()} {target} goes to where the robot is: kept, no move",
             motion.span,
@@ -224,7 +228,7 @@ class MotionReader:
         """``$ORI_TYPE``: ``#CONSTANT`` keeps the orientation of the start point."""
         kind = self._settings.choice("$ori_type", motion.span)
         if kind == "joint":
-            self._output.note_once(
+            self._transcript.notes.once(
                 "#JOINT",
                 "$ORI_TYPE=#JOINT turns the wrist's axes evenly, which is not emulated: the "
                 "orientation goes the shortest way (#VAR)",
@@ -282,7 +286,7 @@ class MotionReader:
 
     def _value(self, motion: Motion, expression: Expression, scope: Scope) -> Struct:
         span = expression.span
-        self._evaluator.reader = self._output.move_index
+        self._evaluator.reader = self._transcript.move_index
         value = self._evaluator.evaluate(expression, scope)
         self._evaluator.reader = -1
         what = f"the target of {motion.word.upper()}"
@@ -316,7 +320,7 @@ class MotionReader:
     ) -> Found:
         """The present target and a step."""
         self._evaluator.check_known(value, f"the target of {motion.word.upper()}", span)
-        self._evaluator.reader = self._output.move_index
+        self._evaluator.reader = self._transcript.move_index
         self._evaluator.note_reads(value)
         self._evaluator.reader = -1
         self._depends_on_last()
@@ -353,13 +357,13 @@ class MotionReader:
 
     def _depends_on_last(self) -> None:
         """The last target's numbers are read by the move that comes now as well."""
-        if self._output.parts:
-            self._read_by_expression(self._output.parts[-1].target.sources)
+        if self._transcript.parts:
+            self._read_by_expression(self._transcript.parts[-1].target.sources)
 
     def _read_by_expression(self, sources: Iterable[object]) -> None:
         for source in sources:
             if source is not None:
-                self._evaluator.reads.by_expression(source, self._output.move_index)  # type: ignore[arg-type]
+                self._evaluator.reads.by_expression(source, self._transcript.move_index)  # type: ignore[arg-type]
 
     def _common(self, motion: Motion, joint: bool, placement: Placement) -> _Common:
         settings = self._settings
@@ -370,7 +374,7 @@ class MotionReader:
         return _Common(placement, speed, zone)
 
     def _part(self, span: Span, sources: Sources, predefined: str | None = None) -> Part:
-        reads, index = self._evaluator.reads, self._output.move_index
+        reads, index = self._evaluator.reads, self._transcript.move_index
         for source in sources.distinct():
             reads.by_move(source, index)
             # A number may be read alone here and with its aggregate by another move.
@@ -385,7 +389,7 @@ class MotionReader:
         common: _Common,
         via: Part | None = None,
     ) -> None:
-        parts = Parts(
+        parts = MoveParts(
             motion.span,
             self._part(motion.targets[-1].span, found.sources, found.predefined),
             self._part(motion.span, common.speed.sources),
@@ -394,7 +398,8 @@ class MotionReader:
         )
         if isinstance(found.target, PoseTarget):
             self._placements.remark_unset(motion.span)
-        self._output.emit_move(move, parts)
+        self._meter.move(motion.span)
+        self._transcript.emit_move(move, parts)
         self._position.moved(move, motion.span, found.complete, common.placement)
 
 

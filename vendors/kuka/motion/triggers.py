@@ -9,12 +9,12 @@ from typing import Protocol
 from ....core.errors import InputError, SourceError, Span
 from ....core.program.event import Event, EventAnchor
 from ....core.program.move import Opaque
+from ....core.source.execution.transcript import Transcript
 from ..syntax.expression_tree import Expression
 from ..syntax.tree import Trigger
 from ..values.evaluator import Evaluator
 from ..values.scope import Scope
 from ..values.values import shown
-from .output import Output
 
 
 class Writes(Protocol):
@@ -34,13 +34,13 @@ class Triggers:
 
     Args:
         evaluator: for places and times.
-        output: takes notes, and the actions that no motion follows.
+        transcript: takes notes, and the actions that no motion follows.
         writes: what the actions write.
     """
 
-    def __init__(self, evaluator: Evaluator, output: Output, writes: Writes) -> None:
+    def __init__(self, evaluator: Evaluator, transcript: Transcript, writes: Writes) -> None:
         self._evaluator = evaluator
-        self._output = output
+        self._transcript = transcript
         self._writes = writes
         self._events: list[tuple[Event, Span]] = []
 
@@ -64,7 +64,7 @@ class Triggers:
         else:
             distance = -place / 1000
         if distance < 0:
-            self._output.note_once(
+            self._transcript.notes.once(
                 "trigger behind",
                 "a TRIGGER behind its target point is taken as at the point",
                 statement.span,
@@ -86,12 +86,12 @@ class Triggers:
     def end(self) -> None:
         """The program ends: actions that no motion followed are kept."""
         for event, span in self._events:
-            self._output.emit(Opaque(event.text, False, span))
+            self._transcript.emit(Opaque(event.text, False, span))
 
     def _number(self, expression: Expression, scope: Scope, statement: Trigger) -> float | None:
         value = self._evaluator.evaluate(expression, scope)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            self._output.note_once(
+            self._transcript.notes.once(
                 "trigger",
                 f"the place or time of a TRIGGER depends on {shown(value)} and is taken as 0",
                 statement.span,

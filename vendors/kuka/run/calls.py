@@ -8,18 +8,19 @@ from contextlib import suppress
 from ....core.errors import SourceError
 from ....core.source.execution.answers import Course
 from ....core.source.execution.provenance import ELSEWHERE
+from ....core.source.execution.scopes import unknown_name
 from ..motion.bas import Basis
 from ..motion.inline_forms import Function
-from ..motion.output import Output
 from ..syntax.expression_tree import Call, Name
 from ..syntax.tree import Block, Invoke
 from ..values.data import Data
 from ..values.evaluator import Evaluator
 from ..values.functions import COMPUTED
 from ..values.library import Library
-from ..values.scope import Module, Scope, unknown_name
+from ..values.scope import Module, Scope
 from ..values.values import Array, Struct, Unknown, Value
 from .instructions import Kept, kept, refused
+from .keeping import Keeping
 from .output_writes import OutputWrites
 from .routines import Routines
 
@@ -37,7 +38,7 @@ class Calls:
         basis: carries out ``BAS``.
         functions: of KUKA's own files, by lower-case name.
         writes: outputs at uncertain moments.
-        output: takes what is kept.
+        keeping: takes what is kept.
     """
 
     def __init__(
@@ -49,7 +50,7 @@ class Calls:
         basis: Basis,
         functions: Mapping[str, Function],
         writes: OutputWrites,
-        output: Output,
+        keeping: Keeping,
     ) -> None:
         self._data = data
         self._library = data.library
@@ -59,7 +60,7 @@ class Calls:
         self._basis = basis
         self._functions = functions
         self._writes = writes
-        self._output = output
+        self._keeping = keeping
 
     def invoke(self, statement: Invoke, scope: Scope) -> None:
         """A call as a statement.
@@ -75,7 +76,7 @@ class Calls:
                 return
             if self._course.skips(call.text):
                 self._data.outputs.forget()
-                self._output.keep(statement.span, call.text, "as the answers say")
+                self._keeping.keep(statement.span, call.text, "as the answers say")
                 return
             table = self._from_table(call)
             if table is not None:
@@ -97,7 +98,7 @@ class Calls:
             self._forget(statement.call, scope)
         if why.outputs:
             self._writes.pulsed(statement.call, scope)
-        self._output.keep(statement.span, statement.call.text, why.why, why.stops)
+        self._keeping.keep(statement.span, statement.call.text, why.why, why.stops)
 
     def _forget(self, call: Call, scope: Scope) -> None:
         """Data that a kept call may have written have no known value any more."""

@@ -10,7 +10,7 @@ from typing import NamedTuple, NoReturn
 from ....core.errors import SourceError, Span
 from ....core.source.execution.answers import Course
 from ....core.source.execution.limits import Meter
-from ..motion.output import Output
+from ....core.source.execution.transcript import Notes
 from ..motion.own_position import OwnPosition
 from ..motion.position import Position
 from ..syntax.expression_tree import Expression, Name, Number, Truth
@@ -78,7 +78,7 @@ class Flow:
         position: follows the robot.
         own_position: is asked by the program.
         writes: which outputs statements write.
-        output: takes notes.
+        notes: takes notes.
     """
 
     def __init__(
@@ -93,7 +93,7 @@ class Flow:
         position: Position,
         own_position: OwnPosition,
         writes: OutputWrites,
-        output: Output,
+        notes: Notes,
     ) -> None:
         self._run_block = run_block
         self._evaluated = evaluated
@@ -105,7 +105,7 @@ class Flow:
         self._position = position
         self._own_position = own_position
         self._output_writes = writes
-        self._output = output
+        self._notes = notes
         self._moving = Moving(body)
         self.skipped_exit: str | None = None
         """What it depends on whether a loop is left, where a way out was not taken."""
@@ -237,7 +237,7 @@ class Flow:
         if isinstance(loop.stop, Name) and not loop.stop.path and not isinstance(stop, Unknown):
             cell = self._data.find(loop.stop.name, scope)
             if cell is not None and cell.signal is None and cell.value != stop:
-                self._output.note_once(
+                self._notes.once(
                     f"bound {loop.span.start}",
                     f"the body of FOR changes {loop.stop.text}, its end: the value from before the "
                     "loop counts; count in a WHILE if it shall not",
@@ -418,7 +418,7 @@ class Flow:
         """
         if self._moving(body):
             self._finish(_endless(what, passes), span)
-        self._output.note_once(
+        self._notes.once(
             f"waits {span.file}:{span.start}",
             f"the loop ({what}) only waits for what the program does not change itself: it is "
             "taken as satisfied at once",
@@ -470,7 +470,7 @@ class Flow:
             self._finish(_endless(f"GOTO {goto.name.upper()}", 1), goto.span)
 
     def _finish(self, message: str, span: Span) -> NoReturn:
-        self._output.note_once("end", message, span)
+        self._notes.once("end", message, span)
         raise Finished
 
     def goto_(self, statement: Goto, scope: Scope) -> None:

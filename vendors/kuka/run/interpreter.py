@@ -14,13 +14,13 @@ from ....core.errors import Note, SourceError, Span
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.answers import Course
 from ....core.source.execution.limits import Meter
+from ....core.source.execution.transcript import Transcript
 from ....core.source.reading import ReadOptions
 from ..motion.bas import Basis
 from ..motion.frames import Placements
 from ..motion.inline_forms import InlineForms
 from ..motion.kinematics import Kinematics
 from ..motion.moves import MotionReader
-from ..motion.output import Output
 from ..motion.own_position import OwnPosition
 from ..motion.position import Position
 from ..motion.settings import Settings
@@ -68,8 +68,10 @@ from ..values.values import Array, Pending, Unknown, Value
 from .calls import Bodies, Calls
 from .exits import Finished, Jump
 from .flow import Flow
+from .keeping import Keeping
 from .output_writes import OutputWrites
 from .routines import Routines
+from .waiting import Waited
 from .waits import Waits
 
 
@@ -87,20 +89,22 @@ class Interpreter:
         self._data = data = Data(library)
         self._course = course = Course(options.answers)
         self._meter = meter = Meter(options.limits, options.executed)
-        self._output = output = Output(data.text, meter)
+        self._transcript = transcript = Transcript(data.text)
+        notes = transcript.notes
         self._advance = AdvanceRun()
+        self._keeping = keeping = Keeping(transcript, self._advance)
         position = Position(robot, options.start)
-        self._placements = placements = Placements(data.system, output.note_once)
-        own_position = OwnPosition(position, placements, lambda: output.move_index)
+        self._placements = placements = Placements(data.system, notes.once)
+        own_position = OwnPosition(position, placements, lambda: transcript.move_index)
         self._evaluator = evaluator = Evaluator(
             data, course, self._function, own_position, self._advance
         )
         config = ConfigData(data, evaluator.names, where)
-        self._settings = Settings(data.system, config.value, output.note_once)
+        self._settings = Settings(data.system, config.value, notes.once)
         targets = Targets(robot, position)
-        basis = Basis(data, evaluator, config, output, self._system_changed)
+        basis = Basis(data, evaluator, config, notes, self._system_changed)
         writes = OutputWrites(data, evaluator.names)
-        self._triggers = Triggers(evaluator, output, writes)
+        self._triggers = Triggers(evaluator, transcript, writes)
         motions = MotionReader(
             data,
             evaluator,
@@ -109,7 +113,8 @@ class Interpreter:
             targets,
             position,
             self._triggers,
-            output,
+            meter,
+            transcript,
             self._system_changed,
         )
         self._flow = flow = Flow(
@@ -123,17 +128,17 @@ class Interpreter:
             position,
             own_position,
             writes,
-            output,
+            notes,
         )
         functions = {
             **InlineForms(basis, data).functions(),
-            **Kinematics(robot, evaluator, placements, targets, position, output).functions(),
+            **Kinematics(robot, evaluator, placements, targets, position, notes).functions(),
         }
         self._routines = Routines(data, evaluator, meter, where, flow.run_body)
         self._calls = Calls(
-            data, evaluator, course, self._routines, basis, functions, writes, output
+            data, evaluator, course, self._routines, basis, functions, writes, keeping
         )
-        waits = Waits(evaluator, data.outputs, writes, output)
+        waits = Waits(evaluator, Waited(data, evaluator, course), writes, transcript, keeping)
         self._handlers: dict[type, Callable[..., None]] = {
             Assign: self._assign,
             Motion: motions.read,
@@ -171,12 +176,12 @@ class Interpreter:
 
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""
-        return self._output.statements(self._evaluator.reads)
+        return self._transcript.statements(self._evaluator.reads)
 
     def notes(self) -> tuple[Note, ...]:
         """What is to be said about the run."""
         data = (*self._library.notes, *self._data.notes)
-        return (*data, *self._output.notes(), *self._course.notes())
+        return (*data, *self._transcript.notes.notes(), *self._course.notes())
 
     def _function(self, call: Call, scope: Scope) -> Value | None:
         return self._calls.call_function(call, scope)
@@ -209,14 +214,14 @@ class Interpreter:
     def _run_statement(self, statement: Statement, scope: Scope) -> None:
         self._meter.statement(statement.span)
         if isinstance(statement, Continue):
-            self._output.continues = True
+            self._advance.passed = True
             return
         handler = self._handlers.get(type(statement))
         if handler is not None:
             self._advance.stopped = False
             handler(statement, scope)
         if not isinstance(statement, Label):
-            self._output.continues = False
+            self._advance.passed = False
 
     def _evaluated(
         self, expression: Expression, scope: Scope, span: Span, datum: str | None = None
@@ -225,7 +230,7 @@ class Interpreter:
         self._advance.stopped = False
         value = self._evaluator.evaluate(expression, scope, datum)
         if self._advance.stopped:
-            self._output.stop(span)
+            self._keeping.stop(span)
             self._advance.stopped = False
         return value
 
@@ -244,7 +249,7 @@ class Interpreter:
             if not self._data.is_system(target.name) or target.name in SILENT:
                 return
             why = why if stops else "it is not emulated"
-        self._output.keep(statement.span, written.text.upper(), why, stops)
+        self._keeping.keep(statement.span, written.text.upper(), why, stops)
 
     def _declare(self, statement: Declaration, scope: Scope) -> None:
         known = scope.cells.get(statement.name)

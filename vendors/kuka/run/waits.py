@@ -4,56 +4,61 @@ from __future__ import annotations
 
 from ....core.errors import SourceError
 from ....core.program.move import Wait
-from ....core.source.execution.outputs import Outputs
-from ..motion.output import Output
+from ....core.source.execution.transcript import Transcript
 from ..syntax.tree import Halt, Keyword, SplineBlock, WaitFor, WaitSec
 from ..values.evaluator import Evaluator
 from ..values.scope import Scope
 from ..values.values import Unknown, shown
 from .instructions import KEYWORDS, refused
+from .keeping import Keeping
 from .output_writes import OutputWrites
+from .waiting import Waited
 
 
 class Waits:
     """Carries these statements out.
 
     Args:
-        evaluator: for times and conditions.
-        outputs: what the program has set its outputs to.
+        evaluator: for times.
+        waited: what was waited for.
         writes: outputs at uncertain moments.
-        output: takes what is kept.
+        transcript: takes waits.
+        keeping: takes what is kept.
     """
 
     def __init__(
-        self, evaluator: Evaluator, outputs: Outputs, writes: OutputWrites, output: Output
+        self,
+        evaluator: Evaluator,
+        waited: Waited,
+        writes: OutputWrites,
+        transcript: Transcript,
+        keeping: Keeping,
     ) -> None:
         self._evaluator = evaluator
-        self._outputs = outputs
+        self._waited = waited
         self._writes = writes
-        self._output = output
+        self._transcript = transcript
+        self._keeping = keeping
 
     def halt(self, statement: Halt, scope: Scope) -> None:
         why = "taken as continued at once: waiting takes no time here"
-        self._output.keep(statement.span, "HALT", why, stops=True)
+        self._keeping.keep(statement.span, "HALT", why, stops=True)
 
     def wait_sec(self, statement: WaitSec, scope: Scope) -> None:
         value = self._evaluator.evaluate(statement.time, scope)
         if isinstance(value, Unknown):
             why = f"its time depends on {value.reason} and is taken as zero"
-            self._output.keep(statement.span, "WAIT SEC", why, stops=True)
+            self._keeping.keep(statement.span, "WAIT SEC", why, stops=True)
             return
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise SourceError(f"WAIT SEC wants a number, not {shown(value)}", statement.time.span)
         # A time below zero is met as a mere stop of the advance run.
-        self._output.emit(Wait(max(0.0, float(value)), statement.span))
+        self._transcript.emit(Wait(max(0.0, float(value)), statement.span))
 
     def wait_for(self, statement: WaitFor, scope: Scope) -> None:
-        outputs = self._outputs
-        mark = len(outputs.asked)
-        if self._evaluator.evaluate(statement.condition, scope) is False:
-            outputs.forget(outputs.asked[mark:])  # somebody else has changed what it waits for
+        self._waited.suppose(statement.condition, scope)
         why = "taken as satisfied at once: waiting takes no time here"
-        self._output.keep(statement.span, "WAIT FOR", why, stops=True)
+        self._keeping.keep(statement.span, "WAIT FOR", why, stops=True)
 
     def keyword(self, statement: Keyword, scope: Scope) -> None:
         reason = refused(statement.word)
@@ -62,9 +67,9 @@ class Waits:
         why = KEYWORDS[statement.word]
         if why is not None:
             if statement.word in ("global", "interrupt"):
-                self._writes.interrupted(self._output.text(statement.span), scope)
+                self._writes.interrupted(self._transcript.text_of(statement.span), scope)
             word = "INTERRUPT" if statement.word == "global" else statement.word.upper()
-            self._output.keep(statement.span, word, why.why, why.stops)
+            self._keeping.keep(statement.span, word, why.why, why.stops)
 
     def spline(self, statement: SplineBlock, scope: Scope) -> None:
         raise SourceError(

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from ....core.errors import SourceError, Span
 from ....core.source.execution.answers import Course
 from ....core.source.execution.provenance import ELSEWHERE, Reads
+from ....core.source.execution.scopes import unknown_name
 from ..syntax.expression_tree import (
     Aggregate,
     Ambiguous,
@@ -29,7 +30,7 @@ from .functions import COMPUTED, computed
 from .literals import flat_literal, number_literal, numeral
 from .operators import OperandError, apply, negate
 from .provenance import LeafSource
-from .scope import Scope, unknown_name
+from .scope import Scope
 from .values import (
     Choice,
     Leaf,

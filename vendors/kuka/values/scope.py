@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from ....core.errors import Span
 from ..syntax.expression_tree import Name
 from ..syntax.tree import DataList, Routine
 from .values import Pending, Value
@@ -70,13 +67,3 @@ class Scope:
     module: Module
     cells: dict[str, Cell] = field(default_factory=dict)
     returns: str | None = None
-    span: Span | None = None
-
-
-def unknown_name(kind: str, name: str, known: Iterable[str], offer: str) -> str:
-    """The message for a name that is not declared, with the nearest ones that are."""
-    spellings = {k.lower(): k for k in known}
-    near = difflib.get_close_matches(name.lower(), spellings, n=3, cutoff=0.6)
-    if near:
-        offer = f"did you mean {' or '.join(spellings[n] for n in near)}? Else {offer}"
-    return f"unknown {kind} '{name}': {offer}"
