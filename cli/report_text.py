@@ -9,29 +9,6 @@ from .places import note_json, place_json
 from .report import MoveReport, Report, ZoneReport
 from .values import fixed
 
-COLUMNS = (
-    ("#", "right"),
-    ("move", "left"),
-    ("target", "left"),
-    ("line", "right"),
-    ("length\nmm", "right"),
-    ("time\ns", "right"),
-    ("wait\ns", "right"),
-    ("settling\ns", "right"),
-    ("top speed\nmm/s", "right"),
-    ("programmed\nmm/s", "right"),
-    ("zone", "left"),
-    ("limited by", "left"),
-)
-KINDS = {
-    "contourfraction": "share of contour",
-    "angle": "angle",
-    "speedfraction": "share of speed",
-}
-"""Zones that are no radius, by the class of the programmed zone."""
-CUT = 1e-6
-"""m by which a zone is smaller than programmed before it is shown as cut."""
-
 
 def print_report(report: Report) -> None:
     """Print tables on stdout, warnings on stderr."""
@@ -63,51 +40,6 @@ def _rows(report: Report) -> list[tuple[str, ...]]:
 
 def _no_move(what: str, length: str, time: str, wait: str, settling: str) -> tuple[str, ...]:
     return ("", what, "", "", length, time, wait, settling, "", "", "", "")
-
-
-def _seconds(rest: float) -> str:
-    """A time of rest, empty for none."""
-    return f"{rest:.3f}" if rest else ""
-
-
-def _row(move: MoveReport) -> tuple[str, ...]:
-    line = "" if move.span is None else str(move.span.line)
-    head = (str(move.number), move.kind, _target(move), line)
-    if not move.driven:
-        return (*head, *[""] * (len(COLUMNS) - len(head) - 1), "not driven")
-    return (
-        *head,
-        f"{1e3 * move.length:.1f}",
-        f"{move.duration:.3f}",
-        _seconds(move.wait),
-        _seconds(move.settling),
-        f"{1e3 * move.top_speed:.0f}",
-        "" if move.programmed_speed is None else f"{1e3 * move.programmed_speed:.0f}",
-        zone_text(move.zone),
-        f"{move.limits[0].name} ({100 * move.limits[0].share:.0f} %)" if move.limits else "",
-    )
-
-
-def _target(move: MoveReport) -> str:
-    if move.target is not None:
-        return move.target
-    if move.position is None:
-        return "joint values"
-    return ", ".join(fixed(1e3 * value, 1) for value in move.position)
-
-
-def zone_text(zone: ZoneReport) -> str:
-    """A zone and what became of it, in mm."""
-    if zone.kind == "fine":
-        return "fine"
-    kind = KINDS.get(zone.kind, zone.kind)
-    name = zone.name or (kind if zone.radius is None else f"{1e3 * zone.radius:g} mm")
-    if zone.stops:
-        return f"{name}, stops"
-    reach = min(zone.entry, zone.exit)
-    if zone.radius is None:
-        return f"{name}, {1e3 * reach:.1f} mm"
-    return name if reach > zone.radius - CUT else f"{name}, cut to {1e3 * reach:.1f} mm"
 
 
 def report_json(report: Report) -> dict[str, Any]:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from ..errors import Note
 from .move import Move, MoveC, MoveJ, MoveL, Statement
 from .target import JointTarget
+
+if TYPE_CHECKING:
+    from ..robot.model import Robot
 
 
 class ReadFrom(Protocol):
@@ -17,6 +20,15 @@ class ReadFrom(Protocol):
     @property
     def main(self) -> str:
         """Name of the source file with the entry."""
+        ...
+
+
+class DrivenBy(Protocol):
+    """What drives a program: `flyby.tasks.setup.Setup` says all of it."""
+
+    @property
+    def robot(self) -> Robot:
+        """Where it stands."""
         ...
 
 
@@ -30,6 +42,8 @@ class Program:
         start: joint values before the first move, if the source states them.
         notes: what the reader has to say about the source; not part of the value.
         reading: the source files, for the patcher; None if it was not read; not part of the value.
+        setup: the robot that it was read for, for tasks that are not told of another one; not part
+            of the value.
     """
 
     statements: tuple[Statement, ...]
@@ -37,6 +51,7 @@ class Program:
     start: JointTarget | None = None
     notes: tuple[Note, ...] = field(default=(), compare=False)
     reading: ReadFrom | None = field(default=None, compare=False, repr=False)
+    setup: DrivenBy | None = field(default=None, compare=False, repr=False)
 
     @cached_property
     def moves(self) -> tuple[Move, ...]:

@@ -1,16 +1,18 @@
-"""Numbers as a user types them: degrees and mm on the outside, rad and m inside."""
+"""Numbers as a user types them, degrees and mm, and the same as values: rad and m."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ..core.errors import InputError
-from ..core.files.tables import LARGEST
+from ...core.errors import InputError
+from ...core.tables import LARGEST
 
 if TYPE_CHECKING:
-    from ..core.robot.model import Robot
-    from ..core.spatial.pose import Pose
+    from ...core.program.target import JointTarget
+    from ...core.robot.model import Robot
+    from ...core.spatial.pose import Pose
 
 QUATERNION_SLACK = 1e-2
 """By how much a typed quaternion's length may miss 1; it is normalised."""
@@ -36,41 +38,87 @@ def numbers(text: str, name: str) -> tuple[float, ...]:
     return tuple(values)
 
 
-def configuration(text: str, name: str, robot: Robot) -> tuple[float, ...]:
-    """All N values of a configuration in rad and m, from degrees and mm.
+def several(given: str | Sequence[float], name: str, factor: float = 1.0) -> tuple[float, ...]:
+    """Numbers in SI units: as they are, or typed.
+
+    Args:
+        given: text, or the numbers.
+        name: of the option, for messages.
+        factor: of numbers that are typed.
+
+    Raises:
+        InputError: one of them is no finite number.
+    """
+    if isinstance(given, str):
+        return tuple(factor * value for value in numbers(given, name))
+    return numbers(",".join(repr(_float(value, name)) for value in given), name)
+
+
+def _float(value: object, name: str) -> float:
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: {value!r} is no number") from None
+
+
+def configuration(given: str | Sequence[float], name: str, robot: Robot) -> tuple[float, ...]:
+    """All N values of a configuration in rad and m: as they are, or typed in degrees and mm.
 
     Raises:
         InputError: not as many numbers as the robot has axes.
     """
-    values = numbers(text, name)
+    values = several(given, name)
     if len(values) != robot.size:
         raise InputError(
             f"{name}: {robot.name} has {robot.size} axes ({', '.join(robot.axis_names)}); "
             f"{len(values)} values were given"
         )
+    if not isinstance(given, str):
+        return values
     return tuple(value * scale for value, (_, scale) in zip(values, axis_units(robot), strict=True))
+
+
+def joint_target(
+    given: str | Sequence[float] | JointTarget | None, name: str, robot: Robot
+) -> JointTarget | None:
+    """Where a robot stands; None where nothing is said of it.
+
+    Raises:
+        InputError: see `configuration`.
+    """
+    from ...core.program.target import JointTarget
+
+    if given is None or isinstance(given, JointTarget):
+        return given
+    q = configuration(given, name, robot)
+    return JointTarget(q[: robot.arm_size], q[robot.arm_size :])
 
 
 def axis_units(robot: Robot) -> list[tuple[str, float]]:
     """The unit that each axis is shown in, and what it is in rad or m."""
-    from ..core.robot.joint import JointKind
+    from ...core.robot.joint import JointKind
 
     joints = [*robot.joints, *(axis.joint for axis in robot.external_axes)]
     turning = ("°", math.pi / 180)
     return [turning if j.kind is JointKind.REVOLUTE else ("mm", 1e-3) for j in joints]
 
 
-def pose(text: str, name: str) -> Pose:
-    """A pose from x, y, z in mm and a quaternion w, x, y, z, or turns in degrees, or nothing.
+def pose(given: str | Pose, name: str) -> Pose:
+    """A pose: as it is, or x, y, z in mm and a quaternion w, x, y, z, or turns in degrees.
 
-    The turns are rx, ry, rz about the fixed x, then y, then z axis: R = Rz Ry Rx.
+    The turns are rx, ry, rz about the fixed x, then y, then z axis: R = Rz Ry Rx. Both may be
+    left out.
 
     Raises:
         InputError: another number of values, or a quaternion far from unit length.
     """
-    from ..core.spatial.pose import Pose
+    from ...core.spatial.pose import Pose
 
-    values = numbers(text, name)
+    if isinstance(given, Pose):
+        return given
+    if not isinstance(given, str):
+        raise InputError(f"{name} is a Pose or text, not {given!r}")
+    values = numbers(given, name)
     if len(values) not in (3, 6, 7):
         raise InputError(
             f"{name}: a pose is x,y,z or x,y,z,rx,ry,rz or x,y,z,qw,qx,qy,qz "
@@ -90,6 +138,19 @@ def pose(text: str, name: str) -> Pose:
         vector[axis] = math.sin(half)
         turned = turned @ Pose(quaternion=(math.cos(half), vector[0], vector[1], vector[2]))
     return turned
+
+
+def direction(given: str | Sequence[float], name: str) -> tuple[float, float, float]:
+    """Three numbers of a direction.
+
+    Raises:
+        InputError: they are none.
+    """
+    found = several(given, name)
+    if len(found) != 3 or not any(found):
+        raise InputError(f"{name} {given}: a direction x,y,z such as 0,0,-1")
+    x, y, z = found
+    return x, y, z
 
 
 def fixed(value: float, digits: int) -> str:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..core.errors import InputError
-from .console import warn
+from ...core.errors import InputError
+from ..options.door import switched
 
-PLOT_FORMATS = (".png", ".pdf", ".svg")
+PICTURES = (".png", ".pdf", ".svg")
+"""Suffixes of pictures that can be drawn."""
+_log = logging.getLogger("flyby")
 
 
 def check_outputs(
@@ -45,17 +48,19 @@ def check_outputs(
             if not path.parent.is_dir() and (made is None or not path.is_relative_to(made)):
                 raise InputError(f"{option} {path}: there is no folder {path.parent}")
         if there and not replace_existing:
-            raise InputError(f"{option} {path}: exists already; --force replaces it")
+            raise InputError(f"{option} {path}: exists already; {switched('force')} replaces it")
 
 
-def check_plot_name(plot: Path | None) -> None:
-    """Refuse a drawing in a form that cannot be drawn.
+def picture_kind(file: str | Path, option: str) -> str:
+    """The kind of a picture by its file's name: ``png``, ``pdf`` or ``svg``.
 
     Raises:
-        InputError: naming the path that ``--plot`` gives.
+        InputError: naming the option and the file: that cannot be drawn.
     """
-    if plot is not None and plot.suffix.lower() not in PLOT_FORMATS:
-        raise InputError(f"--plot {plot}: the name must end in {', '.join(PLOT_FORMATS)}")
+    suffix = Path(file).suffix.lower()
+    if suffix not in PICTURES:
+        raise InputError(f"{option} {file}: the name must end in {', '.join(PICTURES)}")
+    return suffix[1:]
 
 
 def check_folder(option: str, folder: Path | None) -> None:
@@ -108,19 +113,19 @@ def encoded(sources: Mapping[str, str]) -> dict[Path, bytes]:
 
 
 def write_all(option: str, files: Mapping[Path, bytes], made: Path | None = None) -> None:
-    """`write_files`, with what the user should know told.
+    """`write_files`, with what the user should know logged.
 
     Raises:
         InputError: naming the option.
     """
-    from ..core.files.writing import WriteError, write_files
+    from ...core.output_files import WriteError, write_files
 
     try:
         notes = write_files(files, made)
     except WriteError as error:
         raise InputError(f"{option} {error}") from None
     for note in notes:
-        warn(str(note))
+        _log.warning(str(note))
 
 
 @contextmanager

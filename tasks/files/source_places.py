@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from ..core.errors import Note, Span
+from ...core.errors import Note, Span
 
 
 def note_json(note: Note) -> dict[str, Any]:
@@ -23,8 +23,8 @@ def place_json(span: Span | None) -> dict[str, Any]:
     }
 
 
-def short_place(program: Path, span: Span | None) -> str:
+def short_place(program: Path | None, span: Span | None) -> str:
     """The line, with the file before it if that is not the program's main one."""
     if span is None:
         return ""
-    return str(span.line) if span.file == str(program) else f"{Path(span.file).name}:{span.line}"
+    return str(span.line) if program is None or span.file == str(program) else f"{Path(span.file).name}:{span.line}"

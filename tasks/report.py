@@ -6,16 +6,43 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..core.arrays import FloatArray
 from ..core.errors import Note, Span
-from ..core.motion.emulator.binding_limits import LimitShare, limit_shares
-from ..core.motion.emulator.move_figures import lengths_and_speeds, zone_reaches
-from ..core.motion.emulator.run import Run
+from ..core.motion.binding import LimitShare, limit_shares
+from ..core.motion.controller import Run
+from ..core.motion.reached import lengths_and_speeds, zone_reaches
 from ..core.program.move import Move
 from ..core.program.target import JointTarget
 from ..core.program.zone import Fine, Radius
+from ..core.notebook import table
 from ..core.robot.model import Robot
+from .options.texts import fixed
+
+FloatArray = NDArray[np.float64]
+
+COLUMNS = (
+    ("#", "right"),
+    ("move", "left"),
+    ("target", "left"),
+    ("line", "right"),
+    ("length\nmm", "right"),
+    ("time\ns", "right"),
+    ("wait\ns", "right"),
+    ("settling\ns", "right"),
+    ("top speed\nmm/s", "right"),
+    ("programmed\nmm/s", "right"),
+    ("zone", "left"),
+    ("limited by", "left"),
+)
+KINDS = {
+    "contourfraction": "share of contour",
+    "angle": "angle",
+    "speedfraction": "share of speed",
+}
+"""Zones that are no radius, by the class of the programmed zone."""
+CUT = 1e-6
+"""m by which a zone is smaller than programmed before it is shown as cut."""
 
 _PICOSECONDS = 12
 """Decimals of a second beyond which a difference of times is rounding."""
@@ -59,7 +86,7 @@ class MoveReport:
         length: of the TCP's path in its work object, m.
         begin: s, when the commanded motion enters the move's share of the path: at the waypoint
             before, or in the middle of its zone.
-        duration: s of motion along it.
+        time: s of motion along it.
         wait: s of programmed standing still at its end.
         settling: s until the next move begins beyond both: what the joints, averaged over time,
             take to catch up at a stop, and half their window in the first and in the last move.
@@ -77,13 +104,31 @@ class MoveReport:
     driven: bool
     length: float
     begin: float
-    duration: float
+    time: float
     wait: float
     settling: float
     top_speed: float
     programmed_speed: float | None
     zone: ZoneReport
     limits: tuple[LimitShare, ...]
+
+    @property
+    def limited_by(self) -> str | None:
+        """What holds the speed down for most of the move; None where it is not driven."""
+        return self.limits[0].name if self.limits else None
+
+
+class MoveTable(tuple[MoveReport, ...]):
+    """The moves of a program in their order."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        driven = sum(move.driven for move in self)
+        return f"<{len(self)} moves, {driven} driven, {sum(move.time for move in self):.3f} s>"
+
+    def _repr_html_(self) -> str:
+        return table(COLUMNS, [move_row(move) for move in self])
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,13 +156,13 @@ class Report:
     settling: float
     length: float
     top_speed: float
-    moves: tuple[MoveReport, ...]
+    moves: MoveTable
     notes: tuple[Note, ...]
 
     @property
     def moving(self) -> float:
         """s of the cycle time in which the robot follows its path."""
-        return sum(move.duration for move in self.moves)
+        return sum(move.time for move in self.moves)
 
 
 def make_report(run: Run, robot: Robot) -> Report:
@@ -142,7 +187,7 @@ def make_report(run: Run, robot: Robot) -> Report:
                 driven=driven,
                 length=0.0 if k is None else float(lengths[k]),
                 begin=0.0 if k is None else float(spans.begin[k]),
-                duration=0.0 if k is None else float(spans.duration[k]),
+                time=0.0 if k is None else float(spans.duration[k]),
                 wait=0.0 if k is None else float(dwell[k + 1]),
                 settling=0.0 if k is None else float(spans.settling[k]),
                 top_speed=0.0 if k is None else float(tops[k]),
@@ -160,8 +205,8 @@ def make_report(run: Run, robot: Robot) -> Report:
         settling=float(spans.settling.sum()),
         length=float(lengths.sum()),
         top_speed=float(tops.max()),
-        moves=tuple(rows),
-        notes=_located(run),
+        moves=MoveTable(rows),
+        notes=located(run),
     )
 
 
@@ -200,7 +245,7 @@ def _position(move: Move) -> tuple[float, float, float] | None:
     return None if isinstance(move.target, JointTarget) else move.target.pose.position
 
 
-def _located(run: Run) -> tuple[Note, ...]:
+def located(run: Run) -> tuple[Note, ...]:
     """The notes, each with its place in the source where the program knows it."""
     found = []
     for note in run.notes:
@@ -210,3 +255,49 @@ def _located(run: Run) -> tuple[Note, ...]:
             span = None if origin is None else origin.statement
         found.append(Note(note.message, note.move, span))
     return tuple(dict.fromkeys(found))
+
+
+def seconds(rest: float) -> str:
+    """A time of rest, empty for none."""
+    return f"{rest:.3f}" if rest else ""
+
+
+def move_row(move: MoveReport) -> tuple[str, ...]:
+    """The cells of a move, in the units of the shop floor."""
+    line = "" if move.span is None else str(move.span.line)
+    head = (str(move.number), move.kind, _target(move), line)
+    if not move.driven:
+        return (*head, *[""] * (len(COLUMNS) - len(head) - 1), "not driven")
+    return (
+        *head,
+        f"{1e3 * move.length:.1f}",
+        f"{move.time:.3f}",
+        seconds(move.wait),
+        seconds(move.settling),
+        f"{1e3 * move.top_speed:.0f}",
+        "" if move.programmed_speed is None else f"{1e3 * move.programmed_speed:.0f}",
+        zone_text(move.zone),
+        f"{move.limits[0].name} ({100 * move.limits[0].share:.0f} %)" if move.limits else "",
+    )
+
+
+def _target(move: MoveReport) -> str:
+    if move.target is not None:
+        return move.target
+    if move.position is None:
+        return "joint values"
+    return ", ".join(fixed(1e3 * value, 1) for value in move.position)
+
+
+def zone_text(zone: ZoneReport) -> str:
+    """A zone and what became of it, in mm."""
+    if zone.kind == "fine":
+        return "fine"
+    kind = KINDS.get(zone.kind, zone.kind)
+    name = zone.name or (kind if zone.radius is None else f"{1e3 * zone.radius:g} mm")
+    if zone.stops:
+        return f"{name}, stops"
+    reach = min(zone.entry, zone.exit)
+    if zone.radius is None:
+        return f"{name}, {1e3 * reach:.1f} mm"
+    return name if reach > zone.radius - CUT else f"{name}, cut to {1e3 * reach:.1f} mm"

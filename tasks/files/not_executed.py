@@ -1,29 +1,30 @@
-"""Warnings where a changed datum is used by code that was not driven, and so not proven."""
+"""Notes where a changed datum is used by code that was not driven, and so not proven."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ..core.errors import InputError, Note
+from ...core.errors import InputError, Note
+from ..options.door import spelt, switched
 
 if TYPE_CHECKING:
-    from ..core.source.not_executed.search import Bystander
-    from ..core.vendor import Vendor
-    from ..problems.improve.solution import Solution
+    from ...core.source.bystanders import Bystander
+    from ...core.vendor import Vendor
+    from ...problems.solution import Solution
 
 _SHOWN = 5
 """Lines that a note names."""
 
 
-def bystander_notes(made: Solution, vendor: Vendor) -> tuple[Note, ...]:
+def not_executed_notes(made: Solution, vendor: Vendor) -> tuple[Note, ...]:
     """Where a new program changes more than what was driven.
 
     Args:
         made: with the program as it is read from its new text.
         vendor: whose language it is.
     """
-    from ..core.source.not_executed.search import bystanders
+    from ...core.source.bystanders import bystanders
 
     wording = None if vendor.speaks is None else vendor.speaks.wording
     if wording is None or not made.changed or _is_anew(made):
@@ -31,7 +32,7 @@ def bystander_notes(made: Solution, vendor: Vendor) -> tuple[Note, ...]:
     return tuple(map(_note, bystanders(made.original, made.program, wording)))
 
 
-def refuse_bystanders(notes: Sequence[Note]) -> None:
+def refuse_not_executed(notes: Sequence[Note]) -> None:
     """Refuse to put the new program in the place of the old one.
 
     Raises:
@@ -39,9 +40,9 @@ def refuse_bystanders(notes: Sequence[Note]) -> None:
     """
     if notes:
         raise InputError(
-            "--in-place: nothing was written, since code that was not driven uses changed data "
-            "(see the warnings): --keep these moves, or name a folder by --out and look at that "
-            "code"
+            f"{switched('in_place')}: nothing was written, since code that was not driven uses "
+            f"changed data (see the warnings): {spelt('keep')} these moves, or name a folder by "
+            f"{spelt('out')} and look at that code"
         )
 
 

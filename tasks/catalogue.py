@@ -1,0 +1,77 @@
+"""Robots, vendors and cells by name."""
+
+from __future__ import annotations
+
+import logging
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..core.cell.cell import Cell
+    from ..core.registry import Registry
+    from ..core.robot.model import Robot
+    from ..core.vendor import Vendor
+
+_log = logging.getLogger("flyby")
+
+
+@cache
+def registry() -> Registry:
+    """All that is installed; warns of broken plugins at the first call."""
+    from ..core.registry import installed
+
+    found = installed()
+    for plugin in found.broken:
+        _log.warning(str(plugin))
+    return found
+
+
+def robot(name: str) -> Robot:
+    """The robot called ``vendor/robot``.
+
+    Raises:
+        UnknownNameError: there is none.
+    """
+    return registry().find_robot(name)
+
+
+def robots(vendor: str | None = None) -> tuple[str, ...]:
+    """Names of all robots, sorted; those of one vendor if it is named.
+
+    Raises:
+        UnknownNameError: there is no such vendor.
+    """
+    if vendor is None:
+        return registry().robot_names
+    found = registry().find_vendor(vendor)
+    return tuple(f"{found.name}/{model}" for model in sorted(found.robots))
+
+
+def vendors() -> tuple[Vendor, ...]:
+    """All vendors, by name."""
+    found = registry().vendors
+    return tuple(found[name] for name in sorted(found))
+
+
+def vendor_of(robot: str) -> Vendor:
+    """The vendor of a robot called ``vendor/robot``.
+
+    Raises:
+        UnknownNameError: there is none.
+    """
+    vendor, slash, _ = robot.partition("/")
+    if not slash:
+        registry().find_robot(robot)  # offers the robots that may be meant
+    return registry().find_vendor(vendor)
+
+
+def cell(file: str | Path) -> Cell:
+    """The cell of a file.
+
+    Raises:
+        InputError: the file is unusable.
+    """
+    from ..core.cell.file import load_cell
+
+    return load_cell(Path(file), registry())

@@ -1,0 +1,51 @@
+"""Programs driven as the robot's controller would."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from .options.entries import TIME, Extent, number
+from .options.keywords import by_keywords
+from .setup import RobotOptions, start_of, with_setup
+
+if TYPE_CHECKING:
+    from ..core.program.program import Program
+    from .runs import EmulatedRun
+
+LEAST_PERIOD = 1e-5
+"""s. A cycle of a minute then makes six million samples."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class EmulateOptions(RobotOptions):
+    """How a program is emulated."""
+
+    period: float | None = number(
+        None,
+        "Seconds between samples; the controller's own if unset.",
+        TIME,
+        Extent(LEAST_PERIOD),
+    )
+
+
+def emulate_with(program: Program, options: EmulateOptions) -> EmulatedRun:
+    """Drive a program as the robot's controller would: cycle time, path, what limits each move.
+
+    Args:
+        program: as `flyby.read` gives it, or built of moves.
+
+    Raises:
+        MotionError: it cannot be driven; the message names the move.
+        InputError: nobody says which robot.
+    """
+    from ..core.motion.controller import Controller
+    from .runs import EmulatedRun
+
+    program, setup = with_setup(program, options)
+    options.say(f"emulating {len(program.moves)} moves")
+    run = Controller(setup.vendor, setup.robot).run(program, start_of(program), options.period)
+    return EmulatedRun.of(run, setup.robot)
+
+
+emulate = by_keywords(emulate_with, EmulateOptions)

@@ -1,0 +1,105 @@
+"""Where the files of a changed program go: into a folder, or in the place of those read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...core.errors import InputError
+from ..options.door import given, spelt, switched
+from .outputs import check_folder, check_outputs, write_all
+from .texts import runnable
+
+if TYPE_CHECKING:
+    from ...core.program.program import Program
+    from ...core.source.reading import Files
+
+
+@dataclass(frozen=True)
+class FilePlaces:
+    """Where changed files go.
+
+    Args:
+        out: folder for them, made if it is missing; None for none.
+        in_place: whether they take the place of what is read.
+        inputs: files that are read, the program first.
+        replace_existing: see `check_outputs`; with ``in_place`` inputs are replaced.
+    """
+
+    out: Path | None
+    in_place: bool
+    inputs: Sequence[Path]
+    replace_existing: bool
+
+    @property
+    def anywhere(self) -> bool:
+        """Whether there is a place at all."""
+        return self.in_place or self.out is not None
+
+    def check(self) -> None:
+        """Refuse, before work begins, places that files cannot go to.
+
+        Raises:
+            InputError: both places are asked for, or the folder cannot take the program's file.
+        """
+        check_folder(spelt("out"), self.out)
+        if self.out is None:
+            return
+        if self.in_place:
+            raise InputError(
+                f"{spelt('out')} and {switched('in_place')}: the files go to one place or the other"
+            )
+        if self.out.is_dir() and self.inputs:
+            path = self.out / self.inputs[0].name
+            label = f"{spelt('out')}: {path.name}"
+            check_outputs({label: path}, self.inputs, self.replace_existing)
+
+    def write(self, files: Files, original: Program) -> list[Path]:
+        """Write changed files; into a folder with all that they run with, changed or not.
+
+        Args:
+            files: as a patch or a writer hands them out.
+            original: the program as it was read.
+
+        Returns:
+            The files that were written; none if there is no place for them.
+
+        Raises:
+            InputError: one of them must not be written, cannot be encoded, or has changed since
+                it was read; then none is.
+        """
+        if self.out is None:
+            return self._replace(files, original) if self.in_place else []
+        paths = {self.out / name: data for name, data in runnable(original, files).items()}
+        named = {f"{spelt('out')}: {path.name}": path for path in paths}
+        check_outputs(named, self.inputs, self.replace_existing, self.out)
+        write_all(spelt("out"), paths, self.out)
+        return list(paths)
+
+    def _replace(self, files: Files, original: Program) -> list[Path]:
+        from ...core.source.patching import reading_of
+
+        paths = {Path(file.name): file.data for file in files.values()}
+        _check_unchanged(paths, reading_of(original).files)
+        write_all(switched("in_place"), paths)
+        return list(paths)
+
+
+def _check_unchanged(paths: Iterable[Path], read: Files) -> None:
+    """Refuse to write over what somebody has saved since the files were read."""
+    from ...core.input_files import read_bytes
+    from ...core.source.text import LARGEST_FILE
+
+    in_place = switched("in_place")
+    for path in paths:
+        try:
+            now = read_bytes(path, LARGEST_FILE)
+        except InputError as error:
+            raise InputError(f"{in_place}: {error}") from error
+        if str(path) in read and now != read[str(path)].data:
+            raise InputError(
+                f"{in_place}: {path} has changed since it was read, and stays as it is: run again, "
+                f"or name a folder by {spelt('out')}"
+            )

@@ -1,0 +1,136 @@
+"""Programs from files, folders and texts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..core.errors import FlybyError, InputError
+from .catalogue import registry
+from .options.door import spelt
+from .options.entries import value
+from .options.keywords import by_keywords
+from .options.texts import joint_target
+from .setup import RobotOptions, Setup, setup_of
+
+if TYPE_CHECKING:
+    from ..core.program.program import Program
+    from ..core.program.target import JointTarget
+    from ..core.source.answers import Answers
+    from ..core.vendor import Vendor
+
+
+@dataclass(frozen=True, kw_only=True)
+class SourceOptions(RobotOptions):
+    """How a program is read, and for which robot."""
+
+    entry: str | None = value(None, "Routine to run.")
+    answers: str | Path | Answers | None = value(
+        None,
+        "Answers to what the program asks of signals and operators (TOML).",
+        kind=Path,
+        flag="--io",
+    )
+    others: Sequence[str | Path] = value(
+        (),
+        "A further file of the program; may be given several times.",
+        kind=Path,
+        several=True,
+        flag="--with",
+    )
+    start: str | Sequence[float] | JointTarget | None = value(
+        None,
+        "Axis values before the first move, degrees and mm: 0,0,0,0,30,0. "
+        "Without it the robot stands at the first target.",
+    )
+
+    def inputs(self) -> list[Path]:
+        """All files that are named here: none of them is ever written to."""
+        given = (self.cell, self.motion, self.answers, *self.others)
+        return [Path(file) for file in given if isinstance(file, str | Path)]
+
+
+def read_with(source: str | Path, options: SourceOptions) -> Program:
+    """The program of a file, of a folder or of a text, for a robot.
+
+    Args:
+        source: a file, a folder that holds one program, or a text of several lines.
+
+    Returns:
+        The program; it knows which robot it is for.
+
+    Raises:
+        InputError: no robot is named, or the file is no program of its vendor.
+        SourceError: the text cannot be read; file, line and column are named.
+        MotionError: a move that no robot can drive.
+    """
+    setup = setup_of(options)
+    vendor, robot = setup.vendor, setup.robot
+    start = joint_target(options.start, spelt("start"), robot)
+    if isinstance(source, str) and "\n" in source:
+        name = f"program{vendor.suffixes[0] if vendor.suffixes else ''}"
+        program = vendor.read(source, name, options.entry, robot, _answers(options), start)
+    else:
+        file = Path(source)
+        if file.is_dir():
+            file = _program_in(file, setup, options)
+        check_language(vendor, file)
+        program = vendor.read_file(
+            file, options.entry, robot, _answers(options), options.others, start
+        )
+    return replace(program, setup=setup)
+
+
+read = by_keywords(read_with, SourceOptions)
+
+
+def check_language(vendor: Vendor, program: Path) -> None:
+    """Refuse a program that another vendor's controller runs.
+
+    Raises:
+        InputError: the file is no program of the vendor, judged by its suffix.
+    """
+    if program.suffix.lower() in vendor.suffixes:
+        return
+    other = registry().reader_of(program)
+    raise InputError(
+        f"{program} is a program for {other.name}, the robot is driven by {vendor.name}; "
+        f"choose a robot of {other.name} ('flyby robots {other.name}')"
+    )
+
+
+def _answers(options: SourceOptions) -> Answers | None:
+    if not isinstance(options.answers, str | Path):
+        return options.answers
+    from ..core.source.answers import load_answers
+
+    return load_answers(options.answers)
+
+
+def _program_in(folder: Path, setup: Setup, options: SourceOptions) -> Path:
+    """The one file in a folder that can be run by itself.
+
+    Raises:
+        InputError: there is none, or there are several.
+    """
+    vendor = setup.vendor
+    files = sorted(f for f in folder.iterdir() if f.suffix.lower() in vendor.suffixes)
+    if len(files) == 1:
+        return files[0]
+    found = [file for file in files if _runs(file, setup, options)]
+    if len(found) == 1:
+        return found[0]
+    names = "".join(f", {file.name}" for file in found or files)
+    raise InputError(f"{folder} is a folder; name a program file in it{names.replace(',', ':', 1)}")
+
+
+def _runs(file: Path, setup: Setup, options: SourceOptions) -> bool:
+    try:
+        setup.vendor.read_file(
+            file, options.entry, setup.robot, _answers(options), options.others
+        )
+    except FlybyError:
+        return False
+    return True

@@ -1,0 +1,57 @@
+"""Runs that tell of themselves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from ..core.motion.controller import Run
+from ..core.notebook import Curve, page, picture
+from ..core.robot.model import Robot
+from .report import MoveTable, Report, located, make_report
+
+
+@dataclass(frozen=True, repr=False)
+class EmulatedRun(Run):
+    """A run that knows its robot: its moves as a table, and how it shows itself.
+
+    Args:
+        robot: that was driven.
+    """
+
+    robot: Robot = field(kw_only=True)
+
+    @classmethod
+    def of(cls, run: Run, robot: Robot) -> EmulatedRun:
+        """A run with its robot, its notes with their places in the source."""
+        return cls(run.program, run.path, run.timing, run.trajectory, located(run), robot=robot)
+
+    @cached_property
+    def report(self) -> Report:
+        """All that there is to tell, move by move."""
+        return make_report(self, self.robot)
+
+    @property
+    def moves(self) -> MoveTable:
+        """One entry for each move of the program: time, length, speed, what limits it."""
+        return self.report.moves
+
+    def picture(self, kind: str = "svg") -> bytes:
+        """Path and motion drawn, as a file.
+
+        Args:
+            kind: ``png``, ``pdf`` or ``svg``.
+        """
+        from ..drawing.run import draw
+
+        return draw(self, self.robot, kind)
+
+    def __repr__(self) -> str:
+        return (
+            f"<Run of {self.program.name} on {self.robot.name}: {self.duration:.3f} s, "
+            f"{len(self.moves)} moves, {len(self.notes)} notes>"
+        )
+
+    def _repr_html_(self) -> str:
+        curve = Curve("path of the TCP", self.trajectory.position)
+        return page(repr(self)[1:-1], self.moves._repr_html_(), picture([curve]), notes=self.notes)

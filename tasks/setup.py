@@ -1,0 +1,197 @@
+"""Which robot a program is for, who drives it and what stands around it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..core.errors import InputError
+from .catalogue import cell as load
+from .catalogue import registry, robots, vendor_of
+from .options.door import given, spelt, switched
+from .options.entries import TaskOptions, switch, value
+
+if TYPE_CHECKING:
+    from ..core.cell.cell import Cell
+    from ..core.program.program import Program
+    from ..core.program.target import JointTarget
+    from ..core.program.tool import Tool
+    from ..core.robot.model import Robot
+    from ..core.vendor import Vendor
+
+NO_FLOOR = (
+    "Without a cell the plane under the robot's base is an obstacle; this lifts it."
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RobotOptions(TaskOptions):
+    """Which robot, in which cell, driven how; of a program that was read, its own if unset."""
+
+    robot: str | Robot | None = value(None, "Robot, such as abb/irb6640-180-255 ('flyby robots').")
+    cell: str | Path | Cell | None = value(
+        None,
+        "Cell file: robot, base, external axes, tools, obstacles, clearance.",
+        kind=Path,
+    )
+    motion: str | Path | None = value(
+        None, "How the robot is driven, as 'flyby identify' writes it (TOML).", kind=Path
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class CellOptions(RobotOptions):
+    """The same where it counts what stands around."""
+
+    no_floor: bool = switch(NO_FLOOR)
+
+
+@dataclass(frozen=True)
+class Setup:
+    """A robot with who drives it and what stands around it.
+
+    Args:
+        vendor: as it drives the robot, by the user's motion file where there is one.
+        robot: where it stands, with its external axes.
+        cell: None where no cell file says what stands around.
+    """
+
+    vendor: Vendor
+    robot: Robot
+    cell: Cell | None = None
+
+    def surroundings(self, program: Program | None = None, *, no_floor: bool = False) -> Cell:
+        """What stands around: what the cell file says, or nothing but a floor.
+
+        Args:
+            program: whose tools are mounted where no file says so.
+            no_floor: whether not even a floor is there.
+
+        Raises:
+            InputError: the floor is lifted of a cell.
+        """
+        if self.cell is None:
+            from ..core.cell.floor import bare_cell
+
+            moves = () if program is None else program.moves
+            tools: Iterable[Tool] = dict.fromkeys(move.tool for move in moves)
+            return bare_cell(self.robot, self.vendor.name, tools, floor=not no_floor)
+        if no_floor:
+            where = "" if self.cell.file is None else f" {self.cell.file}"
+            raise InputError(
+                f"{switched('no_floor')}: what stands around is what the cell{where} says; "
+                "change it"
+            )
+        return self.cell
+
+
+def setup_of(options: RobotOptions) -> Setup:
+    """The robot that options name.
+
+    Raises:
+        InputError: none is named, robot and cell contradict each other, or a file is unusable.
+    """
+    made = _stated(options)
+    if options.motion is None:
+        return made
+    return replace(made, vendor=made.vendor.driven_by(Path(options.motion), made.robot))
+
+
+def _stated(options: RobotOptions) -> Setup:
+    robot, cell = options.robot, options.cell
+    name = robot if robot is None or isinstance(robot, str) else robot.name
+    if cell is None:
+        if robot is None or name is None:
+            known = "'flyby robots'" if spelt("robot") != "robot" else "flyby.robots()"
+            raise InputError(
+                f"which robot? Give {spelt('robot')} ({known} lists them) or {spelt('cell')}"
+            )
+        vendor = vendor_of(name)
+        return Setup(vendor, registry().find_robot(name) if isinstance(robot, str) else robot)
+    loaded = load(cell) if isinstance(cell, str | Path) else cell
+    if name is not None and name != loaded.robot.name:
+        which = loaded.file if isinstance(cell, str | Path) else "given"
+        raise InputError(f"{given('robot', name)}: the cell {which} has a {loaded.robot.name}")
+    return Setup(loaded.find_vendor(registry()), loaded.robot, loaded)
+
+
+def named_robot(name: str) -> Setup:
+    """The robot called ``vendor/robot``, as its vendor drives it.
+
+    Raises:
+        UnknownNameError: there is none.
+    """
+    return Setup(vendor_of(name), registry().find_robot(name))
+
+
+def writable_robot(name: str, option: str | None = None) -> Setup:
+    """A robot for which programs can be written; of a vendor with one robot its own name will do.
+
+    Args:
+        name: ``vendor/robot``.
+        option: that may name the vendor alone; None where the robot must be named.
+
+    Raises:
+        InputError: there is none, or it can be emulated only.
+    """
+    if option is not None and "/" not in name and name in registry().vendors:
+        own = robots(name)
+        if len(own) != 1:
+            raise InputError(f"{option} {name}: which of its robots? {', '.join(own) or 'It has none'}")
+        (name,) = own
+    made = named_robot(name)
+    made.vendor.check_written(made.robot)
+    return made
+
+
+def in_setup(program: Program, setup: Setup) -> Program:
+    """A program that knows its setup, read again where it was read for a robot elsewhere.
+
+    Raises:
+        InputError: it says something else there; it has to be read for that robot.
+    """
+    from ..core.source.reading import Reading
+
+    reading = program.reading
+    if isinstance(reading, Reading) and reading.options.robot != setup.robot:
+        placed = replace(reading, options=replace(reading.options, robot=setup.robot))
+        if placed.again({}) != reading.again({}):
+            raise InputError(
+                f"program {program.name!r} says something else for {setup.robot.name} where it "
+                "stands now than where it was read for: read it with the same robot and cell"
+            )
+        program = replace(program, reading=placed)
+    return replace(program, setup=setup)
+
+
+def with_setup(program: Program, options: RobotOptions) -> tuple[Program, Setup]:
+    """A program with its setup: what options name, else what it was read for.
+
+    Raises:
+        InputError: nobody says which robot, or the program is for another one.
+    """
+    own = program.setup if isinstance(program.setup, Setup) else None
+    if options.robot is None and options.cell is None:
+        if own is None:
+            setup_of(options)  # asks for the robot
+        assert own is not None
+        if options.motion is None:
+            return program, own
+        made = replace(own, vendor=own.vendor.driven_by(Path(options.motion), own.robot))
+        return replace(program, setup=made), made
+    made = setup_of(options)
+    if options.motion is None and own is not None and own.robot == made.robot:
+        # What the robot was read to be driven by stays, unless the cell says otherwise.
+        if made.cell is None or made.cell.motion is None:
+            made = replace(made, vendor=own.vendor)
+    return in_setup(program, made), made
+
+
+def start_of(program: Program) -> JointTarget | None:
+    """Where a program was read to begin; None where nothing was said of it."""
+    from ..core.source.reading import Reading
+
+    reading = program.reading
+    return reading.options.start if isinstance(reading, Reading) else None
