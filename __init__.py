@@ -1,6 +1,75 @@
-"""Emulates how industrial robot controllers drive a program; see flyby.core, flyby.cli."""
+"""Emulates how industrial robot controllers drive a program, checks, improves and translates it.
 
-# By its full name: pytest imports this file by its place, where no package is around it.
-from flyby.core import numba_import  # noqa: TID251
+Everything is SI (m, rad, s, kg), quaternions are w, x, y, z. ``help(flyby.emulate)`` and its like
+list what a task can be told; the parts behind are in `flyby.core` and its neighbours.
+"""
+
+# By their full names: pytest imports this file by its place, where no package is around it.
+# ruff: noqa: TID251
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from flyby.core import numba_import
+
+if TYPE_CHECKING:
+    from flyby.tasks.catalogue import cell, robot, robots, vendors
+    from flyby.tasks.check import check
+    from flyby.tasks.compare import compare
+    from flyby.tasks.emulate import emulate
+    from flyby.tasks.experiment import experiment
+    from flyby.tasks.identify import identify
+    from flyby.tasks.optimize import optimize
+    from flyby.tasks.paint import paint
+    from flyby.tasks.pareto import pareto
+    from flyby.tasks.read import read
+    from flyby.tasks.record import record
+    from flyby.tasks.translate import translate
+    from flyby.tasks.write import patch, write
+    from flyby.tasks.zones import zones
+
+__all__ = [
+    "cell",
+    "check",
+    "compare",
+    "emulate",
+    "experiment",
+    "identify",
+    "optimize",
+    "paint",
+    "pareto",
+    "patch",
+    "read",
+    "record",
+    "robot",
+    "robots",
+    "translate",
+    "vendors",
+    "write",
+    "zones",
+]
+
+_ELSEWHERE = {"cell": "catalogue", "robot": "catalogue", "robots": "catalogue", "patch": "write"}
+"""Files of `flyby.tasks` that are not called as what they hold."""
 
 numba_import.install()
+
+
+def __getattr__(name: str) -> Any:
+    """What `__all__` names, imported when it is asked for.
+
+    Raises:
+        AttributeError: it is none of these.
+    """
+    if name not in __all__:
+        raise AttributeError(f"module 'flyby' has no attribute {name!r}")
+    if name == "vendors":  # the package of that name, which can be called
+        return import_module("flyby.vendors")
+    found = getattr(import_module(f"flyby.tasks.{_ELSEWHERE.get(name, name)}"), name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *__all__]

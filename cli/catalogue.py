@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..tasks.catalogue import registry, vendor_of
+from ..tasks.options.texts import axis_units
 from .console import print_json, print_rich, print_table
-from .installed import registry, vendor_of
-from .values import axis_units
 
 if TYPE_CHECKING:
     from ..core.robot.model import Robot

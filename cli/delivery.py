@@ -1,42 +1,38 @@
-"""What becomes of a changed program: notes on code beside it, files, the exit status."""
+"""What becomes of a changed program: files, notes on code beside it, the exit status."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING
 
 import typer
 
-from .bystanders import bystander_notes, refuse_bystanders
+from ..tasks.files.not_executed import not_executed_notes, refuse_not_executed
+from ..tasks.files.places import FilePlaces
 from .console import print_rich
-from .patching import Places
 
 if TYPE_CHECKING:
-    from ..core.errors import Note
-    from ..core.source.reading import Files
     from ..core.vendor import Vendor
     from ..problems.improve.solution import Solution
 
-Made = TypeVar("Made", bound="Solution")
-
 
 @dataclass(frozen=True)
-class Delivery(Generic[Made]):
+class Delivery:
     """A solution whose files are written.
 
     Args:
-        made: with notes on code that was not driven.
-        concerned: these notes.
+        made: the solution.
+        vendor: whose language it is.
+        places: where the files were to go.
         written: the files.
-        places: where they were to go.
     """
 
-    made: Made
-    concerned: Sequence[Note]
+    made: Solution
+    vendor: Vendor
+    places: FilePlaces
     written: Sequence[Path]
-    places: Places
 
     def end(self, told: bool) -> None:
         """Say that nothing was written, if nothing was to be, and give the exit status.
@@ -51,30 +47,25 @@ class Delivery(Generic[Made]):
         if told and self.made.changed and not self.places.anywhere:
             print_rich("nothing was written: --in-place or --out FOLDER writes the new program")
         if self.places.in_place:
-            refuse_bystanders(self.concerned)
+            refuse_not_executed(not_executed_notes(self.made, self.vendor))
         if not self.made.proven:
             raise typer.Exit(1)
 
 
-def deliver(
-    made: Made, vendor: Vendor, files: Files, places: Places, unproven: bool
-) -> Delivery[Made]:
+def deliver(made: Solution, vendor: Vendor, places: FilePlaces, unproven: bool) -> Delivery:
     """Write the files of a changed program that is proven.
 
     Args:
-        made: with the program as it is read from its new text.
+        made: with the texts of its program.
         vendor: whose language it is.
-        files: that text.
-        places: where it goes.
+        places: where they go.
         unproven: whether a program that is not proven is written as well.
 
     Raises:
-        InputError: see `Places.write`.
+        InputError: see `FilePlaces.write`.
     """
-    concerned = bystander_notes(made, vendor)
-    made = replace(made, notes=(*made.notes, *concerned))
+    refused = places.in_place and bool(not_executed_notes(made, vendor))
     written: list[Path] = []
-    refused = places.in_place and bool(concerned)
     if made.changed and (made.proven or unproven) and not refused:
-        written = places.write(files, made.original)
-    return Delivery(made, concerned, written, places)
+        written = places.write(made.texts, made.original)
+    return Delivery(made, vendor, places, written)

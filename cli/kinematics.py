@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from . import values
+from ..tasks.catalogue import registry, vendor_of
+from ..tasks.options import texts
+from ..tasks.options.texts import fixed
 from .console import print_json, print_rich, print_table, warn
-from .installed import registry, vendor_of
-from .values import fixed
 
 if TYPE_CHECKING:
     from ..core.program.target import Configuration
@@ -37,7 +37,7 @@ def fk(
 ) -> None:
     """Forward kinematics: the TCP in the robot's base, and the configuration's name."""
     arm = registry().find_robot(robot)
-    q = values.configuration(joints, "joint values", arm)
+    q = texts.configuration(joints, "joint values", arm)
     _warn_beyond_limits(arm, q)
     tcp = arm.flange_pose(q) @ _tool(tool)
     label = _label(robot, arm, q)
@@ -74,7 +74,7 @@ def ik(
 ) -> None:
     """Inverse kinematics: all configurations within limits that reach a pose."""
     arm = registry().find_robot(robot)
-    flange = values.pose(pose, "pose") @ _tool(tool).inverse()
+    flange = texts.pose(pose, "pose") @ _tool(tool).inverse()
     solutions = arm.inverse(flange)
     labels = [_label(robot, arm, tuple(map(float, s.q))) for s in solutions]
     if arm.arm_size != 6 or arm.recognised is None:
@@ -90,7 +90,7 @@ def ik(
             }
         )
         return
-    units = values.axis_units(arm)
+    units = texts.axis_units(arm)
     heads = [f"{name} {unit}" for name, (unit, _) in zip(arm.axis_names, units, strict=True)]
     print_table(
         (*((head, "right") for head in heads), ("configuration", "left"), ("singular", "left")),
@@ -108,7 +108,7 @@ def ik(
 def _tool(text: str | None) -> Pose:
     from ..core.spatial.pose import IDENTITY
 
-    return IDENTITY if text is None else values.pose(text, "--tool")
+    return IDENTITY if text is None else texts.pose(text, "--tool")
 
 
 def _label(name: str, robot: Robot, q: tuple[float, ...]) -> Configuration | None:

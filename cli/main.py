@@ -9,6 +9,7 @@ import typer
 from typer.core import TyperGroup
 
 from ..core.errors import FlybyError
+from ..tasks.options.door import command_line
 from .catalogue import robots, vendors
 from .check import check
 from .compare import compare
@@ -34,8 +35,12 @@ class Commands(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         """Run the chosen command."""
+        logged = _Warnings()
+        log = logging.getLogger("flyby")
+        log.addHandler(logged)
         try:
-            return super().invoke(ctx)
+            with command_line():
+                return super().invoke(ctx)
         except FlybyError as error:
             fail(str(error))
             raise typer.Exit(1) from None
@@ -44,6 +49,8 @@ class Commands(TyperGroup):
                 raise
             fail(f"{str(error.filename)[:LONGEST_NAME]}: {error.strerror or error}")
             raise typer.Exit(1) from None
+        finally:
+            log.removeHandler(logged)
 
 
 app = typer.Typer(
@@ -96,5 +103,4 @@ class _Warnings(logging.Handler):
 
 def main() -> None:
     """Run the command line."""
-    logging.getLogger("flyby").addHandler(_Warnings())
     app(prog_name="flyby")

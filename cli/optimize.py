@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -9,51 +10,23 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.errors import InputError
+from ..tasks.files.outputs import check_outputs, picture_kind, write_all
+from ..tasks.files.places import FilePlaces
+from ..tasks.files.source_places import place_json, short_place
+from ..tasks.optimize import CHANGE, OptimizeOptions, optimize_with
+from ..tasks.read import SourceOptions, read_with
+from ..tasks.setup import Setup, setup_of_program, start_of, writable_robot
 from .console import print_json, print_table, progress
 from .delivery import deliver
-from .emission import Emission
-from .loading import Source, cell_of, robot_of, start_of
-from .options import (
-    AnswersFile,
-    AsJson,
-    Axes,
-    Clearance,
-    Entry,
-    Force,
-    Freed,
-    InPlace,
-    Kept,
-    Limits,
-    MotionFile,
-    NoFloor,
-    OtherFiles,
-    Out,
-    Predefined,
-    ProgramFile,
-    RobotName,
-    Seed,
-    Start,
-    Tilt,
-    WholeCell,
-)
 from .other_vendor import OtherVendor
-from .outputs import check_outputs, check_plot_name, write_all
-from .patching import Places
-from .places import place_json, short_place
+from .parameters import AsJson, Force, InPlace, Out, ProgramFile, with_options
 from .solution_report import solution_json, tell_solution
-from .task_options import effort_of, task_of
-from .translation import party_for
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     from ..core.cell.cell import Cell
-    from ..core.motion.emulator.controller import Controller
     from ..core.program.move import Move
-    from ..core.program.program import Program
     from ..core.program.zone import Zone
     from ..problems.improve.solution import Moved, Solution
-    from ..problems.improve.waypoints import Effort, Progress, Task
 
 COLUMNS = (
     ("move", "right"),
@@ -63,56 +36,13 @@ COLUMNS = (
     ("turn, °", "right"),
     ("zone", "left"),
 )
-CHANGE = "change"
 
 
+@with_options
 def optimize(
     program: ProgramFile,
-    cell: WholeCell = None,
-    robot: RobotName = None,
-    motion: MotionFile = None,
-    entry: Entry = None,
-    io: AnswersFile = None,
-    others: OtherFiles = None,
-    start: Start = None,
-    objective: Annotated[
-        str,
-        typer.Option(
-            help="time, energy, or a weight w between 0 and 1: w · time + (1 − w) · energy, each "
-            "as a share of what the program takes now."
-        ),
-    ] = "time",
-    zones_only: Annotated[
-        bool, typer.Option("--zones-only", help="Change zones alone; every point stays.")
-    ] = False,
-    keep: Kept = None,
-    free: Freed = None,
-    limit: Limits = None,
-    axes: Axes = None,
-    tilt: Tilt = 0.0,
-    clearance: Clearance = None,
-    no_floor: NoFloor = False,
-    predefined: Predefined = False,
-    vias: Annotated[
-        str,
-        typer.Option(
-            help="keep: the number of via points stays; change: idle ones go, and others come "
-            "where they pay."
-        ),
-    ] = "keep",
-    starts: Annotated[
-        int | None, typer.Option(help="Paths to start from; more find better routes.")
-    ] = None,
-    generations: Annotated[
-        int | None, typer.Option(help="How often the best path is varied in turn; 0 is quickest.")
-    ] = None,
-    seed: Seed = 0,
-    own: Annotated[
-        bool,
-        typer.Option(
-            "--own", help="Moves get data of their own where the text has no place for a change."
-        ),
-    ] = False,
+    source: SourceOptions,
+    options: OptimizeOptions,
     other: Annotated[
         str | None,
         typer.Option(
@@ -134,103 +64,56 @@ def optimize(
 
     Only a program that is proven to keep its clearance, as read from the new text, is written.
     """
-    source = Source.of(program, entry, io, others, start)
-    places = Places(out, in_place, source.inputs(cell, motion), force)
+    places = FilePlaces(out, in_place, [program, *source.inputs()], force)
     places.check()
-    check_plot_name(plot)
+    if plot is not None:
+        picture_kind(plot, "--plot")
     check_outputs({"--plot": plot}, places.inputs, force)
-    _check_options(zones_only, bool(limit) or tilt != 0.0, vias == CHANGE, in_place)
-    if other is not None and out is None:
-        raise InputError(
-            f"--vendor {other}: its code goes beside the program's own: name a folder by --out"
-        )
+    _check_places(out, in_place, options.vias, other)
     with progress("reading the program") as say:
-        from ..core.motion.emulator.controller import Controller
-
-        vendor, arm = robot_of(robot, cell, motion)
-        parsed = source.read(vendor, arm)
-        tools = dict.fromkeys(move.tool for move in parsed.moves)
-        where = cell_of((vendor, arm), cell, tools, no_floor=no_floor)
-        if vias == CHANGE:  # a search takes long: what cannot be written anew is refused before it
-            vendor.write(parsed, where.robot)
+        read = read_with(program, source)
+        setup = setup_of_program(read)
+        cell = setup.surroundings(read, no_floor=options.no_floor)
         beside = None
         if other is not None and out is not None:
-            beside = OtherVendor((vendor, where.robot), party_for(other, "--vendor"), out, places)
-            beside.check(parsed)
-        task = task_of(
-            parsed,
-            where,
-            vendor,
-            objective=objective,
-            keep=keep or [],
-            free=free or [],
-            limits=limit or [],
-            axes=axes,
-            tilt=tilt,
-            clearance=clearance,
-            vias=vias,
-            predefined=predefined,
-            start=start_of(start, where.robot),
-        )
-        effort = effort_of(starts, generations, seed)
-        emission = Emission(vendor, where.robot, parsed, own)
-        controller = Controller(vendor, where.robot)
-        made = _optimized(controller, parsed, where, task, effort, emission, zones_only, say)
-        delivery = deliver(made, vendor, emission.files, places, unproven=False)
+            beside = OtherVendor(setup, writable_robot(other, "--vendor"), out, places)
+            beside.check(read)
+        made = optimize_with(read, replace(options, report=say))
+        delivery = deliver(made, setup.vendor, places, unproven=False)
         if beside is not None:
             delivery = beside.written(delivery)
         if plot is not None:
             say("drawing")
-            drawn = _draw(plot, where, controller, made, task)
+            drawn = _draw(plot, cell, setup, made)
             delivery = replace(delivery, written=[*delivery.written, *drawn])
     if json:
-        print_json(_json(delivery.made, where, delivery.written))
+        print_json(_json(delivery.made, cell, delivery.written))
     else:
-        _tell(program, delivery.made, where, delivery.written)
+        _tell(program, delivery.made, cell, delivery.written)
     delivery.end(told=not json)
 
 
-def _check_options(zones_only: bool, limited: bool, other_vias: bool, in_place: bool) -> None:
-    if zones_only and (limited or other_vias):
-        raise InputError(
-            "--zones-only leaves every point as it is: --limit, --tilt and --vias change do not go "
-            "with it"
-        )
-    if in_place and other_vias:
+def _check_places(out: Path | None, in_place: bool, vias: str, other: str | None) -> None:
+    if in_place and vias == CHANGE:
         raise InputError(
             "--in-place and --vias change: with other via points the program is written anew: name "
             "a folder by --out"
         )
+    if other is not None and out is None:
+        raise InputError(
+            f"--vendor {other}: its code goes beside the program's own: name a folder by --out"
+        )
 
 
-def _optimized(
-    controller: Controller,
-    program: Program,
-    cell: Cell,
-    task: Task,
-    effort: Effort,
-    emission: Emission,
-    zones_only: bool,
-    say: Callable[[str], None],
-) -> Solution:
-    from ..problems.improve.waypoints import optimize_waypoints, optimize_zones
-
-    def report(state: Progress) -> None:
-        gained = "" if state.best == 1.0 else f", best so far {100 * state.best:.1f} %"
-        say(f"{state.stage}: {state.done} of {state.total}{gained} (Ctrl-C ends with the best)")
-
-    run = optimize_zones if zones_only else optimize_waypoints
-    return run(controller, program, cell, task, effort, emission.read_back, report)
-
-
-def _draw(plot: Path, cell: Cell, controller: Controller, made: Solution, task: Task) -> list[Path]:
+def _draw(plot: Path, cell: Cell, setup: Setup, made: Solution) -> list[Path]:
+    from ..core.motion.emulator.controller import Controller
     from ..drawing.cell import draw_cell
 
-    runs = [("before", controller.run(made.original, task.start))]
+    controller, start = Controller(setup.vendor, setup.robot), start_of(made.original)
+    runs = [("before", controller.run(made.original, start))]
     if made.changed:
-        runs.append(("after", controller.run(made.program, task.start)))
-    data = draw_cell(cell, runs, plot.suffix.lower()[1:])
-    write_all("--plot", {plot: data})
+        runs.append(("after", controller.run(made.program, start)))
+    write_all("--plot", {plot: draw_cell(cell, runs, picture_kind(plot, "--plot"))})
     return [plot]
 
 

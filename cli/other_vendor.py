@@ -7,16 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.errors import FlybyError, Note
+from ..tasks.files.outputs import check_outputs, write_in
+from ..tasks.files.places import FilePlaces
+from ..tasks.setup import Setup
+from ..tasks.translate import carried
 from .delivery import Delivery
-from .outputs import check_outputs, encoded, write_in
-from .patching import Places
-from .translation import carried
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
     from ..core.vendor import Sources
-    from ..problems.improve.solution import Solution
-    from .translation import Party
 
 
 @dataclass(frozen=True)
@@ -24,20 +23,20 @@ class OtherVendor:
     """Where such code goes: into a folder of the vendor's name.
 
     Args:
-        before, after: vendor and robot of the program, and of the code.
+        before, after: the robot of the program, and of the code.
         out: folder of the program's own files.
         places: of these.
     """
 
-    before: Party
-    after: Party
+    before: Setup
+    after: Setup
     out: Path
-    places: Places
+    places: FilePlaces
 
     @property
     def folder(self) -> Path:
         """The folder."""
-        return self.out / self.after[0].name
+        return self.out / self.after.vendor.name
 
     def check(self, program: Program) -> None:
         """Refuse, before work begins, what cannot be carried over even as it is.
@@ -50,18 +49,20 @@ class OtherVendor:
         if self.folder.is_dir():
             check_outputs(paths, self.places.inputs, self.places.replace_existing)
 
-    def written(self, delivery: Delivery[Solution]) -> Delivery[Solution]:
+    def written(self, delivery: Delivery) -> Delivery:
         """The delivery with this code written too, if its own is, and notes on what is lost."""
         if not delivery.written:
             return delivery
-        robot = self.after[1].name
+        robot = self.after.robot.name
+        paths: list[Path] = []
         try:
             sources, losses = self._carried(delivery.made.program)
         except FlybyError as error:
-            paths, notes = [], [Note(f"nothing was written for {robot}: {error}")]
+            notes = [Note(f"nothing was written for {robot}: {error}")]
         else:
             given = self.places.inputs, self.places.replace_existing
-            paths = write_in("--vendor", self.folder, encoded(sources), *given)
+            files = {Path(name): text.encode() for name, text in sources.items()}
+            paths = write_in("--vendor", self.folder, files, *given)
             notes = [replace(note, message=f"for {robot}: {note.message}") for note in losses]
             notes.append(
                 Note(
@@ -75,4 +76,4 @@ class OtherVendor:
     def _carried(self, program: Program) -> tuple[Sources, tuple[Note, ...]]:
         """The files, and what could not be carried over."""
         made = carried(program, self.before, self.after)
-        return self.after[0].write(made.program, self.after[1]), made.losses
+        return self.after.vendor.write(made.program, self.after.robot), made.losses

@@ -2,86 +2,38 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..core.errors import InputError
-from .console import print_json, print_rich, print_table, progress, warn
-from .front_files import FrontFiles
-from .installed import registry
-from .loading import Source, robot_of, start_of
-from .options import (
-    AnswersFile,
-    AsJson,
-    Axes,
-    CellFile,
-    Clearance,
-    Entry,
-    Force,
-    Freed,
-    Kept,
-    Limits,
-    MotionFile,
-    OtherFiles,
-    Out,
-    ProgramFile,
-    RobotName,
-    Seed,
-    Start,
-    Tilt,
+from ..tasks.files.outputs import (
+    check_folder,
+    check_outputs,
+    picture_kind,
+    write_all,
+    write_in,
 )
-from .outputs import check_folder, check_outputs, check_plot_name, write_all
-from .places import note_json
-from .task_options import effort_of, task_of
+from ..tasks.files.source_places import note_json
+from ..tasks.pareto import ParetoOptions, pareto_with
+from ..tasks.read import SourceOptions, read_with
+from ..tasks.setup import setup_of_program
+from .console import print_json, print_rich, print_table, progress, warn
+from .parameters import AsJson, Force, Out, ProgramFile, with_options
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from ..core.cell.cell import Cell
-    from ..core.motion.model.consumption import Consumption
-    from ..core.program.program import Program
     from ..core.robot.model import Robot
-    from ..core.vendor import Vendor
-    from ..problems.improve.energy import Front, Point, Progress, Scope
-    from ..problems.improve.waypoints import Task as Wishes
+    from ..problems.improve.energy import Front, Point
+    from ..tasks.fronts import ProgramFront
 
 
+@with_options
 def pareto(
     program: ProgramFile,
-    robot: RobotName = None,
-    cell: CellFile = None,
-    motion: MotionFile = None,
-    entry: Entry = None,
-    io: AnswersFile = None,
-    others: OtherFiles = None,
-    start: Start = None,
-    points: Annotated[int, typer.Option(help="Durations to look at; two or more.")] = 8,
-    change: Annotated[
-        str,
-        typer.Option(
-            help="What may change: waypoints (with zones and speeds), zones (with speeds) or "
-            "speeds. Without a cell it is speeds, with their accelerations."
-        ),
-    ] = "waypoints",
-    motors: Annotated[
-        Path | None,
-        typer.Option(
-            help="Motor figures (TOML): energy is then what the mains give, in J; otherwise it is "
-            "squared torque over time."
-        ),
-    ] = None,
-    keep: Kept = None,
-    free: Freed = None,
-    limit: Limits = None,
-    axes: Axes = None,
-    tilt: Tilt = 0.0,
-    clearance: Clearance = None,
-    starts: Annotated[
-        int, typer.Option(help="Paths to start from; with 1, the program's own alone.")
-    ] = 1,
-    seed: Seed = 0,
+    source: SourceOptions,
+    options: ParetoOptions,
     out: Out = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the front: PNG, PDF or SVG.")] = None,
     json: AsJson = False,
@@ -92,157 +44,45 @@ def pareto(
     With --out each gets a folder: point-1 is the fastest. In a cell each is proven to keep its
     clearance, as read from its text.
     """
-    source = Source.of(program, entry, io, others, start)
-    inputs = [*source.inputs(cell, motion), *([motors] if motors else [])]
+    motors = [Path(options.motors)] if isinstance(options.motors, str | Path) else []
+    inputs = [program, *source.inputs(), *motors]
     check_folder("--out", out)
-    check_plot_name(plot)
+    if plot is not None:
+        picture_kind(plot, "--plot")
     check_outputs({"--plot": plot}, inputs, force)
-    scope = _scope(change, cell)
-    effort = effort_of(starts, None, seed)
     with progress("reading the program") as say:
-        from ..core.motion.emulator.controller import Controller
-        from ..problems.improve.energy import Task as EnergyTask
-        from ..problems.improve.energy import pareto as find
-
-        vendor, arm = robot_of(robot, cell, motion)
-        where = _cell(cell)
-        parsed = source.read(vendor, arm)
-        wishes = _wishes(
-            parsed, where, vendor, arm, keep, free, limit, axes, tilt, clearance, start
-        )
-        task = EnergyTask(scope, _consumption(motors, arm), wishes)
-        files = FrontFiles(vendor, arm, parsed)
-        made = find(
-            Controller(vendor, arm),
-            parsed,
-            where,
-            task,
-            points,
-            effort,
-            vendor.speaks,
-            files.read_back,
-            _teller(say),
-        )
-        written = files.write(out, [p.program for p in made.points], inputs, force)
+        read = read_with(program, source)
+        robot = setup_of_program(read).robot
+        made = pareto_with(read, replace(options, report=say))
+        written = _written(made, out, inputs, force)
         if plot is not None and made.points:
             say("drawing")
-            _draw(plot, made, arm)
+            write_all("--plot", {plot: made.picture(picture_kind(plot, "--plot"))})
     drawn = plot if made.points else None
     if json:
-        print_json(_json(made, arm, written, drawn))
+        print_json(_json(made, robot, written, drawn))
     else:
-        _tell(made, arm, written, drawn)
+        _tell(made, written, drawn)
         if out is None:
             print_rich("nothing was written: --out FOLDER writes the programs")
     if not made.proven:
         raise typer.Exit(1)
 
 
-def _scope(text: str, cell: Path | None) -> Scope:
-    from ..problems.improve.energy import Scope
-
-    try:
-        return Scope(text) if cell is not None else Scope.SPEEDS
-    except ValueError:
-        raise InputError(f"--change {text}: {', '.join(Scope)}") from None
-
-
-def _cell(file: Path | None) -> Cell | None:
-    if file is None:
-        return None
-    from ..core.cell.file import load_cell
-
-    return load_cell(file, registry())
+def _written(
+    made: ProgramFront, out: Path | None, inputs: Sequence[Path], force: bool
+) -> list[list[Path]]:
+    """The files of each program; empty if there is no folder for them."""
+    if out is None:
+        return []
+    files = {Path(name): data for name, data in made.files.items()}
+    written = write_in("--out", out, files, inputs, force)
+    folders = [out / f"point-{k + 1}" for k in range(len(made.points))]
+    return [[path for path in written if path.parent == folder] for folder in folders]
 
 
-def _wishes(
-    program: Program,
-    cell: Cell | None,
-    vendor: Vendor,
-    robot: Robot,
-    keep: list[str] | None,
-    free: list[str] | None,
-    limit: list[str] | None,
-    axes: str | None,
-    tilt: float,
-    clearance: float | None,
-    start: str | None,
-) -> Wishes:
-    from ..core.cell.cell import Cell
-
-    shapes = {
-        "--free": free,
-        "--limit": limit,
-        "--axes": axes,
-        "--tilt": tilt,
-        "--clearance": clearance,
-    }
-    for option, value in shapes.items():
-        if cell is None and value:
-            raise InputError(f"{option} needs a cell (--cell): without one, only speeds change")
-    return task_of(
-        program,
-        cell or Cell(robot=robot, vendor=vendor.name),
-        vendor,
-        objective="time",
-        keep=keep or [],
-        free=free or [],
-        limits=limit or [],
-        axes=axes,
-        tilt=tilt,
-        clearance=clearance,
-        vias="keep",
-        predefined=False,
-        start=start_of(start, robot),
-    )
-
-
-def _consumption(motors: Path | None, robot: Robot) -> Consumption:
-    from ..core.motion.model.consumption import SQUARED_TORQUE
-    from ..core.motion.model.motors_file import load_motors
-
-    if motors is None:
-        return SQUARED_TORQUE
-    made = load_motors(motors)
-    if len(made.copper) > robot.size:
-        raise InputError(
-            f"--motors {motors}: {robot.name} has {robot.size} axes, "
-            f"copper_w_per_nm2 has {len(made.copper)} numbers"
-        )
-    return made
-
-
-def _teller(say: Callable[[str], None]) -> Callable[[Progress], None]:
-    def tell(state: Progress) -> None:
-        say(f"{state.stage}: {state.done} of {state.total} (Ctrl-C ends with what there is)")
-
-    return tell
-
-
-def _draw(plot: Path, made: Front, robot: Robot) -> None:
-    from .plot_front import draw_front
-
-    data = draw_front(made, robot.axis_names, plot.suffix.lower()[1:])
-    write_all("--plot", {plot: data})
-
-
-# ------------------------------------------------------------------------- telling
-
-
-def _tell(made: Front, robot: Robot, written: Sequence[Sequence[Path]], plot: Path | None) -> None:
-    joints = [j for j, value in enumerate(made.given.by_joint) if abs(value) > 0.0]
-    columns = [
-        ("point", "right"),
-        ("time s", "right"),
-        ("%", "right"),
-        (f"energy {made.unit}", "right"),
-        ("%", "right"),
-        *((f"{robot.axis_names[j]} %", "right") for j in joints),
-        ("clearance", "left"),
-    ]
-    rows = [("given", *_row(made.given, made.given, joints))]
-    rows += [(str(k + 1), *_row(made.given, p, joints)) for k, p in enumerate(made.points)]
-    print_table(columns, rows)
+def _tell(made: ProgramFront, written: Sequence[Sequence[Path]], plot: Path | None) -> None:
+    print_table(made.columns(), made.rows())
     for note in made.notes:
         warn(str(note))
     for paths in written:
@@ -250,22 +90,6 @@ def _tell(made: Front, robot: Robot, written: Sequence[Sequence[Path]], plot: Pa
             print_rich(f"wrote {path}")
     if plot is not None:
         print_rich(f"wrote {plot}")
-
-
-def _row(given: Point, point: Point, joints: Sequence[int]) -> tuple[str, ...]:
-    def change(value: float, before: float) -> str:
-        # What motors take is negative where more comes back.
-        return "" if point is given else f"{100.0 * (value - before) / abs(before):+.1f}"
-
-    proof = point.certificate
-    return (
-        f"{point.duration:.4f}",
-        change(point.duration, given.duration),
-        f"{point.energy:.5g}",
-        change(point.energy, given.energy),
-        *(change(point.by_joint[j], given.by_joint[j]) for j in joints),
-        "" if proof is None else ("proven" if proof.proven else "not proven"),
-    )
 
 
 def _json(

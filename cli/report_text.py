@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..tasks.files.source_places import note_json, place_json
+from ..tasks.report import COLUMNS, MoveReport, Report, move_row, seconds
 from .console import print_rich, print_table, warn
-from .places import note_json, place_json
-from .report import MoveReport, Report, ZoneReport
-from .values import fixed
 
 
 def print_report(report: Report) -> None:
@@ -28,12 +27,12 @@ def print_notes(report: Report) -> None:
 
 def _rows(report: Report) -> list[tuple[str, ...]]:
     """What the robot waits before, a line a move, and what all of that takes."""
-    before = _no_move("first wait", "", "", _seconds(report.first_wait), "")
+    before = _no_move("first wait", "", "", seconds(report.first_wait), "")
     length, moving = f"{1e3 * report.length:.1f}", f"{report.moving:.3f}"
-    rests = _seconds(report.waiting), _seconds(report.settling)
+    rests = seconds(report.waiting), seconds(report.settling)
     return [
         *([before] if report.first_wait else []),
-        *(_row(move) for move in report.moves),
+        *(move_row(move) for move in report.moves),
         _no_move("together", length, moving, *rests),
     ]
 
@@ -68,7 +67,7 @@ def _move_json(move: MoveReport) -> dict[str, Any]:
         "driven": move.driven,
         "length_m": move.length,
         "begin_s": move.begin,
-        "duration_s": move.duration,
+        "duration_s": move.time,
         "wait_s": move.wait,
         "settling_s": move.settling,
         "top_speed_m_s": move.top_speed,

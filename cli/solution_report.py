@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..tasks.files.source_places import note_json
 from .console import print_rich, print_table, warn
-from .places import note_json
 
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell

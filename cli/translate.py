@@ -3,93 +3,69 @@
 from __future__ import annotations
 
 import textwrap
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..core.errors import InputError
-from . import values
+from ..tasks.catalogue import registry
+from ..tasks.files.outputs import check_folder, write_in
+from ..tasks.files.source_places import note_json, short_place
+from ..tasks.read import TextOptions, read_with
+from ..tasks.setup import setup_of_program
+from ..tasks.translate import TranslateOptions, target_of, translate_with
 from .console import print_json, print_rich, print_table, progress
-from .installed import registry
-from .loading import Source, robot_of
-from .options import AnswersFile, AsJson, CellFile, Entry, Force, OtherFiles, Out, ProgramFile
-from .outputs import check_folder, encoded, write_in
-from .places import note_json, short_place
-from .translation import carried, party_of
+from .parameters import AsJson, Force, Out, ProgramFile, with_options
 
 if TYPE_CHECKING:
     from ..core.errors import Note
     from ..core.robot.model import Robot
     from ..core.translation.translate import Translation
-    from ..core.vendor import Vendor
 
 COLUMNS = (("line", "left"), ("what could not be carried over", "left"))
 LINES_WIDTH = 30
 """Characters of a row of line numbers."""
 
 
+@with_options
 def translate(
     program: ProgramFile,
-    robot: Annotated[
-        str, typer.Option("--robot", help="The new robot, such as kuka/kr30-3 ('flyby robots').")
-    ],
-    to: Annotated[
-        str | None, typer.Option("--to", help="The new robot's vendor, such as kuka.")
-    ] = None,
+    options: TranslateOptions,
+    text: TextOptions,
     old: Annotated[
         str | None, typer.Option("--from", help="The robot that the program is for now.")
     ] = None,
-    cell: CellFile = None,
-    base: Annotated[
-        str | None,
-        typer.Option(
-            "--base",
-            help="The new robot's base in the old one's world: x,y,z,rx,ry,rz in mm and degrees. "
-            "Without it both stand at the same place.",
-        ),
+    cell: Annotated[
+        Path | None, typer.Option("--cell", help="Cell file: robot, base and external axes.")
     ] = None,
-    entry: Entry = None,
-    io: AnswersFile = None,
-    others: OtherFiles = None,
     out: Out = None,
     json: AsJson = False,
     force: Force = False,
 ) -> None:
     """Carry a program to another robot: targets, zones and speeds in its vendor's terms."""
     check_folder("--out", out)
-    source = Source.of(program, entry, io, others)
-    place = None if base is None else values.pose(base, "--base")
-    with progress("reading the program") as say:
-        before, after = _old(program, old, cell), _new(robot, to)
-        parsed = source.read(*before)
-        say(f"translating {len(parsed.moves)} moves")
-        made = carried(parsed, before, after, place)
-        sources = after[0].write(made.program, after[1])
-        written: list[Path] = []
-        if out is not None:
-            written = write_in("--out", out, encoded(sources), source.inputs(cell), force)
-    if json:
-        print_json(_json(made, before[1], after[1], written))
-    else:
-        _tell(program, made, after[1], list(sources), written)
-
-
-def _old(program: Path, name: str | None, cell: Path | None) -> tuple[Vendor, Robot]:
-    if name is None and cell is None:
+    if old is None and cell is None:
         vendor = registry().reader_of(program).name
         raise InputError(
             f"which robot is {program} for now? Give --from ('flyby robots {vendor}' lists those "
             f"of {vendor}) or --cell: corners and times are taken from its motion"
         )
-    return robot_of(name, cell)
-
-
-def _new(robot: str, vendor: str | None) -> tuple[Vendor, Robot]:
-    arm = party_of(robot if vendor is None or "/" in robot else f"{vendor}/{robot}")
-    if vendor is not None and vendor != arm[0].name:
-        raise InputError(f"--to {vendor}: {robot} is a robot of {arm[0].name}")
-    return arm
+    source = text.for_robot(old, cell)
+    with progress("reading the program") as say:
+        after = target_of(options)
+        read = read_with(program, source)
+        made = translate_with(read, replace(options, report=say))
+        sources = after.vendor.write(made.program, after.robot)
+        written: list[Path] = []
+        if out is not None:
+            files = {Path(name): code.encode() for name, code in sources.items()}
+            written = write_in("--out", out, files, [program, *source.inputs()], force)
+    if json:
+        print_json(_json(made, setup_of_program(read).robot, after.robot, written))
+    else:
+        _tell(program, made, after.robot, list(sources), written)
 
 
 def _tell(

@@ -3,47 +3,28 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..tasks.files.places import FilePlaces
+from ..tasks.files.source_places import place_json, short_place
+from ..tasks.read import SourceOptions, read_with
+from ..tasks.setup import setup_of_program
+from ..tasks.zones import ZoneOptions, zones_with
 from .console import print_json, print_table, progress
 from .delivery import deliver
-from .loading import Source, cell_of, robot_of, start_of
-from .options import (
-    AnswersFile,
-    AsJson,
-    Clearance,
-    Entry,
-    Force,
-    Freed,
-    InPlace,
-    MotionFile,
-    NoFloor,
-    OtherFiles,
-    Out,
-    Predefined,
-    ProgramFile,
-    RobotName,
-    Start,
-    WholeCell,
-)
-from .patching import Patching, Places
-from .places import place_json, short_place
+from .parameters import AsJson, Force, InPlace, Out, ProgramFile, with_options
 from .solution_report import solution_json, tell_solution
-from .task_options import clearance_of, freed_stops, move_index, rounding_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from ..core.cell.cell import Cell
-    from ..core.program.program import Program
     from ..core.program.zone import Zone
-    from ..core.vendor import Vendor
     from ..problems.improve.zones.changes import ZoneChange
     from ..problems.improve.zones.maximize import ZoneSolution
-    from ..problems.improve.zones.options import ZoneOptions
 
 COLUMNS = (
     ("move", "right"),
@@ -54,29 +35,11 @@ COLUMNS = (
 )
 
 
+@with_options
 def zones(
     program: ProgramFile,
-    cell: WholeCell = None,
-    robot: RobotName = None,
-    motion: MotionFile = None,
-    entry: Entry = None,
-    io: AnswersFile = None,
-    others: OtherFiles = None,
-    start: Start = None,
-    clearance: Clearance = None,
-    no_floor: NoFloor = False,
-    predefined: Predefined = False,
-    free: Freed = None,
-    keep: Annotated[
-        list[int] | None,
-        typer.Option("--keep", help="A move whose zone stays; may be given several times."),
-    ] = None,
-    own: Annotated[
-        bool,
-        typer.Option(
-            "--own", help="Moves that share one datum, or compute their zone, get one of their own."
-        ),
-    ] = False,
+    source: SourceOptions,
+    options: ZoneOptions,
     out: Out = None,
     in_place: InPlace = False,
     unproven: Annotated[
@@ -90,53 +53,19 @@ def zones(
 
     The exit status is 1 if the new program is not proven to keep its clearance.
     """
-    source = Source.of(program, entry, io, others, start)
-    places = Places(out, in_place, source.inputs(cell, motion), force)
+    places = FilePlaces(out, in_place, [program, *source.inputs()], force)
     places.check()
     with progress("reading the program") as say:
-        from ..core.motion.emulator.controller import Controller
-        from ..problems.improve.zones.maximize import maximize_zones
-
-        vendor, arm = robot_of(robot, cell, motion)
-        parsed = source.read(vendor, arm)
-        tools = dict.fromkeys(move.tool for move in parsed.moves)
-        where = cell_of((vendor, arm), cell, tools, no_floor=no_floor)
-        options = _options(parsed, vendor, where, clearance, predefined, free, keep, own, start)
-        patching = Patching(vendor, where.robot, own)
-        controller = Controller(vendor, where.robot)
-        made = maximize_zones(controller, parsed, where, options, patching.read_back, say)
-        delivery = deliver(made, vendor, patching.files, places, unproven)
+        read = read_with(program, source)
+        setup = setup_of_program(read)
+        cell = setup.surroundings(read, no_floor=options.no_floor)
+        made = zones_with(read, replace(options, report=say))
+        delivery = deliver(made, setup.vendor, places, unproven)
     if json:
-        print_json(_json(delivery.made, where, delivery.written))
+        print_json(_json(made, cell, delivery.written))
     else:
-        _tell(program, delivery.made, where, delivery.written)
+        _tell(program, made, cell, delivery.written)
     delivery.end(told=not json)
-
-
-def _options(
-    program: Program,
-    vendor: Vendor,
-    cell: Cell,
-    clearance: float | None,
-    predefined: bool,
-    free: list[str] | None,
-    keep: list[int] | None,
-    own: bool,
-    start: str | None,
-) -> ZoneOptions:
-    from ..problems.improve.zones.options import ZoneOptions
-    from ..problems.improve.zones.sizes import pattern_for
-
-    kept = [move_index(program, str(number), "--keep") for number in keep or []]
-    return ZoneOptions(
-        clearance=clearance_of(clearance),
-        freed=freed_stops(program, free or [], kept),
-        pattern=pattern_for(vendor.speaks),
-        kept=kept,
-        apart=own,
-        rounding=rounding_of(vendor, predefined),
-        start=start_of(start, cell.robot),
-    )
 
 
 def _tell(program: Path, made: ZoneSolution, cell: Cell, written: Sequence[Path]) -> None:

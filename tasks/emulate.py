@@ -39,7 +39,7 @@ def emulate_with(program: Program, options: EmulateOptions) -> EmulatedRun:
         MotionError: it cannot be driven; the message names the move.
         InputError: nobody says which robot.
     """
-    from ..core.motion.controller import Controller
+    from ..core.motion.emulator.controller import Controller
     from .runs import EmulatedRun
 
     program, setup = with_setup(program, options)

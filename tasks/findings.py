@@ -16,7 +16,6 @@ COLUMNS = (
 )
 
 
-
 class Findings(tuple[Finding, ...]):
     """What was found, in the order of the source."""
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from ..core.errors import FlybyError, InputError
 from .catalogue import registry
 from .options.door import spelt
-from .options.entries import value
+from .options.entries import TaskOptions, value
 from .options.keywords import by_keywords
 from .options.texts import joint_target
 from .setup import RobotOptions, Setup, setup_of
@@ -18,13 +18,13 @@ from .setup import RobotOptions, Setup, setup_of
 if TYPE_CHECKING:
     from ..core.program.program import Program
     from ..core.program.target import JointTarget
-    from ..core.source.answers import Answers
+    from ..core.source.execution.answers import Answers
     from ..core.vendor import Vendor
 
 
 @dataclass(frozen=True, kw_only=True)
-class SourceOptions(RobotOptions):
-    """How a program is read, and for which robot."""
+class TextOptions(TaskOptions):
+    """How a program is read."""
 
     entry: str | None = value(None, "Routine to run.")
     answers: str | Path | Answers | None = value(
@@ -40,6 +40,23 @@ class SourceOptions(RobotOptions):
         several=True,
         flag="--with",
     )
+
+    def for_robot(self, robot: str | None, cell: Path | None) -> SourceOptions:
+        """The same for a robot."""
+        return SourceOptions(
+            robot=robot,
+            cell=cell,
+            entry=self.entry,
+            answers=self.answers,
+            others=self.others,
+            report=self.report,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class SourceOptions(RobotOptions, TextOptions):
+    """How a program is read, and for which robot."""
+
     start: str | Sequence[float] | JointTarget | None = value(
         None,
         "Axis values before the first move, degrees and mm: 0,0,0,0,30,0. "
@@ -104,7 +121,7 @@ def check_language(vendor: Vendor, program: Path) -> None:
 def _answers(options: SourceOptions) -> Answers | None:
     if not isinstance(options.answers, str | Path):
         return options.answers
-    from ..core.source.answers import load_answers
+    from ..core.source.execution.answers import load_answers
 
     return load_answers(options.answers)
 
@@ -128,9 +145,7 @@ def _program_in(folder: Path, setup: Setup, options: SourceOptions) -> Path:
 
 def _runs(file: Path, setup: Setup, options: SourceOptions) -> bool:
     try:
-        setup.vendor.read_file(
-            file, options.entry, setup.robot, _answers(options), options.others
-        )
+        setup.vendor.read_file(file, options.entry, setup.robot, _answers(options), options.others)
     except FlybyError:
         return False
     return True

@@ -21,9 +21,7 @@ if TYPE_CHECKING:
     from ..core.robot.model import Robot
     from ..core.vendor import Vendor
 
-NO_FLOOR = (
-    "Without a cell the plane under the robot's base is an obstacle; this lifts it."
-)
+NO_FLOOR = "Without a cell the plane under the robot's base is an obstacle; this lifts it."
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,7 +137,9 @@ def writable_robot(name: str, option: str | None = None) -> Setup:
     if option is not None and "/" not in name and name in registry().vendors:
         own = robots(name)
         if len(own) != 1:
-            raise InputError(f"{option} {name}: which of its robots? {', '.join(own) or 'It has none'}")
+            raise InputError(
+                f"{option} {name}: which of its robots? {', '.join(own) or 'It has none'}"
+            )
         (name,) = own
     made = named_robot(name)
     made.vendor.check_written(made.robot)
@@ -182,11 +182,20 @@ def with_setup(program: Program, options: RobotOptions) -> tuple[Program, Setup]
         made = replace(own, vendor=own.vendor.driven_by(Path(options.motion), own.robot))
         return replace(program, setup=made), made
     made = setup_of(options)
-    if options.motion is None and own is not None and own.robot == made.robot:
-        # What the robot was read to be driven by stays, unless the cell says otherwise.
-        if made.cell is None or made.cell.motion is None:
-            made = replace(made, vendor=own.vendor)
+    said = options.motion is not None or (made.cell is not None and made.cell.motion is not None)
+    if not said and own is not None and own.robot == made.robot:
+        # A motion file that the program was read with stays, unless another is named.
+        made = replace(made, vendor=own.vendor)
     return in_setup(program, made), made
+
+
+def setup_of_program(program: Program) -> Setup:
+    """The robot that a program was read for.
+
+    Raises:
+        InputError: it was read for none.
+    """
+    return with_setup(program, RobotOptions())[1]
 
 
 def start_of(program: Program) -> JointTarget | None:
@@ -195,3 +204,13 @@ def start_of(program: Program) -> JointTarget | None:
 
     reading = program.reading
     return reading.options.start if isinstance(reading, Reading) else None
+
+
+def like(program: Program, original: Program, setup: Setup) -> Program:
+    """A program that was read back, for the robot and from the start of the one it was made of."""
+    from ..core.source.reading import Reading
+
+    reading, start = program.reading, start_of(original)
+    if isinstance(reading, Reading) and reading.options.start != start:
+        reading = replace(reading, options=replace(reading.options, start=start))
+    return replace(program, setup=setup, reading=reading)

@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 SETUPTOOLS = PYPROJECT["tool"]["setuptools"]
-SHELVES = ("cli", "core", "drawing", "identification", "problems", "testing", "vendors")
+SHELVES = ("cli", "core", "drawing", "identification", "problems", "tasks", "testing", "vendors")
 CHECKED = (*SHELVES, "validation")
 """Folders that type checkers read; validation is for tests and benchmarks, not shipped."""
 LINKS = (*CHECKED, "__init__.py", "py.typed")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +19,7 @@ from ...core.spatial.rotation import rotation_vector
 
 if TYPE_CHECKING:
     from ...core.collision.proof.verdict import Certificate
+    from ...core.source.reading import Files
 
 
 _STILL = 1e-9
@@ -102,6 +103,7 @@ class Solution:
         notes: what was found on the way.
         moved: the via points that are elsewhere than before, or turned; empty where the number of
             moves has changed.
+        texts: the source files that were changed, or written anew, and read back as the program.
     """
 
     original: Program
@@ -111,6 +113,18 @@ class Solution:
     certificate: Certificate | None = None
     notes: tuple[Note, ...] = ()
     moved: tuple[Moved, ...] = ()
+    texts: Files = field(default_factory=dict, repr=False)
+
+    @property
+    def files(self) -> dict[str, bytes]:
+        """The new program for a folder: changed files with all that they run with.
+
+        Raises:
+            InputError: the program was not read from source files.
+        """
+        from ...core.source.patch.runnable import runnable_files
+
+        return runnable_files(self.original, self.texts)
 
     @property
     def changed(self) -> bool:

@@ -9,9 +9,9 @@ from ...core.errors import InputError, Note
 from ..options.door import spelt, switched
 
 if TYPE_CHECKING:
-    from ...core.source.bystanders import Bystander
+    from ...core.source.not_executed.search import Bystander
     from ...core.vendor import Vendor
-    from ...problems.solution import Solution
+    from ...problems.improve.solution import Solution
 
 _SHOWN = 5
 """Lines that a note names."""
@@ -24,7 +24,7 @@ def not_executed_notes(made: Solution, vendor: Vendor) -> tuple[Note, ...]:
         made: with the program as it is read from its new text.
         vendor: whose language it is.
     """
-    from ...core.source.bystanders import bystanders
+    from ...core.source.not_executed.search import bystanders
 
     wording = None if vendor.speaks is None else vendor.speaks.wording
     if wording is None or not made.changed or _is_anew(made):

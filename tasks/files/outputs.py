@@ -118,7 +118,7 @@ def write_all(option: str, files: Mapping[Path, bytes], made: Path | None = None
     Raises:
         InputError: naming the option.
     """
-    from ...core.output_files import WriteError, write_files
+    from ...core.files.writing import WriteError, write_files
 
     try:
         notes = write_files(files, made)

@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...core.errors import InputError
-from ..options.door import given, spelt, switched
+from ..options.door import spelt, switched
 from .outputs import check_folder, check_outputs, write_all
-from .texts import runnable
 
 if TYPE_CHECKING:
     from ...core.program.program import Program
@@ -72,14 +71,16 @@ class FilePlaces:
         """
         if self.out is None:
             return self._replace(files, original) if self.in_place else []
-        paths = {self.out / name: data for name, data in runnable(original, files).items()}
+        from ...core.source.patch.runnable import runnable_files
+
+        paths = {self.out / name: data for name, data in runnable_files(original, files).items()}
         named = {f"{spelt('out')}: {path.name}": path for path in paths}
         check_outputs(named, self.inputs, self.replace_existing, self.out)
         write_all(spelt("out"), paths, self.out)
         return list(paths)
 
     def _replace(self, files: Files, original: Program) -> list[Path]:
-        from ...core.source.patching import reading_of
+        from ...core.source.patch.edits import reading_of
 
         paths = {Path(file.name): file.data for file in files.values()}
         _check_unchanged(paths, reading_of(original).files)
@@ -89,8 +90,8 @@ class FilePlaces:
 
 def _check_unchanged(paths: Iterable[Path], read: Files) -> None:
     """Refuse to write over what somebody has saved since the files were read."""
-    from ...core.input_files import read_bytes
-    from ...core.source.text import LARGEST_FILE
+    from ...core.files.reading import read_bytes
+    from ...core.source.text.files import LARGEST_FILE
 
     in_place = switched("in_place")
     for path in paths:

@@ -27,4 +27,8 @@ def short_place(program: Path | None, span: Span | None) -> str:
     """The line, with the file before it if that is not the program's main one."""
     if span is None:
         return ""
-    return str(span.line) if program is None or span.file == str(program) else f"{Path(span.file).name}:{span.line}"
+    return (
+        str(span.line)
+        if program is None or span.file == str(program)
+        else f"{Path(span.file).name}:{span.line}"
+    )

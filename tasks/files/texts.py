@@ -71,7 +71,7 @@ class ProgramTexts:
         return read
 
     def _made(self, program: Program) -> tuple[Program, Files]:
-        from ...core.source.patching import reading_of
+        from ...core.source.patch.edits import reading_of
 
         old, new = ([move.origin for move in p.moves] for p in (self._original, program))
         if old == new:
@@ -85,7 +85,7 @@ class ProgramTexts:
         return self._written(program)
 
     def _written(self, program: Program) -> tuple[Program, Files]:
-        from ...core.source.text import SourceFile
+        from ...core.source.text.files import SourceFile
 
         # Where the user says that the robot stands is no part of the program.
         own = replace(program, start=self._original.start)
@@ -107,20 +107,3 @@ def written_anew(setup: Setup, program: Program) -> tuple[Program, Sources]:
             (folder / file).write_bytes(text.encode())
         first = next(file for file in sources if Path(file).suffix.lower() in vendor.suffixes)
         return vendor.read_file(folder / first, robot=setup.robot), sources
-
-
-def runnable(original: Program, changed: Files) -> dict[str, bytes]:
-    """Files for a folder: those that changed with all that they run with, changed or not.
-
-    Args:
-        original: as it was read.
-        changed: as a patch or a writer hands them out; none for the original itself.
-    """
-    from ...core.source.patching import reading_of, runnable_set
-    from ...core.source.reading import named_apart
-
-    reading = reading_of(original)
-    changed = changed or {reading.main: reading.files[reading.main]}
-    if all(file.name in reading.files for file in changed.values()):
-        changed = named_apart(runnable_set(original, changed))
-    return {name: file.data for name, file in changed.items()}

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields
-from functools import cache
 from numbers import Integral, Real
 from typing import Any
 
@@ -140,8 +139,8 @@ class Entry:
         wanted = Integral if self.kind is int else Real
         if not isinstance(value, wanted) or isinstance(value, bool):
             raise InputError(f"{name} {value!r}: {self._said()}")
-        if not self.extent.holds(float(value), self.scale.factor):  # type: ignore[arg-type]
-            shown = float(value) / (self.scale.factor if at_command_line() else 1.0)  # type: ignore[arg-type]
+        if not self.extent.holds(float(value), self.scale.factor):
+            shown = float(value) / (self.scale.factor if at_command_line() else 1.0)
             raise InputError(f"{name} {shown:g}: {self._said()}")
 
     def _said(self) -> str:
@@ -189,7 +188,6 @@ class TaskOptions:
         return switched(name) if entry.kind is bool else spelt(name, entry.flag)
 
 
-@cache
 def entries(options: type[TaskOptions]) -> Mapping[str, Entry]:
     """The entries of a class of options by their names in Python."""
     return {f.name: f.metadata[ENTRY] for f in fields(options) if ENTRY in f.metadata}
@@ -252,9 +250,7 @@ def value(
     typed: bool = True,
 ) -> Any:
     """Anything else: text at the command line, in Python the same text or what it stands for."""
-    entry = Entry(
-        help, kind, read=read, several=several, flag=flag, metavar=metavar, typed=typed
-    )
+    entry = Entry(help, kind, read=read, several=several, flag=flag, metavar=metavar, typed=typed)
     return _field(default, entry)
 
 

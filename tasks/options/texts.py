@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ...core.errors import InputError
-from ...core.tables import LARGEST
+from ...core.files.tables import LARGEST
 
 if TYPE_CHECKING:
     from ...core.program.target import JointTarget

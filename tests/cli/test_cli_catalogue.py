@@ -11,9 +11,9 @@ from importlib.metadata import version
 import pytest
 from typer.testing import Result
 
-from flyby.cli import installed as installed_module
 from flyby.core import registry as registry_module
 from flyby.core.registry import BrokenPlugin, Registry, find_robot, vendors
+from flyby.tasks import catalogue
 
 Flyby = Callable[..., Result]
 
@@ -23,9 +23,9 @@ def broken_plugin(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     whole = registry_module.installed()
     broken = BrokenPlugin("acme", "flyby-acme", ImportError("no module named 'acme'"))
     monkeypatch.setattr(registry_module, "installed", lambda: Registry(whole.vendors, (broken,)))
-    installed_module.registry.cache_clear()
+    catalogue.registry.cache_clear()
     yield
-    installed_module.registry.cache_clear()
+    catalogue.registry.cache_clear()
 
 
 def test_vendors_lists_what_is_registered(flyby: Flyby) -> None:
@@ -121,7 +121,7 @@ def test_help_imports_nothing_heavy() -> None:
 def test_emulating_imports_matplotlib_only_for_plots() -> None:
     code = (
         "import sys\n"
-        "import flyby.cli.emulate, flyby.cli.report, flyby.cli.report_text\n"
+        "import flyby.cli.emulate, flyby.tasks.runs, flyby.cli.report_text\n"
         "import flyby.core.motion.emulator.controller\n"
         "print(sorted({'matplotlib', 'trimesh', 'yourdfpy'} & set(sys.modules)))"
     )

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from flyby.cli.patching import Places
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import Radius
@@ -15,6 +14,7 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.patch.edits import difference
 from flyby.core.source.reading import named_apart
 from flyby.core.source.text.files import SourceFile
+from flyby.tasks.files.places import FilePlaces
 
 KUKA, ROBOT = find_vendor("kuka"), find_robot("kuka/kr30-3")
 SRC = """DEF job()
@@ -69,14 +69,14 @@ def test_what_is_written_to_a_folder_runs_there_alone(job: Program, change, tmp_
     assert (tmp_path / "there" / "job.src").read_text() == SRC
     assert (tmp_path / "there" / "job.dat").read_text() == DAT
     out = tmp_path / "out"
-    places = Places(out, False, [tmp_path / "there" / "job.src"], False)
+    places = FilePlaces(out, False, [tmp_path / "there" / "job.src"], False)
     assert {path.name for path in places.write(files, job)} == {"job.src", "job.dat"}
     alone = KUKA.read_file(out / "job.src", robot=ROBOT)
     assert difference(wanted, alone) is None
 
 
 def test_in_place_only_what_changed_is_written(job: Program, tmp_path: Path) -> None:
-    places = Places(None, True, [Path("../there/job.src")], False)
+    places = FilePlaces(None, True, [Path("../there/job.src")], False)
     assert places.write(KUKA.patch(other_target(job), ROBOT), job) == [Path("../there/job.dat")]
     assert (tmp_path / "there" / "job.src").read_text() == SRC
     assert difference(other_target(job), KUKA.read_file("../there/job.src", robot=ROBOT)) is None

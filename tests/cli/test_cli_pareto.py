@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from typer.testing import Result
 
-from flyby.cli import pareto as pareto_command
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.registry import find_robot, find_vendor
+from flyby.tasks import fronts
 
 ROBOT = "abb/irb6640-180-255"
 REST = "[9E9,9E9,9E9,9E9,9E9,9E9]"
@@ -93,7 +93,7 @@ def test_an_energy_that_comes_back_is_less_when_more_comes_back():
         SimpleNamespace(duration=t, energy=e, by_joint=np.array([j]), certificate=None)
         for t, e, j in ((2.0, -100.0, -50.0), (2.2, -120.0, -40.0))
     )
-    assert pareto_command._row(given, point, [0])[1:5] == ("+10.0", "-120", "-20.0", "+20.0")
+    assert fronts._row(given, point, [0])[1:5] == ("+10.0", "-120", "-20.0", "+20.0")
 
 
 def test_motors_count_in_joules(flyby: Flyby, module: Path, tmp_path: Path):

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.cli.kinematics import _turns
-from flyby.cli.values import configuration, numbers, pose
 from flyby.core.errors import InputError
 from flyby.core.registry import find_robot
+from flyby.tasks.options.texts import configuration, numbers, pose
 
 finite = st.floats(-1e6, 1e6)
 turns = st.floats(-180, 180)

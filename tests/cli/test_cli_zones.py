@@ -12,18 +12,18 @@ import pytest
 import trimesh
 from typer.testing import Result
 
-from flyby.cli.patching import Places
 from flyby.core.collision.proof.verdict import Verdict
 from flyby.core.errors import InputError
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.reading import Reading
-from flyby.core.source.text.files import SourceFile
+from flyby.core.source.text.files.files import SourceFile
+from flyby.tasks.files.places import FilePlaces
 
 from .box_program import CELL, module
 
 ROBOT = "abb/irb6640-180-255"
 MOVES = "MoveAbsJ p1,v1000,z10,rod; MoveAbsJ p2,v1000,zz,rod; MoveAbsJ p3,v1000,zz,rod;"
-IN_PLACE = Places(None, True, [], False)
+IN_PLACE = FilePlaces(None, True, [], False)
 
 Flyby = Callable[..., Result]
 

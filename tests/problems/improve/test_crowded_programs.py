@@ -8,7 +8,6 @@ import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
-from flyby.cli.patching import Patching
 from flyby.core.cell.floor import bare_cell
 from flyby.core.errors import InputError, MotionError
 from flyby.core.motion.emulator.controller import Controller
@@ -21,6 +20,8 @@ from flyby.problems.improve.rounding import Rounding
 from flyby.problems.improve.waypoints import Effort, Task, optimize_waypoints, optimize_zones
 from flyby.problems.improve.zones.maximize import maximize_zones
 from flyby.problems.improve.zones.options import ZoneOptions
+from flyby.tasks.files.texts import ProgramTexts
+from flyby.tasks.setup import Setup
 from flyby.testing.strategies import crowded_programs
 
 CASES = {
@@ -78,7 +79,9 @@ class Driven:
         tools = dict.fromkeys(move.tool for move in self.program.moves)
         self.cell = bare_cell(self.robot, vendor, tools, floor=False)
         self.rounding = Rounding.of(self.vendor.speaks)
-        self.read_back = Patching(self.vendor, self.robot, own=False).read_back
+        self.read_back = ProgramTexts(
+            Setup(self.vendor, self.robot), self.program, own=False
+        ).read_back
 
     def no_slower(self, program: Program) -> None:
         assert self.controller.run(program).duration <= self.given.duration * (1 + 1e-9)

@@ -1,4 +1,4 @@
-"""Logged runs as the command line names them: records, programs with logs, folders of both."""
+"""Logged runs as users name them: records, programs with logs, folders of both."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.errors import InputError
-from .loading import Source
+from .catalogue import registry
 
 if TYPE_CHECKING:
     from ..core.robot.model import Robot
@@ -22,7 +22,7 @@ LOGS = (".csv", ".txt", ".tsv", ".log", ".xml")
 
 @dataclass(frozen=True)
 class Found:
-    """What was found where the command line points.
+    """What was found where the user points.
 
     Args:
         runs: of the robot.
@@ -105,7 +105,6 @@ def _log_beside(program: Path) -> Path | None:
 
 def _read(file: Path, vendor: Vendor, robot: Robot, columns: Columns | None) -> LoggedRun:
     from ..identification.logs import LoggedRun, load_run, read_samples
-    from .installed import registry
 
     if file.suffix.lower() == RECORD:
         run = load_run(file, registry().find_robot)
@@ -115,6 +114,6 @@ def _read(file: Path, vendor: Vendor, robot: Robot, columns: Columns | None) -> 
     log = _log_beside(file)
     if log is None:
         raise InputError(f"{file}: there is no log of the same name beside it ({', '.join(LOGS)})")
-    program = Source(file).read(vendor, robot)
+    program = vendor.read_file(file, robot=robot)
     samples = read_samples(log, robot, columns)
     return LoggedRun(log.stem, robot.name, None, program, samples.t, samples.q, samples.notes)

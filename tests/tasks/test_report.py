@@ -11,7 +11,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flyby.cli.report import Report, make_report
 from flyby.core.arrays import FloatArray
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.emulator.run import Run
@@ -24,6 +23,7 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.chain_kernels import poses
 from flyby.core.spatial.pose import Pose
 from flyby.drawing.geometry import path_geometry
+from flyby.tasks.report import Report, make_report
 
 ROBOT = find_robot("abb/irb6640-180-255")
 CONTROLLER = Controller(find_vendor("abb"), ROBOT)
@@ -104,7 +104,7 @@ def test_times_add_up_and_are_those_of_the_samples(
     report = make_report(run, ROBOT)
 
     rows = report.moves
-    spent = [row.duration + row.wait + row.settling for row in rows]
+    spent = [row.time + row.wait + row.settling for row in rows]
     assert report.first_wait + sum(spent) == pytest.approx(report.cycle_time, abs=1e-9)
     assert report.moving + report.waiting + report.settling == pytest.approx(report.cycle_time)
     assert report.waiting == pytest.approx(sum(rests[: len(rows)]))
@@ -181,7 +181,7 @@ def test_what_limits_a_move(small: Small) -> None:
     assert short.limits[0].name == "J1 torque"
     assert short.limits[0].share == pytest.approx(1.0)
     assert timed.limits[0].name == "programmed time"
-    assert timed.duration == pytest.approx(20, rel=1e-4)
+    assert timed.time == pytest.approx(20, rel=1e-4)
 
 
 def test_the_drawn_path_runs_from_waypoint_to_waypoint(small: Small) -> None:

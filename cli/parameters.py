@@ -1,0 +1,89 @@
+"""Parameters of commands made of the options of tasks."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import Annotated, Any, get_type_hints
+
+import typer
+
+from ..tasks.options.door import flag_of
+from ..tasks.options.entries import Entry, TaskOptions, defaults, entries
+
+_DIGITS = 12
+
+
+def with_options(command: Callable[..., None]) -> Callable[..., None]:
+    """A command whose arguments that are classes of options become one parameter an option.
+
+    An option that two classes have goes to the first of them; the other keeps its default.
+    """
+    hints = get_type_hints(command, include_extras=True)
+    parameters: list[inspect.Parameter] = []
+    groups: dict[str, tuple[type[TaskOptions], list[str]]] = {}
+    taken: set[str] = set()
+    for name, parameter in inspect.signature(command).parameters.items():
+        kind = hints[name]
+        if not (isinstance(kind, type) and issubclass(kind, TaskOptions)):
+            parameters.append(parameter.replace(annotation=kind))
+            taken.add(name)
+            continue
+        own = [o for o, e in entries(kind).items() if e.typed and o not in taken]
+        groups[name] = kind, own
+        taken |= set(own)
+        parameters += [_parameter(kind, option) for option in own]
+    # Those that must be given come first, as Python wants it.
+    parameters.sort(key=lambda p: p.default is not inspect.Parameter.empty)
+
+    @wraps(command)
+    def run(**given: Any) -> None:
+        made = {
+            name: kind(**{option: _value(kind, option, given.pop(option)) for option in own})
+            for name, (kind, own) in groups.items()
+        }
+        command(**given, **made)
+
+    named = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in parameters]
+    run.__signature__ = inspect.Signature(named)  # type: ignore[attr-defined]
+    run.__annotations__ = {p.name: p.annotation for p in named}
+    return run
+
+
+def _parameter(kind: type[TaskOptions], name: str) -> inspect.Parameter:
+    entry = entries(kind)[name]
+    default: Any = defaults(kind).get(name, inspect.Parameter.empty)
+    hint: Any = entry.kind
+    if entry.several:
+        hint, default = list[hint] | None, None
+    elif default is None:
+        hint = hint | None
+    elif entry.kind is float and default is not inspect.Parameter.empty:
+        default = float(f"{default / entry.scale.factor:.{_DIGITS}g}")
+    option = typer.Option(entry.flag or flag_of(name), help=entry.help, metavar=entry.metavar)
+    return inspect.Parameter(
+        name,
+        inspect.Parameter.KEYWORD_ONLY,
+        default=default,
+        annotation=Annotated[hint, option],
+    )
+
+
+def _value(kind: type[TaskOptions], name: str, typed: Any) -> Any:
+    """What was typed, in SI units."""
+    entry: Entry = entries(kind)[name]
+    if entry.several:
+        return tuple(typed or ())
+    if entry.kind is float and typed is not None and entry.scale.factor != 1.0:
+        return entry.scale.factor * typed
+    return typed
+
+
+ProgramFile = Annotated[Path, typer.Argument(help="Program file in its vendor's language.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the report as JSON.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace output files.")]
+Out = Annotated[Path | None, typer.Option("--out", help="Folder to write the files to.")]
+InPlace = Annotated[bool, typer.Option("--in-place", help="Change the program's own files.")]
+Plot = Annotated[Path | None, typer.Option("--plot", help="Draw it: PNG, PDF or SVG.")]

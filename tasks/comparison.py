@@ -1,0 +1,93 @@
+"""A controller's log beside the emulation of its program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..core.notebook import Curve, page, picture, table
+from ..identification.logs import LoggedRun
+from ..identification.prediction import Prediction
+from ..identification.residuals import Figures
+from ..identification.time_scale import TimeScale
+
+COLUMNS = (("", "left"), ("greatest", "right"), ("99 %", "right"), ("RMS", "right"))
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How well the emulator predicts a log.
+
+    Args:
+        run: that was logged.
+        prediction: its emulation laid on the log: `figures`, `alignment`, `residuals`.
+        scale: what alone explains the log's times; None if nothing does.
+        notes: what the user should know.
+    """
+
+    run: LoggedRun
+    prediction: Prediction
+    scale: TimeScale | None
+    notes: tuple[str, ...]
+
+    @property
+    def figures(self) -> Figures:
+        """What is left between log and emulation."""
+        return self.prediction.figures
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """What is left in space and in time, and the same as the log was read."""
+        found = _rows(self.figures)
+        if self.prediction.read is not None:
+            found += [(f"{name}, as read", *told) for name, *told in _rows(self.prediction.read)]
+        return found
+
+    def picture(self, kind: str = "svg") -> bytes:
+        """Corners, deviation and speed, as a file of the kind ``png``, ``pdf`` or ``svg``."""
+        from ..identification.report.picture import draw_prediction
+
+        return draw_prediction(self.prediction, kind)
+
+    def __repr__(self) -> str:
+        f = self.figures
+        return (
+            f"<Comparison of {self.run.name} on {self.prediction.robot.name}: path "
+            f"{1e3 * f.path_max:.2f} mm at most, cycle time ratio {f.cycle_time_ratio:.4f}>"
+        )
+
+    def _repr_html_(self) -> str:
+        robot, log = self.prediction.robot, self.prediction.log
+        step = max(1, len(log.q) // 400)
+        at = np.array([robot.flange_pose(q).position for q in log.q[::step]])
+        drawn = picture([Curve("flange as logged", at)])
+        return page(repr(self)[1:-1], table(COLUMNS, self.rows()), drawn, notes=self.notes)
+
+
+def _rows(f: Figures) -> list[tuple[str, ...]]:
+    return [
+        (
+            "path of the TCP, mm",
+            f"{1e3 * f.path_max:.3f}",
+            f"{1e3 * f.path_p99:.3f}",
+            f"{1e3 * f.path_rms:.3f}",
+        ),
+        (
+            "path of the joints, °",
+            f"{np.degrees(f.joint_path_max):.4f}",
+            f"{np.degrees(f.joint_path_p99):.4f}",
+            f"{np.degrees(f.joint_path_rms):.4f}",
+        ),
+        (
+            "joints at their time, °",
+            f"{np.degrees(f.joint_time_max):.4f}",
+            f"{np.degrees(f.joint_time_p99):.4f}",
+            f"{np.degrees(f.joint_time_rms):.4f}",
+        ),
+        (
+            "the same, less drift, °",
+            f"{np.degrees(f.joint_clock_max):.4f}",
+            f"{np.degrees(f.joint_clock_p99):.4f}",
+            f"{np.degrees(f.joint_clock_rms):.4f}",
+        ),
+    ]

@@ -1,0 +1,138 @@
+"""Test motions that tell how a controller drives, as programs that log themselves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ..core.errors import InputError
+from .options import texts
+from .options.door import given, spelt
+from .options.entries import (
+    ANGLE,
+    COUNT,
+    NUMBER,
+    TIME,
+    number,
+    value,
+)
+from .options.keywords import by_keywords
+from .setup import CellOptions, setup_of
+
+if TYPE_CHECKING:
+    from ..core.cell.cell import Cell
+    from ..core.program.tool import Tool
+    from ..core.robot.model import Robot
+    from ..identification.experiment.plan import Kind, Plan
+    from .experiments import DesignedExperiment
+
+PAGE, PICTURE = "README.md", "overview.png"
+"""Files that are always written."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExperimentOptions(CellOptions):
+    """Which test motions are wanted."""
+
+    tool: str | None = value(None, "Tool of the cell that is mounted; the flange if unset.")
+    minutes: float = number(
+        60.0, "Time at the robot; the most telling runs that fit are chosen.", NUMBER
+    )
+    overhead: float = number(60.0, "Seconds that a run takes beside its motion.", TIME)
+    postures: int = number(3, "How many postures to look for.", COUNT)
+    at: Sequence[str | Sequence[float]] = value(
+        (),
+        "A posture instead: axis values in degrees; may be given several times.",
+        several=True,
+    )
+    angles: str | Sequence[float] | None = value(
+        None, "Changes of direction at corners, degrees: 30,90,150."
+    )
+    zones: str | Sequence[float] | None = value(
+        None, "Radii of zones, mm; by the robot's reach if unset."
+    )
+    speeds: str | Sequence[float] | None = value(None, "Speeds of the TCP, mm/s.")
+    kinds: str | Sequence[str] | None = value(
+        None, "Kinds of moves, such as lines,joints; all if unset."
+    )
+    margin: float = number(5.0, "Degrees that joints keep from limits.", ANGLE)
+    longest: float = number(30.0, "Seconds that one run may last, about.", TIME)
+    period: float | None = number(
+        None, "Seconds between logged samples; what the controller takes if unset.", TIME
+    )
+    seed: int = number(1, "Another one gives another design.", COUNT)
+
+
+def experiment_with(options: ExperimentOptions) -> DesignedExperiment:
+    """Design test motions for a robot in its cell: programs that log themselves.
+
+    Returns:
+        The runs, the most telling first, with what each gains; `flyby.write` puts programs,
+        records and a page of instructions into a folder.
+
+    Raises:
+        InputError: naming the option.
+    """
+    from ..identification.experiment.design import design
+    from .experiments import DesignedExperiment
+
+    setup = setup_of(options)
+    cell = setup.surroundings(no_floor=options.no_floor)
+    plan = _plan(setup.robot, options, _tool(options.tool, cell))
+    made = design(setup.vendor, cell, plan, bare=setup.cell is None, say=options.say)
+    return DesignedExperiment(made, cell, None if setup.cell is None else setup.cell.file)
+
+
+experiment = by_keywords(experiment_with, ExperimentOptions)
+
+
+def _tool(name: str | None, cell: Cell) -> Tool:
+    from ..core.program.tool import FLANGE
+
+    if name is None:
+        return FLANGE
+    if cell.file is None and name not in cell.tools:
+        raise InputError(
+            f"{given('tool', name)}: tools are declared in a cell file; give {spelt('cell')}"
+        )
+    return cell.tool(name)
+
+
+def _plan(robot: Robot, options: ExperimentOptions, tool: Tool) -> Plan:
+    import numpy as np
+
+    from ..identification.experiment.plan import Plan
+
+    chosen: dict[str, Any] = {}
+    if options.angles is not None:
+        chosen["turns"] = texts.several(options.angles, spelt("angles"), math.pi / 180)
+    if options.zones is not None:
+        chosen["radii"] = texts.several(options.zones, spelt("zones"), 1e-3)
+    if options.speeds is not None:
+        chosen["speeds"] = texts.several(options.speeds, spelt("speeds"), 1e-3)
+    if options.kinds is not None:
+        chosen["kinds"] = _kinds(options.kinds)
+    stands = [np.array(texts.configuration(one, spelt("at"), robot)) for one in options.at]
+    return Plan(
+        postures=stands or options.postures,
+        tool=tool,
+        minutes=options.minutes,
+        overhead=options.overhead,
+        margin=options.margin,
+        longest=options.longest,
+        period=options.period,
+        seed=options.seed,
+        **chosen,
+    )
+
+
+def _kinds(given: str | Sequence[str]) -> tuple[Kind, ...]:
+    from ..identification.experiment.plan import Kind
+
+    words = given.replace(",", " ").split() if isinstance(given, str) else list(given)
+    for word in words:
+        if word not in list(Kind):
+            raise InputError(f"{spelt('kinds')} {word}: {', '.join(Kind)}")
+    return tuple(kind for kind in Kind if kind in words)

@@ -1,0 +1,94 @@
+"""Test motions that were designed, with their files and how they show themselves."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from ..core.cell.cell import Cell
+from ..core.notebook import Curve, page, picture, table
+from ..identification.experiment.page import LOG_SUFFIX, described, way
+from ..identification.experiment.page import page as make_page
+from ..identification.experiment.picture import draw_experiment
+from ..identification.experiment.plan import Experiment
+from ..identification.experiment.record import record
+from .experiment import PAGE, PICTURE
+
+RECORD = ".json"
+COLUMNS = (
+    ("", "right"),
+    ("run", "left"),
+    ("moves", "left"),
+    ("TCP, mm/s", "right"),
+    ("corners", "right"),
+    ("turns, °", "left"),
+    ("zones, mm", "left"),
+    ("motion, s", "right"),
+    ("way there", "left"),
+    ("gain, nats", "right"),
+)
+
+
+@dataclass(frozen=True)
+class DesignedExperiment:
+    """Runs worth driving.
+
+    Args:
+        experiment: the runs with what each tells, and what was passed over.
+        cell: that they were designed in.
+        file: of the cell; None where no file says what stands around.
+    """
+
+    experiment: Experiment
+    cell: Cell
+    file: Path | None
+
+    @cached_property
+    def files(self) -> dict[str, bytes]:
+        """Programs in a folder each, a record for each log to come, a page and a picture."""
+        made = self.experiment
+        found: dict[str, bytes] = {}
+        for run in made.runs:
+            name = run.candidate.name
+            for source, text in run.sources.items():
+                found[f"{name}/{source}"] = text.encode()
+            told = record(run, made.robot, name + LOG_SUFFIX, made.period)
+            found[name + RECORD] = (json.dumps(told, indent=1) + "\n").encode()
+        found[PAGE] = make_page(made, None if self.file is None else self.file.name).encode()
+        found[PICTURE] = draw_experiment(self.cell, made)
+        return found
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the user should know."""
+        return tuple(self.experiment.notes)
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """A row for each run."""
+        return [
+            (
+                str(number),
+                run.candidate.name,
+                *described(run),
+                f"{run.duration:.1f}",
+                way(run, number == 1),
+                f"{run.gain:.2f}",
+            )
+            for number, run in enumerate(self.experiment.runs, 1)
+        ]
+
+    def __repr__(self) -> str:
+        made = self.experiment
+        return (
+            f"<Experiment for {made.robot.name}: {len(made.runs)} runs, "
+            f"{made.seconds / 60:.0f} min at the robot>"
+        )
+
+    def _repr_html_(self) -> str:
+        at = [run.run.trajectory.position for run in self.experiment.runs[:4]]
+        names = [run.candidate.name for run in self.experiment.runs[:4]]
+        curves = [Curve(name, points) for name, points in zip(names, at, strict=True)]
+        parts = [table(COLUMNS, self.rows()), *([picture(curves)] if curves else [])]
+        return page(repr(self)[1:-1], *parts, notes=self.notes)

@@ -1,0 +1,183 @@
+"""A motion model fitted to logged runs."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..core.errors import InputError
+from .catalogue import registry
+from .options.door import given
+from .options.entries import COUNT, Extent, number, value
+from .options.keywords import by_keywords
+from .setup import RobotOptions, setup_of
+
+if TYPE_CHECKING:
+    from ..core.robot.model import Robot
+    from ..core.vendor import Vendor
+    from ..identification.fit import Fit, Judgement, ParameterSet, PreparedRun
+    from ..identification.fit.selection import Score
+    from ..identification.logs import LoggedRun
+    from .identified import IdentifiedModel
+
+
+@dataclass(frozen=True, kw_only=True)
+class IdentifyOptions(RobotOptions):
+    """What is fitted to which logs."""
+
+    vendor: str | None = value(None, "Whose controller drove; the robot's by itself.")
+    parameters: Sequence[str] = value(
+        (),
+        "A figure to fit, as the motion file calls it, maybe with its start: "
+        "'blend.tcp.beta[0] = 0', 'time.smoothing_s[*]'. May be given several times; without it, "
+        "what the vendor's figures were fitted by.",
+        several=True,
+        flag="--fit",
+    )
+    columns: str | Path | None = value(
+        None, "Names the logs' columns and their units (TOML).", kind=Path
+    )
+    select: str | None = value(
+        None,
+        "Also tell which figures earn their place, by leaving out runs of the same zone, speed, "
+        "moves, posture, or each run.",
+    )
+    workers: int = number(os.cpu_count() or 1, "Processes.", COUNT, Extent(1))
+    found: Callable[[tuple[Path, ...]], object] | None = field(
+        default=None, repr=False, compare=False
+    )
+    """Is told of the files of all runs before they are fitted, and may refuse."""
+
+    def inputs(self) -> list[Path]:
+        """Files that are named here."""
+        named = (self.cell, self.motion, self.columns)
+        return [Path(file) for file in named if isinstance(file, str | Path)]
+
+
+def identify_with(
+    logs: str | Path | Sequence[str | Path], options: IdentifyOptions
+) -> IdentifiedModel:
+    """Fit how a controller drives to logs of what it drove.
+
+    Args:
+        logs: records of runs (JSON), programs with a log of the same name beside them, or folders
+            of these.
+
+    Returns:
+        The figures with their confidence intervals, how well each run is predicted before and
+        after, how runs that were held back are, and the motion file.
+
+    Raises:
+        InputError: no run of the robot is found, or one cannot be read or fitted.
+    """
+    from ..identification.fit import outcomes
+    from ..identification.logs import load_columns
+    from .identified import IdentifiedModel
+    from .logged_runs import find_runs
+
+    paths = [Path(log) for log in ([logs] if isinstance(logs, str | Path) else logs)]
+    setup = setup_of(options)
+    owner, arm = setup.vendor, setup.robot
+    if options.vendor is not None and options.vendor != owner.name:
+        raise InputError(f"{given('vendor', options.vendor)}: {arm.name} is driven by {owner.name}")
+    columns = None if options.columns is None else load_columns(Path(options.columns))
+    options.say("reading logs")
+    found = find_runs(paths, owner, arm, columns)
+    if options.found is not None:
+        options.found(found.files)
+    prepared = _prepare(found.runs, owner, arm, options)
+    chosen = _parameters(owner, arm, options.parameters)
+    options.say(f"fitting {chosen.size} parameters to {len(prepared)} runs")
+    fitted = _fit(chosen, prepared, options)
+    options.say("emulating all runs before and after")
+    each = outcomes(fitted)
+    judged = _judge(fitted, options)
+    scores = [] if options.select is None else _select(fitted, options.select, options)
+    text = _motion_file(fitted, _command(paths, arm, options), paths, owner)
+    return IdentifiedModel(fitted, tuple(each), judged, tuple(scores), text, found)
+
+
+identify = by_keywords(identify_with, IdentifyOptions)
+
+
+def _prepare(
+    runs: tuple[LoggedRun, ...], vendor: Vendor, robot: Robot, options: IdentifyOptions
+) -> list[PreparedRun]:
+    from ..identification.fit import prepare
+
+    made = []
+    for run in runs:
+        options.say(f"laying {run.name} on its emulation")
+        made.append(prepare(run, vendor, robot, vendor.motion_of(robot)))
+    return made
+
+
+def _parameters(vendor: Vendor, robot: Robot, texts: Sequence[str]) -> ParameterSet:
+    from ..identification.fit import ParameterSet, usual_parameters
+
+    model = vendor.motion_of(robot)
+    return ParameterSet.named(model, list(texts) or usual_parameters(model, robot))
+
+
+def _fit(parameters: ParameterSet, runs: list[PreparedRun], options: IdentifyOptions) -> Fit:
+    from ..core.sqp import Iteration
+    from ..identification.fit import fit
+
+    def watch(iteration: Iteration) -> None:
+        options.say(
+            f"fitting {parameters.size} parameters to {len(runs)} runs: iteration "
+            f"{iteration.number}, loss {iteration.objective:.4g}"
+        )
+
+    return fit(parameters, runs, options.workers, watch)
+
+
+def _select(fitted: Fit, trait: str, options: IdentifyOptions) -> list[Score]:
+    from ..identification.fit.selection import candidates, compare_models, grouped
+
+    parameters = fitted.parameters.starting_at(fitted.values)
+    groups = grouped(fitted.runs, trait)
+    return compare_models(
+        fitted.runs,
+        fitted.nuisances,
+        candidates(parameters),
+        groups,
+        options.workers,
+        options.say,
+    )
+
+
+def _judge(fitted: Fit, options: IdentifyOptions) -> Judgement | None:
+    from ..identification.fit import judge
+
+    options.say("fitting with runs held back")
+    return judge(
+        fitted,
+        options.workers,
+        lambda text: options.say(f"fitting with runs held back: {text}"),
+    )
+
+
+def _command(logs: Sequence[Path], robot: Robot, options: IdentifyOptions) -> str:
+    """The command that makes the same file, files by their names alone."""
+    words = ["flyby", "identify", *(path.name for path in logs), "--robot", robot.name]
+    files = {"--cell": options.cell, "--motion": options.motion, "--columns": options.columns}
+    for option, file in files.items():
+        words += [option, Path(file).name] if isinstance(file, str | Path) else []
+    for text in options.parameters:
+        words += ["--fit", text]
+    return shlex.join(words)
+
+
+def _motion_file(fitted: Fit, command: str, logs: Sequence[Path], vendor: Vendor) -> str:
+    """To be laid on what the vendor states, whatever the fit began with."""
+    from ..identification.fit import motion_file
+
+    robot = fitted.runs[0].robot
+    heading = f"How {robot.name} is driven, fitted to {len(fitted.runs)} logged runs."
+    stated = registry().find_vendor(vendor.name).motion_of(robot)
+    return motion_file(fitted, command, heading, stated, logs[0].resolve().stem)

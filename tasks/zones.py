@@ -1,0 +1,63 @@
+"""Every zone of a program as large as obstacles and rules let it be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from .changes import ChangeOptions, delivered, freed_stops, move_index, rounding_of
+from .files.texts import ProgramTexts
+from .options.entries import switch
+from .options.keywords import by_keywords
+from .setup import start_of, with_setup
+
+if TYPE_CHECKING:
+    from ..core.program.program import Program
+    from ..problems.improve.zones.maximize import ZoneSolution
+
+
+@dataclass(frozen=True, kw_only=True)
+class ZoneOptions(ChangeOptions):
+    """How zones are made larger."""
+
+    predefined: bool = switch("Choose among the vendor's predefined zones.")
+    own: bool = switch("Moves that share one datum, or compute their zone, get one of their own.")
+
+
+def zones_with(program: Program, options: ZoneOptions) -> ZoneSolution:
+    """Make zones as large as they can be without collision, and prove the new program.
+
+    Args:
+        program: as `flyby.read` gives it.
+
+    Returns:
+        The new program, read back from its text, with its proof, or why there is none.
+
+    Raises:
+        InputError: naming the option.
+        MotionError: the program cannot be driven, or collides as it is.
+    """
+    from ..core.motion.emulator.controller import Controller
+    from ..problems.improve.zones import options as maximizing
+    from ..problems.improve.zones.maximize import maximize_zones
+    from ..problems.improve.zones.sizes import pattern_for
+
+    program, setup = with_setup(program, options)
+    cell = setup.surroundings(program, no_floor=options.no_floor)
+    kept = [move_index(program, number, "keep") for number in options.keep]
+    wanted = maximizing.ZoneOptions(
+        clearance=options.clearance,
+        freed=freed_stops(program, options.free, kept),
+        pattern=pattern_for(setup.vendor.speaks),
+        kept=kept,
+        apart=options.own,
+        rounding=rounding_of(setup.vendor, options.predefined),
+        start=start_of(program),
+    )
+    texts = ProgramTexts(setup, program, own=options.own)
+    controller = Controller(setup.vendor, setup.robot)
+    made = maximize_zones(controller, program, cell, wanted, texts.read_back, options.say)
+    return delivered(made, texts, setup)
+
+
+zones = by_keywords(zones_with, ZoneOptions)
