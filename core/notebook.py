@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 from .display import shown
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    from .arrays import FloatArray
 
 WIDTH, HEIGHT, MARGIN = 300, 200, 14
 """Pixels of a picture."""
@@ -33,8 +32,8 @@ class Curve:
     """
 
     name: str
-    points: NDArray[np.float64]
-    marks: NDArray[np.float64] | None = None
+    points: FloatArray
+    marks: FloatArray | None = None
 
 
 def page(title: str, *parts: str, notes: Iterable[object] = ()) -> str:
@@ -72,7 +71,7 @@ def picture(curves: Sequence[Curve], units: str = "m") -> str:
     # In space both axes have one scale.
     scale = np.full(2, (size / reach).min()) if every.shape[1] == 3 else size / reach
 
-    def placed(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def placed(points: FloatArray) -> FloatArray:
         at = (points[:, axes] - low) * scale + MARGIN
         at[:, 1] = HEIGHT - at[:, 1]
         return np.asarray(at)
@@ -94,7 +93,7 @@ def picture(curves: Sequence[Curve], units: str = "m") -> str:
     )
 
 
-def _seen(points: NDArray[np.float64]) -> tuple[list[int], str]:
+def _seen(points: FloatArray) -> tuple[list[int], str]:
     """The two axes that are seen, and their names."""
     import numpy as np
 
@@ -106,14 +105,14 @@ def _seen(points: NDArray[np.float64]) -> tuple[list[int], str]:
     return axes, "".join("xyz"[k] for k in axes) + ", "
 
 
-def _thinned(points: NDArray[np.float64]) -> NDArray[np.float64]:
+def _thinned(points: FloatArray) -> FloatArray:
     step = max(1, len(points) // _MOST_POINTS)
     import numpy as np
 
     return np.concatenate([points[:-1:step], points[-1:]])
 
 
-def _drawn(at: NDArray[np.float64], curve: Curve, colour: str, placed: object) -> str:
+def _drawn(at: FloatArray, curve: Curve, colour: str, placed: object) -> str:
     line = " ".join(f"{x:.1f},{y:.1f}" for x, y in at)
     drawn = f'<polyline fill="none" stroke="{colour}" stroke-width="1.5" points="{line}"/>'
     if curve.marks is not None and callable(placed):

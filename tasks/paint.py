@@ -80,7 +80,7 @@ class SweepOptions(SurfaceOptions):
     heading: str | Sequence[float] | None = value(
         None, "Direction of the sweeps; along the longer side if unset.", texts.direction
     )
-    method: str = choice("sideways", "sideways or raster.", ("sideways", "raster"))
+    method: str = choice("sideways", "sideways or raster.", ("raster", "sideways"))
     coats: str = choice(
         "one", "one, or crossed: two of half the paint, at right angles.", ("one", "crossed")
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from ..core.motion.emulator.controller import Run
+from ..core.motion.emulator.run import Run
 from ..core.notebook import Curve, page, picture
 from ..core.robot.model import Robot
 from .report import MoveTable, Report, located, make_report

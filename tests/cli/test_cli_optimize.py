@@ -272,4 +272,4 @@ def test_other_moves_are_written_anew(program: Path) -> None:
     for one, other in zip(fewer.moves, again.moves, strict=True):
         assert isinstance(one.zone, Radius) == isinstance(other.zone, Radius)
         assert one.target.joints == pytest.approx(other.target.joints)  # type: ignore[union-attr]
-    assert emission.read_back(read).moves == read.moves and not emission.anew
+    assert emission.read_back(read).moves == read.moves and not emission.last

@@ -170,7 +170,7 @@ def test_what_is_not_proven_is_not_written(flyby: Flyby, panel: tuple[Path, Path
         (("--robot", ROBOT), "where does the part stand?"),
         (("--coats", "two"), "--coats two: one or crossed"),
         (("--inside", "1,2,3"), "two corners of a box in mm"),
-        (("--facing", "0"), "degrees from 0 to 180"),
+        (("--facing", "0"), "degrees above 0, 180 at most"),
         (("--target", "5mm"), "at the least speed of 50 mm/s along the first curve"),
         (("--step", "0.5"), "1500 segments are the most"),
         (("--errors", "5"), "height in mm and radius in %"),

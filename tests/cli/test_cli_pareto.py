@@ -135,7 +135,7 @@ def test_motor_files_that_are_refused(
     ("words", "message"),
     [
         ((), "which robot?"),
-        (("--robot", ROBOT, "--points", "1"), "two points"),
+        (("--robot", ROBOT, "--points", "1"), "--points 1: a number from 2 on"),
         (("--robot", ROBOT, "--free", "all"), "--free needs a cell"),
         (("--robot", ROBOT, "--axes", "2,3"), "--axes needs a cell"),
         (("--robot", ROBOT, "--starts", "0"), "--starts 0"),

@@ -16,7 +16,7 @@ from flyby.core.collision.proof.verdict import Verdict
 from flyby.core.errors import InputError
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.reading import Reading
-from flyby.core.source.text.files.files import SourceFile
+from flyby.core.source.text.files import SourceFile
 from flyby.tasks.files.places import FilePlaces
 
 from .box_program import CELL, module

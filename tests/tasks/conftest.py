@@ -19,7 +19,6 @@ ENDMODULE
 """
 
 
-
 @pytest.fixture
 def small(tmp_path: Path) -> Callable[..., Path]:
     """Writes a RAPID program that begins at p1 and goes on with the lines given."""
