@@ -104,14 +104,13 @@ class Position:
         self.asked += 1
         last = self.last
         if last is not None and isinstance(last.target, PoseTarget):
-            if last.work_object.pose == frame.pose:
-                if last.tool.tcp == tool.tcp:
-                    return last.target.pose
-                if _fixed(last.work_object) and _fixed(frame):
-                    return last.target.pose @ last.tool.tcp.inverse() @ tool.tcp
+            if last_seen_alike(last, tool, frame):
+                return last.target.pose
             if _fixed(last.work_object) and _fixed(frame):
-                flange = last.work_object.pose @ last.target.pose @ last.tool.tcp.inverse()
-                return frame.pose.inverse() @ flange @ tool.tcp
+                flange = last.target.pose @ last.tool.tcp.inverse()
+                if last.work_object.pose != frame.pose:
+                    flange = frame.pose.inverse() @ (last.work_object.pose @ flange)
+                return flange @ tool.tcp
         follower = self._follow()
         return None if follower is None or not follower.known else follower.pose(tool, frame)
 
@@ -129,15 +128,22 @@ class Position:
         """The pose of a tool at joint values; None without a robot."""
         return None if self.robot is None else self._begin(self.robot, target).pose(tool, frame)
 
-    def solve(self, target: PoseTarget, tool: Tool, frame: WorkObject) -> FloatArray | None:
-        """The configuration (N,) at a pose, as near as can be; None without a robot.
+    def solve(
+        self, target: PoseTarget, tool: Tool, frame: WorkObject, near: JointTarget | None = None
+    ) -> FloatArray | None:
+        """The configuration (N,) at a pose; None without a robot.
+
+        Args:
+            near: the solution nearest to it is taken; None for where the robot stands.
 
         Raises:
             FlybyError: the pose, or a target before it, cannot be reached.
         """
         follower = self._follow()
-        if follower is None:
+        if follower is None or self.robot is None:
             return None
+        if near is not None:
+            follower = self._begin(self.robot, near)
         return follower.solve(MoveJ(target, Speed(tcp=1.0), tool=tool, work_object=frame))
 
     def _follow(self) -> Follower | None:
@@ -150,6 +156,12 @@ class Position:
             self._follower.moved(move, statement)
         self._ahead.clear()
         return self._follower
+
+
+def last_seen_alike(last: Move, tool: Tool, frame: WorkObject) -> bool:
+    """Whether the numbers of a pose mean the same in a tool and frame as in a move."""
+    mine = (last.tool.tcp, last.tool.robot_held, last.work_object.pose, last.work_object.moved_by)
+    return mine == (tool.tcp, tool.robot_held, frame.pose, frame.moved_by)
 
 
 def _fixed(frame: WorkObject) -> bool:

@@ -209,8 +209,13 @@ def test_another_tool_changes_where_the_tool_is(krl, robot):
     moved = program.moves[1].target.pose
     np.testing.assert_allclose(moved.position, np.add(start.position, (0.05, 0, 0)), atol=1e-6)
     np.testing.assert_allclose(moved.quaternion, start.quaternion, atol=1e-7)
+    unnamed = krl(body, DATA_LIST).moves[1].target.pose  # the frames stand still: no kinematics
+    np.testing.assert_allclose(unnamed.position, moved.position, atol=1e-12)
+    joints = body.replace(
+        "X 1300,Y 100,Z 1500,A 0,B 90,C 0,S 2,T 35", "A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0"
+    )
     with pytest.raises(SourceError, match="name the robot"):
-        krl(body, DATA_LIST)
+        krl(joints, DATA_LIST)
 
 
 def test_relative_motions(krl):

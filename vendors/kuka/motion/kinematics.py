@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ....core.errors import SourceError
-from ....core.program.move import MoveJ
-from ....core.program.speed import Speed
-from ....core.program.target import JointTarget
+from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.joint import ExternalRole
 from ....core.robot.model import Robot
 from ....core.source.execution.transcript import Notes
@@ -93,40 +91,37 @@ class Kinematics:
 
     def forward(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``FORWARD(axes, error)``: the pose of ``$TOOL`` in ``$BASE``."""
-        robot, axes = self._robot, arguments[0] if arguments else None
-        if robot is None or not isinstance(axes, Struct):
+        axes = arguments[0] if arguments else None
+        pose = None
+        if self._robot is not None and isinstance(axes, Struct):
+            placement = self._placements.current(call.span)
+            target = self._targets.joints(axes, call.span).target
+            assert isinstance(target, JointTarget)
+            pose = self._position.forward(target, placement)
+        if pose is None:
             return Unknown(f"the value of {call.text} (name the robot)", call.span)
-        placement = self._placements.current(call.span)
-        found = self._targets.joints(axes, call.span)
-        assert isinstance(found.target, JointTarget)
-        from ....core.motion.path.commanded_position import Standing
-        from .configuration import label
-
-        standing = Standing(robot, label, found.target)
-        made = frame_of(standing.pose(placement.tool, placement.work_object), "e6pos")
         self._no_error(call, scope)
-        return made
+        return frame_of(pose, "e6pos")
 
     def inverse(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``INVERSE(position, near, error)``"""
         position = arguments[0] if arguments else None
-        if self._robot is None or not isinstance(position, Struct):
+        found = None
+        if self._robot is not None and isinstance(position, Struct):
+            placement = self._placements.current(call.span)
+            target = self._targets.pose(position, placement, True, False, call.span).target
+            assert isinstance(target, PoseTarget)
+            near = arguments[1] if len(arguments) > 1 else None
+            start = None
+            if isinstance(near, Struct) and find_unknown(near) is None:
+                joints = self._targets.joints(near, call.span).target
+                assert isinstance(joints, JointTarget)
+                start = joints
+            found = self._position.backward(target, placement, start, call.span)
+        if found is None:
             return Unknown(f"the value of {call.text} (name the robot)", call.span)
-        placement = self._placements.current(call.span)
-        found = self._targets.pose(position, placement, True, False, call.span)
-        near = arguments[1] if len(arguments) > 1 else None
-        start = None
-        if isinstance(near, Struct) and find_unknown(near) is None:
-            joints = self._targets.joints(near, call.span).target
-            from ....core.motion.path.commanded_position import Standing
-            from .configuration import label
-
-            assert isinstance(joints, JointTarget)
-            start = Standing(self._robot, label, joints).joints()
-        move = MoveJ(found.target, Speed(), tool=placement.tool, work_object=placement.work_object)
-        q = self._position.solve(move, start, call.span)
         self._no_error(call, scope)
-        return self._position.axis_struct(q)
+        return found
 
     def _no_error(self, call: Call, scope: Scope) -> None:
         """The last argument takes the number of an error: none."""

@@ -400,7 +400,7 @@ class MotionReader:
             self._placements.remark_unset(motion.span)
         self._meter.move(motion.span)
         self._transcript.emit_move(move, parts)
-        self._position.moved(move, motion.span, found.complete, common.placement)
+        self._position.moved(move, motion.span, found.complete)
 
 
 def _held(cell: Cell) -> Value:

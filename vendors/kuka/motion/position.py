@@ -1,7 +1,7 @@
 """Where the robot stands: what ``$POS_ACT``, ``_REL`` and targets that leave components out need.
 
-A pose is known without kinematics if the last target was a pose of the same tool in the same base;
-else the robot's own kinematics answer, if it is named.
+A pose is as the last target stated it if that was a pose of the same tool in the same base; see
+`core.source.execution.position` for others.
 """
 
 from __future__ import annotations
@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING
 
 from ....core.errors import FlybyError, SourceError, Span
 from ....core.program.move import Move
+from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.joint import JointKind
+from ....core.source.execution import position
+from ....core.spatial.pose import Pose
 from ..values.frames import frame_of
 from ..values.placement import Placement
 from ..values.types import AXIS_FIELDS, EXTERNAL_FIELDS
 from ..values.values import Struct, Unknown, Value
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from ....core.arrays import FloatArray
     from ....core.motion.path.commanded_position import Standing
-    from ....core.program.target import JointTarget
     from ....core.robot.model import Robot
 
 WHERE = "where the robot stands"
@@ -39,21 +39,15 @@ class Position:
 
     def __init__(self, robot: Robot | None, start: JointTarget | None = None) -> None:
         self._robot = robot
-        self._start = start
-        self._moves: list[tuple[Move, Span]] = []
-        self._told = 0
-        self._standing: Standing | None = None
+        self._commanded = position.Position(robot, start, _standing)
         self._last: Struct | None = None
-        self._placement: Placement | None = None
         if robot is not None and start is not None:
             self._last = self.axis_struct((*start.joints, *start.external))
 
-    def moved(self, move: Move, statement: Span, target: Struct, placement: Placement) -> None:
+    def moved(self, move: Move, statement: Span, target: Struct) -> None:
         """The robot has driven to a target, whose components are all in ``target``."""
-        if self._robot is not None:
-            self._moves.append((move, statement))
+        self._commanded.moved(move, statement)
         self._last = target
-        self._placement = placement
 
     @property
     def last_move_numbers(self) -> Struct | None:
@@ -68,20 +62,22 @@ class Position:
         Raises:
             SourceError: a target on the way cannot be reached.
         """
-        last, at = self._last, self._placement
-        if last is not None and at is not None and "x" in last.fields and _same(at, placement):
-            return last.copy()
-        if self._robot is None:
-            return Unknown(f"{WHERE} (name the robot: its kinematics tell)", span)
-        if last is None:
-            return Unknown(f"{WHERE} before the first move (give a start)", span)
-        q = self.joints(span)
+        tool, base, last = placement.tool, placement.work_object, self._commanded.last
+        if (
+            last is not None
+            and isinstance(last.target, PoseTarget)
+            and position.last_seen_alike(last, tool, base)
+        ):
+            assert self._last is not None
+            return self._last.copy()
         try:
-            pose = self._follow().pose(placement.tool, placement.work_object)
+            pose = self._commanded.pose(tool, base)
+            if pose is None:
+                return self._unknown(span)
+            made = frame_of(pose, "e6pos")
+            made.fields.update(self._present_external())
         except FlybyError as error:
             raise SourceError(f"{WHERE}: {error}", span) from None
-        made = frame_of(pose, "e6pos")
-        made.fields.update(self._external_fields(q))
         return made
 
     def axes(self, span: Span) -> Struct | Unknown:
@@ -93,49 +89,49 @@ class Position:
         last = self._last
         if last is not None and "a1" in last.fields:
             return last.copy()
-        if self._robot is None:
-            return Unknown(f"{WHERE} (name the robot: its kinematics tell)", span)
-        if last is None:
-            return Unknown(f"{WHERE} before the first move (give a start)", span)
-        q = self.joints(span)
-        return self.axis_struct(q)
+        try:
+            q = self._commanded.joints()
+        except FlybyError as error:
+            raise SourceError(f"{WHERE}: {error}", span) from None
+        return self._unknown(span) if q is None else self.axis_struct(q)
 
-    def axis_struct(self, q: Sequence[float] | NDArray[np.float64]) -> Struct:
+    def _unknown(self, span: Span) -> Unknown:
+        return Unknown(f"{WHERE} ({self._commanded.why_unknown()})", span)
+
+    def axis_struct(self, q: Sequence[float] | FloatArray) -> Struct:
         """A configuration (N,) as axis values."""
         fields: dict[str, Value] = {
             name: math.degrees(float(v)) for name, v in zip(AXIS_FIELDS, q, strict=False)
         }
         return Struct("e6axis", {**fields, **self._external_fields(q)})
 
-    def joints(self, span: Span) -> NDArray[np.float64]:
-        """The configuration (N,); the robot must be named.
+    def forward(self, target: JointTarget, placement: Placement) -> Pose | None:
+        """The pose of the tool in the base at axis values; None without a robot."""
+        return self._commanded.forward(target, placement.tool, placement.work_object)
 
-        Raises:
-            SourceError: a target on the way cannot be reached.
-        """
-        try:
-            return self._follow().joints()
-        except FlybyError as error:
-            raise SourceError(f"{WHERE}: {error}", span) from None
+    def backward(
+        self, target: PoseTarget, placement: Placement, near: JointTarget | None, span: Span
+    ) -> Struct | None:
+        """The axis values at a pose; None without a robot.
 
-    def solve(
-        self, move: Move, near: NDArray[np.float64] | None, span: Span
-    ) -> NDArray[np.float64]:
-        """The configuration (N,) in which a joint move to a pose would end.
+        Args:
+            near: the solution nearest to it is taken; None for where the robot stands.
 
         Raises:
             SourceError: it cannot be reached.
         """
+        tool, base = placement.tool, placement.work_object
         try:
-            return self._follow().solve(move, near)
+            q = self._commanded.solve(target, tool, base, near)
         except FlybyError as error:
             raise SourceError(str(error), span) from None
+        return None if q is None else self.axis_struct(q)
 
     def external(self, index: int) -> Value | None:
         """The value that an external axis (from 0) was last sent to; None if to none yet."""
         return None if self._last is None else self._last.fields.get(EXTERNAL_FIELDS[index])
 
-    def _external_fields(self, q: Sequence[float] | NDArray[np.float64]) -> dict[str, Value]:
+    def _external_fields(self, q: Sequence[float] | FloatArray) -> dict[str, Value]:
         assert self._robot is not None
         values = [float(v) for v in q[self._robot.arm_size :]]
         fields: dict[str, Value] = {}
@@ -146,24 +142,19 @@ class Position:
             fields[name] = value * 1000 if linear else math.degrees(value)
         return fields
 
-    def _follow(self) -> Standing:
-        from ....core.motion.path.commanded_position import Standing
-        from .configuration import label
-
-        assert self._robot is not None
-        if self._standing is None:
-            self._standing = Standing(self._robot, label, self._start)
-        for move, statement in self._moves[self._told :]:
-            self._standing.moved(move, statement)
-        self._told = len(self._moves)
-        return self._standing
+    def _present_external(self) -> dict[str, Value]:
+        """The external axes, as the robot has them or, where none is named, as they were sent."""
+        if self._robot is None:
+            fields = {} if self._last is None else self._last.fields
+            return {name: fields[name] for name in EXTERNAL_FIELDS if name in fields}
+        if not self._robot.external_axes:
+            return {}
+        q = self._commanded.joints()
+        return {} if q is None else self._external_fields(q)
 
 
-def _same(first: Placement, second: Placement) -> bool:
-    """Whether poses in both mean the same."""
-    return (
-        first.tool.tcp == second.tool.tcp
-        and first.tool.robot_held == second.tool.robot_held
-        and first.work_object.pose == second.work_object.pose
-        and first.work_object.moved_by == second.work_object.moved_by
-    )
+def _standing(robot: Robot, start: JointTarget | None) -> Standing:
+    from ....core.motion.path.commanded_position import Standing
+    from .configuration import label
+
+    return Standing(robot, label, start)
