@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from flyby.core.registry import find_robot, find_vendor
-from flyby.vendors.abb.run.analysis import Flow as RapidFlow
+from flyby.core.source.execution.analysis import Analysis
 from flyby.vendors.kuka.run import flow as krl
 
 PASSES = 300
@@ -44,15 +44,15 @@ def moves(vendor: str, robot: str, path: Path, text: str) -> int:
 
 def test_rapid(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[int] = []
-    decided_by = RapidFlow.decided_by
+    deciding = Analysis.deciding
 
-    def counting(self, loop, skipped, home):  # type: ignore[no-untyped-def]
-        asked.append(len(skipped))
-        return decided_by(self, loop, skipped, home)
+    def counting(self, body, reads, left_out):  # type: ignore[no-untyped-def]
+        asked.append(len(left_out))
+        return deciding(self, body, reads, left_out)
 
-    monkeypatch.setattr(RapidFlow, "decided_by", counting)
+    monkeypatch.setattr(Analysis, "deciding", counting)
     assert moves("abb", "abb/irb6640-180-255", tmp_path / "m.mod", RAPID) == 1
-    assert max(asked) <= 2
+    assert max(asked) == 2
 
 
 def test_krl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

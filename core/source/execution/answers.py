@@ -133,9 +133,13 @@ class Course:
 
     Args:
         answers: what the user has to say.
+
+    Attributes:
+        turned: how often an answer in turn was another one than that before it.
     """
 
     answers: Answers = field(default_factory=Answers)
+    turned: int = 0
     _turns: dict[str, int] = field(default_factory=dict)
     _decided: dict[tuple[str, int, str], tuple[Note, int]] = field(default_factory=dict)
 
@@ -146,6 +150,7 @@ class Course:
         if turns is not None:
             turn = self._turns.get(name, 0)
             self._turns[name] = turn + 1
+            self.turned += turn < len(turns)
             return turns[min(turn, len(turns) - 1)]
         return self.answers.values.get(name)
 
@@ -171,36 +176,58 @@ class Course:
         Raises:
             InputError: the user's answer names a branch that there is not.
         """
-        answer = _at(self.answers.branches, span)
+        answer = self.answered_branch(span, len(returning))
         if answer is not None:
-            if answer > len(returning):
-                raise InputError(
-                    f"{self.answers.file}: [branches] at {span.file}:{span.line}: there are "
-                    f"{len(returning)} branches, not {answer}"
-                )
             return answer
         taken = next((k for k, moves in enumerate(returning, 1) if moves), 0)
         which = f"branch {taken} of {len(returning)}, the first that moves the robot, is taken"
         if not taken:
             which = "no branch that moves the robot: taken as not fulfilled"
-        self._note(span, f"the condition depends on {reason}: {which}")
+        self.decided(span, f"the condition depends on {reason}: {which}")
         return taken
 
-    def passes(self, span: Span, reason: str, moving: bool) -> int:
-        """How often a loop runs whose condition is not known.
+    def answered_branch(self, span: Span, count: int) -> int | None:
+        """The branch that the user says is taken at a place: from 1, 0 for none of them.
+
+        Args:
+            span: of the condition.
+            count: of the branches.
+
+        Raises:
+            InputError: there is no such branch.
+        """
+        answer = _at(self.answers.branches, span)
+        if answer is not None and answer > count:
+            raise InputError(
+                f"{self.answers.file}: [branches] at {span.file}:{span.line}: there are "
+                f"{count} branches, not {answer}"
+            )
+        return answer
+
+    def answered_passes(self, span: Span) -> int | None:
+        """How often the user says that the loop at a place runs."""
+        return _at(self.answers.passes, span)
+
+    def passes(self, span: Span, reason: str, moving: bool, leaves: bool = False) -> int:
+        """How often a loop runs of which nobody knows when it ends.
 
         Args:
             span: of the condition.
             reason: what it depends on.
             moving: whether its body moves the robot.
+            leaves: whether it ends by a way out in its body, which follows the passes; then it has
+                been entered, and one at least is read.
         """
-        answer = _at(self.answers.passes, span)
+        answer = self.answered_passes(span)
         if answer is not None:
-            return answer
-        count = 1 if moving else 0
-        how = "its body runs once" if moving else "it does not move the robot and is left at once"
-        self._note(span, f"the end of the loop depends on {reason}: {how}")
-        return count
+            return max(answer, 1) if leaves else answer
+        how = "it does not move the robot and is left at once"
+        if leaves:
+            how = "its body runs once, and then this way out is taken"
+        elif moving:
+            how = "its body runs once"
+        self.decided(span, f"the end of the loop depends on {reason}: {how}")
+        return 1 if moving or leaves else 0
 
     def notes(self) -> tuple[Note, ...]:
         """What was decided without an answer, in the order in which it came up."""
@@ -209,7 +236,8 @@ class Course:
             for note, count in self._decided.values()
         )
 
-    def _note(self, span: Span, message: str) -> None:
+    def decided(self, span: Span, message: str) -> None:
+        """Note what was decided without an answer; how often is counted."""
         place = (span.file, span.start, message)
         note, count = self._decided.get(place, (Note(message, span=span), 0))
         self._decided[place] = note, count + 1

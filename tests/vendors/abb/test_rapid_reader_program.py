@@ -204,7 +204,7 @@ def test_loops_without_end_are_refused():
         "FOR i FROM 1 TO 9E9 DO ENDFOR",
     ):
         assert "loop without end" in refused(body, statements=2000)
-    assert "50 moves" in refused("again:\nat 1;\nIF k = 0 GOTO again;", moves=50)
+    assert "50 moves" in refused("again:\nk := k + 1;\nat 1;\nIF k > 0 GOTO again;", moves=50)
     assert "called each other" in refused("f;", "PROC f()\nf;\nENDPROC")
 
 

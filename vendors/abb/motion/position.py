@@ -30,11 +30,15 @@ class Position:
         robot: None if it is not known.
         axes: kinds of its external axes, see `Converter`.
         start: where it stands at first; None if nobody knows.
+
+    Attributes:
+        asked: how often the program has asked where the robot stands.
     """
 
     def __init__(
         self, robot: Robot | None, axes: Sequence[str] | None, start: JointTarget | None = None
     ) -> None:
+        self.asked = 0
         self._axes = axes or ()
         self._record: Record = ()
         self._commanded = position.Position(robot, start, _standing)
@@ -72,6 +76,7 @@ class Position:
         Args:
             displacement: program displacement in force, which the position is given in.
         """
+        self.asked += 1
         pose = self._commanded.pose(tool, frame)
         if pose is None:
             return None
@@ -89,6 +94,7 @@ class Position:
 
     def jointtarget(self) -> Record | None:
         """The present joint values as a jointtarget; None if they are not known."""
+        self.asked += 1
         last = self._commanded.last
         if last is not None and isinstance(last.target, JointTarget) and self._record:
             return self._record
@@ -109,6 +115,7 @@ class Position:
         Raises:
             FlybyError: the pose cannot be reached.
         """
+        self.asked += 1
         q = self._commanded.solve(target, tool, frame)
         return None if q is None else self._joint_record(q)
 

@@ -10,7 +10,7 @@ from ..syntax.traversal import calls_in, expressions_of, statements_of
 from ..syntax.tree import Invoke, Module, Routine
 from ..values.data import Globals
 from ..values.scope import NOWHERE, unknown_name
-from .analysis import Flow
+from .analysis import routine_moves
 
 MAIN = "main"
 
@@ -83,8 +83,7 @@ def _fallback(
     if len(alike) == 1:
         return alike[0], "the only procedure with 'main' in its name"
     called = _called(own)
-    flow = Flow(data)
-    roots = [r for r in candidates if r.name not in called and flow.routine_moves(r)]
+    roots = [r for r in candidates if r.name not in called and routine_moves(data, r)]
     if len(roots) == 1:
         return roots[0], "the only procedure that moves the robot and that no other calls"
     return None, ""

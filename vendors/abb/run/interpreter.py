@@ -16,8 +16,11 @@ from weakref import proxy
 from ....core.errors import Note, SourceError, Span
 from ....core.program.move import Move
 from ....core.program.move import Statement as ProgramStatement
+from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.answers import Course
+from ....core.source.execution.flow import Flow, Loop
 from ....core.source.execution.limits import Meter
+from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.transcript import MoveParts, Transcript
 from ....core.source.reading import ReadOptions
 from ..motion.kinematics import RobotFunctions
@@ -29,6 +32,7 @@ from ..syntax.tree import (
     Assign,
     Block,
     Call,
+    Expression,
     For,
     Goto,
     If,
@@ -43,13 +47,14 @@ from ..syntax.tree import (
     Test,
     While,
 )
+from ..values.changes import Snapshot
 from ..values.data import Globals
 from ..values.evaluator import Evaluator
-from ..values.scope import Cell, Scope, unknown_name
+from ..values.scope import NOWHERE, Cell, Home, Scope, unknown_name
 from ..values.types import STRING, Unknown, Value, interpreted, mismatch
-from .analysis import Flow
+from .analysis import RapidTree
 from .calls import pass_arguments, present
-from .flow import Frame, end_loop, jump_back, run_for, run_if, run_test, run_while
+from .flow import run_for, run_if, run_test, run_while
 from .instructions import INTERPRETED, KEPT, MOVING, REFUSED, known_names
 
 
@@ -89,7 +94,6 @@ class Interpreter:
         self.out = Transcript(lambda span: texts[span.file][span.start : span.end])
         self.course = Course(options.answers)
         self.meter = Meter(options.limits, options.executed)
-        self.flow = Flow(data)
         self.convert = Converter(self.settings, self.out.notes, external_axes)
         self.position = Position(options.robot, external_axes, options.start)
         self.functions = RobotFunctions(self.position, self.convert, self.settings)
@@ -99,7 +103,11 @@ class Interpreter:
         self.evaluator = Evaluator(
             data, self.course, self.out.text_of, host, self.functions.table()
         )
-        self._frames: list[Frame] = []
+        self.tree = RapidTree(data, lambda: host.home)
+        self.analysis = Analysis(self.tree)
+        self.flow: Flow[Block] = Flow(self.analysis, host)
+        self.place: object = None
+        self._scopes: list[Scope] = []
         self._loops: dict[int, Block] = {}  # bodies of loops that a GOTO closes, by its id
 
     # --------------------------------------------------------------------- the run
@@ -125,9 +133,42 @@ class Interpreter:
     # ------------------------------------------------------ for instruction handlers
 
     @property
-    def frame(self) -> Frame:
-        """The routine that is being run."""
-        return self._frames[-1]
+    def home(self) -> Home:
+        """The module of the routine that is being run."""
+        return self._scopes[-1].home if self._scopes else NOWHERE
+
+    @property
+    def outputs(self) -> Outputs:
+        """What the program has set its outputs to."""
+        return self.evaluator.outputs
+
+    @property
+    def position_asked(self) -> int:
+        """How often the program has asked where the robot stands."""
+        return self.position.asked
+
+    def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
+        """See `core.source.execution.flow.Host.snapshot`."""
+        scopes = [*self._scopes[-1].outwards()]
+        if names is None:
+            scopes += self.data.scopes()
+        found = [s.cells[n] for s in scopes for n in names or written if n in s.cells]
+        for cell in found:
+            # What has not been read yet is evaluated: else its first write would be no change.
+            if cell.pending is not None:
+                with suppress(SourceError):
+                    self.evaluator.settle(cell)
+        if names is None:
+            found = [cell for s in scopes for cell in s.cells.values() if not cell.constant]
+        return Snapshot(found)
+
+    def note_once(self, kind: str, message: str, span: Span) -> None:
+        """A note, unless one of its kind was taken before."""
+        self.out.notes.once(kind, message, span)
+
+    def text_of(self, expression: Expression) -> str:
+        """An expression as it stands, on one line."""
+        return " ".join(self.out.text_of(expression.span).split())
 
     def emit_move(self, move: Move, parts: MoveParts) -> None:
         """Put a move at the end of the program.
@@ -137,6 +178,8 @@ class Interpreter:
         """
         self.meter.move(parts.statement)
         self.out.emit_move(move, parts)
+        if move.target != self.place:
+            self.place = move.target
 
     def finish(self, message: str, span: Span) -> NoReturn:
         """End the program here, with a note."""
@@ -168,17 +211,20 @@ class Interpreter:
             target = block.labels[goto.name]
             if target > index:
                 return target
-            if goto is not block.statements[index]:
-                jump_back(self, Block(block.statements[target - 1 : index + 1]))
-                return target
-            body = self._loops.setdefault(id(goto), Block(block.statements[target - 1 : index]))
-            span = goto.span._replace(start=body.statements[0].span.start)
+            always = goto is block.statements[index]
+            body = self._loops.setdefault(id(goto), Block(block.statements[target - 1 : index + 1]))
+            loop = Loop(body, goto.span, f"GOTO {goto.name}", endless=always)
             try:
-                end_loop(self, span, body, scope)
-                return target
+                if self.flow.jump(loop, id(goto), lambda way: self._carry_out(way, scope)):
+                    return target
+                return index + 1
             except _Jump as jump:
                 goto = jump.goto
         raise _Jump(goto)
+
+    def _carry_out(self, block: Block, scope: Scope) -> bool:
+        self.run_block(block, scope)
+        return True
 
     def _run_statement(self, statement: Statement, scope: Scope) -> None:
         self.meter.statement(statement.span)
@@ -211,8 +257,8 @@ class Interpreter:
         if statement.word == "connect":
             trap = self.data.routine(statement.name, scope.home)
             if trap is not None:
-                home = self.data.scope_of(trap).home
-                self.evaluator.outputs.share(self.flow.signals_written(trap.body, home))
+                written = self.analysis.outputs_written(self.tree.body(trap))
+                self.evaluator.outputs.share(written)
             self.out.keep(statement.span, "CONNECT", KEPT["connect"].why)
             return
         if statement.word == "placeholder":
@@ -264,7 +310,8 @@ class Interpreter:
         kept = KEPT[statement.name]
         for argument in statement.arguments:
             # Functions of the program itself may move the robot, even for a message's text.
-            if argument.value is not None and self.flow.call_moves(argument.value, scope.home):
+            called = () if argument.value is None else self.tree.called(argument.value, scope.home)
+            if argument.value is not None and any(map(self.analysis.moves, called)):
                 self.evaluator.evaluate(argument.value, scope)
         if kept.writes:
             self._fill(statement, scope)
@@ -357,12 +404,13 @@ class Interpreter:
             self.data.declare(declaration, scope)
         self.meter.call(routine.text, span)
         where, self.out.notes.where = self.out.notes.where, scope.where
-        self._frames.append(Frame(routine, outer.home, main=not self._frames))
+        self._scopes.append(scope)
         if routine.handlers:
             kinds = ", ".join(h.upper() for h in routine.handlers)
             self.out.notes.once("handlers", f"handlers are not run: {kinds}", routine.span)
         try:
-            self.run_block(routine.body, scope)
+            with self.flow.routine():
+                self.run_block(self.tree.body(routine), scope)
         except _Returned as returned:
             return returned.value
         except _Jump as jump:
@@ -372,7 +420,7 @@ class Interpreter:
         finally:
             self.meter.back()
             self.out.notes.where = where
-            self._frames.pop()
+            self._scopes.pop()
             for cell, target in back:
                 self._hand_back(cell, target, caller)
         return None

@@ -16,13 +16,9 @@ class Answers:
     Args:
         course: has them.
         text_of: the text that stands at a place.
-
-    Attributes:
-        turns: how many answers of sequences were given.
     """
 
     def __init__(self, course: Course, text_of: Callable[[Span], str]) -> None:
-        self.turns = 0
         self._course = course
         self._text_of = text_of
 
@@ -47,7 +43,6 @@ class Answers:
     ) -> Value | None:
         """The same under a key."""
         answer = self._course.value(key) if key else None
-        self.turns += self._course.changing(key)
         if answer is None:
             return None
         return _free(answer) if type_ is None else _typed(answer, type_, sizes, key, span)

@@ -68,6 +68,10 @@ class Globals:
         """The scope in which a routine's own names are not found."""
         return self._scopes[id(routine)]
 
+    def scopes(self) -> list[Scope]:
+        """Those of all modules."""
+        return [self._shared, *{id(scope): scope for scope in self._scopes.values()}.values()]
+
     def hint(self, name: str) -> str | None:
         """Why a module beside the program, which declares a name, was not taken in."""
         return self._library.hint(name)

@@ -1,0 +1,244 @@
+"""What can be said of statements without running them.
+
+It is asked only where a run meets a condition that is not known, or a loop; the answers are kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Generic, TypeVar
+
+from .steps import NOTHING, Block, Exit, Step, Tree
+
+_NONE_LEFT_OUT: frozenset[int] = frozenset()
+Found = TypeVar("Found")
+Way = tuple[Exit, str | None]
+"""How a block is left, and the label where it is left by a jump."""
+
+
+class Analysis(Generic[Block]):
+    """Asks statements, and the routines that they call, what they do.
+
+    Args:
+        tree: the statements of the language.
+    """
+
+    def __init__(self, tree: Tree[Block]) -> None:
+        self._tree = tree
+        self._steps: dict[int, tuple[Block, Sequence[Step[Block]]]] = {}
+        self._known: dict[tuple[str, int], object] = {}
+        self._written: dict[tuple[int, frozenset[int]], frozenset[str]] = {}
+        self._deciding: dict[tuple[object, ...], frozenset[str] | None] = {}
+
+    def steps(self, block: Block) -> Sequence[Step[Block]]:
+        """The statements of a block."""
+        found = self._steps.get(id(block))
+        if found is None:
+            # The block is kept with them: its identity must not be given to another.
+            found = self._steps[id(block)] = block, self._tree.steps(block)
+        return found[1]
+
+    def moves(self, block: Block) -> bool:
+        """Whether what moves the robot stands in a block or in a routine that it calls."""
+
+        def find() -> bool:
+            return any(
+                step.moves or any(map(self.moves, (*step.calls, *step.inner)))
+                for step in self.steps(block)
+            )
+
+        return self._once("moves", block, False, find)
+
+    def leads_to(self, block: Block) -> Exit | None:
+        """Where a block leads in any case; None if the program may go on behind it."""
+
+        def find() -> Exit | None:
+            return next(filter(None, map(self._step_leads_to, self.steps(block))), None)
+
+        return self._once("leads to", block, None, find)
+
+    def ways_out(self, block: Block) -> frozenset[Way]:
+        """How a block may be left before its end."""
+
+        def find() -> frozenset[Way]:
+            steps = self.steps(block)
+            marks = {step.mark for step in steps}
+            ways = {way for step in steps for way in self._step_ways(step)}
+            return frozenset(way for way in ways if way[0] is not Exit.JUMP or way[1] not in marks)
+
+        return self._once("ways out", block, frozenset(), find)
+
+    def written(self, block: Block, left_out: frozenset[int] = _NONE_LEFT_OUT) -> frozenset[str]:
+        """Names of the data that a block, and what it calls, may write.
+
+        Args:
+            left_out: ids of blocks in it that do not count.
+        """
+
+        def find() -> frozenset[str]:
+            return NOTHING.union(*(step.writes for step in self._reached(block, left_out)))
+
+        if not left_out:
+            return self._once("written", block, NOTHING, find)
+        key = id(block), left_out
+        if key not in self._written:
+            self._written[key] = find()
+        return self._written[key]
+
+    def outputs_written(self, block: Block) -> frozenset[str] | None:
+        """Names of the outputs that a block, and what it calls, may write; None for any."""
+
+        def find() -> frozenset[str] | None:
+            found: set[str] = set()
+            for step in self._reached(block, _NONE_LEFT_OUT):
+                if step.outputs is None:
+                    return None
+                found |= step.outputs
+            return frozenset(found)
+
+        return self._once("outputs", block, None, find)
+
+    def deciding(
+        self,
+        body: Block,
+        reads: frozenset[str],
+        left_out: frozenset[int] = _NONE_LEFT_OUT,
+    ) -> frozenset[str] | None:
+        """Names of the data that decide when a loop ends.
+
+        Those that its condition reads, and the conditions of its ways out; and those that these
+        are made of. None if a routine of the program has a part in it: it may read anything.
+
+        Args:
+            body: of the loop.
+            reads: names that its condition reads.
+            left_out: ids of blocks in it that do not count: ways out that nobody can decide.
+        """
+        key = id(body), reads, left_out
+        if key not in self._deciding:
+            self._deciding[key] = self._find_deciding(body, reads, left_out)
+        return self._deciding[key]
+
+    def _find_deciding(
+        self, body: Block, reads: frozenset[str], left_out: frozenset[int]
+    ) -> frozenset[str] | None:
+        guards = [*self._guards(body, left_out)]
+        if any(step.asks for step in guards):
+            return None
+        names = reads.union(*(step.reads for step in guards))
+        inside = [*self._with_conditions(body, left_out, NOTHING)]
+        while True:
+            more = names
+            for step, around in inside:
+                if names.isdisjoint(step.writes | (step.outputs or NOTHING)):
+                    continue
+                if step.asks or step.calls:
+                    return None
+                more = more.union(step.made_of, around)
+            if more == names:
+                return names
+            names = more
+
+    def marks(self, block: Block) -> frozenset[str]:
+        """The labels in a block, those in its inner blocks included."""
+
+        def find() -> frozenset[str]:
+            found = {step.mark for step in self._all(block) if step.mark is not None}
+            return frozenset(found)
+
+        return self._once("marks", block, NOTHING, find)
+
+    def blocks_in(self, block: Block) -> frozenset[int]:
+        """Ids of a block, of all blocks in it and of those that it calls."""
+
+        def find() -> frozenset[int]:
+            reached, todo = {id(block)}, [block]
+            while todo:
+                for step in self.steps(todo.pop()):
+                    for other in (*step.calls, *step.inner):
+                        if id(other) not in reached:
+                            reached.add(id(other))
+                            todo.append(other)
+            return frozenset(reached)
+
+        return self._once("blocks", block, frozenset(), find)
+
+    # --------------------------------------------------------------------- inside
+
+    def _once(self, kind: str, block: Block, meanwhile: Found, find: Callable[[], Found]) -> Found:
+        """What was found before, or is found now.
+
+        Args:
+            meanwhile: taken for true while it is looked for, by routines that call each other.
+        """
+        key = kind, id(block)
+        if key not in self._known:
+            self._known[key] = meanwhile
+            self._known[key] = find()
+        return self._known[key]  # type: ignore[return-value]  # of the kind's own type
+
+    def _step_leads_to(self, step: Step[Block]) -> Exit | None:
+        if step.exit is not None or step.halts:
+            return step.exit or Exit.PROGRAM
+        if any(self.leads_to(body) is Exit.PROGRAM for body in step.calls):
+            return Exit.PROGRAM
+        if step.exhaustive and not step.loop:
+            ends = [self.leads_to(block) for block in step.inner]
+            if ends and None not in ends:
+                return min(end for end in ends if end is not None)
+        return None
+
+    def _step_ways(self, step: Step[Block]) -> Iterator[Way]:
+        if step.exit is not None:
+            yield step.exit, step.label
+        for body in step.calls:
+            yield from (way for way in self.ways_out(body) if way[0] is Exit.PROGRAM)
+        for block in step.inner:
+            for way in self.ways_out(block):
+                if not (step.loop and way[0] in (Exit.PASS, Exit.LOOP)):
+                    yield way
+
+    def _all(self, block: Block) -> Iterator[Step[Block]]:
+        for step in self.steps(block):
+            yield step
+            for inner in step.inner:
+                yield from self._all(inner)
+
+    def _reached(self, block: Block, left_out: frozenset[int]) -> Iterator[Step[Block]]:
+        """The statements of a block and of all that it calls."""
+        reached, todo = {id(block), *left_out}, [block]
+        while todo:
+            for step in self.steps(todo.pop()):
+                yield step
+                for other in (*step.calls, *step.inner):
+                    if id(other) not in reached:
+                        reached.add(id(other))
+                        todo.append(other)
+
+    def _guards(self, block: Block, left_out: frozenset[int]) -> Iterator[Step[Block]]:
+        """The statements whose conditions decide whether a block is left."""
+        for step in self.steps(block):
+            inner = [b for b in step.inner if id(b) not in left_out and self._leaves_step(step, b)]
+            if inner:
+                yield step
+            for one in inner:
+                yield from self._guards(one, left_out)
+
+    def _leaves_step(self, step: Step[Block], block: Block) -> bool:
+        ways = self.ways_out(block)
+        within = (Exit.PASS, Exit.LOOP) if step.loop else (Exit.PASS,)
+        return any(how not in within for how, _ in ways)
+
+    def _with_conditions(
+        self, block: Block, left_out: frozenset[int], around: frozenset[str]
+    ) -> Iterator[tuple[Step[Block], frozenset[str]]]:
+        """The statements of a block, each with what the conditions read that it runs on."""
+        for step in self.steps(block):
+            yield step, around
+            for inner in step.inner:
+                if id(inner) not in left_out:
+                    yield from self._with_conditions(inner, left_out, around | step.reads)
+            for body in step.calls:
+                writes = self.written(body)
+                if writes:
+                    yield Step(writes=writes, calls=(body,)), around
