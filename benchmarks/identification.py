@@ -41,12 +41,12 @@ from report import Figure, main
 
 from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.fit import Fit, ParameterSet, PreparedRun, fit, prepare
-from flyby.identification.fit.crew import Crew
 from flyby.identification.fit.emulation import Nuisance
 from flyby.identification.fit.minimum import minimise
 from flyby.identification.fit.outcome import predicted
 from flyby.identification.fit.parameters import fitted_before
 from flyby.identification.fit.problem import first_nuisances
+from flyby.identification.fit.run_pool import RunPool
 from flyby.identification.fit.selection import LeftOut, leave_out
 from flyby.identification.logs import load_run
 from flyby.identification.logs.records import robot_of_record
@@ -144,8 +144,8 @@ def by_other_corners(case: str, run: PreparedRun) -> Iterator[Figure]:
     for half in (0, 1):
         taught = run.cluster % 2 == half
         part = run.only(taught)
-        with Crew([part]) as crew:
-            (own,) = minimise(crew, ParameterSet(model, ()), first_nuisances([part])).nuisances
+        with RunPool([part]) as pool:
+            (own,) = minimise(pool, ParameterSet(model, ()), first_nuisances([part])).nuisances
         found = predicted(run, model, own)
         other = nearest_waypoint(found) % 2 != half
         path.append(found.residuals.path[other])

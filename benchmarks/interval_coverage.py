@@ -33,11 +33,11 @@ from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
 from flyby.identification.fit import ParameterSet, prepare
-from flyby.identification.fit.crew import Crew
 from flyby.identification.fit.intervals import clusters_of, intervals
 from flyby.identification.fit.loss import influence
 from flyby.identification.fit.minimum import minimise
 from flyby.identification.fit.problem import Problem, first_nuisances
+from flyby.identification.fit.run_pool import RunPool
 from flyby.identification.logs.synthetic import Faults, synthetic_run
 
 VENDOR, ROBOT = find_vendor("abb"), find_robot("abb/irb6640-180-255")
@@ -95,9 +95,9 @@ def draw(case: str, seed: int) -> tuple[list[bool], list[bool]]:
             made = replace(made, q=made.q + coloured(made.q.shape, CASES[case], rng))
         runs.append(prepare(made, VENDOR, ROBOT, TRUTH))
     parameters = ParameterSet.named(TRUTH, TRUE)
-    with Crew(runs) as crew:
-        end = minimise(crew, parameters, first_nuisances(runs))
-        linearised = Problem(crew, end.variables).linearised(end.x)
+    with RunPool(runs) as pool:
+        end = minimise(pool, parameters, first_nuisances(runs))
+        linearised = Problem(pool, end.variables).linearised(end.x)
     known = intervals(parameters, end.values, clusters_of(runs, linearised))
     ours = [one.lower <= TRUE[one.name] <= one.upper for one in known]
     A = sum(c.curvature for c in clusters_of(runs, linearised))

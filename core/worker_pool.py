@@ -7,13 +7,13 @@ import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 Job = TypeVar("Job")
 Answer = TypeVar("Answer")
 
-_task: Callable[[object], object] | None = None
-"""What the workers do; they inherit it by forking."""
+_task: Callable[[Any], Any] | None = None
+"""What a worker does; it inherits it by forking."""
 
 
 class WorkerPool(Generic[Job, Answer]):
@@ -29,7 +29,7 @@ class WorkerPool(Generic[Job, Answer]):
         self._pool = pool
 
     def answers(
-        self, jobs: Sequence[Job], done: Callable[[int, Answer], bool]
+        self, jobs: Sequence[Job], done: Callable[[int, Answer], bool] = lambda count, answer: False
     ) -> list[Answer | None]:
         """The answers in the order of the jobs; None for those not done any more.
 
@@ -88,24 +88,22 @@ def worker_pool(
         workers: processes at most; one, or a system that cannot fork, works here.
         jobs: how many jobs there will be at most at once.
     """
-    global _task
     count = min(workers, jobs)
     if count < 2 or "fork" not in multiprocessing.get_all_start_methods():
         yield WorkerPool(task, None)
         return
-    _task = task  # type: ignore[assignment]
-    pool = ProcessPoolExecutor(
-        count, mp_context=multiprocessing.get_context("fork"), initializer=_deaf
-    )
+    context = multiprocessing.get_context("fork")
+    pool = ProcessPoolExecutor(count, context, initializer=_begin, initargs=(task,))
     try:
         yield WorkerPool(task, pool)
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
-        _task = None
 
 
-def _deaf() -> None:
-    """The keyboard's interrupt is the parent's business."""
+def _begin(task: Callable[[Any], Any]) -> None:
+    """What a worker begins with; the keyboard's interrupt is the parent's business."""
+    global _task
+    _task = task
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 

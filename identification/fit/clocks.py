@@ -17,11 +17,11 @@ import numpy as np
 
 from ...core.errors import InputError
 from ..time_scale import LEAST, Cause, TimeScale, explained
-from .crew import Crew
 from .emulation import Nuisance
 from .minimum import Minimum, minimise
 from .parameters import ParameterSet
 from .problem import first_nuisances
+from .run_pool import RunPool
 from .runs import PreparedRun
 
 LIKELIER = 2.0
@@ -66,8 +66,8 @@ def timed(
 
 
 def _minimum(parameters: ParameterSet, runs: Sequence[PreparedRun], workers: int) -> Minimum:
-    with Crew(runs, workers) as crew:
-        return minimise(crew, parameters, first_nuisances(runs))
+    with RunPool(runs, workers) as pool:
+        return minimise(pool, parameters, first_nuisances(runs))
 
 
 def _candidates(

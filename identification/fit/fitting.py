@@ -16,12 +16,12 @@ from ...core.arrays import FloatArray
 from ...core.errors import FlybyError, InputError
 from ...core.motion.model.motion_model import ArcTurn, MotionModel
 from .clocks import timed, told
-from .crew import Crew
 from .emulation import Nuisance, Rows
 from .intervals import SEEN, Interval, Unseen, clusters_of, intervals, loose, unseen
 from .minimum import Minimum, Watch, minimise
 from .parameters import ParameterSet
 from .problem import Problem, Variables, first_nuisances
+from .run_pool import RunPool
 from .runs import PreparedRun, shown_turn
 
 HALVINGS = 12
@@ -101,13 +101,13 @@ def fit(
     if not parameters.size:
         raise InputError("there is nothing to fit: name parameters")
     try:
-        with Crew(runs, workers) as crew:
-            found = fit_with(crew, parameters, watch)
+        with RunPool(runs, workers) as pool:
+            found = fit_with(pool, parameters, watch)
         made = timed(parameters, runs, found.after, workers)
         if made is None:
             return found
-        with Crew(made, workers) as crew:
-            return fit_with(crew, parameters, watch)
+        with RunPool(made, workers) as pool:
+            return fit_with(pool, parameters, watch)
     except NothingShown as error:
         scales = [
             f"{run.name}: {run.scale.told}; "
@@ -121,42 +121,42 @@ class NothingShown(InputError):
     """The logs show none of the parameters."""
 
 
-def fit_with(crew: Crew, parameters: ParameterSet, watch: Watch | None = None) -> Fit:
-    """See `fit`; the crew knows the runs."""
+def fit_with(pool: RunPool, parameters: ParameterSet, watch: Watch | None = None) -> Fit:
+    """See `fit`; the pool knows the runs."""
     lost: list[Unseen] = []
     rough: set[str] = set()
     kept = parameters
-    first = minimise(crew, ParameterSet(parameters.base, ()), first_nuisances(crew.runs))
-    while found := _seen_at(crew, kept, first.nuisances):
+    first = minimise(pool, ParameterSet(parameters.base, ()), first_nuisances(pool.runs))
+    while found := _seen_at(pool, kept, first.nuisances):
         kept = _without(kept, found, lost)
-    end = minimise(crew, kept, first.nuisances, watch)
+    end = minimise(pool, kept, first.nuisances, watch)
     iterations = end.iterations
     if end.last > first.last:
         # A start that leads astray: what was before is better, and a start as well.
-        other = minimise(crew, kept.starting_at(kept.before), first.nuisances, watch)
+        other = minimise(pool, kept.starting_at(kept.before), first.nuisances, watch)
         iterations += other.iterations
         end = min(end, other, key=lambda one: one.last)
     while True:
-        linearised = Problem(crew, end.variables).linearised(end.x)
-        known = intervals(kept, end.values, clusters_of(crew.runs, linearised))
-        found = unseen(kept, crew.runs, linearised) or loose(kept, known)
+        linearised = Problem(pool, end.variables).linearised(end.x)
+        known = intervals(kept, end.values, clusters_of(pool.runs, linearised))
+        found = unseen(kept, pool.runs, linearised) or loose(kept, known)
         doubted = [one for one in found if one.name not in rough]
         if not doubted or not end.converged:
             break
-        made = _spared(crew, kept, end, doubted, watch)
+        made = _spared(pool, kept, end, doubted, watch)
         if made is None and len(doubted) > 1:
             doubted = doubted[:1]
-            made = _spared(crew, kept, end, doubted, watch)
+            made = _spared(pool, kept, end, doubted, watch)
         if made is None:
             rough.add(doubted[0].name)
-            end = _drawn_back(crew, kept, end, doubted[0].name, linearised)
+            end = _drawn_back(pool, kept, end, doubted[0].name, linearised)
             continue
         kept, end = _without(kept, doubted, lost), made
         iterations += made.iterations
     return Fit(
         kept,
         end.values,
-        crew.runs,
+        pool.runs,
         end.nuisances,
         tuple(known),
         tuple(lost),
@@ -169,7 +169,7 @@ def fit_with(crew: Crew, parameters: ParameterSet, watch: Watch | None = None) -
 
 
 def _drawn_back(
-    crew: Crew,
+    pool: RunPool,
     parameters: ParameterSet,
     end: Minimum,
     name: str,
@@ -180,7 +180,7 @@ def _drawn_back(
     k = [one.name for one in parameters.parameters].index(name)
     if max(float(np.abs(J[..., k]).max()) for _, J in linearised) >= SEEN:
         return end
-    problem, near = Problem(crew, end.variables), end.variables.parameters
+    problem, near = Problem(pool, end.variables), end.variables.parameters
     before = (parameters.before[k] - near.start[k]) / near.scale[k]
     allowed, refused = end.x.copy(), before
     for _ in range(HALVINGS):
@@ -210,7 +210,7 @@ def _without(parameters: ParameterSet, found: Sequence[Unseen], lost: list[Unsee
 
 
 def _spared(
-    crew: Crew,
+    pool: RunPool,
     parameters: ParameterSet,
     end: Minimum,
     doubted: Sequence[Unseen],
@@ -220,13 +220,15 @@ def _spared(
     explained worse without them."""
     near = parameters.starting_at(end.values).without(one.name for one in doubted)
     try:
-        made = minimise(crew, near, end.nuisances, watch)
+        made = minimise(pool, near, end.nuisances, watch)
     except FlybyError:
         return None
     return made if made.last <= (1.0 + WORTH) * end.last else None
 
 
-def _seen_at(crew: Crew, parameters: ParameterSet, nuisances: Sequence[Nuisance]) -> list[Unseen]:
-    variables = Variables.of(parameters, crew.runs, nuisances)
-    linearised = Problem(crew, variables).linearised(np.zeros(variables.size))
-    return unseen(parameters, crew.runs, linearised)
+def _seen_at(
+    pool: RunPool, parameters: ParameterSet, nuisances: Sequence[Nuisance]
+) -> list[Unseen]:
+    variables = Variables.of(parameters, pool.runs, nuisances)
+    linearised = Problem(pool, variables).linearised(np.zeros(variables.size))
+    return unseen(parameters, pool.runs, linearised)

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .crew import Crew
 from .fitting import Fit
 from .minimum import minimise
 from .parameters import ParameterSet
+from .run_pool import RunPool
 from .runs import PreparedRun
 from .selection import TRAITS, LeftOut, leave_out, losses_of
 
@@ -115,8 +115,8 @@ def _by_corners(fitted: Fit, near: ParameterSet, workers: int) -> Judgement | No
             return None
         taught = [run.only(mask) for run, mask in zip(fitted.runs, masks, strict=True)]
         held = [run.only(~mask) for run, mask in zip(fitted.runs, masks, strict=True)]
-        with Crew(taught, workers) as crew:
-            end = minimise(crew, near, fitted.nuisances)
+        with RunPool(taught, workers) as pool:
+            end = minimise(pool, near, fitted.nuisances)
         indices = tuple(range(len(runs), len(runs) + len(held)))
         runs += held
         made.append(LeftOut.of(held, indices, fitted.nuisances, near, end))
@@ -129,9 +129,9 @@ def _judged(
     """What left-out runs say, beside the model before the fit."""
     base = ParameterSet(fitted.parameters.base, ())
     own = [fitted.nuisances[k % len(fitted.nuisances)] for k in range(len(runs))]
-    with Crew(runs, 1) as crew:
-        first = minimise(crew, base, own)
-        before, path_before = losses_of(runs, crew.residuals(base.base, first.nuisances))
+    with RunPool(runs, 1) as pool:
+        first = minimise(pool, base, own)
+        before, path_before = losses_of(runs, pool.residuals(base.base, first.nuisances))
     after, path_after = np.empty(len(runs)), np.empty(len(runs))
     for one in made:
         after[list(one.indices)] = one.loss

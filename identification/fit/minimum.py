@@ -10,10 +10,10 @@ import numpy as np
 from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.sqp import Iteration, Result, Status, solve
-from .crew import Crew
 from .emulation import Nuisance
 from .parameters import ParameterSet
 from .problem import Problem, Variables
+from .run_pool import RunPool
 
 Watch = Callable[[Iteration], bool | None]
 
@@ -54,7 +54,7 @@ class Minimum:
 
 
 def minimise(
-    crew: Crew,
+    pool: RunPool,
     parameters: ParameterSet,
     nuisances: Sequence[Nuisance],
     watch: Watch | None = None,
@@ -64,14 +64,14 @@ def minimise(
     Raises:
         InputError: a program cannot be driven at the start.
     """
-    variables = Variables.of(parameters, crew.runs, nuisances)
+    variables = Variables.of(parameters, pool.runs, nuisances)
     if variables.size == 0:
-        rest = Problem(crew, variables).residuals(np.zeros(0))
+        rest = Problem(pool, variables).residuals(np.zeros(0))
         whole = 0.5 * float(rest @ rest)
         return Minimum(variables, np.zeros(0), whole, whole, 0, True)
     gains = _Gains(watch)
     result: Result = solve(
-        Problem(crew, variables).nlp(),
+        Problem(pool, variables).nlp(),
         np.zeros(variables.size),
         tolerance=TOLERANCE,
         max_iterations=MOST_ITERATIONS,

@@ -10,10 +10,10 @@ import numpy as np
 from ...core.arrays import FloatArray, IntArray
 from ...core.errors import FlybyError, InputError
 from ...core.sqp import NLP
-from .crew import Crew
 from .emulation import Nuisance, Rows
 from .loss import square_root
 from .parameters import ParameterSet
+from .run_pool import RunPool
 from .runs import PreparedRun
 
 OFFSET_SCALE, CLOCK_SCALE, SIZE_SCALE, OVERRIDE_SCALE = 0.01, 0.01, 0.5, 0.01
@@ -182,15 +182,15 @@ class Problem:
     """The least-squares problem for `flyby.core.sqp`.
 
     Args:
-        crew: emulates the runs.
+        pool: emulates the runs.
         variables: of the same runs.
     """
 
-    def __init__(self, crew: Crew, variables: Variables) -> None:
-        self.crew = crew
+    def __init__(self, pool: RunPool, variables: Variables) -> None:
+        self.pool = pool
         self.variables = variables
         self._scale = 1.0 / np.sqrt(
-            sum(run.weight.shape[0] * run.weight.shape[1] for run in crew.runs)
+            sum(run.weight.shape[0] * run.weight.shape[1] for run in pool.runs)
         )
 
     def nlp(self) -> NLP:
@@ -207,9 +207,9 @@ class Problem:
     def residuals(self, x: FloatArray) -> FloatArray:
         """All of them, robust and scaled to one; NaN where a program cannot be driven."""
         v = self.variables
-        found = self.crew.residuals(v.parameters.model(v.values(x)), v.nuisances(x))
+        found = self.pool.residuals(v.parameters.model(v.values(x)), v.nuisances(x))
         parts = []
-        for run, one in zip(self.crew.runs, found, strict=True):
+        for run, one in zip(self.pool.runs, found, strict=True):
             if isinstance(one, FlybyError):
                 parts.append(np.full(_rows(run), np.nan))
             else:
@@ -233,9 +233,9 @@ class Problem:
         v = self.variables
         nuisances = v.nuisances(x)
         out = []
-        for k, rows in enumerate(self.crew.rows(v.parameters, v.values(x), nuisances)):
+        for k, rows in enumerate(self.pool.rows(v.parameters, v.values(x), nuisances)):
             if isinstance(rows, FlybyError):
-                raise InputError(f"{self.crew.runs[k].name}: {rows}") from rows
+                raise InputError(f"{self.pool.runs[k].name}: {rows}") from rows
             out.append((rows, v.jacobian(k, rows, nuisances[k])))
         return out
 

@@ -17,12 +17,12 @@ from ...core.arrays import FloatArray
 from ...core.errors import FlybyError, InputError
 from ...core.motion.model.motion_model import MotionModel
 from ...core.program.zone import Radius
-from .crew import Crew
 from .emulation import Nuisance
 from .keys import figure_of
 from .loss import loss
 from .minimum import Minimum, minimise
 from .parameters import ParameterSet
+from .run_pool import RunPool
 from .runs import PreparedRun
 
 POSTURE = 0.5
@@ -162,9 +162,9 @@ class LeftOut:
             )
             for run in runs
         ]
-        with Crew(still, 1) as crew:
-            alone = minimise(crew, ParameterSet(model, ()), start)
-            found = crew.residuals(model, alone.nuisances)
+        with RunPool(still, 1) as pool:
+            alone = minimise(pool, ParameterSet(model, ()), start)
+            found = pool.residuals(model, alone.nuisances)
         return cls(indices, alone.nuisances, model, *losses_of(runs, found), end.last)
 
 
@@ -216,8 +216,8 @@ def leave_out(
         rest = [k for k in range(len(runs)) if k not in group]
         if not rest:
             raise InputError("no run would be left to fit to")
-        with Crew([runs[k] for k in rest], workers) as crew:
-            end = minimise(crew, parameters, [nuisances[k] for k in rest])
+        with RunPool([runs[k] for k in rest], workers) as pool:
+            end = minimise(pool, parameters, [nuisances[k] for k in rest])
         begin = [nuisances[k] for k in group]
         found.append(LeftOut.of([runs[k] for k in group], group, begin, parameters, end))
     return found

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from flyby.core.errors import InputError
 from flyby.core.motion.command.commanded_motion import stamped_motion
 from flyby.core.motion.emulator.controller import Controller
-from flyby.identification.fit.crew import Crew
 from flyby.identification.fit.emulation import Nuisance, RunEmulator, commanded
 from flyby.identification.fit.loss import curvature, influence, loss, square_root
 from flyby.identification.fit.parameters import ParameterSet
 from flyby.identification.fit.problem import Problem, Variables, first_nuisances
+from flyby.identification.fit.run_pool import RunPool
 from flyby.identification.fit.runs import CLOCK, LAG, prepare
 from flyby.identification.fit.selection import candidates, compare_models, grouped
 from flyby.identification.fit.zone_sizes import alike, guess, resized
@@ -74,7 +74,7 @@ def test_derivatives(run, place: bool) -> None:
     # What time does to the path at stops is no smooth function of places.
     texts = ["blend.tcp.beta[0]"] if place else [*TRUE_VALUES, "time.settling_s"]
     parameters = ParameterSet.named(START, texts)
-    problem = Problem(Crew([one]), Variables.of(parameters, [one], [Nuisance(0.03, 1.0, 1.1)]))
+    problem = Problem(RunPool([one]), Variables.of(parameters, [one], [Nuisance(0.03, 1.0, 1.1)]))
     n = problem.variables.size
     rng = np.random.default_rng(0)
     J = problem.jacobian(np.zeros(n))

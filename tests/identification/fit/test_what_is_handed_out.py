@@ -19,8 +19,8 @@ from flyby.identification.fit import (
     judge,
     motion_file,
 )
-from flyby.identification.fit.crew import Crew
 from flyby.identification.fit.minimum import minimise
+from flyby.identification.fit.run_pool import RunPool
 
 from .known_truth import START, TRUTH, logged, ready
 
@@ -30,8 +30,8 @@ SETTLED = replace(START, settling=0.02)
 
 def loss_of(fitted: Fit) -> float:
     """Of the model that is handed out, with what it says of the runs."""
-    with Crew(fitted.runs) as crew:
-        rows = minimise(crew, ParameterSet(fitted.model, ()), fitted.nuisances)
+    with RunPool(fitted.runs) as pool:
+        rows = minimise(pool, ParameterSet(fitted.model, ()), fitted.nuisances)
     return rows.last
 
 

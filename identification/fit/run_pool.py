@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import multiprocessing
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack
 from dataclasses import replace
 from types import TracebackType
 from typing import Any, TypeVar
@@ -12,18 +11,18 @@ from typing import Any, TypeVar
 from ...core.arrays import FloatArray
 from ...core.errors import FlybyError
 from ...core.motion.model.motion_model import MotionModel
+from ...core.worker_pool import WorkerPool, worker_pool
 from .emulation import Nuisance, Rows, RunEmulator
 from .parameters import ParameterSet
 from .runs import PreparedRun
 
 Answer = TypeVar("Answer")
+_Job = tuple[int, Callable[..., Any], tuple[Any, ...]]
+"""Index of the run, what is wanted of its emulator, and with what."""
 
-_emulators: list[RunEmulator] = []
-"""Of a worker process, by inheritance."""
 
-
-class Crew:
-    """Workers who know some runs. To be used in a ``with`` statement.
+class RunPool:
+    """Workers that know some runs. To be used in a ``with`` statement.
 
     Args:
         runs: to be emulated.
@@ -33,14 +32,13 @@ class Crew:
     def __init__(self, runs: Sequence[PreparedRun], workers: int = 1) -> None:
         self.runs = tuple(runs)
         self._emulators = [RunEmulator(run) for run in self.runs]
-        self._workers = min(workers, len(self.runs)) if _can_fork() else 1
-        self._pool: ProcessPoolExecutor | None = None
+        self._workers = workers
+        self._open = ExitStack()
+        self._pool: WorkerPool[_Job, Any] = WorkerPool(self._answer, None)
 
-    def __enter__(self) -> Crew:
-        if self._workers > 1:
-            context = multiprocessing.get_context("fork")
-            _emulators[:] = self._emulators
-            self._pool = ProcessPoolExecutor(self._workers, mp_context=context)
+    def __enter__(self) -> RunPool:
+        made = worker_pool(self._answer, self._workers, len(self.runs))
+        self._pool = self._open.enter_context(made)
         return self
 
     def __exit__(
@@ -49,10 +47,8 @@ class Crew:
         value: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        if self._pool is not None:
-            self._pool.shutdown(cancel_futures=True)
-            self._pool = None
-        _emulators.clear()
+        self._open.close()
+        self._pool = WorkerPool(self._answer, None)
 
     def residuals(
         self, model: MotionModel, nuisances: Sequence[Nuisance]
@@ -71,32 +67,18 @@ class Crew:
     def _each(
         self, work: Callable[..., Answer], arguments: Sequence[tuple[Any, ...]]
     ) -> list[Answer | FlybyError]:
-        if self._pool is None:
-            pairs = zip(self._emulators, arguments, strict=True)
-            return [_tried(work, emulator, given) for emulator, given in pairs]
         # Long runs first, so that no worker is left with one at the end.
         order = sorted(range(len(self.runs)), key=lambda k: -len(self.runs[k].log.t))
-        futures = {k: self._pool.submit(_inherited, work, k, arguments[k]) for k in order}
-        return [futures[k].result() for k in range(len(self.runs))]
+        answers = self._pool.answers([(k, work, arguments[k]) for k in order])
+        found = {k: answer for k, answer in zip(order, answers, strict=True) if answer is not None}
+        return [found[k] for k in range(len(self.runs))]
 
-
-def _can_fork() -> bool:
-    return "fork" in multiprocessing.get_all_start_methods()
-
-
-def _inherited(
-    work: Callable[..., Answer], index: int, given: tuple[Any, ...]
-) -> Answer | FlybyError:
-    return _tried(work, _emulators[index], given)
-
-
-def _tried(
-    work: Callable[..., Answer], emulator: RunEmulator, given: tuple[Any, ...]
-) -> Answer | FlybyError:
-    try:
-        return work(emulator, *given)
-    except FlybyError as error:
-        return error
+    def _answer(self, job: _Job) -> Any:
+        run, work, given = job
+        try:
+            return work(self._emulators[run], *given)
+        except FlybyError as error:
+            return error
 
 
 def _residuals(emulator: RunEmulator, model: MotionModel, nuisance: Nuisance) -> FloatArray:
