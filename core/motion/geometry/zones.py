@@ -17,13 +17,12 @@ from ...program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction,
 from ...robot.chain import Chain
 from ..model.motion_model import MotionModel, OrientationZone, Overlap, Pace, Space
 from .corners import JOINT_CORNER, POSITION, TCP_CORNER, Corners, Room
+from .neighbour_zones import STILL, way_towards_neighbour
 from .reach import Part, Reach, least
 from .segments import ARC_SEGMENT, JOINT_SEGMENT, Segments
 from .sharp_corners import share_kept
 from .zone_exits import first_exit, tcp_apart
 
-_STILL = 1e-7
-"""m of TCP path below which a move counts as pure reorientation."""
 _NOTHING = 1e-9
 """A reach below is no zone."""
 
@@ -156,7 +155,7 @@ class ZonePlanner:
             return False
         kinds = self._segments.ends.kind[i : i + 2]
         lengths = self._segments.length[i : i + 2]
-        if (kinds == JOINT_SEGMENT).any() or (lengths < _STILL).sum() != 1:
+        if (kinds == JOINT_SEGMENT).any() or (lengths < STILL).sum() != 1:
             return False
         self._note(i, "no zone between a move of the TCP and a pure reorientation: it stops here")
         return True
@@ -198,37 +197,9 @@ class ZonePlanner:
         return self._exit(i, i, size, zone), self._exit(i + 1, i, size, zone)
 
     def _half(self, segment: int, corner: int) -> Reach | None:
-        """TCP distance of the point half way from the waypoint; None where the TCP stands still."""
-        s, share = self._segments, self._model.neighbour_fraction
-        kind = s.ends.kind[segment]
-        if kind == JOINT_SEGMENT:
-            return self._joint_half(segment, corner)
-        if s.length[segment] < _STILL:
-            return None
-        length = float(s.length[segment])
-        if kind != ARC_SEGMENT:
-            return Reach(share * length, (("length", segment, share),))
-        swept = float(s.angle[segment])
-        r = length / swept
-        sine, cosine = math.sin(0.5 * share * swept), math.cos(0.5 * share * swept)
-        parts: tuple[Part, ...] = (
-            ("length", segment, 2 * sine / swept),
-            ("arc", segment, -2 * r * sine / swept + share * r * cosine),
+        return way_towards_neighbour(
+            self._segments, self._chains, segment, corner, self._model.neighbour_fraction
         )
-        return Reach(2 * r * sine, parts)
-
-    def _joint_half(self, segment: int, corner: int) -> Reach | None:
-        share = self._model.neighbour_fraction
-        near, far = (1, 0) if segment == corner else (0, 1)
-        q_wp, q_other = self._segments.ends.q[segment, near], self._segments.ends.q[segment, far]
-        distance, pull, pull_wp = tcp_apart(self._chains[segment], q_wp, q_other, share)
-        if distance < _STILL:
-            return None
-        parts: tuple[Part, ...] = (
-            (f"q{near}", segment, (1 - share) * pull - pull_wp),
-            (f"q{far}", segment, share * pull),
-        )
-        return Reach(distance, parts)
 
     def _exit(self, segment: int, corner: int, size: Reach, zone: Radius) -> Reach:
         """Share of a segment inside the sphere round the waypoint of ``corner``."""
@@ -239,7 +210,7 @@ class ZonePlanner:
         if s.ends.kind[segment] == JOINT_SEGMENT:
             return self._joint_exit(segment, corner, size, limit)
         length = float(s.length[segment])
-        if length < _STILL:
+        if length < STILL:
             return self._by_angle(segment, zone.angle, corner)
         if s.ends.kind[segment] != ARC_SEGMENT:
             share = size * Reach(length, (("length", segment, 1.0),)).inverse()

@@ -12,14 +12,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-import numpy as np
-
 from ....core.motion.geometry.corners import STOP
-from ....core.motion.geometry.segments import ARC_SEGMENT, JOINT_SEGMENT, Segments, make_segments
+from ....core.motion.geometry.neighbour_zones import way_towards_neighbour
+from ....core.motion.geometry.segments import Segments, make_segments
 from ....core.motion.model.motion_model import MotionModel, Overlap
 from ....core.motion.path.path import Route
 from ....core.program.zone import ContourFraction, Radius
-from ....core.robot.chain_kernels import poses
 from .neighbourhood import Neighbourhoods
 from .sizes import Growth
 
@@ -28,8 +26,6 @@ Leg = int
 
 APART = 0.999
 """Share of the way to a neighbouring point, or of a leg, that zones take at most."""
-_STILL = 1e-7
-"""m of TCP path below which a leg is a mere turn."""
 _HALVINGS = 30
 
 
@@ -60,31 +56,20 @@ class Rules:
         turn = self._half * max(self._turn(corner), self._turn(corner + 1))
         if not isinstance(growth.pattern, Radius):
             return turn
-        ways = [self._way(segment, corner) for segment in (corner, corner + 1)]
-        ways = [way for way in ways if way > _STILL]
-        if ways:
-            return min(ways)
+        sides = corner, corner + 1
+        ways = [
+            way_towards_neighbour(self._segments, self._route.chains, side, corner, self._share)
+            for side in sides
+        ]
+        known = [way.value for way in ways if way is not None]
+        if known:
+            return min(known)
         angle = growth.pattern.angle / growth.pattern.tcp
         return turn / angle if angle > 0 else 0.0
 
     def _turn(self, segment: int) -> float:
         """rad that the tool turns on a segment, beside the turn of an arc."""
         return float(self._segments.turn[segment])
-
-    def _way(self, segment: int, corner: int) -> float:
-        """m from the waypoint to the point of a leg up to which its zone may reach."""
-        ends, share = self._segments.ends, self._share
-        if ends.kind[segment] == JOINT_SEGMENT:
-            near = 1 if segment == corner else 0
-            q_wp, q_other = ends.q[segment, near], ends.q[segment, 1 - near]
-            q = np.stack([q_wp, (1 - share) * q_wp + share * q_other])
-            _, place = poses(self._route.chains[segment], q)
-            return float(np.linalg.norm(place[1] - place[0]))
-        length = float(self._segments.length[segment])
-        if ends.kind[segment] != ARC_SEGMENT:
-            return share * length
-        swept = float(self._segments.angle[segment])
-        return 2 * length / swept * math.sin(0.5 * share * swept)
 
 
 def passable(
