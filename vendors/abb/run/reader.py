@@ -1,13 +1,11 @@
 """RAPID source → `Program`.
 
-The text is parsed (`parser`) and executed (`interpreter`) from the entry routine on, as far as its
-course follows from the text itself. What is decided here, and where a controller may differ:
+The text is parsed (`syntax.parser`) and executed (`interpreter`) from the entry routine on, as far
+as its course follows from the text itself. What is decided here, and where a controller may differ:
 
-- A branch, a loop or a move that depends on what only the running controller knows (signals, the
-  robot's position, clocks, an operator's answer) is refused by name. In a plain assignment such a
-  value is carried along.
-- ``WHILE TRUE`` without a way out is read for one pass; what stands behind it is never reached.
-  Other loops may run, up to the limits in `interpreter`.
+- A move that depends on what only the running controller knows (signals, clocks, an operator's
+  answer) is refused by name; in an assignment such a value is carried along. Branches and loops
+  that depend on one are decided by the rules of `core.source.execution.flow`.
 - Instructions that do not move the robot stay as opaque statements; ``WaitUntil``, ``WaitDI`` and
   their like are stops and taken as satisfied at once. Error handlers and traps do not run. An
   instruction that no table of `instructions` knows is refused, as it might move the robot.
