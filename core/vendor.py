@@ -171,7 +171,7 @@ class Vendor:
         Raises:
             InputError: the file cannot be read, states nonsense, or is another robot's.
         """
-        from .motion.model.motion_model import load_motion_model
+        from .motion.model.motion_file import load_motion_model
 
         model = load_motion_model(file, self.motion_of(robot), robot.name)
         own = robot.name.removeprefix(f"{self.name}/")
@@ -336,7 +336,7 @@ def motion_layers(files: Iterable[Path]) -> dict[str, MotionLayer]:
     """What is known of how single robots are driven, each read when it is asked for.
 
     Args:
-        files: TOML files (see `flyby.core.motion.model.motion_model`); a robot is called as its
+        files: TOML files (see `flyby.core.motion.model.motion_file`); a robot is called as its
             file, without suffix.
     """
     return {path.stem: _layer(path) for path in sorted(files)}
@@ -344,7 +344,7 @@ def motion_layers(files: Iterable[Path]) -> dict[str, MotionLayer]:
 
 def _layer(path: Path) -> MotionLayer:
     def lay(base: MotionModel) -> MotionModel:
-        from .motion.model.motion_model import load_motion_model
+        from .motion.model.motion_file import load_motion_model
 
         return load_motion_model(path, base)
 
@@ -355,7 +355,7 @@ def lazy_motion(path: Path) -> Callable[[], MotionModel]:
     """The motion model of a TOML file, read when it is asked for."""
 
     def load() -> MotionModel:
-        from .motion.model.motion_model import load_motion_model
+        from .motion.model.motion_file import load_motion_model
 
         return load_motion_model(path)
 

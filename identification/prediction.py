@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from ..core.errors import FlybyError, InputError
 from ..core.motion.emulator.controller import Controller
 from ..core.motion.emulator.run import Run
-from ..core.motion.model.motion_model import ArcTurn
+from ..core.motion.model.rules import ArcTurn
 from ..core.program.move import MoveC
 from ..core.program.program import Program
 from ..core.program.target import JointTarget

@@ -16,7 +16,7 @@ from .read import SourceOptions, read_with
 from .setup import Setup, setup_of, setup_of_program
 
 if TYPE_CHECKING:
-    from ..core.motion.model.motion_model import ArcTurn
+    from ..core.motion.model.rules import ArcTurn
     from ..core.program.program import Program
     from ..identification.logs import LoggedRun
     from ..identification.prediction import Prediction

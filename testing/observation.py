@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from ..core.arrays import FloatArray, IntArray
 from ..core.motion.emulator.run import Run
 from ..core.motion.geometry.swivel import swivel
-from ..core.motion.model.motion_model import LineTurn, MotionModel, Overlap
+from ..core.motion.model.motion_model import MotionModel
+from ..core.motion.model.rules import LineTurn, Overlap
 from ..core.program.move import Move, MoveC, MoveJ
 from ..core.program.program import Program
 from ..core.program.speed import Speed

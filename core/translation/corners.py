@@ -19,7 +19,7 @@ from ..arrays import FloatArray
 from ..dialect import Dialect
 from ..motion.geometry.corners import POSITION, STOP, TURNING
 from ..motion.geometry.segments import JOINT_SEGMENT
-from ..motion.model.motion_model import Overlap
+from ..motion.model.rules import Overlap
 from ..motion.path.path import OverlapError, Path, Route
 from ..program.program import Program
 from ..program.zone import FINE, Angle, ContourFraction, Radius, Zone

@@ -11,7 +11,7 @@ from ..dialect import Dialect
 from ..errors import Note, Span
 from ..motion.emulator.controller import Controller
 from ..motion.geometry.segments import make_segments
-from ..motion.model.motion_model import Overlap
+from ..motion.model.rules import Overlap
 from ..motion.path.path import Path, Route
 from ..program.event import Event
 from ..program.move import ArcOrientation, MoveC, MoveJ, MoveL, Opaque, Statement, Wait

@@ -19,8 +19,9 @@ from pathlib import Path
 
 from flyby.core.errors import InputError, SourceError, Span
 from flyby.core.hookspec import VendorRegister, hookimpl
-from flyby.core.motion.model.motion_model import MotionModel, Overlap
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.model.provenance import Provenance
+from flyby.core.motion.model.rules import Overlap
 from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Statement, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -9,7 +9,7 @@ from ...core.errors import FlybyError
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.emulator.move_figures import zone_reaches
 from ...core.motion.emulator.run import Run
-from ...core.motion.model.motion_model import Overlap
+from ...core.motion.model.rules import Overlap
 from ...core.program.move import MoveJ
 from ...core.program.program import Program
 from ...core.program.speed import Speed

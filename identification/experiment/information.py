@@ -24,9 +24,9 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.motion.command.commanded_motion import stamped_motion
-from ...core.motion.command.elasticity import RIGID
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.model.blend import Blend
+from ...core.motion.model.elasticity import RIGID
 from ...core.motion.model.motion_model import MotionModel
 from ...core.motion.path.path import Path
 from ...core.motion.timing.timing import Timing

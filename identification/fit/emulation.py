@@ -1,23 +1,26 @@
 """The emulated joints at the samples of a run, and how they change with parameters.
 
-What a parameter does not touch is not done again: a blend's coefficient changes the path and all
-that follows, a limit the stamp, an elasticity only the leads. Leads are linear in their
-coefficients, so that their derivatives by differences are exact; those of the rest are differences
-to one side.
+What a parameter does not touch is not done again, as the stages of the figures say: a blend's
+coefficient changes the path and all that follows, a limit the stamp, an elasticity only the leads.
+Leads are linear in their coefficients, so that their derivatives by differences are exact; those
+of the rest are differences to one side.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.motion.command.commanded_motion import stamped_motion
-from ...core.motion.command.elasticity import RIGID
+from ...core.motion.command.elasticity import leads
 from ...core.motion.command.smoothing import Motion, Smoothing, States
 from ...core.motion.emulator.controller import Controller
-from ...core.motion.model.motion_model import MotionModel
+from ...core.motion.geometry.pieces import Sampling
+from ...core.motion.model.elasticity import RIGID
+from ...core.motion.model.figures import Stage
+from ...core.motion.model.motion_model import MotionModel, first_change
 from ...core.motion.path.path import Path
 from ..matching import Match, match
 from ..prediction import PERIOD, start_of
@@ -25,21 +28,6 @@ from .keys import with_value
 from .parameters import ParameterSet
 from .runs import PreparedRun
 
-_NEVER = frozenset({"provenance", "period"})
-_AFTER_STAMP = _NEVER | {"elasticity"}
-_AFTER_PATH = _AFTER_STAMP | {
-    "smoothing",
-    "settling",
-    "in_position",
-    "in_position_time",
-    "jerk",
-    "ramp",
-    "torque",
-    "joint_acceleration_scale",
-    "tcp_acceleration",
-    "reorientation_acceleration",
-}
-"""Fields of a motion model that the path does not depend on; unknown ones count as ones it does."""
 STEP = 1e-3
 """Share of a parameter's scale that differences step by."""
 _MOMENT = 1e-4
@@ -79,6 +67,7 @@ class _Stages:
     model: MotionModel
     size: float
     override: float
+    sampling: Sampling
     path: Path
     stamped: Motion
     smoothing: Smoothing
@@ -227,12 +216,13 @@ class RunEmulator:
         """What a command needs, taken from what is known as far as the models agree."""
         if known is not None and known.size != own.size:
             known = None
-        stamped_alike = known is not None and known.override == own.override
-        if known is not None and stamped_alike and _agree(model, known.model, _AFTER_STAMP):
+        changed = None if known is None else first_change(model, known.model)
+        if known is not None and known.override == own.override and _begins(changed, Stage.LEAD):
             return known
         controller = self.prepared.controller(model)
         program = self.prepared.program(own.size)
-        if known is not None and _agree(model, known.model, _AFTER_PATH):
+        alike = known is not None and controller.sampling == known.sampling
+        if known is not None and alike and _begins(changed, Stage.TIMING):
             path = known.path
         else:
             path = controller.plan(program, start_of(program, self.prepared.log, controller.robot))
@@ -243,7 +233,17 @@ class RunEmulator:
         stamped = stamped_motion(timing)
         window = smoothing.window + timing.ramp
         duration = timing.duration
-        return _Stages(model, own.size, own.override, path, stamped, smoothing, window, duration)
+        return _Stages(
+            model,
+            own.size,
+            own.override,
+            controller.sampling,
+            path,
+            stamped,
+            smoothing,
+            window,
+            duration,
+        )
 
     def _joints(self, stages: _Stages, model: MotionModel, t: FloatArray) -> FloatArray:
         """(K, N), commanded at times."""
@@ -273,13 +273,9 @@ def led(controller: Controller, states: States) -> FloatArray:
     """Commanded joints (K, N) of a smoothed motion."""
     if controller.model.elasticity == RIGID:
         return states[0]
-    return states[0] + controller.model.elasticity.leads(controller.robot, *states)
+    return states[0] + leads(controller.model.elasticity, controller.robot, *states)
 
 
-def _agree(a: MotionModel, b: MotionModel, apart: frozenset[str]) -> bool:
-    """Whether two models are the same, some fields apart."""
-    return all(
-        getattr(a, field.name) == getattr(b, field.name)
-        for field in fields(MotionModel)
-        if field.name not in apart
-    )
+def _begins(changed: Stage | None, stage: Stage) -> bool:
+    """Whether nothing that comes before a stage has changed."""
+    return changed is None or changed >= stage

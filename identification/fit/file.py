@@ -16,16 +16,14 @@ command = "flyby identify …"
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
-from ...core.files.toml_text import key_text, string_text, value_text
-from ...core.motion.command.elasticity import Carried, Coupled
-from ...core.motion.model.motion_model import MotionModel
+from ...core.files.toml_text import string_text
+from ...core.motion.model.motion_file import figures_text
+from ...core.motion.model.motion_model import FIGURES, MotionModel
 from ...core.motion.model.provenance import FitRecord, Provenance, provenance_text
-from ...core.motion.timing.torque import Borne
 from .fitting import Fit
 from .intervals import CONFIDENCE, Interval
-from .keys import field_of, figure_of, steps_of
+from .keys import figure_of
 from .parameters import Parameter
 
 ASSUMED = Provenance("assumed", "stated where the fit began")
@@ -55,15 +53,9 @@ def motion_file(
         members = members | {figure: [] for figure in _others(fitted.model, reference, members)}
     elif fitted.turn is not None:
         members.setdefault(ARC_TURN, [])
-    tables: dict[str, list[str]] = {}
-    for figure in members:
-        table, _, key = figure.rpartition(".")
-        text = value_text(_plain(_value(fitted.model, figure)))
-        tables.setdefault(table, []).append(f"{key_text(key)} = {text}")
     lines = [f"# {line}".rstrip() for line in heading.splitlines()]
-    lines += [f"robot = {string_text(fitted.runs[0].robot.name)}", *tables.pop("", [])]
-    for table, entries in tables.items():
-        lines += ["", f"[{table}]", *entries]
+    lines += [f"robot = {string_text(fitted.runs[0].robot.name)}"]
+    lines += [figures_text(fitted.model, members, _six_digits)]
     record = _record(fitted, name, command)
     origins = {figure: _origin(fitted, figure, record, ks) for figure, ks in members.items()}
     return "\n".join([*lines, "", provenance_text(origins)])
@@ -71,23 +63,17 @@ def motion_file(
 
 def _members(fitted: Fit) -> dict[str, list[int]]:
     """Indices of the parameters that belong to each figure."""
-    parameters = fitted.parameters
-    # What was fitted down to nothing is a figure of the start.
-    start = parameters.model(parameters.start)
-    stated = fitted.model.figures | start.figures | parameters.base.figures
     found: dict[str, list[int]] = {}
-    for k, one in enumerate(parameters.parameters):
+    for k, one in enumerate(fitted.parameters.parameters):
         for key in one.keys:
-            figure = figure_of(key, stated)
-            if figure is not None:
-                found.setdefault(figure, []).append(k)
+            found.setdefault(figure_of(key).key, []).append(k)
     return found
 
 
 def _others(model: MotionModel, reference: MotionModel, known: Iterable[str]) -> list[str]:
     """Figures beyond the known ones by which two models differ."""
     figures = sorted((model.figures | reference.figures).difference(known))
-    return [one for one in figures if _value(model, one) != _value(reference, one)]
+    return [one for one in figures if FIGURES[one].of(model) != FIGURES[one].of(reference)]
 
 
 def _record(fitted: Fit, name: str, command: str) -> FitRecord:
@@ -126,31 +112,5 @@ def _rounded(value: float, interval: Interval) -> float:
     return float(f"{value:.{max(1, 1 + len(str(int(abs(value) / interval.deviation))))}g}")
 
 
-def _value(model: MotionModel, figure: str) -> Any:
-    """What a model has as a figure."""
-    owner: Any = model
-    group = ""
-    for step in steps_of(figure):
-        assert isinstance(step, str)
-        # A table that names no field may be part of the name of one: zone.orientation is
-        # orientation_zone, line.turn line_turn.
-        names = (f"{step}_{group}", f"{group}_{step}", step)
-        field = next((one for name in names if (one := field_of(owner, name))), None)
-        group = step if field is None else ""
-        owner = owner if field is None else getattr(owner, field)
-    return owner
-
-
-def _plain(value: Any) -> Any:
-    """A value as the file has it, numbers to six digits."""
-    if value is None:
-        return "none"
-    if isinstance(value, float):
-        return float(f"{value:.6g}")
-    if isinstance(value, Carried | Coupled | Borne):
-        return _plain(value.entry)
-    if isinstance(value, tuple):
-        return [_plain(entry) for entry in value]
-    if isinstance(value, dict):
-        return {key: _plain(entry) for key, entry in value.items()}
-    return value
+def _six_digits(value: float) -> float:
+    return float(f"{value:.6g}")

@@ -14,7 +14,8 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.errors import FlybyError, InputError
-from ...core.motion.model.motion_model import ArcTurn, MotionModel
+from ...core.motion.model.motion_model import MotionModel
+from ...core.motion.model.rules import ArcTurn
 from .clocks import timed, told
 from .emulation import Nuisance, Rows
 from .intervals import SEEN, Interval, Unseen, clusters_of, intervals, loose, unseen

@@ -1,38 +1,95 @@
-"""Figures of a motion model by the keys of its file.
+"""Numbers of a motion model by the keys of ``--fit``.
 
 ``blend.tcp.beta[0]``, ``time.settling_s``, ``limit.joint_acceleration_scale[3:]``,
-``elasticity.carried[0].lead_s2_per_m2[1]``: a part of a key is the field's name, maybe followed by
-its unit; tables that only group the file (``time``, ``limit``) name no field. What a model gains in
-figures is found without further code as long as it keeps to that. A range (``[3:]``, ``[*]``) is
-one figure for several entries.
+``elasticity.carried[0].lead_s2_per_m2[1]``: the key of a figure as files have it, and where it
+holds several numbers, which of them. A range (``[3:]``, ``[*]``) is one number for several entries.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import re
-from collections.abc import Collection, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
 
-from ...core.errors import InputError
-from ...core.motion.model.motion_model import MotionModel
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
+from ...core.errors import InputError, UnknownNameError
+from ...core.motion.model.figures import Figure, Fit, Member, Tables, with_figures
+from ...core.motion.model.kinds import Number, Row
+from ...core.motion.model.motion_model import FIGURES, MotionModel
 
 Step = str | slice
-"""A field's name in the file, or which entries of a list."""
+"""A figure's name in a table, or which entries of several."""
 
 _PART = re.compile(r"([A-Za-z]\w*)((?:\[[^\]]*\])*)")
 _INDEX = re.compile(r"\[(?:(\*)|(\d+)|(\d*):(\d*))\]")
 
 
-def steps_of(key: str) -> tuple[Step, ...]:
-    """The parts of a key.
+def figure_of(key: str) -> Figure:
+    """The figure that a key belongs to.
 
     Raises:
-        InputError: it is no key.
+        InputError: it is no key, or of no figure.
     """
+    return _found(key)[0]
+
+
+def fit_of(key: str) -> Fit:
+    """How the number at a key is fitted.
+
+    Raises:
+        InputError: there is no such key, or what stands there is not fitted.
+    """
+    one: Figure | Member
+    one, steps = _found(key)
+    names = [step for step in steps if isinstance(step, str)]
+    if names:
+        one = _member(one, names[0], key)
+    if one.fit is None:
+        raise InputError(f"{key!r} is not fitted: {one.help}")
+    return one.fit
+
+
+def value_of(model: MotionModel, key: str) -> float | None:
+    """What a model has at a key; the mean where entries differ; None where it states nothing.
+
+    Raises:
+        InputError: there is no such key, or no number at it.
+    """
+    one, steps = _found(key)
+    found = _numbers(one, one.of(model), steps, key)
+    return None if not found else sum(found) / len(found)
+
+
+def nothing(key: str) -> float:
+    """What an entry of a list stands for that is not stated."""
+    kind = figure_of(key).kind
+    return kind.neutral if isinstance(kind, Row) else 0.0
+
+
+def with_value(model: MotionModel, key: str, value: float) -> MotionModel:
+    """The model with another value at a key; a list of numbers grows to an index beyond its end,
+    by what stands for nothing.
+
+    Raises:
+        InputError: there is no such key, or the model refuses the value.
+    """
+    one, steps = _found(key)
+    return with_figures(model, {one: _updated(one, one.of(model), steps, value, key)})
+
+
+def _found(key: str) -> tuple[Figure, tuple[Step, ...]]:
+    """The figure of a key, and the steps from it to the number."""
+    steps, name = _steps(key), ""
+    for k, step in enumerate(steps):
+        if isinstance(step, slice):
+            break
+        name = f"{name}.{step}" if name else step
+        if name in FIGURES:
+            return FIGURES[name], steps[k + 1 :]
+    raise UnknownNameError("key of a motion model", name, FIGURES)
+
+
+def _steps(key: str) -> tuple[Step, ...]:
     steps: list[Step] = []
     for part in key.split("."):
         found = _PART.fullmatch(part)
@@ -49,52 +106,6 @@ def steps_of(key: str) -> tuple[Step, ...]:
     return tuple(steps)
 
 
-def figure_of(key: str, figures: Collection[str]) -> str | None:
-    """Which of some figures of the file a key belongs to; None if none of them."""
-    name = ""
-    for step in steps_of(key):
-        if isinstance(step, slice):
-            break
-        name = f"{name}.{step}" if name else step
-        if name in figures:
-            return name
-    return None
-
-
-def value_of(model: MotionModel, key: str) -> float | None:
-    """What a model has at a key; the mean where entries differ; None where it states nothing.
-
-    Raises:
-        InputError: there is no such key, or no number at it.
-    """
-    found = _numbers(model, steps_of(key), key)
-    return None if not found else sum(found) / len(found)
-
-
-def nothing(key: str) -> float:
-    """What an entry of a list stands for that is not stated: of lists that scale something, one."""
-    return 1.0 if "_scale" in key else 0.0
-
-
-def with_value(model: MotionModel, key: str, value: float) -> MotionModel:
-    """The model with another value at a key; a list of numbers grows to an index beyond its end,
-    by what stands for nothing.
-
-    Raises:
-        InputError: there is no such key, or the model refuses the value.
-    """
-    made = _updated(model, steps_of(key), value, key)
-    assert isinstance(made, MotionModel)
-    return made
-
-
-def field_of(owner: DataclassInstance, name: str) -> str | None:
-    """The field of a dataclass that a name in the file stands for; None if it only groups."""
-    names = [field.name for field in dataclasses.fields(owner)]
-    fits = [own for own in names if name == own or name.startswith(f"{own}_")]
-    return max(fits, key=len, default=None)
-
-
 def _slice(index: re.Match[str]) -> slice:
     everything, one, begin, end = index.groups()
     if everything:
@@ -104,59 +115,70 @@ def _slice(index: re.Match[str]) -> slice:
     return slice(int(begin) if begin else None, int(end) if end else None)
 
 
-def _numbers(owner: Any, steps: Sequence[Step], key: str) -> list[float]:
-    if not steps:
-        if owner is None:
-            return []
-        if isinstance(owner, bool) or not isinstance(owner, int | float):
-            raise InputError(f"{key!r}: no number, or not a single one, stands there")
-        return [float(owner)]
-    step, rest = steps[0], steps[1:]
-    if isinstance(step, slice):
-        return [n for entry in _entries(owner, key)[step] for n in _numbers(entry, rest, key)]
-    inner, rest = _enter(owner, step, rest, key)
-    return _numbers(owner if inner is None else getattr(owner, inner), rest, key)
+def _member(one: Figure | Member, name: str, key: str) -> Member:
+    members = one.kind.members if isinstance(one.kind, Tables) else ()
+    found = {member.key: member for member in members}
+    if name not in found:
+        known = f"; there are {', '.join(found)}" if found else ""
+        raise InputError(f"{key!r}: nothing is called {name!r} there{known}")
+    return found[name]
 
 
-def _updated(owner: Any, steps: Sequence[Step], value: float, key: str) -> Any:
+def _numbers(
+    one: Figure | Member, value: Any, steps: Sequence[Step], key: str, entry: bool = False
+) -> list[float]:
+    """What stands below a figure's value, or one of its entries."""
     if not steps:
-        if isinstance(owner, tuple | str | bool) or dataclasses.is_dataclass(owner):
-            raise InputError(f"{key!r}: no number, or not a single one, stands there")
-        return value
+        _check_number(one, entry, key)
+        return [] if value is None else [float(value)]
     step, rest = steps[0], steps[1:]
     if isinstance(step, slice):
-        entries = list(_entries(owner, key))
-        if not rest and step.stop is not None and step.stop == (step.start or 0) + 1:
-            entries += [nothing(key)] * (step.stop - len(entries))
+        chosen = _entries(value, entry, key)[step]
+        return [n for part in chosen for n in _numbers(one, part, rest, key, True)]
+    member = _member(one, step, key)
+    if not entry:
+        raise InputError(f"{key!r}: several stand there; name one, such as {one.key}[0]")
+    return _numbers(member, getattr(value, member.name), rest, key)
+
+
+def _updated(
+    one: Figure | Member,
+    value: Any,
+    steps: Sequence[Step],
+    number: float,
+    key: str,
+    entry: bool = False,
+) -> Any:
+    """A figure's value, or one of its entries, with another number below it."""
+    if not steps:
+        _check_number(one, entry, key)
+        return number
+    step, rest = steps[0], steps[1:]
+    if isinstance(step, slice):
+        entries = list(_entries(value, entry, key))
+        kind = one.kind
+        if isinstance(kind, Row) and step.stop is not None and step.stop == (step.start or 0) + 1:
+            entries += [kind.neutral] * (step.stop - len(entries))
         chosen = range(len(entries))[step]
         if not chosen:
             raise InputError(f"{key!r}: the motion model has {len(entries)} entries there")
         for k in chosen:
-            entries[k] = _updated(entries[k], rest, value, key)
+            entries[k] = _updated(one, entries[k], rest, number, key, True)
         return tuple(entries)
-    inner, rest = _enter(owner, step, rest, key)
-    if inner is None:
-        return _updated(owner, rest, value, key)
-    made = _updated(getattr(owner, inner), rest, value, key)
-    return dataclasses.replace(owner, **{inner: made})
+    member = _member(one, step, key)
+    if not entry:
+        raise InputError(f"{key!r}: several stand there; name one, such as {one.key}[0]")
+    made = _updated(member, getattr(value, member.name), rest, number, key)
+    return replace(value, **{member.name: made})
 
 
-def _entries(owner: Any, key: str) -> tuple[Any, ...]:
-    if not isinstance(owner, tuple):
+def _check_number(one: Figure | Member, entry: bool, key: str) -> None:
+    """Refuse what is no number: of a list only an entry is one."""
+    if not isinstance(one.kind, Row if entry else Number):
+        raise InputError(f"{key!r}: no number, or not a single one, stands there")
+
+
+def _entries(value: Any, entry: bool, key: str) -> tuple[Any, ...]:
+    if entry or not isinstance(value, tuple):
         raise InputError(f"{key!r}: no list stands there")
-    return owner
-
-
-def _enter(
-    owner: Any, step: str, rest: Sequence[Step], key: str
-) -> tuple[str | None, Sequence[Step]]:
-    """The field that a step leads to, and the steps behind it; no field where it only groups."""
-    if not dataclasses.is_dataclass(owner) or isinstance(owner, type):
-        raise InputError(f"{key!r}: nothing is called {step!r} there")
-    field = field_of(owner, step)
-    if field is not None:
-        return field, rest
-    if isinstance(owner, MotionModel) and rest and isinstance(rest[0], str):
-        return None, rest
-    known = ", ".join(one.name for one in dataclasses.fields(owner))
-    raise InputError(f"{key!r}: nothing is called {step!r} there; there are {known}")
+    return value

@@ -13,7 +13,7 @@ from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.motion.model.motion_model import MotionModel
 from ...core.robot.model import Robot
-from .keys import nothing, value_of, with_value
+from .keys import fit_of, nothing, value_of, with_value
 
 
 @dataclass(frozen=True)
@@ -50,38 +50,8 @@ class Parameter:
         return " + ".join(self.keys)
 
 
-@dataclass(frozen=True)
-class _Known:
-    """What is usual for figures whose keys match."""
-
-    pattern: re.Pattern[str]
-    lower: float
-    upper: float
-    scale: float
-
-
-_KNOWN = tuple(
-    _Known(re.compile(pattern), lower, upper, scale)
-    for pattern, lower, upper, scale in (
-        (r"blend\..*\.beta\[", -8.0, 8.0, 0.5),
-        (r"blend\..*\.alpha\[", -20.0, 20.0, 0.5),
-        (r"time\.smoothing_s", 0.0, 0.5, 0.01),
-        (r"time\.settling_s", 0.0, 1.0, 0.1),
-        (r"time\.in_position_rad", 0.0, 0.1, 2e-3),
-        (r"time\.in_position_time_s", 0.0, 1.0, 0.05),
-        (r"time\.ramp_s", 0.0, 0.5, 0.02),
-        (r"limit\..*_scale", 0.1, 10.0, 0.5),
-        (r"elasticity\.coupled", -2.0, 2.0, 0.1),
-        (r"elasticity\.weight", -10.0, 10.0, 0.5),
-        (r"elasticity\.", -5e-3, 5e-3, 1e-4),
-        (r"torque\.own_s2", 1e-6, 10.0, 0.05),
-        (r"torque\.carried", 0.0, 10.0, 0.05),
-        (r"torque\.weight", 0.0, 5.0, 0.5),
-        (r"torque\.fade_s2", 0.0, 10.0, 0.2),
-    )
-)
 _SHARE = 0.5
-"""Scale of what is not known, as a share of its start."""
+"""Scale of what has no usual one, as a share of its start."""
 
 
 def parameter(model: MotionModel, text: str) -> Parameter:
@@ -93,24 +63,23 @@ def parameter(model: MotionModel, text: str) -> Parameter:
             ``in lower .. upper``.
 
     Raises:
-        InputError: there is no such key, or the model has no value there and the text names none.
+        InputError: there is no such key, what stands there is not fitted, or the model has no
+            value there and the text names none.
     """
     found = _TEXT.fullmatch(text)
     if found is None:
         raise InputError(f"{text!r} names no parameter: 'key', 'key = start in lower .. upper'")
     keys = tuple(key.strip() for key in found["keys"].split("+"))
+    usual = fit_of(keys[0])
     start = _first(model, keys[0]) if found["start"] is None else _number(found["start"], text)
     for key in keys:
+        fit_of(key)
         with_value(model, key, start)
-    known = next((k for k in _KNOWN if k.pattern.match(keys[0])), None)
-    if known is None:
-        known = _Known(
-            re.compile(""), 0.0 if start > 0 else -math.inf, math.inf, _SHARE * abs(start) or _SHARE
-        )
-    lower, upper = min(known.lower, start), max(known.upper, start)
+    lower, upper = min(usual.lower, start), max(usual.upper, start)
+    scale = usual.scale or _SHARE * abs(start) or _SHARE
     if found["lower"] is not None:
         lower, upper = _number(found["lower"], text), _number(found["upper"], text)
-    return Parameter(keys, start, lower, upper, known.scale)
+    return Parameter(keys, start, lower, upper, scale)
 
 
 _TEXT = re.compile(

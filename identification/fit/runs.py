@@ -28,7 +28,8 @@ from scipy.ndimage import maximum_filter1d
 from ...core.arrays import FloatArray, IntArray
 from ...core.errors import InputError
 from ...core.motion.emulator.controller import Controller
-from ...core.motion.model.motion_model import ArcTurn, MotionModel
+from ...core.motion.model.motion_model import MotionModel
+from ...core.motion.model.rules import ArcTurn
 from ...core.program.program import Program
 from ...core.program.tool import FLANGE, Tool
 from ...core.program.zone import Radius

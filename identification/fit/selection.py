@@ -46,9 +46,8 @@ def candidates(parameters: ParameterSet) -> list[Candidate]:
     """All parameters, and all but those of one figure of the motion file, for each figure; a
     figure that is not fitted stays where the base of the parameters has it."""
     figures: dict[str, list[str]] = {}
-    stated = parameters.model(parameters.start).figures
     for one in parameters.parameters:
-        figure = figure_of(one.keys[0], stated) or one.keys[0]
+        figure = figure_of(one.keys[0]).key
         figures.setdefault(figure, []).append(one.name)
     found = [Candidate("all", parameters)]
     if len(figures) > 1:

@@ -22,7 +22,8 @@ from ...core.motion.emulator.controller import Controller
 from ...core.motion.emulator.run import Run
 from ...core.motion.geometry.pieces import Sampling
 from ...core.motion.gradients.derivatives import Derivatives
-from ...core.motion.model.motion_model import LineTurn, MotionModel
+from ...core.motion.model.motion_model import MotionModel
+from ...core.motion.model.rules import LineTurn
 from ...core.motion.path.tcp_walk import JOINED
 from ...core.program.move import Move, MoveC, MoveJ, MoveL, Wait
 from ...core.program.program import Program

@@ -15,7 +15,7 @@ from typer.testing import Result
 
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.model.blend import Blend
-from flyby.core.motion.model.motion_model import load_motion_model
+from flyby.core.motion.model.motion_file import load_motion_model
 from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.fit import Judgement
 from flyby.identification.logs.synthetic import Faults, synthetic_run

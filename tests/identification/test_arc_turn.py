@@ -10,11 +10,9 @@ import pytest
 
 from flyby.core.errors import InputError
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.model.motion_model import (
-    ArcTurn,
-    MotionModel,
-    load_motion_model,
-)
+from flyby.core.motion.model.motion_file import load_motion_model
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.model.rules import ArcTurn
 from flyby.core.program.move import ArcOrientation, MoveC, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -11,7 +11,7 @@ import pytest
 
 from flyby.core.errors import InputError
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.model.motion_model import ArcTurn
+from flyby.core.motion.model.rules import ArcTurn
 from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.alignment import align
 from flyby.identification.logs import clean, load_run

@@ -10,12 +10,7 @@ from pathlib import Path
 import pytest
 
 from flyby.core.motion.model.blend import Blend
-from flyby.core.motion.model.motion_model import (
-    LineTurn,
-    OrientationZone,
-    Overlap,
-    Pace,
-)
+from flyby.core.motion.model.rules import LineTurn, OrientationZone, Overlap, Pace
 from flyby.core.registry import find_vendor
 
 ROOT = Path(__file__).parents[2]

@@ -23,8 +23,9 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...robot.model import Robot
+from ..model.elasticity import RIGID, Elasticity
 from ..timing.timing import Timing
-from .elasticity import LEAD_STEP, RIGID, Elasticity, derivatives_of
+from .elasticity import LEAD_STEP, derivatives_of, leads, links_of
 from .smoothing import Motion, Smoothing, States
 from .trajectory import Leads, no_leads, sample_times
 
@@ -84,10 +85,10 @@ def driven(
             continue
         even = sample_times(0.0, timing.duration, LEAD_STEP, (begin, end))
         known = smoothing.command(stamped, even)
-        ahead = derivatives_of(even, elasticity.leads(robot, *known), t[part])
+        ahead = derivatives_of(even, leads(elasticity, robot, *known), t[part])
         if any(elasticity.lag):
             jerk = derivatives_of(even, known[2], t[part])[1]
-            q[part], dq[part], ddq[part] = elasticity.links(smooth, jerk)
+            q[part], dq[part], ddq[part] = links_of(elasticity, smooth, jerk)
         for k, links in enumerate((q, dq, ddq)):
             lead[k][part] = smooth[k] + ahead[k] - links[part]
     return Driven((q, dq, ddq), lead, sigma)

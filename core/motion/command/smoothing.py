@@ -18,12 +18,21 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray
+from ..model.motion_model import MotionModel
 
 States = tuple[FloatArray, FloatArray, FloatArray]
 
 _FINEST, _COARSEST = 2.5e-4, 1e-3
 """s between the knots that stand for a motion averaged once: a 32nd of the shortest average,
 within these."""
+
+
+def smoothing_at(model: MotionModel, jerk_fraction: float) -> Smoothing:
+    """What a model does to the commanded joints where a share of the jerk limit is programmed."""
+    made = Smoothing(tuple(width for width in model.smoothing if width > 0))
+    if model.jerk is None:
+        return made
+    return made.lengthened_to(window_for_jerk(model.jerk * jerk_fraction))
 
 
 def window_for_jerk(jerk: float) -> float:

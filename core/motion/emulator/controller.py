@@ -18,11 +18,13 @@ from ...robot.model import Robot
 from ...spatial.rotation import quaternion_from_matrix
 from ...vendor import Vendor
 from ..command.commanded_motion import driven, stretches
-from ..command.smoothing import Smoothing
+from ..command.smoothing import Smoothing, smoothing_at
 from ..command.trajectory import Trajectory, sample_times
 from ..geometry.pieces import Sampling
 from ..model.consumption import SQUARED_TORQUE, Consumption
-from ..model.motion_model import DurationRule, MotionModel
+from ..model.motion_model import MotionModel
+from ..model.rules import DurationRule
+from ..model.torque import WITHOUT_LIMIT
 from ..path.building import build_path
 from ..path.path import OverlapError, Path
 from ..path.route import RouteFinder
@@ -33,7 +35,7 @@ from ..timing.programmed_durations import hold_durations, stamp_in_thirds
 from ..timing.rests import InPosition
 from ..timing.start_ramp import SUDDEN, StartRamp
 from ..timing.timing import Settling, Timing, along_path, stamp_path
-from ..timing.torque import WITHOUT_LIMIT
+from ..timing.torque import shares_taken, torque_shares
 from ..timing.torque_rows import Shares
 from .limit_violations import excesses, torque_excesses
 from .run import Run
@@ -181,7 +183,7 @@ class Controller:
         """What shares of the torques' limits the path takes, if the model has any."""
         if self.model.torque == WITHOUT_LIMIT:
             return None
-        return self.model.torque.along(self.robot, *along.states[:3])
+        return torque_shares(self.model.torque, self.robot, *along.states[:3])
 
     def sample(self, program: Program, timing: Timing, period: float | None = None) -> Trajectory:
         """The motion of links and motors, smoothed in time where the vendor does, each period."""
@@ -208,7 +210,7 @@ class Controller:
     def smoothing(self, program: Program, path: Path) -> Smoothing:
         """What is done to the commanded joints in time: as the gentlest move's jerk needs it."""
         gentlest = min(move.speed.jerk_fraction for move in self._moves(program, path))
-        return self.model.smoothing_at(gentlest)
+        return smoothing_at(self.model, gentlest)
 
     def smoothing_window(self, program: Program, path: Path) -> float:
         """Length in s of what one smoothed sample depends on."""
@@ -298,7 +300,7 @@ class Controller:
             states = trajectory.q[part], trajectory.dq[part], trajectory.ddq[part]
             if stamped:
                 states = timing.states_at(trajectory.t[part])[:3]
-            np.maximum.at(taken, trajectory.move[part], torque.taken(self.robot, *states))
+            np.maximum.at(taken, trajectory.move[part], shares_taken(torque, self.robot, *states))
         return taken
 
     def _jerk_notes(self, program: Program) -> list[Note]:

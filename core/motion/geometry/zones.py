@@ -15,7 +15,8 @@ import numpy as np
 from ...errors import MotionError, Note
 from ...program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction, Zone
 from ...robot.chain import Chain
-from ..model.motion_model import MotionModel, OrientationZone, Overlap, Pace, Space
+from ..model.motion_model import MotionModel
+from ..model.rules import OrientationZone, Overlap, Pace, Space
 from .corners import JOINT_CORNER, POSITION, TCP_CORNER, Corners, Room
 from .neighbour_zones import STILL, way_towards_neighbour
 from .reach import Part, Reach, least

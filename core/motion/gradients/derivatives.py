@@ -23,6 +23,7 @@ from ..path.configurations import located
 from ..path.path import Path
 from ..timing.energy import energy, loads_of, pull_energy
 from ..timing.timing import Timing
+from ..timing.torque import pull_torque_shares
 from .limits_gradient import SpeedGradient, pull_path_limits, pull_turning
 from .path_gradient import RouteGradient, pull_path
 from .stamping_adjoint import stamp_adjoint
@@ -150,8 +151,12 @@ class Derivatives:
             speeds,
         )
         if shares_bar is not None:
-            path.model.torque.pull(
-                self._robot, timing.along.states[:3], shares_bar, seeds.states[:3]
+            pull_torque_shares(
+                path.model.torque,
+                self._robot,
+                timing.along.states[:3],
+                shares_bar,
+                seeds.states[:3],
             )
         sigma_bar = np.zeros(len(path.sigma))
         states_bar = timing.along.pull(

@@ -19,7 +19,7 @@ where it does not, h = 3s² − 2s³ and K = 0, so that the edge is not bent.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
@@ -28,6 +28,8 @@ from numpy.polynomial import polynomial as P
 
 from ...arrays import FloatArray
 from ...errors import InputError
+from .figures import Fit, Stage, check_figures, figure
+from .kinds import Choice, Row
 
 BASIS = 6
 """Control vectors of a blend: e, E, X, c, K₁, K₂."""
@@ -39,25 +41,49 @@ _BUMP = np.array([0.0, 0.0, 1.0, -2.0, 1.0])
 class Blend:
     """One blend law.
 
-    Args:
-        kind: ``polynomial``, or ``arc`` for the circle tangent to both legs (positions on
-            straight legs only; everything else then follows the polynomial).
-        alpha: coefficients of α by rising powers of s, α(0) = 0 and α(1) = 1.
-        beta: coefficients of the polynomial that multiplies s² (1 − s)².
-
     Raises:
         InputError: α does not run from 0 to 1, or a leg would be driven backwards at its edge.
     """
 
-    kind: Literal["polynomial", "arc"] = "polynomial"
-    alpha: tuple[float, ...] = (0.0, 1.0)
-    beta: tuple[float, ...] = ()
+    kind: Literal["polynomial", "arc"] = field(
+        default="polynomial",
+        metadata=figure(
+            "kind",
+            Choice(("polynomial", "arc")),
+            Stage.PATH,
+            "",
+            "polynomial, or the circle tangent to both legs (positions on straight legs only; "
+            "everything else then follows the polynomial)",
+            always=True,
+        ),
+    )
+    alpha: tuple[float, ...] = field(
+        default=(0.0, 1.0),
+        metadata=figure(
+            "alpha",
+            Row(per="power of s"),
+            Stage.PATH,
+            "1",
+            "coefficients of α by rising powers of s, α(0) = 0 and α(1) = 1",
+            always=True,
+            fit=Fit(-20.0, 20.0, 0.5),
+        ),
+    )
+    beta: tuple[float, ...] = field(
+        default=(),
+        metadata=figure(
+            "beta",
+            Row(per="power of s"),
+            Stage.PATH,
+            "1",
+            "coefficients of the polynomial that multiplies s² (1 − s)²",
+            always=True,
+            fit=Fit(-8.0, 8.0, 0.5),
+        ),
+    )
 
     def __post_init__(self) -> None:
-        if self.kind not in ("polynomial", "arc"):
-            raise InputError(f"a blend's kind is 'polynomial' or 'arc', not {self.kind!r}")
-        if not np.all(np.isfinite([*self.alpha, *self.beta])):
-            raise InputError("a blend's coefficients must be finite")
+        check_figures(self, "blend.")
         if not self.alpha or self.alpha[0] != 0 or abs(sum(self.alpha) - 1) > 1e-9:
             raise InputError(f"α must run from 0 to 1, but its coefficients are {self.alpha}")
         if min(self.entry_slope, self.exit_slope) <= 0:

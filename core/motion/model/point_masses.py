@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ...arrays import FloatArray
@@ -44,17 +42,3 @@ def filled(values: tuple[float, ...], size: int) -> FloatArray:
     out = np.zeros(size)
     out[: len(values)] = values[:size]
     return out
-
-
-def row_of(key: str, entry: Any) -> tuple[float, ...]:
-    """A list of numbers of a TOML file.
-
-    Raises:
-        InputError: it is none; the message names the key.
-    """
-    numbers = isinstance(entry, list) and all(
-        isinstance(value, int | float) and not isinstance(value, bool) for value in entry
-    )
-    if not numbers:
-        raise InputError(f"{key}: a list of numbers is expected, not {entry!r}")
-    return tuple(map(float, entry))

@@ -38,7 +38,7 @@ from ..geometry.segments import (
 )
 from ..geometry.tcp_curves import make_tcp_curves
 from ..model.blend import PARABOLA
-from ..model.motion_model import ArcTurn, LineTurn
+from ..model.rules import ArcTurn, LineTurn
 from .configurations import ConfigurationFinder, Label, located
 from .path import Route
 from .route_checks import check_near, half_turns, is_arc

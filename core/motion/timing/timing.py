@@ -9,7 +9,7 @@ from numba import njit
 
 from ...arrays import FloatArray, IntArray
 from ...errors import MotionError
-from ..model.motion_model import Pace
+from ..model.rules import Pace
 from ..path.path import Path
 from ..path.tcp_samples import States
 from .arc_length import ArcLength

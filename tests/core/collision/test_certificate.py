@@ -15,10 +15,10 @@ from flyby.core.collision.deviation import bounds as strays
 from flyby.core.collision.proof.certificate import TOLERANCE, certify, certify_stretch, scenes_of
 from flyby.core.collision.proof.verdict import Certificate, Verdict
 from flyby.core.errors import InputError, MotionError
-from flyby.core.motion.command.elasticity import Elasticity
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.emulator.run import Run
 from flyby.core.motion.geometry.pieces import Sampling
+from flyby.core.motion.model.elasticity import Elasticity
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program

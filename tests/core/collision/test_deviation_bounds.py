@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 from flyby.core.collision.deviation import bounds as strays_module
 from flyby.core.collision.deviation.bounds import Straying, Strays, parts_of, strays_of, stretches
 from flyby.core.errors import MotionError
-from flyby.core.motion.command.elasticity import Carried, Coupled, Elasticity
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.emulator.run import Run
+from flyby.core.motion.model.elasticity import Carried, Coupled, Elasticity
 from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.model.torque import Borne, Torque
 from flyby.core.motion.timing.rests import InPosition
 from flyby.core.motion.timing.timing import Settling, Timing
-from flyby.core.motion.timing.torque import Borne, Torque
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -23,7 +23,7 @@ from flyby.core.files.arrays import read_npz
 from flyby.core.files.reading import read_bytes, read_json, read_text, read_toml
 from flyby.core.files.tables import Table
 from flyby.core.motion.command.trajectory import Trajectory
-from flyby.core.motion.model.motion_model import load_motion_model
+from flyby.core.motion.model.motion_file import load_motion_model
 from flyby.core.source.execution.answers import load_answers
 
 DEEP = 100_000

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from flyby.core.motion.command.elasticity import Carried, Elasticity
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.model.blend import Blend
+from flyby.core.motion.model.elasticity import Carried, Elasticity
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program

@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flyby.core.motion.command.elasticity import RIGID
 from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.model.elasticity import RIGID
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveL
 from flyby.core.program.program import Program

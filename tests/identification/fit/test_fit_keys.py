@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.motion.command.elasticity import Carried, Elasticity
+from flyby.core.motion.model.elasticity import Carried, Elasticity
 from flyby.core.motion.model.motion_model import MotionModel
-from flyby.core.registry import find_robot, find_vendor
+from flyby.core.registry import find_robot, find_vendor, vendors
 from flyby.identification.fit.keys import figure_of, value_of, with_value
 from flyby.identification.fit.parameters import ParameterSet, parameter, usual_parameters
 
@@ -33,7 +33,7 @@ KEYS = {
 def test_a_key_reads_and_writes_one_figure(key: str) -> None:
     figure, value = KEYS[key]
     assert value_of(START, key) == value
-    assert figure_of(key, START.figures) == figure
+    assert figure_of(key).key == figure
     made = with_value(START, key, 0.5)
     assert value_of(made, key) == 0.5
     others = [other for other in KEYS if other != key]
@@ -44,9 +44,8 @@ def test_names_that_begin_alike_are_told_apart() -> None:
     model = with_value(replace(START, in_position=6e-3), "time.in_position_time_s", 0.15)
     assert (model.in_position, model.in_position_time) == (6e-3, 0.15)
     for key in ("time.in_position_rad", "time.in_position_time_s"):
-        assert figure_of(key, model.figures) == key
+        assert figure_of(key).key == key
     assert value_of(with_value(model, "time.in_position_rad", 1e-3), "time.in_position_rad") == 1e-3
-    assert figure_of("time.in_position_rad", START.figures) is None
 
 
 @given(value=st.floats(0.01, 10), at=st.integers(0, 5))
@@ -71,18 +70,24 @@ def test_a_list_grows_by_what_stands_for_nothing() -> None:
 @pytest.mark.parametrize(
     ("key", "message"),
     [
-        ("time.smoothing", "no number, or not a single one"),
+        ("time.smoothing", "unknown key of a motion model 'time.smoothing': did you mean"),
         ("time.smoothing_s", "no number, or not a single one"),
-        ("time.soothing_s", "nothing is called 'soothing_s'"),
-        ("elasticity.owned", "nothing is called 'owned' there; there are own, carried"),
+        ("time.soothing_s", "did you mean 'time.smoothing_s'"),
+        ("elasticity.owned", "did you mean .*'elasticity.own_s2'"),
+        ("elasticity.carried", "no number, or not a single one"),
+        ("elasticity.carried[0]", "no number, or not a single one"),
+        ("elasticity.carried[0].joint", "no number"),
+        ("elasticity.carried[0].lead", "there are joint, lead_s2_per_m2"),
+        ("elasticity.carried.lead_s2_per_m2[0]", "name one, such as"),
         ("elasticity.own_s2[x]", "an index is"),
         ("zone.overlap", "no number"),
         ("zone.stops_at_pure_reorientation", "no number"),
         ("period_s[0]", "no list"),
         ("period_s.x", "nothing is called 'x'"),
+        ("time.smoothing_s[0][0]", "no list"),
         ("blend..beta", "no key of a motion model"),
         ("", "no key of a motion model"),
-        ("blend", "nothing is called 'blend'"),
+        ("blend", "unknown key of a motion model 'blend'"),
     ],
 )
 def test_what_is_no_number_is_refused(key: str, message: str) -> None:
@@ -118,11 +123,11 @@ def test_texts_name_parameters() -> None:
 
 @given(values=st.lists(st.floats(0.01, 0.2), min_size=3, max_size=3))
 def test_a_set_is_a_model(values: list[float]) -> None:
-    texts = ["time.smoothing_s[0]", "time.smoothing_s[1]", "elasticity.own_s2[0] + period_s"]
+    texts = ["time.smoothing_s[0]", "time.smoothing_s[1]", "elasticity.own_s2[0] + time.ramp_s"]
     made = ParameterSet.named(START, texts).model(values)
     assert made.smoothing == tuple(values[:2])
-    assert made.elasticity.own[0] == made.period == values[2]
-    assert replace(made, smoothing=START.smoothing, elasticity=START.elasticity, period=0.004) == (
+    assert made.elasticity.own[0] == made.ramp == values[2]
+    assert replace(made, smoothing=START.smoothing, elasticity=START.elasticity, ramp=0.0) == (
         START
     )
 
@@ -139,14 +144,24 @@ def test_a_joint_in_a_list_of_masses_is_no_parameter() -> None:
         with_value(model, "elasticity.carried[0].lead_s2_per_m2[5]", 1.0)
 
 
-def test_usual_parameters_can_be_fitted() -> None:
+@pytest.mark.parametrize("key", ["period_s", "elasticity.carried[0].joint", "zone.overlap"])
+def test_what_is_not_fitted_is_refused(key: str) -> None:
+    with pytest.raises(InputError, match="is not fitted"):
+        parameter(START, f"{key} = 1")
+
+
+ROBOTS = ("abb/irb6640-180-255", "abb/irb1200-5-090", "kuka/kr3-r540", "ur/ur10e")
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_usual_parameters_can_be_fitted(robot: str) -> None:
     """To any robot, and to those that figures were fitted for, the same ones again."""
-    for vendor in ("abb", "kuka", "ur"):
-        for robot in ("abb/irb6640-180-255", "kuka/kr3-r540", "ur/ur10e", "abb/irb1200-5-090"):
-            if not robot.startswith(vendor):
-                continue
-            arm = find_robot(robot)
-            model = find_vendor(vendor).motion_of(arm)
-            named = ParameterSet.named(model, usual_parameters(model, arm))
-            assert named.size > 0
-            assert np.isfinite(named.start).all()
+    arm = find_robot(robot)
+    model = find_vendor(robot.partition("/")[0]).motion_of(arm)
+    named = ParameterSet.named(model, usual_parameters(model, arm))
+    assert named.size > 0
+    assert np.isfinite(named.start).all()
+
+
+def test_usual_parameters_are_tried_on_every_vendor() -> None:
+    assert {robot.partition("/")[0] for robot in ROBOTS} == {vendor.name for vendor in vendors()}

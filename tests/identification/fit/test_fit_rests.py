@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from flyby.core.motion.model.motion_model import load_motion_model
+from flyby.core.motion.model.motion_file import load_motion_model
 from flyby.identification.fit import ParameterSet, fit, motion_file
 from flyby.identification.logs.synthetic import Faults
 

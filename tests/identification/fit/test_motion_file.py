@@ -9,20 +9,20 @@ import numpy as np
 import pytest
 
 from flyby.core.errors import InputError
-from flyby.core.motion.command.elasticity import Carried, Coupled, Elasticity
 from flyby.core.motion.model.blend import Blend
-from flyby.core.motion.model.motion_model import (
+from flyby.core.motion.model.elasticity import Carried, Coupled, Elasticity
+from flyby.core.motion.model.motion_file import load_motion_model
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.model.rules import (
     ArcTurn,
     DurationRule,
     LineTurn,
-    MotionModel,
     OrientationZone,
     Overlap,
     Pace,
     Space,
-    load_motion_model,
 )
-from flyby.core.motion.timing.torque import Borne, Torque
+from flyby.core.motion.model.torque import Borne, Torque
 from flyby.identification.fit import (
     Fit,
     Interval,

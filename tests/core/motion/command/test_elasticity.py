@@ -10,9 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.motion.command.elasticity import RIGID, Carried, Coupled, Elasticity
+from flyby.core.motion.command.elasticity import held_at_rest, leads
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.model.motion_model import MotionModel, load_motion_model
+from flyby.core.motion.model.elasticity import RIGID, Carried, Coupled, Elasticity
+from flyby.core.motion.model.motion_file import load_motion_model
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -66,7 +68,7 @@ def test_a_mass_on_the_wrist_leads_by_its_own_inertial_torque(seed) -> None:
 
     pull = (at(h) - 2 * at(0.0) + at(-h)) / h**2
     expected = np.einsum("tij,ti->tj", J, pull)
-    np.testing.assert_allclose(wrist.leads(arm, q, dq, ddq), expected, rtol=1e-5, atol=1e-5)
+    np.testing.assert_allclose(leads(wrist, arm, q, dq, ddq), expected, rtol=1e-5, atol=1e-5)
 
 
 @settings(max_examples=20, deadline=None)
@@ -74,9 +76,9 @@ def test_a_mass_on_the_wrist_leads_by_its_own_inertial_torque(seed) -> None:
 def test_leads_at_a_share_of_the_speed_are_its_square(seed, factor) -> None:
     arm = find_robot("ur/ur10e")
     q, dq, ddq = states(arm.size, seed)
-    slower = GEARS.leads(arm, q, factor * dq, factor**2 * ddq)
-    np.testing.assert_allclose(slower, factor**2 * GEARS.leads(arm, q, dq, ddq), atol=1e-12)
-    assert not RIGID.leads(arm, q, dq, ddq).any()
+    slower = leads(GEARS, arm, q, factor * dq, factor**2 * ddq)
+    np.testing.assert_allclose(slower, factor**2 * leads(GEARS, arm, q, dq, ddq), atol=1e-12)
+    assert not leads(RIGID, arm, q, dq, ddq).any()
 
 
 @settings(max_examples=6, deadline=None)
@@ -96,7 +98,7 @@ def test_motors_lead_the_links_and_meet_them_at_rest(arm, data) -> None:
     for name in ("q", "dq", "ddq", "position", "quaternion"):
         np.testing.assert_array_equal(getattr(made, name), getattr(stiff, name))
     np.testing.assert_allclose(made.q_motor[ends], made.q[ends], atol=1e-9)
-    lead = gears.leads(arm.robot, made.q, made.dq, made.ddq)
+    lead = leads(gears, arm.robot, made.q, made.dq, made.ddq)
     np.testing.assert_allclose(made.q_motor - made.q, lead, atol=2e-6)
     assert np.abs(lead).max() > 1e-5
     speed = np.gradient(made.q_motor, made.t, axis=0)[2:-2]
@@ -156,7 +158,7 @@ def test_leads_and_higher_limits_are_no_excess(arm) -> None:
 def test_a_joint_that_an_arm_does_not_have_is_refused() -> None:
     arm = find_robot("ur/ur10e")
     with pytest.raises(InputError, match="no joint 9"):
-        Elasticity((), (Carried(9, (1e-4,)),)).leads(arm, *np.zeros((3, 1, 6)))
+        leads(Elasticity((), (Carried(9, (1e-4,)),)), arm, *np.zeros((3, 1, 6)))
 
 
 @settings(max_examples=20, deadline=None)
@@ -167,11 +169,11 @@ def test_slack_doubles_small_leads_and_adds_itself_to_large_ones(slack, seed) ->
     stiff = Elasticity((1.0, 1.0, 1.0))
     soft = Elasticity((1.0, 1.0, 1.0), slack=(slack, 0.0, slack))
     small = 1e-3 * slack
-    lead = stiff.leads(arm, q, dq, small * ddq)
-    twice = soft.leads(arm, q, dq, small * ddq)
+    lead = leads(stiff, arm, q, dq, small * ddq)
+    twice = leads(soft, arm, q, dq, small * ddq)
     np.testing.assert_allclose(twice[:, 0], 2 * lead[:, 0], rtol=1e-4)
     np.testing.assert_array_equal(twice[:, 1], lead[:, 1])
-    more = soft.leads(arm, q, dq, 1e3 * ddq) - stiff.leads(arm, q, dq, 1e3 * ddq)
+    more = leads(soft, arm, q, dq, 1e3 * ddq) - leads(stiff, arm, q, dq, 1e3 * ddq)
     np.testing.assert_allclose(more[:, 2], slack * np.sign(ddq[:, 2]), rtol=1e-3)
 
 
@@ -183,17 +185,17 @@ def test_a_gear_that_holds_a_weight_has_less_slack_left(slack, seed) -> None:
     stiff = Elasticity((1e-4, 1e-4, 1e-4), (Carried(5, (1e-5, 1e-5, 1e-5)),))
     free = replace(stiff, slack=(slack,) * 3)
     loaded = replace(free, weight=(1.0,) * 3)
-    lead, more = stiff.leads(arm, q, dq, ddq)[:, :3], loaded.leads(arm, q, dq, ddq)[:, :3]
-    held = loaded.held(arm, q)[:, :3]
+    lead, more = leads(stiff, arm, q, dq, ddq)[:, :3], leads(loaded, arm, q, dq, ddq)[:, :3]
+    held = held_at_rest(loaded, arm, q)[:, :3]
     again = slack * (np.tanh((lead + held) / slack) - np.tanh(held / slack))
     np.testing.assert_allclose(more - lead, again, rtol=0, atol=1e-15)
     # A vertical axis holds no weight, and stays as soft as without.
-    np.testing.assert_allclose(more[:, 0], free.leads(arm, q, dq, ddq)[:, 0], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(more[:, 0], leads(free, arm, q, dq, ddq)[:, 0], rtol=0, atol=1e-15)
     # At rest nothing leads, whatever is held; a stretched spring leaves no slack.
-    assert not loaded.leads(arm, q, 0 * dq, 0 * ddq).any()
+    assert not leads(loaded, arm, q, 0 * dq, 0 * ddq).any()
     sprung = replace(stiff, slack=(slack,), spring=(1e3,))
     np.testing.assert_allclose(
-        sprung.leads(arm, q, dq, ddq), stiff.leads(arm, q, dq, ddq), rtol=0, atol=1e-15
+        leads(sprung, arm, q, dq, ddq), leads(stiff, arm, q, dq, ddq), rtol=0, atol=1e-15
     )
 
 
@@ -214,7 +216,7 @@ def test_what_gears_hold_is_the_change_of_the_masses_height(seed) -> None:
     rise = np.stack([(height(q + h * e) - height(q - h * e)) / (2 * h) for e in np.eye(6)[:3]], -1)
     expected = np.linalg.norm(arm.gravity) * np.array(share) * weight * rise
     expected[:, 1] += spring[1] * np.sin(q[:, 1])
-    np.testing.assert_allclose(gears.held(arm, q)[:, :3], expected, rtol=1e-3, atol=1e-9)
+    np.testing.assert_allclose(held_at_rest(gears, arm, q)[:, :3], expected, rtol=1e-3, atol=1e-9)
 
 
 @settings(max_examples=10, deadline=None)
@@ -223,7 +225,7 @@ def test_a_lag_leads_by_its_time(lag, seed) -> None:
     arm = find_robot("kuka/kr3-r540")
     q, dq, ddq = states(arm.size, seed)
     made = replace(GEARS, lag=tuple(lag))
-    more = made.leads(arm, q, dq, ddq) - GEARS.leads(arm, q, dq, ddq)
+    more = leads(made, arm, q, dq, ddq) - leads(GEARS, arm, q, dq, ddq)
     np.testing.assert_allclose(more, np.array(lag) * dq, atol=1e-12)
 
 
@@ -233,18 +235,18 @@ def test_a_coupled_joint_leads_by_a_share_of_what_stiffness_asks_of_another(shar
     arm = find_robot("abb/irb6640-180-255")
     q, dq, ddq = states(arm.size, seed)
     stiff = replace(GEARS, own=(1e-4, 2e-4, 1e-4, 1e-5))
-    lead = stiff.leads(arm, q, dq, ddq)
+    lead = leads(stiff, arm, q, dq, ddq)
     coupled = (Coupled(3, 1, share), Coupled(2, 1, -share), Coupled(6, 4, 1.0))
     expected = lead.copy()
     expected[:, 2] += share * lead[:, 0]
     expected[:, 1] -= share * lead[:, 0]
     expected[:, 5] += lead[:, 3]
     made = replace(stiff, coupled=coupled)
-    np.testing.assert_allclose(made.leads(arm, q, dq, ddq), expected, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(leads(made, arm, q, dq, ddq), expected, rtol=0, atol=1e-15)
     # Slack is in the gear itself: it neither bends others nor softens what others bend.
     slack = (1e-3, 0.0, 5e-4)
-    more = replace(made, slack=slack).leads(arm, q, dq, ddq) - expected
-    soft = replace(stiff, slack=slack).leads(arm, q, dq, ddq) - lead
+    more = leads(replace(made, slack=slack), arm, q, dq, ddq) - expected
+    soft = leads(replace(stiff, slack=slack), arm, q, dq, ddq) - lead
     np.testing.assert_allclose(more, soft, rtol=0, atol=1e-15)
 
 
@@ -271,7 +273,7 @@ def test_coupled_joints_that_make_no_sense_are_refused(entry, tmp_path) -> None:
 def test_a_coupled_joint_that_an_arm_does_not_have_is_refused() -> None:
     arm = find_robot("ur/ur10e")
     with pytest.raises(InputError, match="no joint 7"):
-        Elasticity(coupled=(Coupled(7, 1, 0.1),)).leads(arm, *np.zeros((3, 1, 6)))
+        leads(Elasticity(coupled=(Coupled(7, 1, 0.1),)), arm, *np.zeros((3, 1, 6)))
 
 
 def test_what_gears_hold_is_read_with_its_keys(tmp_path) -> None:

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
 from flyby.core.motion.command.commanded_motion import stamped_motion
-from flyby.core.motion.model.motion_model import MotionModel, load_motion_model
+from flyby.core.motion.model.motion_file import load_motion_model
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from flyby.core.motion.command import commanded_motion as driven
-from flyby.core.motion.command.elasticity import Carried, Elasticity
+from flyby.core.motion.model.elasticity import Carried, Elasticity
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveJ, MoveL, Wait
 from flyby.core.program.program import Program

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from flyby.core.motion.geometry.corners import POSITION
 from flyby.core.motion.gradients.derivatives import Derivatives
 from flyby.core.motion.model.blend import TANGENT_ARC
-from flyby.core.motion.model.motion_model import MotionModel, Pace
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.model.rules import Pace
 from flyby.core.program.move import MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

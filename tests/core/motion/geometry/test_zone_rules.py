@@ -19,7 +19,8 @@ from flyby.core.motion.geometry.corners import (
 from flyby.core.motion.geometry.segments import EndsGradient, SegmentsGradient, make_segments
 from flyby.core.motion.geometry.zones import ZonePlanner
 from flyby.core.motion.gradients.path_gradient import pull_corners
-from flyby.core.motion.model.motion_model import MotionModel, OrientationZone, Overlap
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.model.rules import OrientationZone, Overlap
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -15,8 +15,9 @@ from flyby.core.errors import InputError
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.gradients.derivatives import Derivatives, ProgramGradient
 from flyby.core.motion.model.blend import Blend
-from flyby.core.motion.model.motion_model import LineTurn, MotionModel, Pace
-from flyby.core.motion.timing.torque import Borne, Torque
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.model.rules import LineTurn, Pace
+from flyby.core.motion.model.torque import Borne, Torque
 from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

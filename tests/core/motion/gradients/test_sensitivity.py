@@ -23,7 +23,8 @@ from flyby.core.motion.gradients.sensitivity import (
     tangents,
 )
 from flyby.core.motion.model.blend import PARABOLA, Blend
-from flyby.core.motion.model.motion_model import MotionModel, Overlap
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.model.rules import Overlap
 from flyby.core.motion.path.path import Path
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program

@@ -7,9 +7,10 @@ import math
 import pytest
 
 from flyby.core.errors import InputError
-from flyby.core.motion.command.elasticity import Carried, Elasticity
-from flyby.core.motion.command.smoothing import Smoothing
-from flyby.core.motion.model.motion_model import MotionModel, load_motion_model
+from flyby.core.motion.command.smoothing import Smoothing, smoothing_at
+from flyby.core.motion.model.elasticity import Carried, Elasticity
+from flyby.core.motion.model.motion_file import load_motion_model
+from flyby.core.motion.model.motion_model import MotionModel
 
 BROKEN = {
     'period_s = "fast"': "period_s",
@@ -41,10 +42,10 @@ BROKEN = {
     "zone = 1": "zone",
     "time = []": "time",
     "[blend]\ntcp = 3": "blend.tcp",
-    '[blend.tcp]\nalpha = ["a"]': "blend.tcp: alpha: a number is expected",
-    "[blend.tcp]\nbeta = 'x'": "blend.tcp: beta: a list of numbers is expected",
-    "[blend.tcp]\ngamma = [1]": "blend.tcp: unknown key of a motion model 'gamma'",
-    "[blend.tcp]\nkind = 3": "blend.tcp: a blend's kind is",
+    '[blend.tcp]\nalpha = ["a"]': r"blend\.tcp\.alpha\[0\]: a number is expected",
+    "[blend.tcp]\nbeta = 'x'": "blend.tcp.beta: a list of numbers is expected",
+    "[blend.tcp]\ngamma = [1]": "unknown key of a motion model 'blend.tcp.gamma'",
+    "[blend.tcp]\nkind = 3": 'blend.tcp.kind: "polynomial" or "arc" is expected',
     "provenance = 1": "provenance",
     "[provenance]\nperiod_s = 1": "provenance.period_s",
     "[provenance.period_s]\nsource = 'a book'": "provenance.period_s: the status is missing",
@@ -106,7 +107,7 @@ def test_what_is_done_in_time_is_read(tmp_path) -> None:
         "utf-8",
     )
     model = load_motion_model(path)
-    assert model.smoothing_at(1.0) == Smoothing((0.04, 0.02)) and model.settling == 0.1
+    assert smoothing_at(model, 1.0) == Smoothing((0.04, 0.02)) and model.settling == 0.1
     assert (model.in_position, model.in_position_time) == (6e-3, 0.15)
     assert model.elasticity == Elasticity((1e-4, 0.0), (Carried(3, (2e-4, 1e-4)),))
     assert [model.acceleration_scale(j) for j in range(3)] == [1.5, 0.5, 1.0]

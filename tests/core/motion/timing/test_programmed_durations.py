@@ -11,11 +11,9 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
 from flyby.core.motion.geometry.pieces import Sampling
-from flyby.core.motion.model.motion_model import (
-    DurationRule,
-    MotionModel,
-    load_motion_model,
-)
+from flyby.core.motion.model.motion_file import load_motion_model
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.model.rules import DurationRule
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from flyby.core.errors import InputError
 from flyby.core.motion.command.commanded_motion import stamped_motion
 from flyby.core.motion.geometry.pieces import Sampling
-from flyby.core.motion.model.motion_model import MotionModel, load_motion_model
+from flyby.core.motion.model.motion_file import load_motion_model
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.timing.start_ramp import SUDDEN, StartRamp
 from flyby.core.program.move import MoveJ, MoveL, Wait
 from flyby.core.program.program import Program

@@ -12,12 +12,9 @@ from hypothesis import strategies as st
 from flyby.core.errors import InputError
 from flyby.core.motion.emulator.binding_limits import limit_shares
 from flyby.core.motion.model.blend import TANGENT_ARC
-from flyby.core.motion.model.motion_model import (
-    LineTurn,
-    MotionModel,
-    Pace,
-    load_motion_model,
-)
+from flyby.core.motion.model.motion_file import load_motion_model
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.model.rules import LineTurn, Pace
 from flyby.core.motion.timing.superposed_legs import ZONE
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program

@@ -12,8 +12,10 @@ from hypothesis import strategies as st
 from flyby.core.collision.deviation.speed_bounds import greatest
 from flyby.core.errors import InputError, MotionError
 from flyby.core.motion.emulator.binding_limits import interval_limits
-from flyby.core.motion.model.motion_model import MotionModel, load_motion_model
-from flyby.core.motion.timing.torque import Borne, Torque
+from flyby.core.motion.model.motion_file import load_motion_model
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.model.torque import Borne, Torque
+from flyby.core.motion.timing.torque import pull_torque_shares, torque_shares
 from flyby.core.motion.timing.torque_rows import Shares
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
@@ -43,7 +45,7 @@ def test_a_mass_takes_its_inertial_torque_and_its_weight(seed) -> None:
     """Jᵀ (p̈ - g), with J and p̈ from difference quotients of where the wrist is."""
     q, dq, ddq = states(seed)
     ones = (1.0, 1.0, 1.0)
-    made = Torque((1e-9,) * 3, (Borne(5, ones),), (1.0, 0.5, 0.0)).along(ROBOT, q, dq, ddq)
+    made = torque_shares(Torque((1e-9,) * 3, (Borne(5, ones),), (1.0, 0.5, 0.0)), ROBOT, q, dq, ddq)
     h = 1e-4
     J = np.stack([(wrist(q + h * e) - wrist(q - h * e)) / (2 * h) for e in np.eye(6)[:3]], -1)
 
@@ -65,11 +67,11 @@ def test_the_reverse_is_that_of_difference_quotients(seed) -> None:
     rng = np.random.default_rng(seed + 1)
     bar = Shares(*rng.normal(size=(4, 4, 3)))
     out = tuple(np.zeros((4, 6)) for _ in range(3))
-    MOTORS.pull(ROBOT, path, bar, out)
+    pull_torque_shares(MOTORS, ROBOT, path, bar, out)
 
     def value(part: int, change: np.ndarray) -> float:
         moved = [array + (change if k == part else 0.0) for k, array in enumerate(path)]
-        made = MOTORS.along(ROBOT, *moved)
+        made = torque_shares(MOTORS, ROBOT, *moved)
         return float(sum(np.sum(x * y) for x, y in zip(made, bar, strict=True)))
 
     for part in range(3):
@@ -95,7 +97,7 @@ def test_a_stamped_motion_takes_all_of_some_torque_and_no_more(abb, share) -> No
     controller = abb.controller(MotionModel(torque=MOTORS))
     run = controller.run(program(abb, joint_acceleration_fraction=share), period=5e-4)
     q, dq, ddq, _ = run.timing.states_at(run.trajectory.t)
-    _, inertial, weight, fade = MOTORS.along(abb.robot, q, dq, ddq)
+    _, inertial, weight, fade = torque_shares(MOTORS, abb.robot, q, dq, ddq)
     upper = share * (1 - weight - fade)
     lower = -share * (1 + weight - fade)
     assert np.maximum(inertial - upper, lower - inertial).max() < 0.02 * share
@@ -146,7 +148,7 @@ def test_an_arm_too_weak_for_its_weight_is_refused(abb) -> None:
 
 def test_more_joints_than_the_arm_has_are_refused() -> None:
     with pytest.raises(InputError, match="not 7"):
-        Torque((0.1,) * 7).along(ROBOT, *np.zeros((3, 1, 6)))
+        torque_shares(Torque((0.1,) * 7), ROBOT, *np.zeros((3, 1, 6)))
 
 
 def test_a_file_states_what_it_states(tmp_path) -> None:

@@ -1,0 +1,98 @@
+"""Figures of the limits of torque; what they mean is in `flyby.core.motion.timing.torque`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from ...errors import InputError
+from .figures import Fit, Stage, Tables, check_figures, figure, member
+from .kinds import NOT_NEGATIVE, POSITIVE, Row, Whole
+
+
+@dataclass(frozen=True)
+class Borne:
+    """A mass on the axis of a joint, as the motors before it feel it."""
+
+    joint: int = field(
+        metadata=member(
+            "joint",
+            Whole(),
+            "",
+            "the joint of the arm, counted from one, on whose axis the mass is",
+        )
+    )
+    share: tuple[float, ...] = field(
+        metadata=member(
+            "share_s2_per_m2",
+            Row(NOT_NEGATIVE),
+            "s²/m²",
+            "share of the limit per N m, times kg, of each joint before that, first to last",
+            fit=Fit(0.0, 10.0, 0.05),
+        )
+    )
+
+
+@dataclass(frozen=True)
+class Torque:
+    """What share of its torque's limit a motion takes of each joint.
+
+    Raises:
+        InputError: a figure makes no sense, on its own or beside the others.
+    """
+
+    own: tuple[float, ...] = field(
+        default=(),
+        metadata=figure(
+            "own_s2",
+            Row(POSITIVE),
+            Stage.TIMING,
+            "s²/rad",
+            "share of its limit per acceleration of the joint itself, whatever the posture; "
+            "joints that have one are limited by torque, those beyond by their acceleration",
+            fit=Fit(1e-6, 10.0, 0.05),
+        ),
+    )
+    carried: tuple[Borne, ...] = field(
+        default=(), metadata=figure("carried", Tables(Borne), Stage.TIMING, "", "masses on the arm")
+    )
+    weight: tuple[float, ...] = field(
+        default=(),
+        metadata=figure(
+            "weight",
+            Row(NOT_NEGATIVE),
+            Stage.TIMING,
+            "1",
+            "share of the masses' weight that the joint's motor holds; joints beyond hold none",
+            fit=Fit(0.0, 5.0, 0.5),
+        ),
+    )
+    fade: tuple[float, ...] = field(
+        default=(),
+        metadata=figure(
+            "fade_s2",
+            Row(NOT_NEGATIVE),
+            Stage.TIMING,
+            "s²/rad²",
+            "share of the limit that is lost per square of the joint's speed",
+            fit=Fit(0.0, 10.0, 0.2),
+        ),
+    )
+
+    def __post_init__(self) -> None:
+        check_figures(self, "torque.")
+        for k, mass in enumerate(self.carried):
+            if len(mass.share) >= mass.joint:
+                raise InputError(
+                    f"torque.carried[{k}]: a mass on the axis of joint b (counted from one) is "
+                    f"carried by the joints before it; joint {mass.joint} has {mass.joint - 1}, "
+                    f"share_s2_per_m2 has {len(mass.share)}"
+                )
+        most = max(map(len, (self.weight, self.fade, *(mass.share for mass in self.carried))))
+        if most > len(self.own):
+            raise InputError(
+                f"torque.own_s2 has {len(self.own)} entries, one for each joint that torque "
+                f"limits; weight, fade_s2 or carried go on to joint {most}"
+            )
+
+
+WITHOUT_LIMIT = Torque()
