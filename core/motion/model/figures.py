@@ -15,7 +15,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from enum import IntEnum
 from functools import cache
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from ...errors import InputError
 from .kinds import Kind, words_of
@@ -204,7 +204,7 @@ def figures_of(owner: type[DataclassInstance]) -> tuple[Figure, ...]:
             key = one.metadata[_PART]
             found += [
                 replace(inner, key=f"{key}.{inner.key}", path=(one.name, *inner.path))
-                for inner in figures_of(type(one.default))
+                for inner in figures_of(cast("type[DataclassInstance]", type(one.default)))
             ]
     return tuple(found)
 
