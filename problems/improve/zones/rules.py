@@ -15,7 +15,8 @@ from collections.abc import Mapping
 from ....core.motion.geometry.corners import STOP
 from ....core.motion.geometry.neighbour_zones import way_towards_neighbour
 from ....core.motion.geometry.segments import Segments, make_segments
-from ....core.motion.model.motion_model import MotionModel, Overlap
+from ....core.motion.model.motion_model import MotionModel
+from ....core.motion.model.rules import Overlap
 from ....core.motion.path.path import Route
 from ....core.program.zone import ContourFraction, Radius
 from .neighbourhood import Neighbourhoods
