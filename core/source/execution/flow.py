@@ -4,9 +4,9 @@ A program is read along one course that it can take. What the user answers goes 
 
 *A branch whose condition is not known.* The first is taken that moves the robot and comes back: the
 program goes on behind the statement, or behind the call of the routine that it returns from, and is
-neither left nor sent elsewhere. Else none of the
-conditions counts as fulfilled: ELSE runs, or nothing. If that does not come back, the first branch
-that does is taken; if all lead elsewhere, the one that leads there least far.
+neither left nor sent elsewhere. Else none of the conditions counts as fulfilled: ELSE runs, or
+nothing. If that does not come back, the first branch that does is taken; if all lead elsewhere, the
+one that leads there least far.
 
 *A loop whose condition is not known* runs once if its body moves the robot, else not at all.
 
