@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from flyby.tasks.compare import compare
     from flyby.tasks.emulate import emulate
     from flyby.tasks.experiment import experiment
+    from flyby.tasks.free_motion import free_motion
     from flyby.tasks.identify import identify
     from flyby.tasks.optimize import optimize
     from flyby.tasks.paint import paint
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from flyby.tasks.read import read
     from flyby.tasks.record import record
     from flyby.tasks.translate import translate
+    from flyby.tasks.tune import tune
     from flyby.tasks.write import patch, write
     from flyby.tasks.zones import zones
 
@@ -35,6 +37,7 @@ __all__ = [
     "compare",
     "emulate",
     "experiment",
+    "free_motion",
     "identify",
     "optimize",
     "paint",
@@ -45,6 +48,7 @@ __all__ = [
     "robot",
     "robots",
     "translate",
+    "tune",
     "vendors",
     "write",
     "zones",

@@ -16,6 +16,7 @@ from .compare import compare
 from .console import fail, warn
 from .emulate import emulate
 from .experiment import experiment
+from .free import free, tune
 from .identify import identify
 from .kinematics import fk, ik
 from .optimize import optimize
@@ -70,6 +71,8 @@ app.command()(identify)
 app.command()(zones)
 app.command()(optimize)
 app.command()(pareto)
+app.command()(free)
+app.command()(tune)
 app.command()(paint)
 app.command()(robots)
 app.command()(vendors)

@@ -107,7 +107,7 @@ def task_of(
         keep_speeds=speeds,
         limits=by_move,
         limit=for_all or Free(),
-        axes=None if options.axes is None else _axes(options.axes, setup.robot.arm_size),
+        axes=None if options.axes is None else joint_indices(options.axes, setup.robot.arm_size),
         tilt=options.tilt,
         clearance=options.clearance,
         freed=freed_stops(program, options.free, {*held, *(i - 1 for i in held)}),
@@ -185,7 +185,12 @@ def move_index(program: Program, text: int | str, option: str) -> int:
     return int(text) - 1
 
 
-def _axes(given: str | Sequence[int], count: int) -> list[int]:
+def joint_indices(given: str | Sequence[int], count: int) -> list[int]:
+    """Indices of joints by their numbers from 1.
+
+    Raises:
+        InputError: naming the option.
+    """
     text = given if isinstance(given, str) else ",".join(map(str, given))
     words = text.replace(",", " ").split()
     if not words or not all(word.isdecimal() and 1 <= int(word) <= count for word in words):

@@ -1,0 +1,136 @@
+"""How fast, and how cheaply, a robot could move if no program language stood in the way."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..core.errors import InputError
+from .changes import joint_indices, weight
+from .options.door import given, spelt
+from .options.entries import COUNT, POSITIVE, TIME, Extent, number, value
+from .options.keywords import by_keywords
+from .options.texts import configuration
+from .pareto import consumption_of
+from .setup import CellOptions, Setup, setup_of
+
+if TYPE_CHECKING:
+    from ..core.motion.model.consumption import Consumption
+    from ..core.program.tool import Tool
+    from ..problems.free_motion.optimal_control import Step, Surroundings
+    from .motions import FreeMotion
+
+MOST_TRIALS = 16
+
+
+@dataclass(frozen=True, kw_only=True)
+class FreeMotionOptions(CellOptions):
+    """From where to where a robot moves, past what, and for what price."""
+
+    vias: Sequence[str | Sequence[float]] = value(
+        (),
+        "A corner of a path that is free, axis values in degrees and mm, in order; may be given "
+        "several times. Without any, straight joint lines, or planned ones where these are not "
+        "free.",
+        several=True,
+        flag="--via",
+    )
+    tool: str | None = value(None, "Tool of the cell that is mounted; the flange if unset.")
+    axes: str | Sequence[int] | None = value(
+        None, "Joints that may move, such as 2,3; all if unset."
+    )
+    objective: float | str = value(
+        "time",
+        "time, energy, or a weight w between 0 and 1: w · time + (1 − w) · energy.",
+        weight,
+    )
+    motors: str | Path | Consumption | None = value(
+        None,
+        "Motor figures (TOML): energy is then what the mains give, in J; otherwise it is squared "
+        "torque over time.",
+        kind=Path,
+    )
+    longest: float | None = number(None, "Seconds that the motion may take.", TIME, POSITIVE)
+    intervals: int = number(60, "Of the first grid; more are finer.", COUNT, Extent(1))
+    trials: int = number(
+        MOST_TRIALS,
+        "Ways in which a motion that is stuck near obstacles is led on; 0 is quickest.",
+        COUNT,
+        Extent(0, MOST_TRIALS),
+    )
+
+
+def free_motion_with(
+    start: str | Sequence[float], goal: str | Sequence[float], options: FreeMotionOptions
+) -> FreeMotion:
+    """The best motion found between two configurations, from rest to rest: by optimal control.
+
+    Args:
+        start, goal: (N,) axis values in rad and m; as text in degrees and mm.
+
+    Returns:
+        A sampled motion, no robot code: a yardstick for programs along the same way. In a cell it
+        is proven to keep the clearance.
+
+    Raises:
+        InputError: naming the option, or the joint that cannot do what is asked.
+        MotionError: a configuration or the path to begin with collides, or no motion within the
+            limits was found.
+    """
+    from ..core.robot.inertia import carried_inertia
+    from ..problems.free_motion.optimal_control import Effort, Objective, Task, optimize
+    from .motions import FreeMotion
+
+    setup = setup_of(options)
+    robot = setup.robot
+    ends = [configuration(q, spelt(name), robot) for q, name in ((start, "start"), (goal, "goal"))]
+    vias = [configuration(q, spelt("vias", "--via"), robot) for q in options.vias]
+    tool = _tool(setup, options.tool)
+    consumption = consumption_of(options.motors, robot)
+    task = Task(
+        robot,
+        start=ends[0],
+        end=ends[1],
+        joints=None if options.axes is None else joint_indices(options.axes, robot.size),
+        tcp=tool.tcp,
+        loads=(carried_inertia(tool) if robot.links else None,),
+        objective=Objective(
+            weight(options.objective, spelt("objective")), consumption, options.longest
+        ),
+    )
+    effort = Effort(intervals=options.intervals, trials=options.trials)
+
+    def report(step: Step) -> None:
+        options.say(f"{step.time:.4f} s: {step.what} (Ctrl-C ends with the best)")
+
+    around = _surroundings(setup, tool, no_floor=options.no_floor)
+    found = optimize(task, around, effort, [vias] if vias else None, report)
+    return FreeMotion(found, consumption)
+
+
+free_motion = by_keywords(free_motion_with, FreeMotionOptions)
+
+
+def _tool(setup: Setup, name: str | None) -> Tool:
+    from ..core.program.tool import FLANGE
+
+    if name is None:
+        return FLANGE
+    if setup.cell is None:
+        raise InputError(
+            f"{given('tool', name)}: tools are declared in a cell file; give {spelt('cell')}"
+        )
+    return setup.cell.tool(name)
+
+
+def _surroundings(setup: Setup, tool: Tool, *, no_floor: bool) -> Surroundings | None:
+    """What to keep clear of; nothing where not even the shape of the arm is known."""
+    from ..core.collision.scene.scene import CollisionScene
+    from ..problems.free_motion.optimal_control import Surroundings
+
+    cell = setup.surroundings(no_floor=no_floor)
+    if setup.cell is None and not setup.robot.shapes:
+        return None
+    return Surroundings(CollisionScene(cell, tool), cell.clearance)
