@@ -149,6 +149,10 @@ class Vendor:
         object.__setattr__(self, "motion", cache(self.motion))
         object.__setattr__(self, "robot_motion", MappingProxyType({**self.robot_motion}))
 
+    def __repr__(self) -> str:
+        reads = f", reads {' '.join(self.suffixes)}" if self.suffixes else ""
+        return f"<Vendor {self.name}: {len(self.robots)} robots{reads}>"
+
     def robot(self, name: str) -> Robot:
         """The robot ``name``, with or without the vendor's own name before it.
 

@@ -73,7 +73,7 @@ class FreeMotion:
     def rows(self) -> list[tuple[str, ...]]:
         """Figures of the motion, and of the one that the search began with."""
         used = 100.0 * self.optimum.audit.used
-        rows = [
+        rows: list[tuple[str, ...]] = [
             ("time", "s", f"{self.duration:.4f}"),
             ("time of the first motion", "s", f"{self.optimum.first.duration:.4f}"),
             ("largest share of a limit", "%", f"{used:.2f}"),
@@ -144,7 +144,7 @@ class TunedMotion:
     def rows(self) -> list[tuple[str, ...]]:
         """Figures of the motion."""
         consumption = self.tuned.task.objective.consumption
-        rows = [
+        rows: list[tuple[str, ...]] = [
             ("time as programmed", "s", f"{self.before:.4f}"),
             ("time", "s", f"{self.duration:.4f}"),
             ("largest excess of a limit", "%", f"{100.0 * self.tuned.excess:.2g}"),

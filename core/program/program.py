@@ -32,7 +32,7 @@ class DrivenBy(Protocol):
         ...
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Program:
     """An immutable sequence of statements.
 
@@ -52,6 +52,10 @@ class Program:
     notes: tuple[Note, ...] = field(default=(), compare=False)
     reading: ReadFrom | None = field(default=None, compare=False, repr=False)
     setup: DrivenBy | None = field(default=None, compare=False, repr=False)
+
+    def __repr__(self) -> str:
+        robot = "" if self.setup is None else f" for {self.setup.robot.name}"
+        return f"<Program {self.name}{robot}: {len(self.moves)} moves, {len(self.notes)} notes>"
 
     @cached_property
     def moves(self) -> tuple[Move, ...]:

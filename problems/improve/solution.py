@@ -13,7 +13,9 @@ from ...core.errors import InputError, Note
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.emulator.run import Run
 from ...core.motion.timing.timing import Timing
+from ...core.notebook import Curve, page, picture, table
 from ...core.program.program import Program
+from ...core.program.target import JointTarget
 from ...core.robot.model import Robot
 from ...core.spatial.rotation import rotation_vector
 
@@ -91,7 +93,7 @@ class Moved:
     turn: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Solution:
     """What an optimisation made of a program.
 
@@ -114,6 +116,35 @@ class Solution:
     notes: tuple[Note, ...] = ()
     moved: tuple[Moved, ...] = ()
     texts: Files = field(default_factory=dict, repr=False)
+
+    def __repr__(self) -> str:
+        said = "proven" if self.proven else "not proven"
+        made = (
+            f"{self.before.time:.3f} s → {self.after.time:.3f} s" if self.changed else "unchanged"
+        )
+        return f"<Solution for {self.program.name}: {made}, {said}>"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (
+                row.what,
+                row.unit,
+                *("" if v is None else f"{v:.4f}" for v in (row.before, row.after)),
+            )
+            for row in self.table()
+        ]
+        columns = (("", "left"), ("unit", "left"), ("before", "right"), ("after", "right"))
+        return page(repr(self)[1:-1], table(columns, rows), self._drawn(), notes=self.notes)
+
+    def _drawn(self) -> str:
+        """The waypoints before and after; nothing where they are not all known."""
+        curves = []
+        for name, program in (("before", self.original), ("after", self.program)):
+            points = waypoints(program)
+            if points is None:
+                return ""
+            curves.append(Curve(name, points, points))
+        return picture(curves)
 
     @property
     def files(self) -> dict[str, bytes]:
@@ -235,3 +266,21 @@ def _energy(controller: Controller, run: Run) -> FloatArray | None:
         return None
     steps = run.timing.end - run.timing.begin
     return np.asarray(0.5 * np.einsum("k,kej->j", steps, made.torque**2))
+
+
+def waypoints(program: Program) -> FloatArray | None:
+    """(M, 3) m in the world, where moves end; None where the robot or a frame is not known."""
+    if program.setup is None or len(program.moves) < 2:
+        return None
+    robot, found = program.setup.robot, []
+    for move in program.moves:
+        target = move.target
+        if isinstance(target, JointTarget):
+            flange = robot.flange_pose(np.array([*target.joints, *target.external]))
+            pose = flange @ move.tool.tcp if move.tool.robot_held else flange
+        elif move.work_object.moved_by is not None or move.work_object.robot_held:
+            return None
+        else:
+            pose = move.work_object.pose @ target.pose
+        found.append(pose.position)
+    return np.array(found)

@@ -46,7 +46,7 @@ _AIM = 1.1
 _INTERRUPTED = Found(0.0, 0.0, MotionError("the search was interrupted"))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ZoneSolution(Solution):
     """A program with larger zones.
 

@@ -1,0 +1,172 @@
+"""`import flyby`: what it exports, what it loads, and that both doors take and refuse the same."""
+
+from __future__ import annotations
+
+import inspect
+import math
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import flyby
+from flyby.cli.main import app
+from flyby.core.errors import InputError
+from flyby.tasks.optimize import OptimizeOptions
+from flyby.tasks.options.door import command_line
+from flyby.tasks.options.entries import TaskOptions, entries, flag
+from flyby.tasks.paint import PaintOptions
+from flyby.tasks.pareto import ParetoOptions
+from flyby.tasks.setup import RobotOptions
+
+ROOT = Path(__file__).parents[2]
+ROBOT = "abb/irb6640-180-255"
+SQUARE = ROOT / "examples/square.mod"
+Small = Callable[..., Path]
+
+
+def all_options(kind: type[TaskOptions] = TaskOptions) -> list[type[TaskOptions]]:
+    for name in flyby.__all__:
+        getattr(flyby, name)
+    return [kind, *(deep for one in kind.__subclasses__() for deep in all_options(one))]
+
+
+def test_every_name_is_there_and_tells_of_itself() -> None:
+    for name in flyby.__all__:
+        found = getattr(flyby, name)
+        assert callable(found) and inspect.getdoc(found), name
+    assert set(flyby.__all__) <= set(dir(flyby))
+    with pytest.raises(AttributeError, match="no attribute 'emulat'"):
+        _ = flyby.emulat
+
+
+def test_importing_loads_nothing_heavy() -> None:
+    code = (
+        "import sys, flyby\n"
+        "heavy = {'numpy', 'scipy', 'numba', 'matplotlib', 'pinocchio', 'cvxpy', 'typer', 'rich'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_a_program_is_read_from_a_file_a_folder_and_a_text(tmp_path: Path) -> None:
+    text = SQUARE.read_text("utf-8")
+    (tmp_path / "square.mod").write_text(text, "utf-8")
+    (tmp_path / "notes.txt").write_text("not a program", "utf-8")
+    read = [flyby.read(source, robot=ROBOT) for source in (SQUARE, tmp_path, text)]
+    assert read[0] == read[1] == read[2] and len(read[0].moves) > 1
+
+
+def test_a_run_tells_of_its_moves() -> None:
+    run = flyby.emulate(flyby.read(SQUARE, robot=ROBOT))
+    spent = sum(m.time + m.wait + m.settling for m in run.moves) + run.report.first_wait
+    assert spent == pytest.approx(run.duration)
+    assert run.moves[3].limited_by in {limit.name for limit in run.moves[3].limits}
+    assert run.trajectory.q.shape[1] == 6
+    assert len(repr(run).splitlines()) == 1 and "<svg" in run._repr_html_()
+
+
+def test_what_is_written_is_read_back_as_the_same_program(tmp_path: Path) -> None:
+    program = flyby.read(SQUARE, robot=ROBOT)
+    (file,) = flyby.write(program, tmp_path / "new")
+    again = flyby.read(file, robot=ROBOT)
+    assert flyby.emulate(again).duration == pytest.approx(flyby.emulate(program).duration)
+    with pytest.raises(InputError, match="force=True replaces it"):
+        flyby.write(program, tmp_path / "new")
+
+
+def test_a_patch_changes_the_numbers_alone(tmp_path: Path) -> None:
+    program = flyby.read(SQUARE, robot=ROBOT)
+    slower = [replace(m, speed=replace(m.speed, tcp=0.1, name=None)) for m in program.moves]
+    changed = program.with_moves(tuple(slower))
+    (file,) = flyby.patch(changed, out=tmp_path)
+    old, new = SQUARE.read_text("utf-8"), file.read_text("utf-8")
+    assert old != new
+    assert flyby.read(file, robot=ROBOT).moves[1].speed.tcp == pytest.approx(0.1)
+    with pytest.raises(InputError, match="in_place=True"):
+        flyby.patch(changed)
+
+
+def test_a_cell_is_held_against_what_was_read() -> None:
+    program = flyby.read(SQUARE, robot="abb/irb1600-6-145")
+    with pytest.raises(InputError, match="which robot"):
+        flyby.emulate(replace(program, setup=None))
+
+
+@pytest.mark.parametrize("kind", all_options(), ids=lambda kind: kind.__name__)
+def test_every_option_has_a_flag_of_its_own_and_is_explained(kind: type[TaskOptions]) -> None:
+    flags = [flag(kind, name) for name in entries(kind)]
+    assert len(set(flags)) == len(flags)
+    assert all(entry.help for entry in entries(kind).values())
+
+
+REFUSED = [
+    (OptimizeOptions, {"tilt": 4.0}, ("--tilt", "230"), "tilt 4: rad from 0 to 3.14159"),
+    (OptimizeOptions, {"starts": 0}, ("--starts", "0"), "starts 0: a number from 1 on"),
+    (OptimizeOptions, {"clearance": -0.001}, ("--clearance", "-1"), "a distance in m, zero"),
+    (OptimizeOptions, {"vias": "some"}, ("--vias", "some"), "vias some: keep or change"),
+    (OptimizeOptions, {"objective": 2.0}, ("--objective", "2"), "a weight between 0 and 1"),
+    (
+        OptimizeOptions,
+        {"zones_only": True, "tilt": 0.1},
+        ("--zones-only", "--tilt", "5"),
+        "do not go with it",
+    ),
+    (ParetoOptions, {"points": 1}, ("--points", "1"), "points 1: a number from 2 on"),
+    (ParetoOptions, {"change": "all"}, ("--change", "all"), "waypoints, zones or speeds"),
+]
+COMMANDS = {OptimizeOptions: "optimize", ParetoOptions: "pareto"}
+
+
+@pytest.mark.parametrize("kind, options, words, said", REFUSED)
+def test_both_doors_refuse_the_same(
+    kind: type[TaskOptions], options: dict[str, object], words: tuple[str, ...], said: str
+) -> None:
+    with pytest.raises(InputError) as refused:
+        kind(**options)
+    assert said in str(refused.value)
+    typed = CliRunner().invoke(app, [COMMANDS[kind], str(SQUARE), "--robot", ROBOT, *words])
+    assert typed.exit_code == 1
+    with command_line(), pytest.raises(InputError) as refused:
+        kind(**options)
+
+    def without_numbers(text: str) -> str:
+        return re.sub(r"[-\d.]+", "#", " ".join(text.split()))
+
+    assert without_numbers(f"error: {refused.value}") == without_numbers(typed.stderr)
+
+
+@pytest.mark.parametrize("name", ["facing", "sweep", "deviation", "zone", "points"])
+@pytest.mark.parametrize("wrong", [-1.0, float("nan"), "far"])
+def test_numbers_are_checked_when_options_are_made(name: str, wrong: object) -> None:
+    with pytest.raises(InputError, match=rf"^{name} "):
+        PaintOptions(target=5e-5, **{name: wrong})  # type: ignore[arg-type]
+
+
+def test_options_name_no_robot_twice() -> None:
+    assert RobotOptions(robot=ROBOT).robot == ROBOT
+    with pytest.raises(InputError, match="has a"):
+        flyby.read(SQUARE, robot=ROBOT.replace("180", "235"), cell=two_joints())
+
+
+def two_joints() -> str:
+    return str(ROOT / "examples/cell/two_joints.toml")
+
+
+def test_a_free_motion_needs_no_program() -> None:
+    ends = "0,0,0,0,30,0", "20,10,0,0,30,0"
+    found = flyby.free_motion(*ends, robot=ROBOT, no_floor=True, intervals=10, trials=0)
+    assert found.proven and 0.0 < found.duration <= found.optimum.first.duration
+    assert found.trajectory.q[-1, 1] == pytest.approx(math.radians(10), abs=1e-6)
+
+
+def test_tuning_a_path_is_no_slower_than_the_program() -> None:
+    found = flyby.tune(flyby.read(SQUARE, robot=ROBOT))
+    assert found.duration <= found.before * (1 + 1e-6)
+    assert sum(share for _, share in found.limits()) == pytest.approx(1.0)
