@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ....core.errors import InputError, MotionError, SourceError, Span
 from ....core.program.move import Move
-from ....core.program.target import JointTarget, PoseTarget
+from ....core.program.target import JointTarget, PoseTarget, Target
 from ....core.program.tool import WORLD, Tool, WorkObject
 from ....core.source.execution import position
 from ....core.spatial.pose import IDENTITY, Pose
@@ -31,11 +31,13 @@ class Position:
         start: where it stands at first; None if nobody knows.
 
     Attributes:
+        place: where it stands: another target after every move to another place.
         base: the frame in which programs give poses: the robot's base, wherever it stands.
     """
 
     def __init__(self, robot: Robot | None, start: JointTarget | None = None) -> None:
         self._commanded = position.Position(robot, start, _standing)
+        self.place: Target | None = start
         self.base = WORLD
         if robot is not None and robot.base != IDENTITY:
             self.base = WorkObject("base", user=robot.base)
@@ -62,6 +64,8 @@ class Position:
     def moved(self, move: Move, statement: Span) -> None:
         """The robot has driven to the target of a move."""
         self._commanded.moved(move, statement)
+        if move.target != self.place:
+            self.place = move.target
 
     def joints(self, what: str, span: Span) -> Joints | Unknown:
         """The joint values, rad.

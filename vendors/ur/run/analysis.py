@@ -1,31 +1,26 @@
-"""What can be said of statements without running them.
-
-It is asked only where a run meets a condition that is not known, a thread, or a loop that may have
-no end; the answers are kept.
-"""
+"""URScript's statements as the rules for branches and loops see them."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Container, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
+from ....core.source.execution.steps import Exit, Step
 from ..syntax.traversal import (
     all_statements,
-    assigned,
     base_name,
     calls_in,
     calls_of,
-    calls_written_in,
+    calls_written,
+    expressions_of,
     inner_blocks,
+    methods_in,
     names_in,
-    way_out,
 )
 from ..syntax.tree import (
     Assign,
     Block,
-    Call,
     Define,
-    Evaluate,
     Expression,
     If,
     Keyword,
@@ -34,11 +29,14 @@ from ..syntax.tree import (
     While,
 )
 from ..values.instructions import MOVES, REFUSED
-from ..values.outputs import written_by
+from ..values.lists import METHODS
+from ..values.outputs import read_by, written_by
+
+_EXITS = {"break": Exit.LOOP, "continue": Exit.PASS, "halt": Exit.PROGRAM}
 
 
-class Analysis:
-    """Asks statements, and the functions that they call, what they do.
+class ScriptTree:
+    """The statements of a program.
 
     A name stands for all functions of that name, wherever they are defined.
 
@@ -54,183 +52,88 @@ class Analysis:
             for statement in all_statements(block):
                 if isinstance(statement, Define):
                     self._functions[statement.name].append(statement)
-        self._known: dict[tuple[str, str], bool] = {}
-        self._written: dict[str, frozenset[str]] = {}
-        self._decisive: dict[int, frozenset[str] | None] = {}
 
-    def moves(self, block: Block) -> bool:
-        """Whether what moves the robot stands in a block or in what it calls."""
-        return self.drives(block) or self._reaches("refused", self._refused, block)
+    def bodies(self, names: Iterable[str]) -> tuple[Block, ...]:
+        """Bodies of the program's own functions of some names."""
+        return tuple(d.body for name in names for d in self._functions.get(name, ()))
 
-    def drives(self, block: Block) -> bool:
-        """The same of moves that are carried out."""
-        return self._reaches("moves", MOVES, block)
+    def asks(self, expression: Expression) -> bool:
+        """Whether an expression calls what may read anything: a function, a remote procedure."""
+        methods = {call.name for call in methods_in(expression)}
+        return not methods <= METHODS.keys() or any(
+            c in self._functions for c in _called(expression)
+        )
 
-    def can_be_taken(self, block: Block) -> bool:
-        """Whether a block moves the robot, and only by moves that are carried out."""
-        return self.drives(block) and not self._reaches("refused", self._refused, block)
+    def reads(self, expression: Expression) -> frozenset[str]:
+        """Names of the variables and outputs that an expression reads itself."""
+        return frozenset(names_in(expression)) | read_by(calls_written(expression))
 
-    def function_moves(self, name: str) -> bool:
-        """Whether a function moves the robot."""
-        moves = self._calls("moves", MOVES, name)
-        return moves or self._calls("refused", self._refused, name)
+    def steps(self, block: Block) -> Sequence[Step[Block]]:
+        """See `core.source.execution.steps.Tree.steps`."""
+        return [self._step(s) for s in block if not isinstance(s, Define)]
 
-    def _reaches(self, kind: str, names: Container[str], block: Block) -> bool:
-        return any(self._calls(kind, names, name) for name in calls_of(block))
+    def _step(self, statement: Statement) -> Step[Block]:
+        expressions = expressions_of(statement)
+        inner = tuple(inner_blocks(statement))
+        called = {name for e in expressions for name in _called(e)}
+        foreign = {name for name in called if name not in self._functions}
+        refused = not foreign.isdisjoint(self._refused)
+        names = frozenset[str]().union(*map(self.reads, expressions))
+        return Step(
+            moves=refused or not foreign.isdisjoint(MOVES),
+            reads=names if inner else frozenset(),
+            writes=frozenset(_written(statement, expressions)),
+            made_of=names,
+            outputs=frozenset(written_by(call for e in expressions for call in calls_written(e))),
+            calls=self.bodies(called),
+            asks=any(map(self.asks, expressions)),
+            exit=_exit(statement),
+            # A branch that calls what is refused cannot be read: no branch for a program to take.
+            halts=refused,
+            inner=inner,
+            loop=isinstance(statement, While),
+            exhaustive=isinstance(statement, If) and statement.otherwise is not None,
+        )
 
-    def _calls(self, kind: str, names: Container[str], name: str) -> bool:
-        own = self._functions.get(name)
-        if own is None:
-            return name in names
-        return self._once(kind, name, lambda: any(self._reaches(kind, names, d.body) for d in own))
-
-    def outputs_written(self, block: Block) -> set[str]:
-        """Names of the outputs that a block, and what it calls, may write."""
-        return written_by(calls_written_in(block)) | self._outputs_of(calls_of(block))
-
-    def function_outputs(self, name: str) -> set[str]:
-        """Names of the outputs that a function, and what it calls, may write."""
-        return self._outputs_of([name])
-
-    def _outputs_of(self, names: Iterable[str]) -> set[str]:
-        bodies = (d.body for one in self._reached(names) for d in self._functions.get(one, ()))
-        return written_by(call for body in bodies for call in calls_written_in(body))
-
-    def ends(self, block: Block, main: bool) -> bool:
-        """Whether the program does not go on behind a block.
-
-        Args:
-            main: whether it stands in the function that the program starts with.
-        """
-        return any(self._statement_ends(s, main) for s in block)
-
-    def writes(self, block: Block) -> frozenset[str]:
-        """Names of the variables that a block, and what it calls, may write."""
-        names = {s.target for s in all_statements(block) if isinstance(s, Assign)}
-        written = {base_name(target) for target in names}
-        for name in calls_of(block):
-            written |= self._function_writes(name)
-        return frozenset(written)
-
-    def assigns(self, block: Block) -> frozenset[str]:
-        """Names of the variables that a block itself assigns."""
-        return frozenset(assigned(block))
-
-    def decisive_names(self, loop: While) -> frozenset[str] | None:
-        """Names of the variables that decide when a loop ends.
-
-        Those that its condition reads, and the conditions of the branches by which it is left; and
-        those from which these get their values. None if a function of the program has a part in
-        it: it may read and write anything.
-        """
-        if loop.start not in self._decisive:
-            self._decisive[loop.start] = self._deciding(loop)
-        return self._decisive[loop.start]
-
-    def _deciding(self, loop: While) -> frozenset[str] | None:
-        names: frozenset[str] = frozenset()
-        found = [loop.condition, *_guards(loop.body)]
-        while True:
-            if any(self._may_read_anything(expression) for expression in found):
-                return None
-            known, names = names, names.union(*map(names_in, found))
-            if names == known:
-                return names
-            if any(self._function_writes(f) & names for f in calls_of(loop.body)):
-                return None
-            found = list(_deciders(loop.body, names))
-
-    def _may_read_anything(self, expression: Expression) -> bool:
-        return any(name in self._functions or name.startswith(".") for name in calls_in(expression))
+    # -------------------------------------------------------------------- threads
 
     def thread_writes(self, name: str) -> frozenset[str]:
         """Names of the variables outside that a thread may write, if there are such."""
-        storages = {"", "global"}
-        return frozenset(
-            base_name(s.target) for s in self._assignments(name) if s.storage in storages
-        )
+        return frozenset(base_name(s.target) for s in self._assignments(name, ("", "global")))
 
     def thread_makes(self, name: str) -> frozenset[str]:
         """Names of the variables that a thread makes for the whole program."""
-        return frozenset(
-            base_name(s.target) for s in self._assignments(name) if s.storage == "global"
-        )
+        return frozenset(base_name(s.target) for s in self._assignments(name, ("global",)))
 
-    def _assignments(self, name: str) -> Iterator[Assign]:
+    def _assignments(self, name: str, storages: tuple[str, ...]) -> Iterator[Assign]:
         """Those in a function and in all that it calls."""
-        for called in self._reached([name]):
-            for define in self._functions.get(called, ()):
-                yield from (s for s in all_statements(define.body) if isinstance(s, Assign))
-
-    def _reached(self, names: Iterable[str]) -> set[str]:
-        """Functions, with all that they call."""
-        todo = list(names)
-        reached = set(todo)
+        todo = [name]
+        reached = {name}
         while todo:
-            for define in self._functions.get(todo.pop(), ()):
-                called = calls_of(define.body) - reached
+            for body in self.bodies([todo.pop()]):
+                called = calls_of(body) - reached
                 reached |= called
                 todo += called
-        return reached
-
-    def _function_writes(self, name: str) -> frozenset[str]:
-        if name not in self._written:
-            self._written[name] = frozenset()  # for functions that call each other
-            own = self._functions.get(name, ())
-            self._written[name] = frozenset().union(*(self.writes(d.body) for d in own))
-        return self._written[name]
-
-    def _statement_ends(self, statement: Statement, main: bool) -> bool:
-        if isinstance(statement, Return):
-            return main
-        if isinstance(statement, Keyword):
-            return statement.word == "halt"
-        if isinstance(statement, Evaluate) and isinstance(statement.expression, Call):
-            name = statement.expression.name
-            own = self._functions.get(name)
-            if own is None:
-                return False
-            return self._once("ends", name, lambda: all(self.ends(d.body, False) for d in own))
-        if isinstance(statement, If) and statement.otherwise is not None:
-            return all(self.ends(b, main) for b in inner_blocks(statement))
-        return False
-
-    def _once(self, kind: str, name: str, find: Callable[[], bool]) -> bool:
-        key = kind, name
-        if key not in self._known:
-            self._known[key] = False  # for functions that call each other
-            self._known[key] = find()
-        return self._known[key]
+                for statement in all_statements(body):
+                    if isinstance(statement, Assign) and statement.storage in storages:
+                        yield statement
 
 
-def _guards(block: Block) -> Iterator[Expression]:
-    """The conditions on which a loop with this body is left."""
-    for statement in block:
-        if isinstance(statement, If) and any(way_out(b) for b in inner_blocks(statement)):
-            yield from (branch.condition for branch in statement.branches)
-        for inner in inner_blocks(statement):
-            if way_out(inner):
-                yield from _guards(inner)
-        if isinstance(statement, While) and way_out(statement.body):
-            yield statement.condition
+def _called(expression: Expression) -> Iterator[str]:
+    """Names of the functions and threads that an expression calls or starts."""
+    return (name for name in calls_in(expression) if not name.startswith("."))
 
 
-def _deciders(
-    block: Block, names: frozenset[str], around: tuple[Expression, ...] = ()
-) -> Iterator[Expression]:
-    """The expressions that decide what variables become in a block.
+def _written(statement: Statement, expressions: Sequence[Expression]) -> Iterator[str]:
+    """Names of the variables that a statement writes itself."""
+    if isinstance(statement, Assign):
+        yield base_name(statement.target)
+    for expression in expressions:
+        for call in methods_in(expression):
+            yield base_name(call.base)
 
-    Args:
-        names: of the variables.
-        around: conditions on which the block runs.
-    """
-    for statement in block:
-        if isinstance(statement, Assign) and base_name(statement.target) in names:
-            yield from (statement.value, statement.target, *around)
-        conditions: tuple[Expression, ...] = ()
-        if isinstance(statement, If):
-            conditions = tuple(branch.condition for branch in statement.branches)
-        elif isinstance(statement, While):
-            conditions = (statement.condition,)
-        for inner in inner_blocks(statement):
-            yield from _deciders(inner, names, (*around, *conditions))
+
+def _exit(statement: Statement) -> Exit | None:
+    if isinstance(statement, Return):
+        return Exit.ROUTINE
+    return _EXITS.get(statement.word) if isinstance(statement, Keyword) else None

@@ -7,6 +7,7 @@ from typing import Protocol
 
 from ....core.errors import InputError, SourceError
 from ....core.program.move import Wait
+from ....core.source.execution.flow import Flow
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.provenance import ELSEWHERE
@@ -25,7 +26,7 @@ from ..values.located import NOTHING, Located
 from ..values.outputs import READING, WRITING, held, write
 from ..values.scope import Cell, Function, Scope, did_you_mean
 from ..values.values import Struct, Unknown, Value, describe, is_number
-from .exits import Frame, OpenExit, Returned
+from .exits import Frame, Returned
 from .threads import Started
 
 _CALL = 200
@@ -40,11 +41,9 @@ class CallsRun(MovesRun, SettingsRun, Protocol):
 
     Attributes:
         statement: that is executed.
-        exits: branches not taken that may end the loop that runs.
     """
 
     statement: Statement | None
-    exits: list[OpenExit]
 
     @property
     def meter(self) -> Meter:
@@ -53,6 +52,10 @@ class CallsRun(MovesRun, SettingsRun, Protocol):
     @property
     def outputs(self) -> Outputs:
         """What the program has set."""
+
+    @property
+    def flow(self) -> Flow[Block]:
+        """Decides about branches and loops."""
 
     @property
     def entered(self) -> set[str]:
@@ -119,19 +122,18 @@ def enter(run: CallsRun, function: Function, node: Call, caller: Scope) -> Locat
     run.work(_CALL, span)
     statement, reader = run.statement, run.literals.reader
     run.literals.reader = ELSEWHERE
-    frame = Frame()
+    frame = Frame(scope)
     run.frames.append(frame)
-    outer, run.exits = run.exits, []
     found = NOTHING
     try:
         scope.define(define.body)
-        run.run_block(define.body, scope)
+        with run.flow.routine():
+            run.run_block(define.body, scope)
     except Returned as returned:
         found = returned.found
     finally:
         run.frames.pop()
         run.meter.back()
-        run.exits = outer + [e for e in run.exits if e.word == "halt" or e.written]
         run.statement, run.literals.reader = statement, reader
     return found if frame.open is None else Located(frame.open)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..values.located import Located
+from ..values.scope import Scope
 from ..values.values import Unknown
 
 
@@ -27,29 +28,14 @@ class Continue(Exception):
     """A pass of a loop ends."""
 
 
-@dataclass(frozen=True, slots=True)
-class OpenExit:
-    """A branch that was not taken, since its condition is not known, and that may end a loop.
-
-    Args:
-        word: by what.
-        written: variables that it writes; empty if it holds the ``word`` itself.
-        reason: what the condition depends on.
-        outputs: that it writes.
-    """
-
-    word: str
-    written: frozenset[str]
-    reason: Unknown
-    outputs: frozenset[str] = frozenset()
-
-
 @dataclass
 class Frame:
     """A function that runs.
 
     Args:
+        scope: its names.
         open: what decides which of its returns is taken, if that is not known.
     """
 
+    scope: Scope
     open: Unknown | None = None

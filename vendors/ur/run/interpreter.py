@@ -10,11 +10,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, NoReturn
+from weakref import proxy
 
 from ....core.errors import Note, Span
 from ....core.program.move import Move
 from ....core.program.move import Statement as ProgramStatement
+from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.answers import Course
+from ....core.source.execution.flow import Flow
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.transcript import MoveParts, Transcript
@@ -40,6 +43,7 @@ from ..syntax.tree import (
 )
 from ..values.answers import answer
 from ..values.assignments import store
+from ..values.changes import Snapshot
 from ..values.evaluator import evaluate, locate
 from ..values.instructions import Kept
 from ..values.located import NOTHING, Located
@@ -47,8 +51,8 @@ from ..values.provenance import SourceReads
 from ..values.scope import Function, Scope
 from ..values.values import Solution, Unknown, Value
 from . import calls, flow, threads
-from .analysis import Analysis
-from .exits import Break, Continue, Finished, Frame, OpenExit, Returned
+from .analysis import ScriptTree
+from .exits import Break, Continue, Finished, Frame, Returned
 
 _ELEMENTS_PER_STATEMENT = 100
 """Elements of a list that are copied in the time of a statement."""
@@ -62,13 +66,12 @@ class Interpreter:
 
     Args:
         texts: source texts.
-        analysis: what can be said of its statements without running them.
+        tree: its statements.
         options: robot, answers and limits.
 
     Attributes:
         settings: TCP and payload in force.
         statement: that is executed.
-        exits: branches not taken that may end the loop that runs.
         decisions: how often something was decided that is not known.
         frames: the functions that run.
         entered: names of the functions that have run.
@@ -76,9 +79,10 @@ class Interpreter:
         inside: names of the threads that are being carried out.
     """
 
-    def __init__(self, texts: Texts, analysis: Analysis, options: ReadOptions) -> None:
+    def __init__(self, texts: Texts, tree: ScriptTree, options: ReadOptions) -> None:
         self.texts = texts
-        self.analysis = analysis
+        self.tree = tree
+        self.analysis = Analysis(tree)
         self.course = Course(options.answers)
         self.meter = Meter(options.limits, options.executed)
         self.literals = SourceReads(texts)
@@ -87,7 +91,7 @@ class Interpreter:
         self.settings = Settings()
         self.root = Scope("the program")
         self.statement: Statement | None = None
-        self.exits: list[OpenExit] = []
+        self.flow: Flow[Block] = Flow(self.analysis, proxy(self))
         self.decisions = 0
         self.frames: list[Frame] = []
         self.entered: set[str] = set()
@@ -120,12 +124,31 @@ class Interpreter:
         Raises:
             Finished: always.
         """
-        self.out.notes.once("end", message, span)
+        self.note_once("end", message, span)
         raise Finished
 
-    def state(self) -> list[Value]:
-        """What, beside variables, decides how the program goes on."""
-        return [self.position.asked, str(self.settings)]
+    # --------------------------------------------------------- what branches and loops ask
+
+    @property
+    def position_asked(self) -> int:
+        """How often the program has asked where the robot stands."""
+        return self.position.asked
+
+    @property
+    def place(self) -> object:
+        """Where the robot stands: another object after every move to another place."""
+        return self.position.place
+
+    def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
+        """Variables as they are now; see `core.source.execution.flow.Host`."""
+        watched = written if names is None else names
+        if self.statement is not None:
+            self.work(len(watched), self.texts.span_of(self.statement))
+        return Snapshot(watched, self.frames[-1].scope if self.frames else self.root)
+
+    def note_once(self, kind: str, message: str, span: Span) -> None:
+        """A note, unless one of this kind was taken before."""
+        self.out.notes.once(kind, message, span)
 
     # ------------------------------------------------------------- what was executed
 

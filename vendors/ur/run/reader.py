@@ -36,7 +36,7 @@ from ....core.source.reading import Files, ReadOptions, read_with
 from ....core.source.text.files import LARGEST_FILE, SourceFile, read_source
 from ..syntax.statements import parse
 from ..syntax.texts import Texts
-from .analysis import Analysis
+from .analysis import ScriptTree
 from .entry import run_program
 from .interpreter import Interpreter
 
@@ -96,7 +96,7 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
 
 def _read(texts: Texts, main: str, options: ReadOptions) -> Program:
     blocks = [parse(texts, which) for which in range(len(texts.sources))]
-    run = Interpreter(texts, Analysis(blocks, options.answers.skipped), options)
+    run = Interpreter(texts, ScriptTree(blocks, options.answers.skipped), options)
     return run_program(run, blocks, main, options.entry)
 
 

@@ -13,14 +13,15 @@ from dataclasses import dataclass
 from typing import NoReturn, Protocol
 
 from ....core.errors import SourceError, Span
+from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.transcript import Transcript
-from ..syntax.tree import Call, Run, ThreadEnd
+from ..syntax.tree import Block, Call, Run, ThreadEnd
 from ..values.evaluator import Evaluation, evaluate
 from ..values.instructions import Kept
 from ..values.scope import Cell, Function, Scope
 from ..values.values import ThreadHandle, Unknown, Value
-from .analysis import Analysis
+from .analysis import ScriptTree
 from .exits import Finished
 
 _STARTED = Kept("start threads that leave the robot alone")
@@ -51,8 +52,12 @@ class ThreadsRun(Evaluation, Protocol):
     """What threads ask of a run."""
 
     @property
-    def analysis(self) -> Analysis:
-        """What can be said of statements without running them."""
+    def tree(self) -> ScriptTree:
+        """The statements of the program."""
+
+    @property
+    def analysis(self) -> Analysis[Block]:
+        """What can be said of them without running them."""
 
     @property
     def outputs(self) -> Outputs:
@@ -109,13 +114,15 @@ def start(run: ThreadsRun, node: Run, scope: Scope) -> Value:
     function = scope.function(name)
     if function is None:
         raise run.texts.error_at(f"there is no thread '{name}' to run", node)
-    thread = Started(name, run.analysis.function_moves(name))
+    bodies = run.tree.bodies([name])
+    thread = Started(name, any(map(run.analysis.moves, bodies)))
     if thread.moving:
         _carry_out(run, function, node, scope, thread)
     else:
         run.keep(node, _STARTED, name)
-        thread.written = _mark(run.analysis, function)
-        thread.outputs = frozenset(run.analysis.function_outputs(name))
+        thread.written = _mark(run.tree, function)
+        outputs = (run.analysis.outputs_written(body) or () for body in bodies)
+        thread.outputs = frozenset().union(*outputs)
         run.outputs.share(thread.outputs)
     thread.decided = run.decisions
     run.threads.append(thread)
@@ -143,12 +150,12 @@ def _carry_out(
         run.inside.pop()
 
 
-def _mark(analysis: Analysis, function: Function) -> tuple[Cell, ...]:
+def _mark(tree: ScriptTree, function: Function) -> tuple[Cell, ...]:
     """What a running thread writes has no known value."""
     name = function.definition.name
-    for variable in analysis.thread_makes(name):
+    for variable in tree.thread_makes(name):
         function.scope.root().own(variable)
-    found = map(function.scope.find, analysis.thread_writes(name))
+    found = map(function.scope.find, tree.thread_writes(name))
     cells = tuple(cell for cell in found if cell is not None)
     for cell in cells:
         cell.writer = name

@@ -14,7 +14,6 @@ from .tree import (
     Expression,
     If,
     Index,
-    Keyword,
     Member,
     MethodCall,
     Name,
@@ -26,20 +25,6 @@ from .tree import (
     Unary,
     While,
 )
-
-
-def way_out(block: Block) -> str | None:
-    """How a block may leave the loop it stands in: ``break``, ``return``, ``halt``; None if not."""
-    for statement in block:
-        if isinstance(statement, Return):
-            return "return"
-        if isinstance(statement, Keyword) and statement.word in ("break", "halt"):
-            return statement.word
-        for inner in inner_blocks(statement):
-            word = way_out(inner)
-            if word is not None and not (word == "break" and isinstance(statement, While)):
-                return word
-    return None
 
 
 def assigned(block: Block) -> Iterator[str]:
@@ -97,24 +82,27 @@ def calls_of(block: Block) -> set[str]:
     """What a block calls itself; functions defined in it run only when they are called."""
     names: set[str] = set()
     for statement in block:
-        for expression in _expressions(statement):
+        for expression in expressions_of(statement):
             names.update(calls_in(expression))
         for inner in inner_blocks(statement):
             names |= calls_of(inner)
     return names
 
 
-def calls_written_in(block: Block) -> Iterator[Call]:
-    """The calls that a block makes itself, with their arguments."""
-    for statement in block:
-        todo = _expressions(statement)
-        while todo:
-            expression = todo.pop()
-            if isinstance(expression, Call):
-                yield expression
-            todo += _parts(expression)
-        for inner in inner_blocks(statement):
-            yield from calls_written_in(inner)
+def calls_written(expression: Expression) -> Iterator[Call]:
+    """The calls in an expression, with their arguments."""
+    if isinstance(expression, Call):
+        yield expression
+    for part in _parts(expression):
+        yield from calls_written(part)
+
+
+def methods_in(expression: Expression) -> Iterator[MethodCall]:
+    """The calls of methods in an expression."""
+    if isinstance(expression, MethodCall):
+        yield expression
+    for part in _parts(expression):
+        yield from methods_in(part)
 
 
 def all_calls(block: Block) -> set[str]:
@@ -123,7 +111,7 @@ def all_calls(block: Block) -> set[str]:
     return calls_of(block).union(*map(calls_of, inside))
 
 
-def _expressions(statement: Statement) -> list[Expression]:
+def expressions_of(statement: Statement) -> list[Expression]:
     """The expressions that a statement evaluates itself."""
     if isinstance(statement, Assign):
         return [statement.value, statement.target]

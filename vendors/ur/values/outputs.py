@@ -7,7 +7,7 @@ too: what these hold is not known.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from ....core.source.execution.outputs import Outputs
 from ..syntax.tree import Call, Number
@@ -60,9 +60,18 @@ def held(outputs: Outputs, function: str, values: Sequence[Value]) -> Value | No
 
 def written_by(calls: Iterable[Call]) -> set[str]:
     """Names of the outputs that calls may write: any of a kind where the number is computed."""
+    return _named_in(calls, WRITING)
+
+
+def read_by(calls: Iterable[Call]) -> set[str]:
+    """Names of the outputs that calls may read, likewise."""
+    return _named_in(calls, READING)
+
+
+def _named_in(calls: Iterable[Call], kinds_of: Mapping[str, str]) -> set[str]:
     found: set[str] = set()
     for call in calls:
-        kind = WRITING.get(call.name)
+        kind = kinds_of.get(call.name)
         if kind is None:
             continue
         index = call.arguments[0].value if call.arguments else None

@@ -68,10 +68,6 @@ class Scope(scopes.Scope[Cell]):
             if isinstance(statement, Define):
                 self.functions[statement.name] = statement
 
-    def values(self) -> list[Value]:
-        """Values of all variables that are found from here."""
-        return [cell.value for scope in self.outwards() for cell in scope.cells.values()]
-
     def own(self, name: str) -> Cell:
         """The variable of this very scope, made if there is none."""
         return self.cells.setdefault(name, Cell())
