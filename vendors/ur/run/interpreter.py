@@ -142,8 +142,6 @@ class Interpreter:
     def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
         """Variables as they are now; see `core.source.execution.flow.Host`."""
         watched = written if names is None else names
-        if self.statement is not None:
-            self.work(len(watched), self.texts.span_of(self.statement))
         return Snapshot(watched, self.frames[-1].scope if self.frames else self.root)
 
     def note_once(self, kind: str, message: str, span: Span) -> None:
