@@ -19,9 +19,10 @@ from ..motion.special_moves import SPECIAL_MOVES
 from ..motion.triggers import TRIGGER_DEFINITIONS, TRIGGER_MOVES
 from ..syntax.tree import Expression, Invoke, Name
 from ..values.arguments import bind
+from ..values.data import Globals
 from ..values.evaluator import Evaluator
 from ..values.operators import OperandError, apply
-from ..values.scope import Scope
+from ..values.scope import Scope, unknown_name
 from ..values.text_functions import with_bit
 from ..values.types import NUM, STRING, Unknown, Value, find_unknown, mismatch
 from .handlers import Keeping, Running
@@ -278,6 +279,19 @@ MOVING = frozenset({*MOVES, *TRIGGER_MOVES, *SPECIAL_MOVES})
 """Names of instructions that move the robot."""
 
 
-def known_names() -> set[str]:
-    """Lower-case names of all instructions in the tables."""
-    return {*INTERPRETED, *KEPT, *REFUSED}
+def refusal(statement: Invoke, data: Globals) -> SourceError:
+    """Why an instruction, or a routine whose text is not at hand, is not stepped over."""
+    reason = REFUSED.get(statement.name)
+    if reason is not None:
+        return SourceError(f"{statement.text} is refused: {reason}", statement.span)
+    known = {*data.routine_names("proc"), *INTERPRETED, *KEPT, *REFUSED}
+    hint = data.hint(statement.name)
+    message = unknown_name(
+        "instruction or routine", statement.text, known, hint or "its text is not at hand"
+    )
+    return SourceError(
+        f"{message}; it might move the robot, so it is not stepped over: name the module that "
+        f"declares it, or, if it does not move the robot, answer '{statement.text} = \"skip\"' "
+        "in the table [calls] of the answers",
+        statement.span,
+    )

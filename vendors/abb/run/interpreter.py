@@ -55,7 +55,7 @@ from ..values.types import STRING, Unknown, Value, interpreted, mismatch
 from .analysis import RapidTree
 from .calls import pass_arguments, present
 from .flow import run_for, run_if, run_test, run_while
-from .instructions import INTERPRETED, KEPT, MOVING, REFUSED, known_names
+from .instructions import INTERPRETED, KEPT, MOVING, REFUSED, refusal
 
 
 class _Returned(Exception):
@@ -298,7 +298,7 @@ class Interpreter:
             why = "it is skipped, as the answers say"
             self.out.keep(statement.span, statement.text, why)
         else:
-            raise self._refusal(statement)
+            raise refusal(statement, self.data)
 
     def fetched(self, statement: Invoke, scope: Scope) -> Routine | None:
         """A procedure of a module beside the program."""
@@ -335,22 +335,6 @@ class Interpreter:
     def note_undeclared(self, name: Name) -> None:
         message = f"'{name.text}' is written and not declared in what is at hand: it is taken to "
         self.out.notes.count(message + "be declared in a module that is not", name.span)
-
-    def _refusal(self, statement: Invoke) -> SourceError:
-        reason = REFUSED.get(statement.name)
-        if reason is not None:
-            return SourceError(f"{statement.text} is refused: {reason}", statement.span)
-        known = {*self.data.routine_names("proc"), *known_names()}
-        hint = self.data.hint(statement.name)
-        message = unknown_name(
-            "instruction or routine", statement.text, known, hint or "its text is not at hand"
-        )
-        return SourceError(
-            f"{message}; it might move the robot, so it is not stepped over: name the module that "
-            f"declares it, or, if it does not move the robot, answer '{statement.text} = \"skip\"' "
-            "in the table [calls] of the answers",
-            statement.span,
-        )
 
     def _with_present_arguments(self, statement: Invoke, scope: Scope) -> Invoke:
         """Without the arguments that are handed on from absent parameters."""
