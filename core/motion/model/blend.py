@@ -66,7 +66,6 @@ class Blend:
             "1",
             "coefficients of α by rising powers of s, α(0) = 0 and α(1) = 1",
             always=True,
-            fit=Fit(-20.0, 20.0, 0.5),
         ),
     )
     beta: tuple[float, ...] = field(
