@@ -17,7 +17,7 @@ from .parameters import AsJson, ProgramFile, with_options
 
 if TYPE_CHECKING:
     from ..core.lint.finding import Finding
-    from ..tasks.findings import Findings
+    from ..tasks.results.findings import Findings
 
 
 @with_options
@@ -48,7 +48,7 @@ def _findings(program: Path, source: SourceOptions, options: CheckOptions) -> Fi
 
 
 def _tell(program: Path, found: Findings) -> None:
-    from ..tasks.findings import COLUMNS
+    from ..tasks.results.findings import COLUMNS
 
     if found:
         print_table(COLUMNS, found.rows(program))

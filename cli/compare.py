@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..identification.prediction import Prediction
     from ..identification.residuals import Figures
     from ..identification.time_scale import TimeScale
-    from ..tasks.comparison import Comparison
+    from ..tasks.results.comparison import Comparison
 
 
 @with_options
@@ -59,7 +59,7 @@ def compare(
 
 
 def _tell(found: Comparison) -> None:
-    from ..tasks.comparison import COLUMNS
+    from ..tasks.results.comparison import COLUMNS
 
     compared, f = found.prediction, found.figures
     log, aligned = compared.log, compared.alignment

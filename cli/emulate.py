@@ -18,7 +18,7 @@ from .console import print_json, print_rich, progress
 from .parameters import AsJson, Force, ProgramFile, with_options
 
 if TYPE_CHECKING:
-    from ..tasks.runs import EmulatedRun
+    from ..tasks.results.runs import EmulatedRun
 
 
 @dataclass(frozen=True)

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..tasks.experiment import PAGE, PICTURE, ExperimentOptions, experiment_with
+from ..tasks.experiment import ExperimentOptions, experiment_with
 from ..tasks.files.outputs import check_folder, check_outputs, write_in
 from .console import print_json, print_rich, print_table, progress, warn
 from .parameters import AsJson, Force, with_options
 
 if TYPE_CHECKING:
     from ..identification.experiment.plan import Experiment
-    from ..tasks.experiments import DesignedExperiment
+    from ..tasks.results.experiments import DesignedExperiment
 
 
 @with_options
@@ -30,6 +30,8 @@ def experiment(
     named = (options.cell, options.motion)
     inputs = [Path(file) for file in named if isinstance(file, str | Path)]
     if out.is_dir():
+        from ..tasks.results.experiments import PAGE, PICTURE
+
         # Said before the work, not after it: these two are always written.
         there = {f"--out: {name}": out / name for name in (PAGE, PICTURE)}
         check_outputs(there, inputs, force)
@@ -45,7 +47,7 @@ def experiment(
 
 
 def _tell(found: DesignedExperiment, out: Path) -> None:
-    from ..tasks.experiments import COLUMNS
+    from ..tasks.results.experiments import COLUMNS, PAGE
 
     made = found.experiment
     print_table(COLUMNS, found.rows())

@@ -18,7 +18,7 @@ from .parameters import AsJson, Force, ProgramFile, with_options
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..tasks.motions import FreeMotion, TunedMotion
+    from ..tasks.results.motions import FreeMotion, TunedMotion
 
 Csv = Annotated[Path | None, typer.Option("--csv", help="Write the motion as CSV.")]
 Plot = Annotated[Path | None, typer.Option("--plot", help="Draw the joints: PNG, PDF or SVG.")]
@@ -130,7 +130,7 @@ def _write(found: FreeMotion | TunedMotion, csv: Path | None, plot: Path | None)
 
 
 def _tell(found: FreeMotion | TunedMotion, written: Sequence[Path]) -> None:
-    from ..tasks.motions import COLUMNS
+    from ..tasks.results.motions import COLUMNS
 
     print_table(COLUMNS, found.rows())
     print_rich(repr(found)[1:-1])

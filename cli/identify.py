@@ -17,7 +17,7 @@ from .parameters import AsJson, Force, with_options
 if TYPE_CHECKING:
     from ..identification.fit import Fit, Judgement, Outcome
     from ..identification.fit.selection import Score
-    from ..tasks.identified import IdentifiedModel
+    from ..tasks.results.identified import IdentifiedModel
 
 SCORE_COLUMNS = (
     ("fitted", "left"),
@@ -82,7 +82,7 @@ def identify(
 
 
 def _tell(made: IdentifiedModel) -> None:
-    from ..tasks.identified import PARAMETER_COLUMNS, RUN_COLUMNS
+    from ..tasks.results.identified import PARAMETER_COLUMNS, RUN_COLUMNS
 
     fitted, each, scores = made.fit, made.outcomes, made.scores
     print_table(

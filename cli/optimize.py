@@ -17,8 +17,7 @@ from ..tasks.optimize import CHANGE, OptimizeOptions, optimize_with
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import Setup, setup_of_program, start_of, writable_robot
 from .console import print_json, print_table, progress
-from .delivery import deliver
-from .other_vendor import OtherVendor
+from .delivery import OtherVendor, deliver
 from .parameters import AsJson, Force, InPlace, Out, ProgramFile, with_options
 from .solution_report import solution_json, tell_solution
 

@@ -11,13 +11,14 @@ import typer
 
 from ..tasks.files.outputs import check_folder, check_outputs, write_in
 from ..tasks.files.source_places import note_json
-from ..tasks.paint import PaintOptions, paint_with
+from ..tasks.paint import paint_with
+from ..tasks.painting.options import PaintOptions
 from .console import print_json, print_rich, print_table, progress, warn
 from .parameters import AsJson, Force, with_options
 
 if TYPE_CHECKING:
     from ..problems.paint.coating.coat import Coat
-    from ..tasks.painted import PaintedPart
+    from ..tasks.results.painted import PaintedPart
 
 PICTURES = ("thickness.png", "curve.png", "histogram.png", "strokes.png")
 
@@ -68,7 +69,7 @@ def paint(
 
 def _tell(found: PaintedPart, written: Sequence[Path]) -> None:
     """Print the table, notes, the proof and what was written."""
-    from ..tasks.painted import COLUMNS, MICRON
+    from ..tasks.results.painted import COLUMNS, MICRON
 
     source, painting, made = found.source, found.painting, found.made
     print_table(COLUMNS, found.rows(), f"target {painting.judge.target / MICRON:g} µm")

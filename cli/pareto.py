@@ -26,7 +26,7 @@ from .parameters import AsJson, Force, Out, ProgramFile, with_options
 if TYPE_CHECKING:
     from ..core.robot.model import Robot
     from ..problems.improve.energy import Front, Point
-    from ..tasks.fronts import ProgramFront
+    from ..tasks.results.fronts import ProgramFront
 
 
 @with_options

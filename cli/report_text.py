@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..tasks.files.source_places import note_json, place_json
-from ..tasks.report import COLUMNS, MoveReport, Report, move_row, seconds
+from ..tasks.results.report import COLUMNS, MoveReport, Report, move_row, seconds
 from .console import print_rich, print_table, warn
 
 

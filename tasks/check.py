@@ -11,7 +11,7 @@ from .setup import RobotOptions, start_of, with_setup
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
-    from .findings import Findings
+    from .results.findings import Findings
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +29,7 @@ def check_with(program: Program, options: CheckOptions) -> Findings:
         InputError: nobody says which robot.
     """
     from ..core.lint.check import check as look
-    from .findings import Findings
+    from .results.findings import Findings
 
     program, setup = with_setup(program, options)
     return Findings(look(program, setup.vendor, setup.robot, start_of(program)))
@@ -46,7 +46,7 @@ def unread(error: FlybyError) -> Findings:
             no finding in a program.
     """
     from ..core.lint.check import unreadable
-    from .findings import Findings
+    from .results.findings import Findings
 
     if not isinstance(error, SourceError | MotionError) or error.span is None:
         raise error

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..identification.logs import LoggedRun
     from ..identification.prediction import Prediction
     from ..identification.time_scale import TimeScale
-    from .comparison import Comparison
+    from .results.comparison import Comparison
 
 RECORD = ".json"
 
@@ -55,7 +55,7 @@ def compare_with(program: Program | str | Path, options: CompareOptions) -> Comp
     setup, run = _load(program, options)
     options.say(f"emulating {len(run.program.moves)} moves")
     found, scale = _compared(setup, run, options)
-    from .comparison import Comparison
+    from .results.comparison import Comparison
 
     stated = setup.vendor.motion_of(setup.robot).arc_turn
     logged = [*run.notes, *found.log.notes[len(run.notes) :]]

@@ -11,7 +11,7 @@ from .setup import RobotOptions, start_of, with_setup
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
-    from .runs import EmulatedRun
+    from .results.runs import EmulatedRun
 
 LEAST_PERIOD = 1e-5
 """s. A cycle of a minute then makes six million samples."""
@@ -40,7 +40,7 @@ def emulate_with(program: Program, options: EmulateOptions) -> EmulatedRun:
         InputError: nobody says which robot.
     """
     from ..core.motion.emulator.controller import Controller
-    from .runs import EmulatedRun
+    from .results.runs import EmulatedRun
 
     program, setup = with_setup(program, options)
     options.say(f"emulating {len(program.moves)} moves")

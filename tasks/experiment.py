@@ -26,10 +26,7 @@ if TYPE_CHECKING:
     from ..core.program.tool import Tool
     from ..core.robot.model import Robot
     from ..identification.experiment.plan import Kind, Plan
-    from .experiments import DesignedExperiment
-
-PAGE, PICTURE = "README.md", "overview.png"
-"""Files that are always written."""
+    from .results.experiments import DesignedExperiment
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +73,7 @@ def experiment_with(options: ExperimentOptions) -> DesignedExperiment:
         InputError: naming the option.
     """
     from ..identification.experiment.design import design
-    from .experiments import DesignedExperiment
+    from .results.experiments import DesignedExperiment
 
     setup = setup_of(options)
     cell = setup.surroundings(no_floor=options.no_floor)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..core.motion.model.consumption import Consumption
     from ..core.program.tool import Tool
     from ..problems.free_motion.optimal_control import Step, Surroundings
-    from .motions import FreeMotion
+    from .results.motions import FreeMotion
 
 MOST_TRIALS = 16
 
@@ -81,7 +81,7 @@ def free_motion_with(
     """
     from ..core.robot.inertia import carried_inertia
     from ..problems.free_motion.optimal_control import Effort, Objective, Task, optimize
-    from .motions import FreeMotion
+    from .results.motions import FreeMotion
 
     setup = setup_of(options)
     robot = setup.robot

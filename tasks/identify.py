@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..identification.fit import Fit, Judgement, ParameterSet, PreparedRun
     from ..identification.fit.selection import Score
     from ..identification.logs import LoggedRun
-    from .identified import IdentifiedModel
+    from .results.identified import IdentifiedModel
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,8 +76,8 @@ def identify_with(
     """
     from ..identification.fit import outcomes
     from ..identification.logs import load_columns
-    from .identified import IdentifiedModel
-    from .logged_runs import find_runs
+    from .files.logged_runs import find_runs
+    from .results.identified import IdentifiedModel
 
     paths = [Path(log) for log in ([logs] if isinstance(logs, str | Path) else logs)]
     setup = setup_of(options)

@@ -2,132 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.errors import InputError
 from .options import texts
-from .options.entries import (
-    ANGLE,
-    COUNT,
-    LENGTH,
-    MILLISECONDS,
-    NOT_NEGATIVE,
-    POSITIVE,
-    REQUIRED,
-    Extent,
-    choice,
-    number,
-    value,
-)
 from .options.keywords import by_keywords
-from .paint_values import box, coat_errors, speed_range, thickness
-from .setup import CellOptions
+from .painting.options import PaintOptions
+from .painting.values import coat_errors, thickness
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
-    from ..core.spatial.pose import Pose
     from ..problems.paint.coating.coat import Coat
     from ..problems.paint.executable.execute import Executable
     from ..problems.paint.executable.station import Station
     from ..problems.paint.executable.writing import DriveOptions
     from ..problems.paint.painting import Painting
     from ..problems.paint.surface.part import Part
-    from .painted import PaintedPart
+    from .results.painted import PaintedPart
 
 FINEST = 0.06
 """Longest edge of the part's triangles by the footprint's radius, so that it is judged finely."""
 STEP = 0.3
 """Longest segment by the footprint's radius, where none is given."""
-LARGEST = Extent(0.0, 1e4, "[)")
-
-
-@dataclass(frozen=True, kw_only=True)
-class SurfaceOptions(CellOptions):
-    """What of a part is to be painted, and how much."""
-
-    target: str | float = value(REQUIRED, "Thickness wanted, with its unit: 50um.", thickness)
-    units: str | None = value(None, "Of the part's numbers: m, cm, mm, in; as the file says.")
-    view: str | Sequence[float] | None = value(
-        None, "Direction in which the gun looks at the part, such as 0,0,-1.", texts.direction
-    )
-    facing: float | None = number(
-        None,
-        "Paint only what faces the gun to within so many degrees.",
-        ANGLE,
-        Extent(0.0, 180.0, "(]"),
-    )
-    inside: str | Sequence[float] | None = value(
-        None, "Paint only what lies in a box: x,y,z,x,y,z in mm.", box
-    )
-    covered: str | Sequence[float] | None = value(
-        None, "Leave out what lies in a box: x,y,z,x,y,z in mm.", box
-    )
-
-
-@dataclass(frozen=True, kw_only=True)
-class SweepOptions(SurfaceOptions):
-    """The first curve, and within what it may change."""
-
-    sweep: float | None = number(None, "Sweep width, mm.", LENGTH, POSITIVE)
-    distance: float | None = number(
-        None, "Of the gun from the part, mm; the footprint's if unset.", LENGTH, POSITIVE
-    )
-    overhang: float = number(100.0, "Of sweeps beyond the edge, mm.", LENGTH, NOT_NEGATIVE)
-    step: float | None = number(None, "Between waypoints at most, mm.", LENGTH, POSITIVE)
-    heading: str | Sequence[float] | None = value(
-        None, "Direction of the sweeps; along the longer side if unset.", texts.direction
-    )
-    method: str = choice("sideways", "sideways or raster.", ("raster", "sideways"))
-    coats: str = choice(
-        "one", "one, or crossed: two of half the paint, at right angles.", ("one", "crossed")
-    )
-    turns: str = choice("on", "Whether the gun paints in turns: on, off.", ("on", "off"))
-    speed: str | Sequence[float] = value("50,800", "Least and largest speed, mm/s.", speed_range)
-    tilt: float = number(
-        20.0, "Of the gun off the normal at most, degrees.", ANGLE, Extent(0.0, 80.0, "()")
-    )
-    deviation: float = number(
-        100.0, "Of waypoints from the first curve at most, mm.", LENGTH, POSITIVE
-    )
-    errors: str | Sequence[float] | None = value(
-        None,
-        "That the coat shall stand: height in mm, footprint's radius in %: 3,2.",
-        coat_errors,
-    )
-    points: int = number(2600, "Of the part on which to optimise.", COUNT, Extent(100))
-    seed: int = number(0, "Of the choice of these points.", COUNT, Extent(0))
-
-
-@dataclass(frozen=True, kw_only=True)
-class PaintOptions(SweepOptions):
-    """The robot's program: where the part stands, and what switches the gun."""
-
-    tool: str | None = value(None, "The gun among the cell's tools.")
-    place: str | Pose | None = value(None, "Pose of the part in the world, as for fk.", texts.pose)
-    frame: str | None = value(None, "Instead: a frame of the cell that the part stands in.")
-    zone: float = number(20.0, "Zone at the waypoints, mm.", LENGTH, LARGEST)
-    run: float = number(50.0, "Run-in and run-out with the gun off, mm.", LENGTH, LARGEST)
-    signal: str | None = value(None, "Output that switches the gun.")
-    flow: str | None = value(None, "Output that sets the flow.")
-    delay: float = number(0.0, "From signal to paint, ms.", MILLISECONDS, LARGEST)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.signal is None and (self.flow is not None or self.delay):
-            raise InputError(
-                f"{self.spelt('flow')} and {self.spelt('delay')} are of the gun's signals: name "
-                f"its switch by {self.spelt('signal')}"
-            )
-        if self.robot is None and self.cell is None:
-            for name in ("motion", "tool", "frame"):
-                if getattr(self, name) is not None:
-                    raise InputError(
-                        f"{self.spelt(name)} is of a robot: name it by {self.spelt('robot')} or "
-                        f"{self.spelt('cell')}"
-                    )
 
 
 def paint_with(part: str | Path, footprint: str | Path, options: PaintOptions) -> PaintedPart:
@@ -145,7 +43,7 @@ def paint_with(part: str | Path, footprint: str | Path, options: PaintOptions) -
         InputError: naming the option, or a file cannot be used.
         MotionError: the robot cannot drive it.
     """
-    from .paint_choices import drive_of, limits_of, plan_of, region_of, station_of
+    from .painting.choices import drive_of, limits_of, plan_of, region_of, station_of
 
     drive = drive_of(options)
     station = station_of(options, drive)
@@ -153,7 +51,7 @@ def paint_with(part: str | Path, footprint: str | Path, options: PaintOptions) -
     from ..problems.paint.painting import Wishes
     from ..problems.paint.painting import paint as find
     from ..problems.paint.spray.footprint_file import load_footprint
-    from .painted import PaintedPart
+    from .results.painted import PaintedPart
 
     source = load_footprint(Path(footprint))
     gun = source.footprint

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..core.program.program import Program
     from ..core.robot.model import Robot
     from ..problems.improve.energy import Progress
-    from .fronts import ProgramFront
+    from .results.fronts import ProgramFront
 
 SCOPES = ("waypoints", "zones", "speeds")
 
@@ -61,7 +61,7 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
     """
     from ..core.motion.emulator.controller import Controller
     from ..problems.improve.energy import Scope, Task, pareto
-    from .fronts import ProgramFront
+    from .results.fronts import ProgramFront
 
     program, setup = with_setup(program, options)
     if setup.cell is None:

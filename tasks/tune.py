@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..core.motion.model.consumption import Consumption
     from ..core.program.program import Program
     from ..core.robot.model import Robot
-    from .motions import TunedMotion
+    from .results.motions import TunedMotion
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,7 +72,7 @@ def tune_with(program: Program, options: TuneOptions) -> TunedMotion:
         drives_of,
         tune,
     )
-    from .motions import TunedMotion
+    from .results.motions import TunedMotion
 
     program, setup = with_setup(program, options)
     controller = Controller(setup.vendor, setup.robot)

@@ -13,7 +13,7 @@ from typer.testing import Result
 
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.registry import find_robot, find_vendor
-from flyby.tasks import fronts
+from flyby.tasks.results import fronts
 
 ROBOT = "abb/irb6640-180-255"
 REST = "[9E9,9E9,9E9,9E9,9E9,9E9]"

@@ -20,7 +20,7 @@ from flyby.core.errors import InputError
 from flyby.tasks.optimize import OptimizeOptions
 from flyby.tasks.options.door import command_line
 from flyby.tasks.options.entries import TaskOptions, entries, flag
-from flyby.tasks.paint import PaintOptions
+from flyby.tasks.painting.options import PaintOptions
 from flyby.tasks.pareto import ParetoOptions
 from flyby.tasks.setup import RobotOptions
 

@@ -23,7 +23,7 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.chain_kernels import poses
 from flyby.core.spatial.pose import Pose
 from flyby.drawing.geometry import path_geometry
-from flyby.tasks.report import Report, make_report
+from flyby.tasks.results.report import Report, make_report
 
 ROBOT = find_robot("abb/irb6640-180-255")
 CONTROLLER = Controller(find_vendor("abb"), ROBOT)

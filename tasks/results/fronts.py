@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from ..core.notebook import Curve, page, picture, table
-from ..core.program.program import Program
-from ..core.source.patch.runnable import runnable_files
-from ..problems.improve.energy import Front, Point
-from .files.texts import ProgramTexts
-from .setup import Setup, like
+from ...core.notebook import Curve, page, picture, table
+from ...core.program.program import Program
+from ...core.source.patch.runnable import runnable_files
+from ...problems.improve.energy import Front, Point
+from ..files.texts import ProgramTexts
+from ..setup import Setup, like
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -7,16 +7,16 @@ from functools import cached_property
 
 import numpy as np
 
-from ..core.errors import Note
-from ..core.motion.command.trajectory import Trajectory
-from ..core.motion.model.consumption import SQUARED_TORQUE, Consumption
-from ..core.motion.timing.timing import Timing
-from ..core.notebook import Curve, page, picture, table
-from ..core.program.program import Program
-from ..core.robot.model import Robot
-from ..drawing.motion import draw_motion
-from ..problems.free_motion.optimal_control import Optimum
-from ..problems.free_motion.velocity_tuning import Tuned
+from ...core.errors import Note
+from ...core.motion.command.trajectory import Trajectory
+from ...core.motion.model.consumption import SQUARED_TORQUE, Consumption
+from ...core.motion.timing.timing import Timing
+from ...core.notebook import Curve, page, picture, table
+from ...core.program.program import Program
+from ...core.robot.model import Robot
+from ...drawing.motion import draw_motion
+from ...problems.free_motion.optimal_control import Optimum
+from ...problems.free_motion.velocity_tuning import Tuned
 
 COLUMNS = (("", "left"), ("unit", "left"), ("value", "right"))
 PERIOD = 0.004

@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from ..core.cell.cell import Cell
-from ..core.notebook import Curve, page, picture, table
-from ..identification.experiment.page import LOG_SUFFIX, described, way
-from ..identification.experiment.page import page as make_page
-from ..identification.experiment.picture import draw_experiment
-from ..identification.experiment.plan import Experiment
-from ..identification.experiment.record import record
-from .experiment import PAGE, PICTURE
+from ...core.cell.cell import Cell
+from ...core.notebook import Curve, page, picture, table
+from ...identification.experiment.page import LOG_SUFFIX, described, way
+from ...identification.experiment.page import page as make_page
+from ...identification.experiment.picture import draw_experiment
+from ...identification.experiment.plan import Experiment
+from ...identification.experiment.record import record
 
-RECORD = ".json"
+PAGE, PICTURE, RECORD = "README.md", "overview.png", ".json"
+"""The first two are always written."""
 COLUMNS = (
     ("", "right"),
     ("run", "left"),

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..drawing.style import STYLE, figure_file
+from ...drawing.style import STYLE, figure_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..problems.improve.energy import Front
+    from ...problems.improve.energy import Front
 
 _LINE, _GIVEN = "#1f4e9c", "#b3261e"
 _JOINTS = ("#8a8a8a", "#1f4e9c", "#e08a1e", "#3a8a4d", "#8a4d9c", "#4d9c9c", "#9c7a4d")

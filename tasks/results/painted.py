@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core.errors import Note
-from ..core.notebook import Curve as Shown
-from ..core.notebook import page, picture, table
-from ..drawing.coat import Curve, Painted, draw_curve, draw_map, draw_spread, draw_strokes
-from ..problems.paint.coating.coat import Coat
-from ..problems.paint.executable.execute import Executable
-from ..problems.paint.painting import Painting
-from ..problems.paint.spray.footprint_file import FootprintSource
-from ..problems.paint.spray.strokes import section
+from ...core.errors import Note
+from ...core.notebook import Curve as Shown
+from ...core.notebook import page, picture, table
+from ...drawing.coat import Curve, Painted, draw_curve, draw_map, draw_spread, draw_strokes
+from ...problems.paint.coating.coat import Coat
+from ...problems.paint.executable.execute import Executable
+from ...problems.paint.painting import Painting
+from ...problems.paint.spray.footprint_file import FootprintSource
+from ...problems.paint.spray.strokes import section
 
 COLUMNS = (
     ("", "left"),

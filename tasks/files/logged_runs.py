@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core.errors import InputError
-from .catalogue import registry
+from ...core.errors import InputError
+from ..catalogue import registry
 
 if TYPE_CHECKING:
-    from ..core.robot.model import Robot
-    from ..core.vendor import Vendor
-    from ..identification.logs import Columns, LoggedRun
+    from ...core.robot.model import Robot
+    from ...core.vendor import Vendor
+    from ...identification.logs import Columns, LoggedRun
 
 RECORD = ".json"
 LOGS = (".csv", ".txt", ".tsv", ".log", ".xml")
@@ -75,7 +75,7 @@ def find_runs(
 
 
 def _in_folder(folder: Path, vendor: Vendor) -> Iterator[Path]:
-    from ..identification.logs.records import robot_of_record
+    from ...identification.logs.records import robot_of_record
 
     for file in sorted(folder.rglob("*")):
         suffix = file.suffix.lower()
@@ -87,13 +87,13 @@ def _in_folder(folder: Path, vendor: Vendor) -> Iterator[Path]:
 
 
 def _of_another(file: Path, robot: Robot) -> bool:
-    from ..identification.logs.records import robot_of_record
+    from ...identification.logs.records import robot_of_record
 
     return file.suffix.lower() == RECORD and robot_of_record(file) != robot.name
 
 
 def _log_of(file: Path) -> Path | None:
-    from ..identification.logs.records import log_of_record
+    from ...identification.logs.records import log_of_record
 
     return log_of_record(file) if file.suffix.lower() == RECORD else _log_beside(file)
 
@@ -104,7 +104,7 @@ def _log_beside(program: Path) -> Path | None:
 
 
 def _read(file: Path, vendor: Vendor, robot: Robot, columns: Columns | None) -> LoggedRun:
-    from ..identification.logs import LoggedRun, load_run, read_samples
+    from ...identification.logs import LoggedRun, load_run, read_samples
 
     if file.suffix.lower() == RECORD:
         run = load_run(file, registry().find_robot)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from ..core.motion.emulator.run import Run
-from ..core.notebook import Curve, page, picture
-from ..core.robot.model import Robot
+from ...core.motion.emulator.run import Run
+from ...core.notebook import Curve, page, picture
+from ...core.robot.model import Robot
 from .report import MoveTable, Report, located, make_report
 
 
@@ -42,7 +42,7 @@ class EmulatedRun(Run):
         Args:
             kind: ``png``, ``pdf`` or ``svg``.
         """
-        from ..drawing.run import draw
+        from ...drawing.run import draw
 
         return draw(self, self.robot, kind)
 

@@ -7,17 +7,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..core.arrays import FloatArray
-from ..core.errors import Note, Span
-from ..core.motion.emulator.binding_limits import LimitShare, limit_shares
-from ..core.motion.emulator.move_figures import lengths_and_speeds, zone_reaches
-from ..core.motion.emulator.run import Run
-from ..core.notebook import table
-from ..core.program.move import Move
-from ..core.program.target import JointTarget
-from ..core.program.zone import Fine, Radius
-from ..core.robot.model import Robot
-from .options.texts import fixed
+from ...core.arrays import FloatArray
+from ...core.errors import Note, Span
+from ...core.motion.emulator.binding_limits import LimitShare, limit_shares
+from ...core.motion.emulator.move_figures import lengths_and_speeds, zone_reaches
+from ...core.motion.emulator.run import Run
+from ...core.notebook import table
+from ...core.program.move import Move
+from ...core.program.target import JointTarget
+from ...core.program.zone import Fine, Radius
+from ...core.robot.model import Robot
+from ..options.texts import fixed
 
 COLUMNS = (
     ("#", "right"),

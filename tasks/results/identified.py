@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core.notebook import Curve, page, picture, table
-from ..identification.fit import Fit, Judgement, Outcome
-from ..identification.fit.selection import Score
-from .logged_runs import Found
+from ...core.notebook import Curve, page, picture, table
+from ...identification.fit import Fit, Judgement, Outcome
+from ...identification.fit.selection import Score
+from ..files.logged_runs import Found
 
 RUN_COLUMNS = (
     ("run", "left"),
@@ -56,7 +56,7 @@ class IdentifiedModel:
 
     def report(self) -> str:
         """A page of all runs, before and after (HTML)."""
-        from ..identification.report.page import page as make_page
+        from ...identification.report.page import page as make_page
 
         return make_page(self.fit, list(self.outcomes), self.text, self.judgement)
 

@@ -4,23 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..core.errors import InputError
-from .options import texts
-from .options.door import given, spelt
-from .paint_values import box, speed_range
-from .setup import setup_of
+from ...core.errors import InputError
+from ..options import texts
+from ..options.door import given, spelt
+from ..setup import setup_of
+from .values import box, speed_range
 
 if TYPE_CHECKING:
-    from ..core.cell.cell import Cell
-    from ..core.program.tool import Tool, WorkObject
-    from ..core.spatial.pose import Pose
-    from ..problems.paint.executable.station import Station
-    from ..problems.paint.executable.writing import DriveOptions
-    from ..problems.paint.initial.plan import SweepPlan
-    from ..problems.paint.spray.footprint import Footprint
-    from ..problems.paint.surface.part import Part
-    from ..problems.paint.thickness.options import PaintLimits
-    from .paint import PaintOptions, SweepOptions
+    from ...core.cell.cell import Cell
+    from ...core.program.tool import Tool, WorkObject
+    from ...core.spatial.pose import Pose
+    from ...problems.paint.executable.station import Station
+    from ...problems.paint.executable.writing import DriveOptions
+    from ...problems.paint.initial.plan import SweepPlan
+    from ...problems.paint.spray.footprint import Footprint
+    from ...problems.paint.surface.part import Part
+    from ...problems.paint.thickness.options import PaintLimits
+    from .options import PaintOptions, SweepOptions
 
 SHARE = 0.72
 """Sweep width by the radius of the footprint, where none is given."""
@@ -36,7 +36,7 @@ def plan_of(footprint: Footprint, options: SweepOptions, step: float) -> SweepPl
         options: what is asked.
         step: m between waypoints at most, where none is given.
     """
-    from ..problems.paint.initial.plan import Coats, Gun, Method, SweepPlan
+    from ...problems.paint.initial.plan import Coats, Gun, Method, SweepPlan
 
     view, heading = options.view, options.heading
     return SweepPlan(
@@ -59,7 +59,7 @@ def limits_of(distance: float, options: SweepOptions) -> PaintLimits:
         distance: planned, m.
         options: what is asked.
     """
-    from ..problems.paint.thickness.options import PaintLimits
+    from ...problems.paint.thickness.options import PaintLimits
 
     return PaintLimits(
         distance=((1.0 - REACH) * distance, (1.0 + REACH) * distance),
@@ -80,8 +80,8 @@ def region_of(part: Part, plan: SweepPlan, options: SweepOptions) -> Part:
     Raises:
         InputError: nothing is left to paint.
     """
-    from ..problems.paint.initial.raster import view_of
-    from ..problems.paint.surface.region import facing, within_box
+    from ...problems.paint.initial.raster import view_of
+    from ...problems.paint.surface.region import facing, within_box
 
     triangles = part.vertices, part.faces
     chosen = part.painted_faces
@@ -113,8 +113,8 @@ def station_of(options: PaintOptions, drive: DriveOptions) -> Station | None:
     """
     if options.robot is None and options.cell is None:
         return None
-    from ..problems.paint.executable.station import Station
-    from ..problems.paint.spray.signals import output_words
+    from ...problems.paint.executable.station import Station
+    from ...problems.paint.spray.signals import output_words
 
     setup = setup_of(options)
     where = setup.surroundings(no_floor=options.no_floor)
@@ -126,7 +126,7 @@ def station_of(options: PaintOptions, drive: DriveOptions) -> Station | None:
 
 
 def _gun(cell: Cell, name: str | None) -> Tool:
-    from ..problems.paint.executable.station import PLAIN_GUN
+    from ...problems.paint.executable.station import PLAIN_GUN
 
     if name is not None:
         return cell.tool(name)
@@ -140,7 +140,7 @@ def _gun(cell: Cell, name: str | None) -> Tool:
 
 
 def _part_frame(cell: Cell, name: str | None, place: str | Pose | None) -> WorkObject:
-    from ..core.program.tool import WorkObject
+    from ...core.program.tool import WorkObject
 
     if name is not None:
         if place is not None:
@@ -158,8 +158,8 @@ def _part_frame(cell: Cell, name: str | None, place: str | Pose | None) -> WorkO
 
 def drive_of(options: PaintOptions) -> DriveOptions:
     """How the trajectory is driven."""
-    from ..problems.paint.executable.writing import DriveOptions
-    from ..problems.paint.spray.signals import GunSignals
+    from ...problems.paint.executable.writing import DriveOptions
+    from ...problems.paint.spray.signals import GunSignals
 
     signals = None
     if options.signal is not None:

@@ -7,11 +7,11 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ..core.errors import InputError
-from .options import texts
+from ...core.errors import InputError
+from ..options import texts
 
 if TYPE_CHECKING:
-    from ..problems.paint.thickness.robust import PaintErrors
+    from ...problems.paint.thickness.robust import PaintErrors
 
 _LENGTH = re.compile(r"\s*([0-9.eE+-]+)\s*(um|µm|μm|mm)\s*")
 _UNITS = {"um": 1e-6, "µm": 1e-6, "μm": 1e-6, "mm": 1e-3}
@@ -73,7 +73,7 @@ def coat_errors(given: str | Sequence[float] | None, name: str) -> PaintErrors:
     Raises:
         InputError: they are not two numbers from 0 on.
     """
-    from ..problems.paint.thickness.robust import NO_ERRORS, PaintErrors
+    from ...problems.paint.thickness.robust import NO_ERRORS, PaintErrors
 
     if given is None:
         return NO_ERRORS

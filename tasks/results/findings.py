@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..core.lint.finding import Finding, Severity
-from .files.source_places import short_place
+from ...core.lint.finding import Finding, Severity
+from ..files.source_places import short_place
 
 COLUMNS = (
     ("line", "right"),
@@ -43,6 +43,6 @@ class Findings(tuple[Finding, ...]):
         return f"<Findings: {self.said}>"
 
     def _repr_html_(self) -> str:
-        from ..core.notebook import page, table
+        from ...core.notebook import page, table
 
         return page(self.said, table(COLUMNS, self.rows()) if self else "")

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core.notebook import Curve, page, picture, table
-from ..identification.logs import LoggedRun
-from ..identification.prediction import Prediction
-from ..identification.residuals import Figures
-from ..identification.time_scale import TimeScale
+from ...core.notebook import Curve, page, picture, table
+from ...identification.logs import LoggedRun
+from ...identification.prediction import Prediction
+from ...identification.residuals import Figures
+from ...identification.time_scale import TimeScale
 
 COLUMNS = (("", "left"), ("greatest", "right"), ("99 %", "right"), ("RMS", "right"))
 
@@ -45,7 +45,7 @@ class Comparison:
 
     def picture(self, kind: str = "svg") -> bytes:
         """Corners, deviation and speed, as a file of the kind ``png``, ``pdf`` or ``svg``."""
-        from ..identification.report.picture import draw_prediction
+        from ...identification.report.picture import draw_prediction
 
         return draw_prediction(self.prediction, kind)
 

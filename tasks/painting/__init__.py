@@ -1,0 +1,1 @@
+"""What painting can be told, and what it makes of that."""

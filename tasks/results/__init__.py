@@ -1,0 +1,1 @@
+"""What tasks hand out: tables, pictures and files of their results."""
