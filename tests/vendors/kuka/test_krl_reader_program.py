@@ -136,8 +136,9 @@ HALVE = "DEF halve(n:IN)\nINT n,half\nhalf=n/2\nEND\n"
         # What a pass sets, and sets back, and what a routine has of its own, is no progress.
         (f"WHILE run\nrun=FALSE\n{P[1]}\nrun=TRUE\nENDWHILE", [1]),
         (f"last=3\ni=4\nWHILE run\n{COUNTED}{P[1]}\nENDWHILE\n{P[2]}", [1]),
-        # A change in the first pass: the second shows that nothing follows.
-        (f"WHILE run\nlast=last*0+5\n{P[1]}\nENDWHILE\n{P[2]}", [1, 1]),
+        # Nor is a change of what does not decide the end.
+        (f"WHILE run\nlast=last*0+5\n{P[1]}\nENDWHILE\n{P[2]}", [1]),
+        (f"last=0\nWHILE last<9\nlast=last*0+5\n{P[1]}\nENDWHILE\n{P[2]}", [1, 1]),
         # An exit that only an input decides is taken.
         (f"WHILE run\n{P[1]}\nIF $IN[1] THEN\nEXIT\nENDIF\nENDWHILE\n{P[2]}", [1, 2]),
         # Nothing but a wait, for what another task changes.

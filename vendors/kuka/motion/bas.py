@@ -102,14 +102,12 @@ class Basis:
     def set(self, name: str, value: Value) -> None:
         """A system variable."""
         cell = self._data.system[name]
-        self._data.journal.note(cell)
         cell.assigned = True
         cell.value = value
 
     def component(self, name: str, component: str, value: Value) -> None:
         """A component of a system variable."""
         cell = self._data.system[name]
-        self._data.journal.note(cell)
         if not isinstance(cell.value, Struct):
             cell.value = Struct(cell.type)
         cell.value.fields[component] = value

@@ -41,18 +41,21 @@ class Position:
         self._robot = robot
         self._commanded = position.Position(robot, start, _standing)
         self._last: Struct | None = None
+        self._place: Struct | None = None
         if robot is not None and start is not None:
-            self._last = self.axis_struct((*start.joints, *start.external))
+            self._last = self._place = self.axis_struct((*start.joints, *start.external))
 
     def moved(self, move: Move, statement: Span, target: Struct) -> None:
         """The robot has driven to a target, whose components are all in ``target``."""
         self._commanded.moved(move, statement)
         self._last = target
+        if target != self._place:
+            self._place = target
 
     @property
-    def last_move_numbers(self) -> Struct | None:
-        """The components of the last target, or of the start; None if neither is known."""
-        return self._last
+    def place(self) -> object:
+        """Where the robot stands: another object after every move to another place."""
+        return self._place
 
     # ----------------------------------------------------------------------- queries
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 
 from ....core.errors import SourceError
@@ -12,19 +12,17 @@ from ....core.source.execution.scopes import unknown_name
 from ..motion.bas import Basis
 from ..motion.inline_forms import Function
 from ..syntax.expression_tree import Call, Name
-from ..syntax.tree import Block, Invoke
+from ..syntax.tree import Invoke
 from ..values.data import Data
 from ..values.evaluator import Evaluator
 from ..values.functions import COMPUTED
-from ..values.library import Library
-from ..values.scope import Module, Scope
+from ..values.scope import Scope
 from ..values.values import Array, Struct, Unknown, Value
+from .analysis import NATIVE
 from .instructions import Kept, kept, refused
 from .keeping import Keeping
 from .output_writes import OutputWrites
 from .routines import Routines
-
-NATIVE = frozenset({"bas"})
 
 
 class Calls:
@@ -112,7 +110,6 @@ class Calls:
                 continue
             unknown = Unknown(f"what {call.text} gave {argument.text}", call.span)
             if not isinstance(cell.value, Array | Struct):
-                self._data.journal.note(cell)
                 cell.value = unknown
             elif argument.path:
                 with suppress(SourceError):
@@ -147,23 +144,3 @@ class Calls:
         if value is None:
             raise SourceError(f"{routine.text} ends without RETURN and a value", call.span)
         return value
-
-
-class Bodies:
-    """The statements that calls run, as far as they are known without running.
-
-    Args:
-        library: the files.
-        where: modules of the routines under way, the innermost last.
-    """
-
-    def __init__(self, library: Library, where: Sequence[Module]) -> None:
-        self._library = library
-        self._where = where
-
-    def __call__(self, call: Call) -> Block | None:
-        """The body of the routine that a call means; None if it is not at hand."""
-        if call.name in NATIVE or kept(call.name) is not None:
-            return None
-        found = self._library.routine(call.name, self._where[-1])
-        return None if found is None else found[0].body

@@ -12,7 +12,9 @@ from contextlib import suppress
 
 from ....core.errors import Note, SourceError, Span
 from ....core.program.move import Statement as ProgramStatement
+from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.answers import Course
+from ....core.source.execution.flow import Flow as Rules
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.transcript import Transcript
 from ....core.source.reading import ReadOptions
@@ -65,9 +67,11 @@ from ..values.predefined import MOTION, SILENT, STOPS_WHEN_SET
 from ..values.scope import Scope
 from ..values.types import KrlTypeError, convert
 from ..values.values import Array, Pending, Unknown, Value
-from .calls import Bodies, Calls
+from .analysis import KrlTree
+from .calls import Calls
 from .exits import Finished, Jump
 from .flow import Flow
+from .host import KrlHost
 from .keeping import Keeping
 from .output_writes import OutputWrites
 from .routines import Routines
@@ -84,7 +88,7 @@ class Interpreter:
     """
 
     def __init__(self, library: Library, options: ReadOptions) -> None:
-        robot, where = options.robot, [library.main]
+        robot, scopes = options.robot, [Scope("the entry", library.main)]
         self._library = library
         self._data = data = Data(library)
         self._course = course = Course(options.answers)
@@ -99,11 +103,13 @@ class Interpreter:
         self._evaluator = evaluator = Evaluator(
             data, course, self._function, own_position, self._advance
         )
-        config = ConfigData(data, evaluator.names, where)
+        config = ConfigData(data, evaluator.names, scopes)
         self._settings = Settings(data.system, config.value, notes.once)
         targets = Targets(robot, position)
         basis = Basis(data, evaluator, config, notes, self._system_changed)
-        writes = OutputWrites(data, evaluator.names)
+        tree = KrlTree(data, evaluator.names, scopes)
+        analysis = Analysis(tree)
+        writes = OutputWrites(data, evaluator.names, analysis)
         self._triggers = Triggers(evaluator, transcript, writes)
         motions = MotionReader(
             data,
@@ -117,24 +123,16 @@ class Interpreter:
             transcript,
             self._system_changed,
         )
+        host = KrlHost(course, meter, data, evaluator.names, scopes, position, own_position, notes)
+        rules = Rules(analysis, host)
         self._flow = flow = Flow(
-            self.run_block,
-            self._evaluated,
-            evaluator,
-            data,
-            course,
-            meter,
-            Bodies(library, where),
-            position,
-            own_position,
-            writes,
-            notes,
+            self.run_block, self._evaluated, evaluator, data, tree, rules, notes
         )
         functions = {
             **InlineForms(basis, data).functions(),
             **Kinematics(robot, evaluator, placements, targets, position, notes).functions(),
         }
-        self._routines = Routines(data, evaluator, meter, where, flow.run_body)
+        self._routines = Routines(data, evaluator, meter, scopes, flow.run_body)
         self._calls = Calls(
             data, evaluator, course, self._routines, basis, functions, writes, keeping
         )
@@ -200,14 +198,7 @@ class Interpreter:
             try:
                 self._run_statement(statements[index], scope)
             except Jump as jump:
-                target = block.labels.get(jump.goto.name)
-                if target is None:
-                    raise
-                if target <= index:
-                    self._flow.jump_back(
-                        jump.goto, Block(statements[target:index]), statements[index], scope
-                    )
-                index = target
+                index = self._flow.after_jump(block, index, jump.goto, scope)
                 continue
             index += 1
 

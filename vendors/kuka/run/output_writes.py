@@ -4,24 +4,23 @@ their text."""
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
 from ....core.errors import SourceError
+from ....core.source.execution.analysis import Analysis
 from ....core.source.text.files import SourceText
 from ..syntax.cursor import Cursor
 from ..syntax.expression_tree import Call, Name
 from ..syntax.lexer import tokenize
 from ..syntax.statements import parse_statement
-from ..syntax.tree import Assign, Block, Invoke, Statement
+from ..syntax.tree import Assign, Block
 from ..values.data import Data
 from ..values.elements import Names
 from ..values.scope import Scope
-from .analysis import inner_blocks
 
 _HANDLER = re.compile(r"\bDO\s+(.+)", re.IGNORECASE | re.DOTALL)
 _PRIORITY = re.compile(r"\bPRIO\s*=.*", re.IGNORECASE | re.DOTALL)
 
-Written = set[str] | None
+Written = frozenset[str] | None
 """Names of outputs; None for any of them."""
 
 
@@ -31,16 +30,18 @@ class OutputWrites:
     Args:
         data: of the program, with what its outputs hold.
         names: finds the outputs that a name stands for.
+        analysis: what statements write.
     """
 
-    def __init__(self, data: Data, names: Names) -> None:
+    def __init__(self, data: Data, names: Names, analysis: Analysis[Block]) -> None:
         self._data = data
         self._names = names
+        self._analysis = analysis
         self._coming: list[Written] = []
 
     def pulsed(self, call: Call, scope: Scope) -> None:
         """``PULSE($OUT[1],TRUE,0.5)``, or another call that may write outputs."""
-        self._data.outputs.forget(self._by_call(call, scope, set()))
+        self._data.outputs.forget(self._by_call(call, scope))
 
     def triggered(self, action: str, scope: Scope) -> None:
         """A TRIGGER will carry an action out, on the way of the next motion."""
@@ -58,10 +59,6 @@ class OutputWrites:
         if handler is not None:
             self._data.outputs.share(self._by_action(handler[1], scope))
 
-    def written(self, block: Block, scope: Scope) -> Written:
-        """The outputs that a block, and what it calls, may write."""
-        return self._by_block(block, scope, set())
-
     # -------------------------------------------------------------------- inside
 
     def _by_action(self, text: str, scope: Scope) -> Written:
@@ -70,45 +67,18 @@ class OutputWrites:
             statements = parse_statement(Cursor(tokenize(source)))
         except SourceError:
             return None
-        return self._by_block(Block(statements), scope, set())
+        if len(statements) == 1 and isinstance(statements[0], Assign):
+            return self._named(statements[0].target, scope)
+        return self._analysis.outputs_written(Block(statements))
 
-    def _by_block(self, block: Block, scope: Scope, reached: set[int]) -> Written:
-        if id(block) in reached:
-            return set()
-        reached.add(id(block))
-        found: set[str] = set()
-        for part in self._parts(block, scope, reached):
-            if part is None:
-                return None
-            found |= part
-        return found
-
-    def _parts(self, block: Block, scope: Scope, reached: set[int]) -> Iterator[Written]:
-        for statement in block.statements:
-            yield self._by_statement(statement, scope, reached)
-            for inner in inner_blocks(statement):
-                yield self._by_block(inner, scope, reached)
-
-    def _by_statement(self, statement: Statement, scope: Scope, reached: set[int]) -> Written:
-        if isinstance(statement, Assign):
-            return self._named(statement.target, scope)
-        if isinstance(statement, Invoke):
-            return self._by_call(statement.call, scope, reached)
-        return set()
-
-    def _by_call(self, call: Call, scope: Scope, reached: set[int]) -> Written:
-        if call.name == "pulse":
-            first = call.arguments[0] if call.arguments else None
-            return self._named(first, scope) if isinstance(first, Name) else None
-        found = self._data.library.routine(call.name, scope.module)
-        if found is None:
+    def _by_call(self, call: Call, scope: Scope) -> Written:
+        if call.name != "pulse":
             return None
-        routine, module = found
-        self._data.declare_module(module)
-        return self._by_block(routine.body, Scope(routine.text, module), reached)
+        first = call.arguments[0] if call.arguments else None
+        return self._named(first, scope) if isinstance(first, Name) else None
 
     def _named(self, target: Name, scope: Scope) -> Written:
         try:
-            return set(self._names.outputs(target, scope))
+            return frozenset(self._names.outputs(target, scope))
         except SourceError:  # an index that only the run knows
             return None

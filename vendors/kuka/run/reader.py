@@ -5,10 +5,9 @@ course follows from the text itself. What is decided here, and where a controlle
 
 - The entry is the ``DEF`` that is called like its file, else the first one without arguments. If it
   takes arguments, they have no values, as on a controller that is sent there by hand.
-- A ``LOOP`` (``WHILE TRUE``, backward ``GOTO``) without a way out is read for one pass, and so is
-  a loop that leaves all data as they were; what stands behind it is never reached.
-- A loop that neither moves the robot nor changes its own condition waits for another task: it is
-  satisfied at once, as every wait is. Clocks and inputs are not known even after they were set.
+- Branches and loops that only the running controller decides, and loops that nothing in the program
+  ends, follow the rules of `core.source.execution.flow`. Clocks and inputs are not known even after
+  they were set.
 - Of a ``SWITCH`` with cases that nobody knows, a known one that fits is taken.
 - ``BAS(…)``, the functions of inline forms and the folds' data are carried out natively
   (`basis`, `inline`). Initialisations of technology packages, I/O and messages stay as opaque

@@ -25,7 +25,7 @@ class Routines:
         data: of the program.
         evaluator: for arguments.
         meter: counts calls.
-        where: modules of the routines under way, the innermost last.
+        scopes: of the routines under way, the innermost last.
         run_body: carries out the statements of a routine.
     """
 
@@ -34,13 +34,13 @@ class Routines:
         data: Data,
         evaluator: Evaluator,
         meter: Meter,
-        where: list[Module],
+        scopes: list[Scope],
         run_body: Callable[[Block, Scope], None],
     ) -> None:
         self._data = data
         self._evaluator = evaluator
         self._meter = meter
-        self._where = where
+        self._scopes = scopes
         self._run_body = run_body
 
     def run(self, routine: Routine, module: Module, call: Call, caller: Scope) -> Value | None:
@@ -57,7 +57,7 @@ class Routines:
         kind = "DEF" if routine.returns is None else "DEFFCT"
         scope = Scope(f"{kind} {routine.text}", module, returns=routine.returns)
         back = self._hand_over(routine, call, caller, scope)
-        self._where.append(module)
+        self._scopes.append(scope)
         value: Value | None = None
         try:
             self._run_body(routine.body, scope)
@@ -70,8 +70,7 @@ class Routines:
         except Left:
             raise SourceError("EXIT stands outside a loop", routine.span) from None
         finally:
-            self._where.pop()
-            self._data.journal.forget(scope.cells.values())
+            self._scopes.pop()
             self._meter.back()
         self._hand_back(back, call, caller)
         return self._returned(routine, value, call)

@@ -34,3 +34,10 @@ def calls_in(expression: Expression) -> Iterator[Call]:
         yield expression
     for operand in operands(expression):
         yield from calls_in(operand)
+
+
+def indices_in(datum: Name) -> Iterator[Expression]:
+    """The indices in the path of a datum."""
+    for step in datum.path:
+        if not isinstance(step, str):
+            yield from (index for index in step if index is not None)

@@ -47,7 +47,6 @@ class Assignment:
             )
             return cell
         self._names.settled(cell)
-        self._data.journal.note(cell)
         cell.assigned = True
         label = None if self._data.is_system(target.name) else spelled(cell.name, path)
         path = tuple(step for step in path if step != ())

@@ -1,4 +1,4 @@
-"""Whether a pass of a loop leaves the data as they were: then every other pass would, too."""
+"""Whether data are as they were: a loop that leaves them so does not come nearer to its end."""
 
 from __future__ import annotations
 
@@ -10,38 +10,19 @@ from .values import Pending, Unknown, Value, copied
 Held = Value | Pending | None
 
 
-class Journal:
-    """What data held before the passes of loops that are under way."""
+class Snapshot:
+    """Data as they are now.
 
-    def __init__(self) -> None:
-        self._passes: list[dict[int, tuple[Cell, Held]]] = []
+    Args:
+        cells: which.
+    """
 
-    def begin(self) -> None:
-        """A pass begins, perhaps inside another."""
-        self._passes.append({})
+    def __init__(self, cells: Iterable[Cell]) -> None:
+        self._held = [(cell, _kept(cell.value)) for cell in cells]
 
-    def end(self) -> bool:
-        """The pass that began last ends.
-
-        Returns:
-            Whether some datum holds another value than before it.
-        """
-        before = self._passes.pop()
-        return any(not _same(old, cell.value) for cell, old in before.values())
-
-    def note(self, cell: Cell) -> None:
-        """A datum is about to get a value."""
-        for before in self._passes:
-            if id(cell) not in before:
-                before[id(cell)] = cell, _kept(cell.value)
-
-    def forget(self, cells: Iterable[Cell]) -> None:
-        """The data of a routine are gone when it is left."""
-        if self._passes:
-            gone = {id(cell) for cell in cells}
-            for before in self._passes:
-                for key in gone & before.keys():
-                    del before[key]
+    def changed(self) -> bool:
+        """Whether some datum has another value now."""
+        return any(not _same(old, cell.value) for cell, old in self._held)
 
 
 def _kept(value: Held) -> Held:

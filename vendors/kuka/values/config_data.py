@@ -8,7 +8,7 @@ from ....core.errors import SourceError, Span
 from ..syntax.expression_tree import Name
 from .data import Data
 from .elements import Names
-from .scope import Module, Scope
+from .scope import Scope
 from .values import Array, Value
 
 
@@ -18,18 +18,18 @@ class ConfigData:
     Args:
         data: all data.
         names: reads them.
-        where: modules of the routines under way, the innermost last.
+        scopes: of the routines under way, the innermost last.
     """
 
-    def __init__(self, data: Data, names: Names, where: Sequence[Module]) -> None:
+    def __init__(self, data: Data, names: Names, scopes: Sequence[Scope]) -> None:
         self._data = data
         self._names = names
-        self._where = where
+        self._scopes = scopes
 
     def value(self, name: str) -> Value:
         """A datum."""
         node = Name(Span("", 1, 1, 0, 0), name.lower(), name)
-        return self._names.value(node, Scope("", self._where[-1]))
+        return self._names.value(node, Scope("", self._scopes[-1].module))
 
     def item(self, table: str, index: int, span: Span | None) -> Value | None:
         """An item of an array; None where nothing is set.
@@ -37,7 +37,7 @@ class ConfigData:
         Raises:
             SourceError: the index is outside the array.
         """
-        cell = self._data.find(table, Scope("", self._where[-1]))
+        cell = self._data.find(table, Scope("", self._scopes[-1].module))
         holder = cell.value if cell is not None else None
         if not isinstance(holder, Array):
             return None

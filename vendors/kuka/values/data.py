@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from ....core.errors import Note, SourceError, Span
 from ....core.source.execution.outputs import Outputs
 from ..syntax.expression_tree import Expression, Name, Number
@@ -13,7 +15,6 @@ from ..syntax.tree import (
     Statement,
     StrucDefinition,
 )
-from .changes import Journal
 from .library import SHIPPED, Library
 from .predefined import ALIASES, CONSTANTS, initial
 from .scope import Cell, Module, Scope
@@ -37,7 +38,6 @@ class Data:
         for name in CONSTANTS:
             self.system[name].constant = True
         self.notes: list[Note] = []
-        self.journal = Journal()
         self.outputs = Outputs()
         self._implicit: dict[str, Cell] = {}
         self._missing: dict[str, Cell | None] = {}
@@ -73,6 +73,13 @@ class Data:
             if cell is not None and name in module.shared:
                 return cell
         return None
+
+    def named(self, names: frozenset[str], scopes: Iterable[Scope]) -> list[Cell]:
+        """The cells of these names (lower case) in scopes, in modules and among the system's."""
+        groups = [*(scope.cells for scope in scopes), self.system, self._implicit]
+        groups += [module.cells for module in self.library.modules()]
+        found = (group[name] for name in sorted(names) for group in groups if name in group)
+        return list({id(cell): cell for cell in found}.values())
 
     def implicit(self, name: Name) -> Cell:
         """A cell for a name that nothing declares and that is assigned to.

@@ -74,6 +74,10 @@ class Library:
                     self.notes.append(Note(f"{name} cannot be read and is left out: {error}"))
         return self._modules.get(stem)
 
+    def modules(self) -> Iterator[Module]:
+        """All that have been read."""
+        return iter(self._modules.values())
+
     def home(self, stem: str) -> Module:
         """A module that has been read."""
         return self._modules[stem]

@@ -1,0 +1,92 @@
+"""The run of a program, as far as the rules for branches and loops need it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import NoReturn
+
+from ....core.errors import SourceError, Span
+from ....core.source.execution.answers import Course
+from ....core.source.execution.limits import Meter
+from ....core.source.execution.outputs import Outputs
+from ....core.source.execution.transcript import Notes
+from ..motion.own_position import OwnPosition
+from ..motion.position import Position
+from ..values.changes import Snapshot
+from ..values.data import Data
+from ..values.elements import Names
+from ..values.scope import Scope
+from .exits import Finished
+
+
+class KrlHost:
+    """See `core.source.execution.flow.Host`.
+
+    Args:
+        course: decides, and remembers what was decided.
+        meter: counts what is executed.
+        data: of the program.
+        names: evaluates initial values.
+        scopes: of the routines under way, the innermost last.
+        position: follows the robot.
+        own_position: is asked by the program.
+        notes: takes notes.
+    """
+
+    def __init__(
+        self,
+        course: Course,
+        meter: Meter,
+        data: Data,
+        names: Names,
+        scopes: Sequence[Scope],
+        position: Position,
+        own_position: OwnPosition,
+        notes: Notes,
+    ) -> None:
+        self.course = course
+        self.meter = meter
+        self._data = data
+        self._names = names
+        self._scopes = scopes
+        self._position = position
+        self._own_position = own_position
+        self._notes = notes
+
+    @property
+    def outputs(self) -> Outputs:
+        """What the program has set its outputs to."""
+        return self._data.outputs
+
+    @property
+    def position_asked(self) -> int:
+        """How often the program has asked where the robot stands."""
+        return self._own_position.asked
+
+    @property
+    def place(self) -> object:
+        """Where the robot stands: another object after every move to another place."""
+        return self._position.place
+
+    def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
+        """See `core.source.execution.flow.Host.snapshot`."""
+        if names is None:
+            cells = self._data.named(written, self._scopes)
+        else:
+            found = (self._data.find(name, self._scopes[-1]) for name in sorted(names))
+            cells = [cell for cell in found if cell is not None]
+        for cell in cells:
+            # What has not been read yet is evaluated: else its first read would be a change.
+            with suppress(SourceError):
+                self._names.settled(cell)
+        return Snapshot(cells)
+
+    def note_once(self, kind: str, message: str, span: Span) -> None:
+        """A note, unless one of its kind was taken before."""
+        self._notes.once(kind, message, span)
+
+    def finish(self, message: str, span: Span) -> NoReturn:
+        """End the program here, with a note."""
+        self._notes.once("end", message, span)
+        raise Finished
