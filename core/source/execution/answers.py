@@ -20,14 +20,13 @@ A file of answers is TOML::
     [calls]                      # routines whose text is not at hand and that move nothing
     rGripperOpen = "skip"
 
-Without an answer: waits are satisfied at once; of the branches whose condition is not known the
-first that moves the robot and comes back is taken, else none; a loop whose end is not known runs
-once if it moves the robot, else not at all. What was decided so is noted with its line.
+Without an answer waits are satisfied at once, and branches and loops are decided by rule (see
+`flow`). What was decided so is noted with its line.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -161,30 +160,6 @@ class Course:
     def skips(self, routine: str) -> bool:
         """Whether the user says that a routine which is not at hand moves nothing."""
         return key(routine) in self.answers.skipped
-
-    def branch(self, span: Span, reason: str, returning: Sequence[bool]) -> int:
-        """Which branch is taken where a condition is not known.
-
-        Args:
-            span: of the condition.
-            reason: what it depends on.
-            returning: for each branch, whether it moves the robot and comes back.
-
-        Returns:
-            The branch, from 1; 0 for none.
-
-        Raises:
-            InputError: the user's answer names a branch that there is not.
-        """
-        answer = self.answered_branch(span, len(returning))
-        if answer is not None:
-            return answer
-        taken = next((k for k, moves in enumerate(returning, 1) if moves), 0)
-        which = f"branch {taken} of {len(returning)}, the first that moves the robot, is taken"
-        if not taken:
-            which = "no branch that moves the robot: taken as not fulfilled"
-        self.decided(span, f"the condition depends on {reason}: {which}")
-        return taken
 
     def answered_branch(self, span: Span, count: int) -> int | None:
         """The branch that the user says is taken at a place: from 1, 0 for none of them.

@@ -47,7 +47,7 @@ def test_a_file_of_answers_is_read(tmp_path: Path) -> None:
     }
     assert answers.sequences == {"get_digital_in(1)": (False, True)}
     course = Course(answers)
-    assert course.branch(span(12), "x", [False, False]) == 1
+    assert course.answered_branch(span(12), 2) == 1
     assert course.passes(span(20), "x", False) == 3
     assert course.notes() == ()
     assert course.skips("RGRIPPEROPEN") and not course.skips("rGripper")
@@ -104,15 +104,6 @@ def test_sequences_answer_in_turn_and_stay_with_the_last(turn: list[float], aske
     assert course.value("y") is None
 
 
-@given(st.lists(st.booleans(), max_size=6))
-def test_the_first_branch_that_moves_and_returns_is_taken(returning: list[bool]) -> None:
-    course = Course()
-    taken = course.branch(span(), "di1", returning)
-    assert taken == (returning.index(True) + 1 if any(returning) else 0)
-    (note,) = course.notes()
-    assert note.span == span() and "di1" in note.message
-
-
 @given(st.booleans(), st.integers(1, 5))
 def test_loops_run_once_if_they_move(moving: bool, asked: int) -> None:
     course = Course()
@@ -124,14 +115,14 @@ def test_loops_run_once_if_they_move(moving: bool, asked: int) -> None:
 def test_every_place_is_noted_in_the_order_of_asking() -> None:
     course = Course()
     for line in (3, 1, 3, 2):
-        course.branch(span(line), "di1", [True])
+        course.decided(span(line), "di1 is not known")
     assert [note.span.line for note in course.notes() if note.span] == [3, 1, 2]
 
 
 def test_a_branch_that_there_is_not_is_refused() -> None:
     course = Course(Answers(branches={"main.mod:1": 3}, file="a.toml"))
     with pytest.raises(InputError, match=r"a\.toml.*main\.mod:1.*2 branches, not 3"):
-        course.branch(span(), "di1", [True, False])
+        course.answered_branch(span(), 2)
 
 
 @pytest.mark.parametrize("file", ["main.mod", "cell/main.mod", "cell\\Main.MOD", "/x/y/main.mod"])
