@@ -15,7 +15,7 @@ import numpy as np
 from ...core.arrays import FloatArray
 from ...core.motion.command.commanded_motion import stamped_motion
 from ...core.motion.command.elasticity import leads
-from ...core.motion.command.smoothing import Motion, Smoothing, States
+from ...core.motion.command.smoothing import JointMotion, Smoothing, States
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.geometry.pieces import Sampling
 from ...core.motion.model.elasticity import RIGID
@@ -69,7 +69,7 @@ class _Stages:
     override: float
     sampling: Sampling
     path: Path
-    stamped: Motion
+    stamped: JointMotion
     smoothing: Smoothing
     window: float
     duration: float
@@ -263,7 +263,7 @@ class RunEmulator:
 
 
 def commanded(
-    controller: Controller, smoothing: Smoothing, stamped: Motion, t: FloatArray
+    controller: Controller, smoothing: Smoothing, stamped: JointMotion, t: FloatArray
 ) -> FloatArray:
     """Commanded joints (K, N) of a stamped motion at times that do not decrease."""
     return led(controller, smoothing.command(stamped, t))

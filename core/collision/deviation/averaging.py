@@ -42,7 +42,7 @@ from .averaging_kernels import (
     bound_veer,
     greatest_between,
 )
-from .earliest_times import Course
+from .earliest_times import EarliestTimes
 
 
 class Rates(NamedTuple):
@@ -66,7 +66,7 @@ class Averages:
         ramp: s, what the place is averaged over before.
     """
 
-    def __init__(self, course: Course, smoothing: Smoothing, ramp: float) -> None:
+    def __init__(self, course: EarliestTimes, smoothing: Smoothing, ramp: float) -> None:
         self._course, self._ramp = course, ramp
         self._widths = sorted(smoothing.widths)
         self._all = np.array([*self._widths, ramp] if ramp > 0.0 else self._widths)
@@ -143,12 +143,12 @@ class Averages:
         return steepest
 
 
-def near(course: Course, values: FloatArray, away: float) -> FloatArray:
+def near(course: EarliestTimes, values: FloatArray, away: float) -> FloatArray:
     """(C,), the greatest of values (C,) on cells that are within ``away`` s by Θ."""
     return np.asarray(greatest_between(values, *_within(course, away)))
 
 
-def _within(course: Course, away: float) -> tuple[IntArray, IntArray]:
+def _within(course: EarliestTimes, away: float) -> tuple[IntArray, IntArray]:
     """(C,) each, the first cell within ``away`` s, and the one behind the last."""
     theta = course.theta
     first = np.searchsorted(theta[1:], theta[:-1] - away)

@@ -6,7 +6,7 @@ bounds hold for all motions within the path's limits that rest no shorter than r
 every override that stays as it is where rests are always as long.
 
 Where rests end by an in-position window (`motion.rests`), slow motions rest less, and fast ones
-without rests would stray far. So motions are told apart by how much slower they are: an override
+without rests would deviate far. So motions are told apart by how much slower they are: an override
 lowers limits of speed, or lets time run slower, or both. From `_SPEEDS` and `_TIME` on up rests are
 those where both are as low; below, no rests are reckoned with, but speeds, or speeds and
 accelerations, are low.
@@ -29,7 +29,7 @@ from ...motion.model.point_masses import filled
 from ...motion.path.path import Path
 from ...motion.timing.timing import Timing
 from .averaging import Averages
-from .earliest_times import Course
+from .earliest_times import EarliestTimes
 from .speed_bounds import Allowed, greatest
 
 _TOGETHER = 10_000
@@ -47,7 +47,7 @@ _COARSER = 3.0
 """How much longer cells are of motions that are slow."""
 
 
-class Strays(NamedTuple):
+class DeviationBounds(NamedTuple):
     """How far joints may be from a path, in C stretches of it.
 
     The links are those of a place in the stretch and beside it a sum of ways, each times
@@ -68,17 +68,19 @@ class Strays(NamedTuple):
     most: FloatArray
 
     @staticmethod
-    def within(most: FloatArray) -> Strays:
+    def within(most: FloatArray) -> DeviationBounds:
         """The same bounds (N,) everywhere."""
         edge, most = np.array([-np.inf, np.inf]), most[None]
-        return Strays(edge, np.zeros((1, 0, most.shape[1])), np.zeros((1, 0, 2)), most, most)
+        return DeviationBounds(
+            edge, np.zeros((1, 0, most.shape[1])), np.zeros((1, 0, 2)), most, most
+        )
 
 
-class Stretches(NamedTuple):
-    """Strays on M intervals of a path.
+class BoundsByInterval(NamedTuple):
+    """Deviations on M intervals of a path.
 
     Args:
-        first, last: (M,), rows of the strays that an interval is in.
+        first, last: (M,), rows of the deviations that an interval is in.
         own: (M,), that of its middle.
         most: (M, N) rad or m, bounds.
     """
@@ -89,13 +91,15 @@ class Stretches(NamedTuple):
     most: FloatArray
 
 
-def stretches(strays: Strays, begin: FloatArray, end: FloatArray) -> Stretches:
+def by_interval(
+    deviations: DeviationBounds, begin: FloatArray, end: FloatArray
+) -> BoundsByInterval:
     """Where intervals of σ from begin (M,) to end (M,) are."""
-    top = len(strays.edge) - 2
-    first = np.clip(np.searchsorted(strays.edge, begin, "left") - 1, 0, top)
-    last = np.clip(np.searchsorted(strays.edge, end, "right") - 1, first, top)
-    own = np.clip(np.searchsorted(strays.edge, 0.5 * (begin + end), "right") - 1, first, last)
-    return Stretches(first, last, own, _greatest(strays.most, first, last))
+    top = len(deviations.edge) - 2
+    first = np.clip(np.searchsorted(deviations.edge, begin, "left") - 1, 0, top)
+    last = np.clip(np.searchsorted(deviations.edge, end, "right") - 1, first, top)
+    own = np.clip(np.searchsorted(deviations.edge, 0.5 * (begin + end), "right") - 1, first, last)
+    return BoundsByInterval(first, last, own, _greatest(deviations.most, first, last))
 
 
 @njit(cache=True, error_model="numpy")
@@ -124,7 +128,7 @@ class _Band(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Straying:
+class Deviation:
     """How far the links of a run may be from its path, at every steady override.
 
     Told stretch by stretch: of a long path all of it would take much memory.
@@ -136,22 +140,22 @@ class Straying:
     bands: tuple[_Band, ...]
 
     @classmethod
-    def of(cls, controller: Controller, run: Run) -> Straying:
+    def of(cls, controller: Controller, run: Run) -> Deviation:
         """Of a run."""
         smoothing = controller.smoothing(run.program, run.path)
         nowhere = not smoothing.widths and not any(controller.model.elasticity.lag)
         return cls(controller, run, smoothing, () if nowhere else _bands(controller, run))
 
-    def over(self, first: int, last: int) -> tuple[Strays, ...]:
+    def over(self, first: int, last: int) -> tuple[DeviationBounds, ...]:
         """On the intervals from one to before another; a motion keeps to one from end to end."""
         if not self.bands:
-            return (Strays.within(np.zeros(self.run.path.q.shape[1])),)
+            return (DeviationBounds.within(np.zeros(self.run.path.q.shape[1])),)
         return tuple(_within(self, band, first, last) for band in self.bands)
 
 
-def strays_of(controller: Controller, run: Run) -> tuple[Strays, ...]:
+def deviation_bounds(controller: Controller, run: Run) -> tuple[DeviationBounds, ...]:
     """How far the links of a run may be from its path, on all of it."""
-    return Straying.of(controller, run).over(0, len(run.timing.along.spacing))
+    return Deviation.of(controller, run).over(0, len(run.timing.along.spacing))
 
 
 def parts_of(path: Path) -> Iterator[tuple[int, int]]:
@@ -180,7 +184,7 @@ def _bands(controller: Controller, run: Run) -> tuple[_Band, ...]:
     )
 
 
-def _within(known: Straying, band: _Band, first: int, last: int) -> Strays:
+def _within(known: Deviation, band: _Band, first: int, last: int) -> DeviationBounds:
     """How far the links of motions in a band may be from their path."""
     timing, smoothing = known.run.timing, known.smoothing
     lag = known.controller.model.elasticity.lag
@@ -190,10 +194,10 @@ def _within(known: Straying, band: _Band, first: int, last: int) -> Strays:
     away = max(reach, step)
     first, last = _with_what_counts(timing, band.most, first, last, _ASIDE * away)
     allowed = Allowed.of(timing, band.most, first, last)
-    course = Course.of(timing, allowed, band.rests, step, away)
+    course = EarliestTimes.of(timing, allowed, band.rests, step, away)
     if timing.ramp > 0.0 and (course.way[:, 0] <= 0.0).any():
         # No bound is known: where what a ramp averages may stand still, it tells no place.
-        return Strays.within(np.full(size, np.inf))
+        return DeviationBounds.within(np.full(size, np.inf))
     averages = Averages(course, smoothing, timing.ramp)
     offsets = averages.offsets()
     ways, share, rest = offsets.axis[:, None], offsets.along[:, None], offsets.aside
@@ -210,7 +214,7 @@ def _within(known: Straying, band: _Band, first: int, last: int) -> Strays:
     ways[unknown], share[unknown], rest[unknown], most[unknown] = 0.0, 0.0, np.inf, np.inf
     moves = course.moves
     edge = np.append(course.sigma[:-1][moves], course.sigma[-1])
-    return Strays(edge, ways[moves], share[moves], rest[moves], most[moves])
+    return DeviationBounds(edge, ways[moves], share[moves], rest[moves], most[moves])
 
 
 def _with_what_counts(

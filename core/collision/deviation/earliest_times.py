@@ -23,7 +23,7 @@ _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class Course:
+class EarliestTimes:
     """A path in C cells, the first and the last of them rests.
 
     Args:
@@ -56,7 +56,7 @@ class Course:
     @classmethod
     def of(
         cls, timing: Timing, allowed: Allowed, rests: FloatArray, step: float, reach: float
-    ) -> Course:
+    ) -> EarliestTimes:
         """Cut a path.
 
         Args:
@@ -86,7 +86,7 @@ def _moving(
     z: FloatArray,
     speed: FloatArray,
     span: FloatArray,
-) -> Course:
+) -> EarliestTimes:
     """The cells of the path from shares z (C, 2) to z of its intervals k (C,)."""
     part = slice(allowed.first, allowed.first + len(allowed.spacing))
     way, bent = _ways(timing, part)
@@ -96,7 +96,7 @@ def _moving(
     at = [_values(allowed.slope, k, share) for share in (z[:, 0], middle, z[:, 1])]
     spread = np.ptp(allowed.bend, axis=0)[k]
     whole = np.repeat(np.cumsum(allowed.spacing)[k] - allowed.spacing[k], 2).reshape(-1, 2)
-    return Course(
+    return EarliestTimes(
         np.concatenate([[0.0], np.cumsum(span)]),
         np.append(whole[:, 0] + z[:, 0] * allowed.spacing[k], allowed.spacing.sum()),
         np.append(_sigma(timing, part.start + k, z[:, 0]), timing.path.sigma[end]),
@@ -163,14 +163,14 @@ def _rests(
 
 
 def _with_rests(
-    moving: Course,
+    moving: EarliestTimes,
     knots: IntArray,
     wait: FloatArray,
     turn: FloatArray,
     count: IntArray,
     step: float,
     reach: float,
-) -> Course:
+) -> EarliestTimes:
     """The cells of a path with those of its rests between them, and two at its ends."""
     first = np.concatenate([[0], np.cumsum(count)])
     # The turn is made in the middle one of each rest's cells.
@@ -194,7 +194,7 @@ def _with_rests(
     near = np.minimum(at, len(moving.moves) - 1)
     beside = np.stack([moving.way[np.maximum(at - 1, 0)], moving.way[near]])
     way = np.stack([beside[..., 0].min(axis=0), beside[..., 1].max(axis=0)], -1)
-    return Course(
+    return EarliestTimes(
         theta,
         place,
         sigma,

@@ -16,7 +16,7 @@ from ...motion.emulator.controller import Controller
 from ...motion.emulator.run import Run
 from ...motion.path.tcp_walk import JOINED
 from ...program.tool import Tool
-from ..deviation.bounds import Straying, parts_of
+from ..deviation.bounds import Deviation, parts_of
 from ..scene.scene import CollisionScene
 from .enclosure import Enclosure, Span
 from .findings import Budget, Cause, Finding
@@ -103,7 +103,7 @@ def certify_stretch(
             raise InputError(f"a stretch runs from a first to a last σ, not from {first} to {last}")
     enclosure = Enclosure.of(run.path)
     left = Budget(budget)
-    straying, reader = Straying.of(controller, run), Reader(run)
+    deviation_of_run, reader = Deviation.of(controller, run), Reader(run)
     wanted = max(clearance - TOLERANCE, CONTACT)
     torn = _first_tear(run, spans)
     if torn is not None:
@@ -118,8 +118,8 @@ def certify_stretch(
             continue
         intervals = run.path.pieces.first_interval[list(part)]
         provers = [
-            (Prover(enclosure, scene, strays, residual, left), pieces)
-            for strays in straying.over(int(intervals[0]), int(intervals[1]))
+            (Prover(enclosure, scene, deviations, residual, left), pieces)
+            for deviations in deviation_of_run.over(int(intervals[0]), int(intervals[1]))
             for scene, pieces in owned
         ]
         for prover, pieces in provers:

@@ -66,11 +66,11 @@ class Sweeps(NamedTuple):
         motion: (K,) m, how far one body moves at most against the other from where they are at
             the middle.
         travel: (K,) m, of it what the path makes.
-        stray: (K,) m, what the joints' strays and the residual may take of the distance at the
-            middle, along the plane's normal if there is one.
+        deviation: (K,) m, what the joints' deviations and the residual may take of the distance
+            at the middle, along the plane's normal if there is one.
     """
 
     lower: FloatArray
     motion: FloatArray
     travel: FloatArray
-    stray: FloatArray
+    deviation: FloatArray

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray
-from ..deviation.bounds import Strays, stretches
+from ..deviation.bounds import DeviationBounds, by_interval
 from ..scene.scene import CollisionScene
 from .boxes import Boxes
 from .enclosure import Enclosure, Intervals, Span
@@ -43,14 +43,14 @@ class Prover:
     Args:
         enclosure: of the path.
         scene: the bodies.
-        strays: how far joints may be from the path.
+        deviations: how far joints may be from the path.
         residual: m by which moving bodies may be elsewhere.
         budget: shared by all provers of a certificate.
     """
 
     enclosure: Enclosure
     scene: CollisionScene
-    strays: Strays
+    deviations: DeviationBounds
     residual: float
     budget: Budget
 
@@ -86,8 +86,8 @@ class Prover:
             self.scene.outlines,
             self.scene.pairs,
             boxes,
-            self.strays,
-            stretches(self.strays, begin, end),
+            self.deviations,
+            by_interval(self.deviations, begin, end),
             self.residual,
             items,
             found,
@@ -152,8 +152,8 @@ class _Search:
         unknown, known = items.chosen(~verified), items.chosen(verified)
         found = self._swept(intervals, known)
         left = self._left(found)
-        # Where it is not known how far joints stray, halving tells no more.
-        wide = (found.motion > _WIDE) & np.isfinite(found.stray)
+        # Where it is not known how far joints deviate, halving tells no more.
+        wide = (found.motion > _WIDE) & np.isfinite(found.deviation)
         near = left & ~wide
         asked = self._measured(intervals, known.chosen(near), Sweeps(*(a[near] for a in found)))
         again = self._swept(intervals, asked)
@@ -188,7 +188,7 @@ class _Search:
         prover.budget.take(len(items.pair))
         met = np.flatnonzero(distance < within)
         if len(met):
-            nearest = met[np.argmin((distance - found.stray)[met])]
+            nearest = met[np.argmin((distance - found.deviation)[met])]
             self._remember(intervals, items._replace(distance=distance, normal=normal), nearest)
         return items._replace(distance=distance - ROUNDING, normal=normal)
 
@@ -199,7 +199,7 @@ class _Search:
         here, asked = np.array([sigma]), np.arange(len(items.pair)) == k
         alone = items.chosen(asked)._replace(interval=np.zeros(1, np.int64))
         distance = float(items.distance[k])
-        kept = distance - float(prover.sweep(Boxes.at(q), here, here, alone).stray[0])
+        kept = distance - float(prover.sweep(Boxes.at(q), here, here, alone).deviation[0])
         if kept < prover.nearest.kept:
             piece, pair = int(intervals.piece[row]), int(items.pair[k])
             prover.nearest = Nearest(kept, distance, sigma, piece, pair, q)
@@ -215,15 +215,15 @@ class _Search:
             return ~stalled
         distance = items.distance + ROUNDING
         too_near = near & (distance < self._wanted)
-        # On a wide interval the levers of the strays are not known well.
-        located = (travel < _LOCATED) | ~np.isfinite(found.stray)
-        strayed = near & located & ~(distance - found.stray >= self._wanted)
-        # Where the path alone is clear it is the strays beside that leave it open.
-        strayed |= stalled & (distance - travel >= self._wanted + 2.0 * ROUNDING)
+        # On a wide interval the levers of the deviations are not known well.
+        located = (travel < _LOCATED) | ~np.isfinite(found.deviation)
+        deviated = near & located & ~(distance - found.deviation >= self._wanted)
+        # Where the path alone is clear it is the deviations beside that leave it open.
+        deviated |= stalled & (distance - travel >= self._wanted + 2.0 * ROUNDING)
         self._note(intervals, items, too_near, Cause.NEAR)
-        self._note(intervals, items, strayed & ~too_near, Cause.STRAY)
-        self._note(intervals, items, stalled & ~strayed, Cause.STALLED)
-        return ~(stalled | strayed)
+        self._note(intervals, items, deviated & ~too_near, Cause.STRAY)
+        self._note(intervals, items, stalled & ~deviated, Cause.STALLED)
+        return ~(stalled | deviated)
 
     def _note(
         self, intervals: Intervals, items: Items, chosen: NDArray[np.bool_], cause: Cause

@@ -26,14 +26,14 @@ from numba import njit
 
 from ...arrays import FloatArray, IntArray
 from ...robot.vectors import Vector, add, cross, dot, load_rotation, load_row, scale, subtract, turn
-from ..deviation.bounds import Strays, Stretches
+from ..deviation.bounds import BoundsByInterval, DeviationBounds
 from ..scene.frames import FrameTree, place_frames
 from ..scene.outline import Outlines, lever, support
 from .boxes import Boxes
 from .items import Items, Sweeps
 
 _FEW = 4
-"""Stretches of strays on an interval up to which each is looked at for itself."""
+"""Stretches of deviations on an interval up to which each is looked at for itself."""
 
 
 class _Travel(NamedTuple):
@@ -41,15 +41,15 @@ class _Travel(NamedTuple):
 
     Args:
         reach: m, from where it is at the middle.
-        bend: m, bound of |a''|, with what strays of the joints do to it.
-        stray: m, what strays of the joints and the residual add.
+        bend: m, bound of |a''|, with what deviations of the joints do to it.
+        deviation: m, what deviations of the joints and the residual add.
         omega, origin: angular velocity, and velocity of the point at the world's origin, by t at
             the middle.
     """
 
     reach: float
     bend: float
-    stray: float
+    deviation: float
     omega: Vector
     origin: Vector
 
@@ -60,8 +60,8 @@ def sweep(
     outlines: Outlines,
     pairs: IntArray,
     boxes: Boxes,
-    strays: Strays,
-    stretches: Stretches,
+    deviations: DeviationBounds,
+    stretches: BoundsByInterval,
     residual: float,
     items: Items,
     found: Sweeps,
@@ -73,7 +73,7 @@ def sweep(
         outlines: the bodies.
         pairs: (P, 2), indices of bodies.
         boxes: enclosures of the intervals; the items' ones are verified.
-        strays: how far joints may be from the path.
+        deviations: how far joints may be from the path.
         stretches: where among them the intervals are.
         residual: m by which a moving body may be elsewhere.
         items: the questions.
@@ -99,24 +99,28 @@ def sweep(
             tree, outlines, boxes, stretches.most[i], residual, levers, axis, p, i, b, a
         )
         found.travel[k] = first.reach + second.reach
-        motion = first.reach + second.reach + first.stray + second.stray
+        motion = first.reach + second.reach + first.deviation + second.deviation
         found.motion[k] = motion
         own = stretches.own[i]
-        found.stray[k] = _stray(tree, outlines, strays.most[own], levers, residual, a, b)
+        found.deviation[k] = _deviation(
+            tree, outlines, deviations.most[own], levers, residual, a, b
+        )
         n = load_row(items.normal, k)
         lower = items.distance[k] - motion
         if dot(n, n) > 0.0:
             gap = _planar_gap(outlines, R, p, a, b, first, second, n)
-            off = first.stray + second.stray
+            off = first.deviation + second.deviation
             if stretches.last[i] - stretches.first[i] < _FEW:
                 most = 0.0
                 for c in range(stretches.first[i], stretches.last[i] + 1):
-                    lost = _lost(tree, outlines, strays, c, residual, levers, axis, R, p, a, b, n)
+                    lost = _lost(
+                        tree, outlines, deviations, c, residual, levers, axis, R, p, a, b, n
+                    )
                     most = max(most, lost)
                 off = min(off, most)
-            bend = _stray_bend(tree, outlines, strays.most[own], levers, a, b)
-            lost = _lost(tree, outlines, strays, own, residual, levers, axis, R, p, a, b, n)
-            found.stray[k] = min(found.stray[k], lost + bend)
+            bend = _deviation_bend(tree, outlines, deviations.most[own], levers, a, b)
+            lost = _lost(tree, outlines, deviations, own, residual, levers, axis, R, p, a, b, n)
+            found.deviation[k] = min(found.deviation[k], lost + bend)
             lower = max(lower, gap - off)
         else:
             lower = max(lower, _box_gap(outlines, centre, edges, a, b) - motion)
@@ -130,37 +134,37 @@ def _apart(tree: FrameTree, outlines: Outlines, body: int, other: int, f: int) -
 
 
 @njit(cache=True, error_model="numpy")
-def _stray(
+def _deviation(
     tree: FrameTree,
     outlines: Outlines,
-    astray: FloatArray,
+    most_off: FloatArray,
     levers: FloatArray,
     residual: float,
     a: int,
     b: int,
 ) -> float:
-    """m by which strays within ``astray`` (N,) and the residual move two bodies at most."""
+    """m by which deviations within ``most_off`` (N,) and the residual move two bodies at most."""
     total = 0.0
     for body, other in ((a, b), (b, a)):
         f = outlines.frame[body]
         if _apart(tree, outlines, body, other, f):
             total += residual
         while _apart(tree, outlines, body, other, f):
-            total += astray[f - 1] * levers[body, f]
+            total += most_off[f - 1] * levers[body, f]
             f = tree.parent[f]
     return total
 
 
 @njit(cache=True, error_model="numpy")
-def _stray_bend(
-    tree: FrameTree, outlines: Outlines, astray: FloatArray, levers: FloatArray, a: int, b: int
+def _deviation_bend(
+    tree: FrameTree, outlines: Outlines, most_off: FloatArray, levers: FloatArray, a: int, b: int
 ) -> float:
     """m by which they move them at most beside what is linear in them."""
     total = 0.0
     for body, other in ((a, b), (b, a)):
         f, speed = outlines.frame[body], 0.0
         while _apart(tree, outlines, body, other, f):
-            d, far = astray[f - 1], levers[body, f]
+            d, far = most_off[f - 1], levers[body, f]
             if not tree.prismatic[f]:
                 total += 0.5 * (2.0 * d * speed + d * d * far)
             speed += d * far
@@ -172,7 +176,7 @@ def _stray_bend(
 def _lost(
     tree: FrameTree,
     outlines: Outlines,
-    strays: Strays,
+    deviations: DeviationBounds,
     c: int,
     residual: float,
     levers: FloatArray,
@@ -183,10 +187,14 @@ def _lost(
     b: int,
     n: Vector,
 ) -> float:
-    """m that strays and the residual may take along n, as far as it is linear in them."""
-    total: float = _stray(tree, outlines, strays.rest[c], levers, residual, a, b)
-    for w in range(strays.ways.shape[1]):
-        way, least, most = strays.ways[c, w], strays.share[c, w, 0], strays.share[c, w, 1]
+    """m that deviations and the residual may take along n, as far as it is linear in them."""
+    total: float = _deviation(tree, outlines, deviations.rest[c], levers, residual, a, b)
+    for w in range(deviations.ways.shape[1]):
+        way, least, most = (
+            deviations.ways[c, w],
+            deviations.share[c, w, 0],
+            deviations.share[c, w, 1],
+        )
         if least == 0.0 and most == 0.0:
             continue
         low, high = _extent(tree, outlines, way, axis, R, p, a, b, n)
@@ -258,7 +266,7 @@ def _measure_levers(
     tree: FrameTree,
     outlines: Outlines,
     reach: FloatArray,
-    astray: FloatArray,
+    most_off: FloatArray,
     R: FloatArray,
     p: FloatArray,
     axis: FloatArray,
@@ -276,7 +284,7 @@ def _measure_levers(
                 step = subtract(load_row(p, f), load_row(p, own))
                 s, o = _into(R, own, load_row(axis, f)), _into(R, own, step)
                 levers[b, f] = lever(outlines, b, s, o) + behind
-            behind += (reach[f - 1] + astray[f - 1]) * levers[b, f]
+            behind += (reach[f - 1] + most_off[f - 1]) * levers[b, f]
             f = tree.parent[f]
 
 
@@ -295,7 +303,7 @@ def _travel(
     tree: FrameTree,
     outlines: Outlines,
     boxes: Boxes,
-    astray: FloatArray,
+    most_off: FloatArray,
     residual: float,
     levers: FloatArray,
     axis: FloatArray,
@@ -312,14 +320,14 @@ def _travel(
     f = outlines.frame[body]
     shared = tree.moves[outlines.frame[other]]
     reach = bend = speed = 0.0
-    stray = residual if f > 0 and not shared[f - 1] else 0.0
+    deviation = residual if f > 0 and not shared[f - 1] else 0.0
     omega, origin = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     while f > 0 and not shared[f - 1]:
         j, far = f - 1, levers[body, f]
-        d1, d2 = boxes.first[i, j] + astray[j], boxes.second[i, j]
+        d1, d2 = boxes.first[i, j] + most_off[j], boxes.second[i, j]
         s = load_row(axis, f)
         reach += boxes.reach[i, j] * far
-        stray += astray[j] * far
+        deviation += most_off[j] * far
         if tree.prismatic[f]:
             bend += d2
             origin = add(origin, scale(boxes.rate[i, j], s))
@@ -330,7 +338,7 @@ def _travel(
             origin = add(origin, cross(load_row(p, f), rate))
         speed += d1 * far
         f = tree.parent[f]
-    return _Travel(reach, bend, stray, omega, origin)
+    return _Travel(reach, bend, deviation, omega, origin)
 
 
 @njit(cache=True, error_model="numpy")

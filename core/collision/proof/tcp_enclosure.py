@@ -111,7 +111,7 @@ def _verify(
             boxes.second[row, j] = min(work.second[j], second + third)
             for end in range(2):
                 middle = states.q[m, j] + (2 * end - 1) * rate[j]
-                if not abs(ends[m, end, j] - middle) <= work.stray[j] + LEAST:
+                if not abs(ends[m, end, j] - middle) <= work.radius[j] + LEAST:
                     inside = False
         boxes.verified[row] = inside
 

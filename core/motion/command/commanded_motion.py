@@ -26,7 +26,7 @@ from ...robot.model import Robot
 from ..model.elasticity import RIGID, Elasticity
 from ..timing.timing import Timing
 from .elasticity import LEAD_STEP, derivatives_of, leads, links_of
-from .smoothing import Motion, Smoothing, States
+from .smoothing import JointMotion, Smoothing, States
 from .trajectory import Leads, no_leads, sample_times
 
 _STAMPED_STEP = 0.002
@@ -42,7 +42,7 @@ _ASIDE = 0.05
 """s: of a cubic spline's values, those n steps away count (2 − √3)ⁿ, here 3e-29."""
 
 
-class Driven(NamedTuple):
+class CommandedMotion(NamedTuple):
     """What is driven at T times.
 
     Args:
@@ -65,9 +65,9 @@ def stretches(t: FloatArray) -> Iterator[slice]:
         first = last
 
 
-def driven(
+def commanded_motion(
     robot: Robot, elasticity: Elasticity, smoothing: Smoothing, timing: Timing, t: FloatArray
-) -> Driven:
+) -> CommandedMotion:
     """What is driven at increasing times t (T,) in s."""
     shape = len(t), timing.path.q.shape[1]
     q, dq, ddq, sigma = (*(np.empty(shape) for _ in range(3)), np.empty(len(t)))
@@ -91,10 +91,10 @@ def driven(
             q[part], dq[part], ddq[part] = links_of(elasticity, smooth, jerk)
         for k, links in enumerate((q, dq, ddq)):
             lead[k][part] = smooth[k] + ahead[k] - links[part]
-    return Driven((q, dq, ddq), lead, sigma)
+    return CommandedMotion((q, dq, ddq), lead, sigma)
 
 
-def stamped_motion(timing: Timing, begin: float = -np.inf, end: float = np.inf) -> Motion:
+def stamped_motion(timing: Timing, begin: float = -np.inf, end: float = np.inf) -> JointMotion:
     """The stamped motion, ramped where the model says so.
 
     Knots are fine enough that cubics in time between them stand for it.
@@ -110,10 +110,10 @@ def stamped_motion(timing: Timing, begin: float = -np.inf, end: float = np.inf) 
     edges = edges[(even[0] <= edges) & (edges <= even[-1])]
     t = np.unique(np.concatenate([even, edges]))
     q, dq, _, _ = timing.driven_at(t)
-    return Motion(t, q, dq)
+    return JointMotion(t, q, dq)
 
 
-def ramped(timing: Timing, begin: float = -np.inf, end: float = np.inf) -> Motion:
+def ramped(timing: Timing, begin: float = -np.inf, end: float = np.inf) -> JointMotion:
     """The motion that is at time t where the stamped one is on average over the last T seconds."""
     # Velocities are differences: of knots at the ends, to one side.
     begin, end = begin - 2.0 * _STEP, end + 2.0 * _STEP
@@ -127,7 +127,7 @@ def ramped(timing: Timing, begin: float = -np.inf, end: float = np.inf) -> Motio
     q = timing.driven_at(at)[0]
     dq = np.gradient(q, t, axis=0)
     dq[(t <= 0.0) | (t >= timing.duration)] = 0.0
-    return Motion(t, q, dq)
+    return JointMotion(t, q, dq)
 
 
 def way_slopes(timing: Timing) -> FloatArray:

@@ -5,7 +5,7 @@ is symmetric about the middle of the window W = Σ w and has weight one, so that
 motion there,
 
 - velocities and accelerations stay within what bounded them before;
-- a joint with accelerations within ±a strays at most a Σ w² / 24: half the kernel's variance, by
+- a joint with accelerations within ±a deviates at most a Σ w² / 24: half the kernel's variance, by
   Taylor's formula;
 - jerk stays within 2 a / w for the longest w.
 """
@@ -44,7 +44,7 @@ def window_for_jerk(jerk: float) -> float:
 
 
 @dataclass(frozen=True)
-class Motion:
+class JointMotion:
     """A motion that rests before its first knot and after its last, cubic between knots.
 
     Args:
@@ -85,8 +85,8 @@ class Smoothing:
         return sum(self.widths)
 
     @property
-    def stray(self) -> float:
-        """s²; times a bound of a joint's acceleration, how far it strays from the stamp."""
+    def deviation(self) -> float:
+        """s²; times a bound of a joint's acceleration, how far it deviates from the stamp."""
         return sum(width**2 for width in self.widths) / 24.0
 
     def lengthened_to(self, width: float) -> Smoothing:
@@ -94,7 +94,7 @@ class Smoothing:
         widths = sorted(self.widths) or [0.0]
         return Smoothing((*widths[:-1], max(widths[-1], width)))
 
-    def command(self, motion: Motion, t: FloatArray) -> States:
+    def command(self, motion: JointMotion, t: FloatArray) -> States:
         """The smoothed motion.
 
         Args:
@@ -113,7 +113,7 @@ class Smoothing:
             motion = averaged(motion, width, step)
         return motion.averaged(last, t)
 
-    def by_width(self, motion: Motion, t: FloatArray) -> FloatArray:
+    def by_width(self, motion: JointMotion, t: FloatArray) -> FloatArray:
         """Derivative (K, T, N) of the smoothed positions with respect to each of the K widths.
 
         With f what the other averages make of the motion, that of the mean over [t − w, t] is
@@ -128,12 +128,12 @@ class Smoothing:
         return out
 
 
-def averaged(motion: Motion, window: float, step: float) -> Motion:
+def averaged(motion: JointMotion, window: float, step: float) -> JointMotion:
     """The mean over the last ``window`` seconds of a motion, by knots about ``step`` apart."""
     begin, end = motion.t[0], motion.t[-1] + window
     t = np.linspace(begin, end, int(np.ceil((end - begin) / step)) + 1)
     q, dq, _ = motion.averaged(window, t)
-    return Motion(t, q, dq)
+    return JointMotion(t, q, dq)
 
 
 def _empty(count: int, size: int) -> States:

@@ -17,7 +17,7 @@ from ...robot.joint import JointKind
 from ...robot.model import Robot
 from ...spatial.rotation import quaternion_from_matrix
 from ...vendor import Vendor
-from ..command.commanded_motion import driven, stretches
+from ..command.commanded_motion import commanded_motion, stretches
 from ..command.smoothing import Smoothing, smoothing_at
 from ..command.trajectory import Trajectory, sample_times
 from ..geometry.pieces import Sampling
@@ -190,7 +190,10 @@ class Controller:
         period = self.model.period if period is None else period
         smoothing = self.smoothing(program, timing.path)
         t = sample_times(0.0, timing.duration, period)
-        path, found = timing.path, driven(self.robot, self.model.elasticity, smoothing, timing, t)
+        path, found = (
+            timing.path,
+            commanded_motion(self.robot, self.model.elasticity, smoothing, timing, t),
+        )
         last = len(path.route.moves) - 1
         segment = np.searchsorted(path.layout.waypoint, found.sigma, "right") - 1
         segment = np.clip(segment, 0, last)

@@ -28,7 +28,7 @@ _GRID, _ZOOMS = 41, 3
 
 
 @dataclass(frozen=True)
-class Places:
+class PathPlaces:
     """L places on a path of M segments.
 
     Args:
@@ -39,9 +39,9 @@ class Places:
     part: IntArray
     share: FloatArray
 
-    def with_more(self, others: Places) -> Places:
+    def with_more(self, others: PathPlaces) -> PathPlaces:
         """These, then others."""
-        return Places(
+        return PathPlaces(
             np.concatenate([self.part, others.part]), np.concatenate([self.share, others.share])
         )
 
@@ -64,13 +64,13 @@ def has_tangents(path: Path) -> bool:
     return bool((path.segments.ends.kind == JOINT_SEGMENT).all())
 
 
-def sigma_of(path: Path, places: Places) -> FloatArray:
+def sigma_of(path: Path, places: PathPlaces) -> FloatArray:
     """(L,), σ of the places."""
     begin, end = _parts(path)
     return np.asarray(begin[places.part] + places.share * (end - begin)[places.part])
 
 
-def place_near(path: Path, sigma: float, q: FloatArray) -> Places:
+def place_near(path: Path, sigma: float, q: FloatArray) -> PathPlaces:
     """The place on a path nearest to a configuration (N,), in the part that σ lies in."""
     begin, end = _parts(path)
     inside = (begin <= sigma) & (sigma <= end)
@@ -78,13 +78,13 @@ def place_near(path: Path, sigma: float, q: FloatArray) -> Places:
     lower, upper = 0.0, 1.0
     for _ in range(_ZOOMS):
         shares = np.linspace(lower, upper, _GRID)
-        places = Places(np.full(_GRID, part), shares)
+        places = PathPlaces(np.full(_GRID, part), shares)
         k = int(np.argmin(np.linalg.norm(configurations(path, places) - q, axis=1)))
         lower, upper = shares[max(k - 1, 0)], shares[min(k + 1, _GRID - 1)]
-    return Places(np.array([part]), shares[k : k + 1])
+    return PathPlaces(np.array([part]), shares[k : k + 1])
 
 
-def configurations(path: Path, places: Places) -> FloatArray:
+def configurations(path: Path, places: PathPlaces) -> FloatArray:
     """(L, N), the configurations at the places."""
     if not has_tangents(path):
         return _between_samples(path, sigma_of(path, places))
@@ -98,7 +98,7 @@ def configurations(path: Path, places: Places) -> FloatArray:
     return np.asarray(q + (reach[:, 1] * leaving)[:, None] * steps[after])
 
 
-def tangents(path: Path, places: Places, directions: Directions) -> FloatArray:
+def tangents(path: Path, places: PathPlaces, directions: Directions) -> FloatArray:
     """(L, N, K), how the configurations at the places change along each direction.
 
     Raises:
@@ -145,7 +145,7 @@ def _parts(path: Path) -> tuple[FloatArray, FloatArray]:
     return begin, np.maximum(begin, end)
 
 
-def _neighbours(path: Path, places: Places) -> tuple[IntArray, IntArray]:
+def _neighbours(path: Path, places: PathPlaces) -> tuple[IntArray, IntArray]:
     """The segments before and after each place; twice its own for a straight part."""
     count = len(path.segments.scale)
     zone = places.part >= count
@@ -153,7 +153,7 @@ def _neighbours(path: Path, places: Places) -> tuple[IntArray, IntArray]:
     return np.where(zone, corner, places.part), np.where(zone, corner + 1, places.part)
 
 
-def _weights(path: Path, places: Places) -> tuple[IntArray, FloatArray, FloatArray]:
+def _weights(path: Path, places: PathPlaces) -> tuple[IntArray, FloatArray, FloatArray]:
     """q = waypoint[base] + ρ₀ w₀ Δq_before + ρ₁ w₁ Δq_after, and so for straight parts too.
 
     There ρ₀ = 1 − ρ_out − ρ_in counts with λ, and ρ₁ = ρ_out with 1; see `_reach`.
@@ -167,7 +167,7 @@ def _weights(path: Path, places: Places) -> tuple[IntArray, FloatArray, FloatArr
     return base, np.where(zone, f - 1.0, places.share), np.where(zone, g, 1.0)
 
 
-def _reach(path: Path, places: Places) -> FloatArray:
+def _reach(path: Path, places: PathPlaces) -> FloatArray:
     """(L, 2), ρ₀ and ρ₁ of `_weights`."""
     return _combined(path, places, _live(path))
 
@@ -178,7 +178,7 @@ def _live(path: Path) -> FloatArray:
     return np.where((corners.kind == STOP)[:, None], 0.0, corners.reach[:, POSITION])
 
 
-def _combined(path: Path, places: Places, reach: FloatArray, whole: float = 1.0) -> FloatArray:
+def _combined(path: Path, places: PathPlaces, reach: FloatArray, whole: float = 1.0) -> FloatArray:
     """ρ₀ and ρ₁ from the zones' reaches, (M − 1, 2, ...) → (L, 2, ...)."""
     count = len(path.segments.scale)
     zone = places.part >= count
@@ -193,7 +193,7 @@ def _combined(path: Path, places: Places, reach: FloatArray, whole: float = 1.0)
     return out
 
 
-def _reach_dots(path: Path, places: Places, directions: Directions) -> FloatArray:
+def _reach_dots(path: Path, places: PathPlaces, directions: Directions) -> FloatArray:
     """(L, 2, K), derivatives of ρ₀ and ρ₁."""
     corners, size = path.corners, directions.radii.shape[1]
     dots = np.zeros((len(corners.kind), 2, size))

@@ -54,9 +54,9 @@ class TubeWork(NamedTuple):
         turned: (6, K, K), J_m⁻¹ ∂_mJ: row, m, column.
         sizes: (6, K, K), their absolute values.
         swept: (6, K), |Σ_m q_m' J_m⁻¹ ∂_mJ|.
-        strayed: (6, K), Σ_m r_m |J_m⁻¹ ∂_mJ|.
+        by_radius: (6, K), Σ_m r_m |J_m⁻¹ ∂_mJ|.
         rho: (N,), |q_m'| + r.
-        stray: (N,), r.
+        radius: (N,), r.
         first, second, third: (N,), bounds of derivatives.
         y: (6,), right sides and solutions.
         bias: (4,), see `bias`.
@@ -73,9 +73,9 @@ class TubeWork(NamedTuple):
     turned: FloatArray
     sizes: FloatArray
     swept: FloatArray
-    strayed: FloatArray
+    by_radius: FloatArray
     rho: FloatArray
-    stray: FloatArray
+    radius: FloatArray
     first: FloatArray
     second: FloatArray
     third: FloatArray
@@ -182,9 +182,9 @@ def _stays_inside(solved: IntArray, work: TubeWork, linear: float, angular: floa
     for i in range(6):
         most = work.y[i] + work.rows[i, 0] * linear + work.rows[i, 1] * angular + 1e-15
         for j in range(6):
-            most += work.K[i, j] * work.stray[solved[j]]
+            most += work.K[i, j] * work.radius[solved[j]]
         work.first[solved[i]] = most
-        inside = inside and most < work.stray[solved[i]]
+        inside = inside and most < work.radius[solved[i]]
     return inside
 
 
@@ -197,29 +197,29 @@ def _bound_changes(
     bend: FloatArray,
     work: TubeWork,
 ) -> tuple[float, float]:
-    """Write K for the tube ``work.stray``, and add P |q_m'| to y, but for the part with R.
+    """Write K for the tube ``work.radius``, and add P |q_m'| to y, but for the part with R.
 
     Returns:
         That part, and what the prescribed axes make beyond first order: a twist of these lengths.
     """
     bound, size, slack = work.bound, chain.joint.size, 0.0
     for j in range(rate.size):
-        work.rho[j] = abs(rate[j]) + work.stray[j]
+        work.rho[j] = abs(rate[j]) + work.radius[j]
     for k in range(size):
         if not chain.prismatic[k]:
-            slack += 0.6 * work.stray[chain.joint[k]]
+            slack += 0.6 * work.radius[chain.joint[k]]
     if slack > 0.6:
         slack = np.inf
     bound_columns(chain, columns, work.rho, bound)
     for i in range(6):
         for k in range(size):
-            work.strayed[i, k] = 0.0
+            work.by_radius[i, k] = 0.0
         for j in range(6):
             work.K[i, j] = 0.0
         for m in range(size):
-            reach = work.stray[chain.joint[m]]
+            reach = work.radius[chain.joint[m]]
             for k in range(size):
-                work.strayed[i, k] += reach * work.sizes[i, m, k]
+                work.by_radius[i, k] += reach * work.sizes[i, m, k]
     twist = spin = 0.0
     for k in range(size):
         axis = chain.joint[k]
@@ -230,11 +230,11 @@ def _bound_changes(
         if not chain.prismatic[k]:
             angular += slack
         for i in range(6):
-            strayed = work.strayed[i, k]
-            work.y[i] += strayed * speed
+            by_radius = work.by_radius[i, k]
+            work.y[i] += by_radius * speed
             if j >= 0:
                 more = work.rows[i, 0] * linear + work.rows[i, 1] * angular
-                work.K[i, j] += work.swept[i, k] + strayed + more
+                work.K[i, j] += work.swept[i, k] + by_radius + more
         if j < 0:
             third = 0.5 * work.third[axis]
             more = abs(bend[axis]) + third
@@ -252,7 +252,7 @@ def _begin(
     for j in range(prescribed.size):
         axis, third = prescribed[j], jerk[2 + j]
         first, second = abs(rate[axis]), abs(bend[axis])
-        work.stray[axis] = 0.5 * second + third / 6
+        work.radius[axis] = 0.5 * second + third / 6
         work.first[axis] = first + second + 0.5 * third
         work.second[axis] = second + third
         work.third[axis] = third
@@ -270,7 +270,7 @@ def stays_in_tube(
     jerk: FloatArray,
     work: TubeWork,
 ) -> bool:
-    """Find a tube that q does not leave, ``work.stray``; bounds of |q'| are in ``work.first`` then.
+    """Find a tube that q does not leave, ``work.radius``, and bounds of |q'| in ``work.first``.
 
     Args:
         chain: K joints over N axes.
@@ -294,7 +294,7 @@ def stays_in_tube(
         for k in range(chain.joint.size):
             work.swept[i, k] = abs(work.swept[i, k])
     for i in range(6):
-        work.stray[solved[i]] = _WIDER * abs(bend[solved[i]]) + _AT_FIRST * fastest + LEAST
+        work.radius[solved[i]] = _WIDER * abs(bend[solved[i]]) + _AT_FIRST * fastest + LEAST
     for _ in range(_ROUNDS):
         for i in range(6):
             work.y[i] = abs(bend[solved[i]])
@@ -311,9 +311,9 @@ def stays_in_tube(
         for i in range(6):
             axis = solved[i]
             work.first[axis] = abs(rate[axis]) + work.y[i]
-            if work.y[i] > work.stray[axis]:
+            if work.y[i] > work.radius[axis]:
                 inside = False
-                work.stray[axis] = _WIDER * work.y[i]
+                work.radius[axis] = _WIDER * work.y[i]
         if inside:
             return True
     return False

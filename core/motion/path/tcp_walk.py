@@ -30,7 +30,7 @@ _HOP, _NEAR = 0.2, 0.05
 """Share of the way between two samples, and conditioning, below which a stretch to prove may lie
 next to a singular configuration."""
 _EVEN = 0.01
-"""Share of the joints' way past one that they may stray from an even run."""
+"""Share of the joints' way past one that they may deviate from an even run."""
 _FINEST = 1e-7
 """Share of the way between two samples below which steps are not halved any more."""
 
@@ -80,7 +80,7 @@ def _keeps_branch(
     by_t: FloatArray,
     work: TubeWork,
 ) -> bool:
-    """Whether the joints stay in a tube, ``work.stray``, for ``step`` on from row 0 of the walk.
+    """Whether the joints stay in a tube, ``work.radius``, for ``step`` on from row 0 of the walk.
 
     Args:
         chain, solved, prescribed, place, J, walk, work: as elsewhere.
@@ -323,12 +323,12 @@ def sample_tcp(
             sound = error < CONVERGED and met >= SINGULAR
             for j in range(size):
                 away = abs(walk.q[1, j] - centre[j] - (aim - origin) * slope[j])
-                sound = sound and away <= tube.stray[j] + LEAST
+                sound = sound and away <= tube.radius[j] + LEAST
             if sound:
                 pivots, at = min(pivots, met), aim
                 _copy_row(walk, 1, walk, 0)
             else:
-                # Newton's method went astray: begin again, with a shorter way.
+                # Newton's method went off: begin again, with a shorter way.
                 sure, reach = at, max(0.5 * abs(aim - at), 0.5 * least)
         conditioning[k] = pivots
         _copy_row(walk, 0, states, k)

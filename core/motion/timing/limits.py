@@ -222,7 +222,7 @@ class PathLimits:
             limits between samples are; -1 at stops.
     """
 
-    rows: stamping.Limits
+    rows: stamping.StampLimits
     limited: IntArray
     shares: Shares | None
     zones: IntArray
@@ -292,7 +292,7 @@ def path_limits(
             made = torque_rows(shares, ends[part], left[part])
             for whole, own in zip((a, b, lower, upper), made, strict=True):
                 whole[part, :, rows:] = own
-    found = stamping.Limits(spacing, a, b, lower, upper, ceiling)
+    found = stamping.StampLimits(spacing, a, b, lower, upper, ceiling)
     return PathLimits(found, limited, shares, zones, binding)
 
 

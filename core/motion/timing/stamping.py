@@ -68,7 +68,7 @@ class HalfPlane(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Limits:
+class StampLimits:
     """What bounds the speed along a path of K intervals with R rows each.
 
     Args:
@@ -116,7 +116,7 @@ def joint_limits(
     velocity: FloatArray,
     acceleration_lower: FloatArray,
     acceleration_upper: FloatArray,
-) -> Limits:
+) -> StampLimits:
     """Limits from joint velocities and accelerations: q̈ = q' u + q'' x, q̇² = q'² x.
 
     Args:
@@ -132,7 +132,7 @@ def joint_limits(
     kernels.fill_joint_limits(
         dq, velocity, acceleration_lower, acceleration_upper, lower, upper, ceiling
     )
-    return Limits(spacing, dq, ddq, lower, upper, ceiling)
+    return StampLimits(spacing, dq, ddq, lower, upper, ceiling)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -153,7 +153,7 @@ class Stamp:
         source: (K,), code of the half-plane that gave x_{k+1} from x_k.
     """
 
-    limits: Limits
+    limits: StampLimits
     x: FloatArray
     t: FloatArray
     limit: IntArray
@@ -179,7 +179,7 @@ class Stamp:
         return HalfPlane(end, row, bool(code & 1))
 
 
-def stamp(limits: Limits, x_start: float = 0.0, x_end: float = 0.0) -> Stamp:
+def stamp(limits: StampLimits, x_start: float = 0.0, x_end: float = 0.0) -> Stamp:
     """The fastest stamp within the limits.
 
     Args:
@@ -221,7 +221,7 @@ def stamp(limits: Limits, x_start: float = 0.0, x_end: float = 0.0) -> Stamp:
     return Stamp(limits, x, t, limit, x == limits.ceiling, top, partner, pair, source)
 
 
-def _check(limits: Limits, x_start: float, x_end: float) -> None:
+def _check(limits: StampLimits, x_start: float, x_end: float) -> None:
     """Refuse values that the sweeps are not made for."""
     interval = kernels.first_unsound_length(limits.spacing)
     if interval >= 0:
@@ -237,7 +237,7 @@ def _check(limits: Limits, x_start: float, x_end: float) -> None:
         _refuse_row(limits, unsound)
 
 
-def _refuse_row(limits: Limits, index: int) -> None:
+def _refuse_row(limits: StampLimits, index: int) -> None:
     """Say what is wrong with a row, given its flat index in (K, 2, R)."""
     interval, end, row = (int(i) for i in np.unravel_index(index, limits.a.shape))
     at = interval, end, row

@@ -23,7 +23,7 @@ from ....core.errors import InputError
 from ....core.motion.emulator.binding_limits import row_names
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.timing.energy import by_load, loads_of
-from ....core.motion.timing.stamping import Limits
+from ....core.motion.timing.stamping import StampLimits
 from ....core.motion.timing.timing import Timing
 from ....core.program.program import Program
 from ....core.robot.inertia import Inertia
@@ -55,7 +55,7 @@ class FixedPath:
         InputError: shapes do not fit.
     """
 
-    limits: Limits
+    limits: StampLimits
     dq: FloatArray
     ddq: FloatArray
     rigid: Rigid | None = None
@@ -63,7 +63,7 @@ class FixedPath:
     rows: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        of_kind("FixedPath.limits", self.limits, Limits)
+        of_kind("FixedPath.limits", self.limits, StampLimits)
         count = len(self.limits.spacing)
         for name in ("dq", "ddq"):
             of_kind(f"FixedPath.{name}", getattr(self, name), np.ndarray)

@@ -11,7 +11,7 @@ import numpy as np
 from ....core.arrays import FloatArray
 from ....core.errors import InputError
 from ....core.motion.model.consumption import SQUARED_TORQUE, Consumption
-from ....core.motion.timing.stamping import Limits, StandingStillError
+from ....core.motion.timing.stamping import StampLimits, StandingStillError
 from ...checks import all_of_kind, of_kind, positive, within
 from .drives import Drive
 from .path import FixedPath, Torques
@@ -107,7 +107,7 @@ class Task:
         drives = self.drives or (Drive(),) * self.path.size
         return np.array([drive.torque.torque[0] for drive in drives])
 
-    def rows(self) -> Limits:
+    def rows(self) -> StampLimits:
         """The path's limits with rows of torque behind them, as they are at speed zero."""
         limits = self.path.limits
         if not self.limited:
@@ -124,7 +124,7 @@ class Task:
                 (limits.upper, most - held),
             )
         )
-        return Limits(limits.spacing, a, b, lower, upper, limits.ceiling)
+        return StampLimits(limits.spacing, a, b, lower, upper, limits.ceiling)
 
     def _checked_jerk(self) -> FloatArray:
         try:

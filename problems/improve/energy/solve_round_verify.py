@@ -13,7 +13,7 @@ from ....core.collision.proof.verdict import Certificate
 from ....core.errors import MotionError
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
-from ....core.motion.gradients.sensitivity import Places
+from ....core.motion.gradients.sensitivity import PathPlaces
 from ....core.program.program import Program
 from ...reading_back import ReadBack
 from ..nonsmooth_sqp import Memory, Settings, search, violation
@@ -337,7 +337,7 @@ class _Manner:
 
     density: int
     margin: float = 0.0
-    more: Places | None = None
+    more: PathPlaces | None = None
 
 
 def _candidate(point: Evaluated) -> Candidate:

@@ -17,7 +17,7 @@ from ....core.motion.geometry.segments import left_jacobian
 from ....core.motion.geometry.zones import ZonePlanner
 from ....core.motion.gradients.sensitivity import (
     Directions,
-    Places,
+    PathPlaces,
     configurations,
     has_tangents,
     place_near,
@@ -87,7 +87,7 @@ class _Shifted:
         places: at which its configurations count.
     """
 
-    def __init__(self, path: Path, places: Places) -> None:
+    def __init__(self, path: Path, places: PathPlaces) -> None:
         self.path = path
         self.rooms = rooms_of(path)
         self.q = configurations(path, places)
@@ -132,7 +132,7 @@ class Driver:
     """
 
     def __init__(
-        self, controller: Controller, block: Block, density: int = 1, more: Places | None = None
+        self, controller: Controller, block: Block, density: int = 1, more: PathPlaces | None = None
     ) -> None:
         self.controller = controller
         self.variables = block.variables
@@ -170,7 +170,7 @@ class Driver:
 
     def change(self, drive: Drive, which: IntArray) -> Change:
         """Derivatives at a drive, for some of the places."""
-        places = Places(self.places.part[which], self.places.share[which])
+        places = PathPlaces(self.places.part[which], self.places.share[which])
         if has_tangents(drive.path):
             return self._by_formulas(drive, places)
         return self._by_differences(drive, which)
@@ -180,7 +180,7 @@ class Driver:
 
     # ---------------------------------------------------------- paths of joint moves alone
 
-    def _by_formulas(self, drive: Drive, places: Places) -> Change:
+    def _by_formulas(self, drive: Drive, places: PathPlaces) -> Change:
         directions = self._directions(drive)
         rooms = [reach_tangent(room.left, directions) for room in drive.rooms]
         return Change(
@@ -225,7 +225,7 @@ class Driver:
             np.zeros((len(drive.rooms), variables.size)),
             np.zeros((count + 1, axes, variables.size)),
         )
-        places = Places(self.places.part[which], self.places.share[which])
+        places = PathPlaces(self.places.part[which], self.places.share[which])
         for together in self._colours:
             moved = drive.x.copy()
             moved[together] += step[together]
@@ -306,7 +306,7 @@ class Driver:
         return [np.array(colour) for colour in colours]
 
 
-def crowd(path: Path, sigma: float, q: FloatArray, density: int) -> Places:
+def crowd(path: Path, sigma: float, q: FloatArray, density: int) -> PathPlaces:
     """Places close together round one at which something was met between places.
 
     Args:
@@ -320,7 +320,7 @@ def crowd(path: Path, sigma: float, q: FloatArray, density: int) -> Places:
     spacing = 1.0 / (counts[part] if part < len(counts) else density * _ZONE)
     shares = centre.share[0] + spacing * np.linspace(-1.5, 1.5, _CROWD)
     shares = shares[(shares >= 0.0) & (shares <= 1.0)]
-    return Places(np.full(len(shares), part), shares)
+    return PathPlaces(np.full(len(shares), part), shares)
 
 
 def _counts(path: Path, density: int) -> IntArray:
@@ -341,7 +341,7 @@ def _waypoints(path: Path) -> FloatArray:
     return np.concatenate([q[:1, 0], q[:, 1]])
 
 
-def _places(path: Path, density: int) -> Places:
+def _places(path: Path, density: int) -> PathPlaces:
     """In order along the path: straight part, zone, straight part, …"""
     counts = _counts(path, density)
     part: list[IntArray] = []
@@ -356,10 +356,10 @@ def _places(path: Path, density: int) -> Places:
             blend = np.linspace(0.0, 1.0, density * _ZONE + 1)
             part.append(np.full(len(blend), len(counts) + k))
             share.append(blend)
-    return Places(np.concatenate(part), np.concatenate(share))
+    return PathPlaces(np.concatenate(part), np.concatenate(share))
 
 
-def _place_waypoints(path: Path, places: Places, which: IntArray) -> FloatArray:
+def _place_waypoints(path: Path, places: PathPlaces, which: IntArray) -> FloatArray:
     """(K, 2), first and last waypoint whose variables change a place."""
     count = len(path.segments.scale)
     part = places.part[which]

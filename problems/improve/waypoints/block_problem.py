@@ -18,7 +18,7 @@ from ....core.collision.scene.scene import CollisionScene
 from ....core.errors import MotionError
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.gradients.derivatives import Derivatives
-from ....core.motion.gradients.sensitivity import Places
+from ....core.motion.gradients.sensitivity import PathPlaces
 from .block_emulation import Drive, Driver
 from .blocks import Block
 from .options import Task
@@ -95,7 +95,7 @@ class BlockProblem:
         clearance: float,
         least: float,
         density: int = 1,
-        more: Places | None = None,
+        more: PathPlaces | None = None,
     ) -> None:
         self.block = block
         self._driver = Driver(controller, block, density, more)

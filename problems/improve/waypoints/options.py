@@ -59,7 +59,7 @@ class Task:
             robot may pass there, and they become via points.
         pattern: proportions of the zones that freed stops and new via points get.
         vias: see `ViaCount`.
-        residual: m by which the real robot may stray from the emulated one.
+        residual: m by which the real robot may deviate from the emulated one.
         rounding: of new numbers, as the program's language writes them. With predefined zones
             points are refined once more when zones have been chosen.
         start: where the robot stands; None for the program's own start.

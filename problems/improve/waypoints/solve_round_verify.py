@@ -15,7 +15,7 @@ from ....core.collision.proof.verdict import Certificate, Verdict
 from ....core.errors import MotionError
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
-from ....core.motion.gradients.sensitivity import Places
+from ....core.motion.gradients.sensitivity import PathPlaces
 from ....core.program.program import Program
 from ..nonsmooth_sqp import Memory, Settings, search, violation
 from ..rounding import STEP
@@ -147,7 +147,7 @@ class _Manner:
     settings: Settings
     density: int
     margin: float = 0.0
-    more: Places | None = None
+    more: PathPlaces | None = None
 
 
 def _searched(shop: Workshop, job: Job, manner: _Manner) -> Answer:
@@ -255,7 +255,7 @@ def _with_room(shop: Workshop, answer: Answer) -> FloatArray:
     return x
 
 
-def _more(known: Places | None, run: Run, certificate: Certificate) -> Places | None:
+def _more(known: PathPlaces | None, run: Run, certificate: Certificate) -> PathPlaces | None:
     """Places where a proof has failed, beside those known."""
     if certificate.sigma is None or certificate.configuration is None:
         return known

@@ -20,7 +20,7 @@ from ....core.arrays import BoolArray, FloatArray, IntArray
 from ....core.collision.proof.certificate import TOLERANCE
 from ....core.collision.proof.verdict import CONTACT
 from ....core.collision.scene.scene import CollisionScene
-from .displacement import Placed, moved, placed, planar_gaps, strayed
+from .displacement import Placed, deviated, moved, placed, planar_gaps
 from .neighbourhood import CornerPath
 
 MARGIN = 1.1
@@ -115,8 +115,8 @@ class Clearing:
     Args:
         scene: cell and tool.
         clearance: m to be kept.
-        deviation: (N,) rad or m by which the links may stray from the path.
-        residual: m by which the real robot may stray from the emulated one.
+        deviation: (N,) rad or m by which the links may deviate from the path.
+        residual: m by which the real robot may deviate from the emulated one.
     """
 
     def __init__(
@@ -128,8 +128,8 @@ class Clearing:
     ) -> None:
         self._scene = scene
         self._wanted = max(clearance, LEAST) + residual
-        strays = deviation is not None and bool(np.any(deviation > 0.0))
-        self._deviation = deviation if strays else None
+        deviations = deviation is not None and bool(np.any(deviation > 0.0))
+        self._deviation = deviation if deviations else None
         self._outlines = scene.outlines
 
     def whole(self, begin: float, end: float) -> Cells:
@@ -153,7 +153,7 @@ class Clearing:
         around = self._around(sampled) if paths else along
         travel = moved(self._outlines, centre, around)
         by_sigma = moved(self._outlines, centre, along) if paths else travel
-        wanted = self._wanted + self._stray(centre)
+        wanted = self._wanted + self._deviated(centre)
         needed = wanted + MARGIN * self._both(travel)
         cell, pair = np.nonzero(cells.open)
         distance, normal = self._scene.chosen_distances(q, (cell, pair), needed[cell, pair])
@@ -181,13 +181,13 @@ class Clearing:
         pairs = self._scene.pairs
         return np.asarray(of_body[:, pairs[:, 0]] + of_body[:, pairs[:, 1]])
 
-    def _stray(self, centre: Placed) -> FloatArray:
+    def _deviated(self, centre: Placed) -> FloatArray:
         """(C, P) m."""
         scene = self._scene
         if self._deviation is None:
             return np.zeros((len(centre.position), len(scene.pairs)))
         return np.asarray(
-            strayed(scene.frames, self._outlines, scene.pairs, centre, self._deviation)
+            deviated(scene.frames, self._outlines, scene.pairs, centre, self._deviation)
         )
 
     def _shortfall(

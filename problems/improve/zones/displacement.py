@@ -131,10 +131,10 @@ def _gap(outlines: Outlines, at: Placed, m: int, pair: IntArray, normal: FloatAr
 
 
 @njit(cache=True, error_model="numpy")
-def strayed(
+def deviated(
     tree: FrameTree, outlines: Outlines, pairs: IntArray, centre: Placed, deviation: FloatArray
 ) -> FloatArray:
-    """How much nearer (C, P) m bodies come if joints stray by up to ``deviation`` (N,) either way.
+    """How much nearer (C, P) m bodies come with joints off by up to ``deviation`` (N,) either way.
 
     Joints that carry both bodies of a pair leave their distance alone, as in the certificate.
     """

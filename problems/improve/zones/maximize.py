@@ -27,7 +27,7 @@ from ..solution import RESOLUTION, Solution, measure
 from ..start_check import check_start
 from .changes import ZoneChange, changes
 from .clearing import Clearing
-from .deviation import segment_strays
+from .deviation import segment_deviations
 from .neighbourhood import Neighbourhoods
 from .options import ZoneOptions
 from .points import Points, find_points
@@ -42,7 +42,7 @@ from .sizes import Growth
 Tell = Callable[[str], None]
 
 _AIM = 1.1
-"""On strays that zones turn out to need, so that it takes few rounds until they have them."""
+"""On deviations that zones turn out to need, so that it takes few rounds until they have them."""
 _INTERRUPTED = Found(0.0, 0.0, MotionError("the search was interrupted"))
 
 
@@ -194,30 +194,30 @@ class _Maximization:
         make that more: then they grow anew, with that much room.
         """
         moves = points.route.moves
-        strays = segment_strays(self._controller, before, moves)
+        deviations = segment_deviations(self._controller, before, moves)
         trials = Neighbourhoods(self._controller.robot, points.route, self._controller.model)
         while True:
-            found = self._search(points, trials, strays)
+            found = self._search(points, trials, deviations)
             rules, rounding = self._rules(points), self._options.rounding
             zones = settle(points, self._program, trials, rules, found, rounding)
-            if _INTERRUPTED in found.values() or not strays.any():
+            if _INTERRUPTED in found.values() or not deviations.any():
                 return found, zones
             program = with_zones(self._program, points, zones)
             try:
                 run = self._controller.run(program, self._options.start)
             except MotionError:
                 return found, zones  # Some of them go together badly: these are put back.
-            needed = segment_strays(self._controller, run, moves)
-            if (needed <= strays).all():
+            needed = segment_deviations(self._controller, run, moves)
+            if (needed <= deviations).all():
                 return found, zones
-            strays = np.where(needed > strays, _AIM * needed, strays)
+            deviations = np.where(needed > deviations, _AIM * needed, deviations)
 
     def _search(
-        self, points: Points, trials: Neighbourhoods, strays: FloatArray
+        self, points: Points, trials: Neighbourhoods, deviations: FloatArray
     ) -> dict[int, Found]:
         """Every zone for itself."""
         rules = self._rules(points)
-        looks = self._looks(points, strays)
+        looks = self._looks(points, deviations)
         searches: dict[int, Asking] = {}
         zones: dict[int, ZoneOf] = {}
         for corner, largest in passable(trials, rules, points.growths).items():
@@ -240,10 +240,10 @@ class _Maximization:
             return choose(sides, allowed), by_size.__getitem__
         return Search(sides, largest, self._options.tolerance).run(), growth.zone
 
-    def _looks(self, points: Points, strays: FloatArray) -> list[Clearing]:
+    def _looks(self, points: Points, deviations: FloatArray) -> list[Clearing]:
         """What each segment is looked at by."""
         tools = (self._program.moves[index].tool for index in points.route.moves)
         return [
-            Clearing(self._scenes(tool), self._wanted, stray, self._options.residual)
-            for tool, stray in zip(tools, strays, strict=True)
+            Clearing(self._scenes(tool), self._wanted, deviation, self._options.residual)
+            for tool, deviation in zip(tools, deviations, strict=True)
         ]

@@ -22,7 +22,7 @@ class ZoneOptions:
 
     Args:
         clearance: m that all bodies keep from each other; None for the cell's own.
-        residual: m by which the real robot may stray from the emulated one.
+        residual: m by which the real robot may deviate from the emulated one.
         freed: indices of moves that end in a stop and may be passed instead.
         pattern: proportions of the zones that freed stops get.
         kept: indices of moves whose zone stays as it is.

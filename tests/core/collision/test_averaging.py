@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from flyby.core.collision.deviation.averaging import Averages
 from flyby.core.collision.deviation.averaging_kernels import tail
-from flyby.core.collision.deviation.earliest_times import Course
+from flyby.core.collision.deviation.earliest_times import EarliestTimes
 from flyby.core.collision.deviation.speed_bounds import Allowed, greatest
 from flyby.core.motion.command.commanded_motion import ramped
 from flyby.core.motion.command.smoothing import Smoothing
@@ -55,9 +55,9 @@ def timing_of(arm, zone, model: MotionModel, tcp: float = 50.0) -> Timing:
     return controller.stamp(driven, controller.plan(driven))
 
 
-def course_of(timing: Timing, model: MotionModel) -> tuple[Course, Averages]:
+def course_of(timing: Timing, model: MotionModel) -> tuple[EarliestTimes, Averages]:
     reach = Smoothing(model.smoothing).window + timing.ramp
-    course = Course.of(
+    course = EarliestTimes.of(
         timing, Allowed.of(timing, greatest(timing)), timing.rests.length, reach / 40, reach
     )
     return course, Averages(course, Smoothing(model.smoothing), timing.ramp)
@@ -121,7 +121,7 @@ def means(timing: Timing, window: float, t: np.ndarray) -> np.ndarray:
     return np.asarray((until(t) - until(t - window)) / window)
 
 
-def cells_at(timing: Timing, course: Course, q: np.ndarray) -> np.ndarray:
+def cells_at(timing: Timing, course: EarliestTimes, q: np.ndarray) -> np.ndarray:
     """(T,), cells of a course in which configurations (T, N) on its path are."""
     path_q, _, _, sigma = timing.driven_at(np.linspace(0.0, timing.duration, 4_000))
     _, nearest = cKDTree(path_q).query(q)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry
-from flyby.core.collision.deviation import bounds as strays
+from flyby.core.collision.deviation import bounds as deviations
 from flyby.core.collision.proof.certificate import TOLERANCE, certify, certify_stretch, scenes_of
 from flyby.core.collision.proof.verdict import Certificate, Verdict
 from flyby.core.errors import InputError, MotionError
@@ -469,8 +469,8 @@ def test_proofs_part_by_part_are_the_same(monkeypatch, resolution) -> None:
     for clearance in (least - 0.01, least + 0.01):
         monkeypatch.undo()
         whole = certify(controller, run, scenes_of(cell), clearance, resolution=resolution)
-        monkeypatch.setattr(strays, "_TOGETHER", 30)
-        assert len(list(strays.parts_of(run.path))) > 3
+        monkeypatch.setattr(deviations, "_TOGETHER", 30)
+        assert len(list(deviations.parts_of(run.path))) > 3
         made = certify(controller, run, scenes_of(cell), clearance, resolution=resolution)
         assert (made.verdict, made.pair, made.move) == (whole.verdict, whole.pair, whole.move)
         assert made.clearance == pytest.approx(whole.clearance, abs=1e-4)
@@ -478,7 +478,7 @@ def test_proofs_part_by_part_are_the_same(monkeypatch, resolution) -> None:
 
 
 @pytest.mark.parametrize("resolution", [None, 1e-4])
-def test_strays_that_no_bound_is_known_of_are_not_taken_for_none(resolution) -> None:
+def test_deviations_that_no_bound_is_known_of_are_not_taken_for_none(resolution) -> None:
     """A ramp before servos that lag, not averaged; said at once, not halved for ever."""
     cell = cell_with(ball((3.0, 0.0, 0.0)))
     corner, end = turned(1, 0.4) - HOME, turned(1, 0.4) + turned(2, 0.4) - 2 * HOME

@@ -9,8 +9,14 @@ import pytest
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
-from flyby.core.collision.deviation import bounds as strays_module
-from flyby.core.collision.deviation.bounds import Straying, Strays, parts_of, strays_of, stretches
+from flyby.core.collision.deviation import bounds as bounds_module
+from flyby.core.collision.deviation.bounds import (
+    Deviation,
+    DeviationBounds,
+    by_interval,
+    deviation_bounds,
+    parts_of,
+)
 from flyby.core.errors import MotionError
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.emulator.run import Run
@@ -117,17 +123,17 @@ def places(run: Run) -> tuple[np.ndarray, np.ndarray]:
     return q[moving], sigma[moving]
 
 
-def excess(strays: Strays, path_q: np.ndarray, sigma: np.ndarray, run: Run) -> float:
+def excess(deviations: DeviationBounds, path_q: np.ndarray, sigma: np.ndarray, run: Run) -> float:
     """By how much (rad) links are beyond the bounds at the best place on the path.
 
     In every direction n, n · (links − path) is at most what the ways and the rest allow.
     """
     step = np.abs(np.diff(path_q, axis=0, append=path_q[-1:]) @ DIRECTIONS.T)
-    row = stretches(strays, sigma, sigma).own
-    along = np.einsum("cwn,dn->cdw", strays.ways[row], DIRECTIONS)
-    bound = np.maximum(along * strays.share[row][:, None, :, 1], 0.0)
-    bound = np.maximum(bound, along * strays.share[row][:, None, :, 0]).sum(axis=2)
-    bound += strays.rest[row] @ np.abs(DIRECTIONS).T + step
+    row = by_interval(deviations, sigma, sigma).own
+    along = np.einsum("cwn,dn->cdw", deviations.ways[row], DIRECTIONS)
+    bound = np.maximum(along * deviations.share[row][:, None, :, 1], 0.0)
+    bound = np.maximum(bound, along * deviations.share[row][:, None, :, 0]).sum(axis=2)
+    bound += deviations.rest[row] @ np.abs(DIRECTIONS).T + step
     made = run.trajectory
     worst = -np.inf
     for q, middle in zip(made.q, made.sigma, strict=True):
@@ -141,7 +147,7 @@ def excess(strays: Strays, path_q: np.ndarray, sigma: np.ndarray, run: Run) -> f
 @pytest.mark.parametrize("name", sorted(MODELS))
 @settings(max_examples=1, deadline=None, phases=[Phase.reuse, Phase.generate])
 @given(data=st.data())
-def test_no_motion_at_any_speed_strays_further_than_is_reckoned(name, data) -> None:
+def test_no_motion_at_any_speed_deviates_further_than_is_reckoned(name, data) -> None:
     program = data.draw(programs())
     controller = Controller(ABB, ROBOT, MODELS[name])
     share = data.draw(st.floats(0.1, 0.9))
@@ -151,9 +157,9 @@ def test_no_motion_at_any_speed_strays_further_than_is_reckoned(name, data) -> N
     except MotionError:
         assume(False)
     path_q, sigma = places(run)
-    bands = strays_of(controller, run)
+    bands = deviation_bounds(controller, run)
     for driven in (run, slower):
-        assert min(excess(strays, path_q, sigma, driven) for strays in bands) < 2e-6
+        assert min(excess(deviations, path_q, sigma, driven) for deviations in bands) < 2e-6
 
 
 def test_what_gears_give_way_by_costs_nothing() -> None:
@@ -167,7 +173,7 @@ def test_what_gears_give_way_by_costs_nothing() -> None:
     found = []
     for one in (model, replace(model, elasticity=Elasticity())):
         controller = Controller(ABB, ROBOT, one)
-        found.append(strays_of(controller, controller.run(program, period=0.03)))
+        found.append(deviation_bounds(controller, controller.run(program, period=0.03)))
     for soft, stiff in zip(*found, strict=True):
         np.testing.assert_array_equal(soft.most, stiff.most)
 
@@ -185,16 +191,16 @@ def test_parts_of_a_path_are_left_as_far_as_when_all_of_it_is_looked_at(name, mo
     program = Program(tuple(moves), start=JointTarget(tuple(map(float, HOME))))
     controller = Controller(ABB, ROBOT, MODELS[name])
     run = controller.run(program, period=0.03)
-    whole = strays_of(controller, run)
-    monkeypatch.setattr(strays_module, "_TOGETHER", 40)
+    whole = deviation_bounds(controller, run)
+    monkeypatch.setattr(bounds_module, "_TOGETHER", 40)
     parts, first_interval = list(parts_of(run.path)), run.path.pieces.first_interval
     assert len(parts) > 5 and parts[-1][1] == len(first_interval) - 1
-    straying = Straying.of(controller, run)
+    deviation_of_run = Deviation.of(controller, run)
     for first, last in parts:
         inside = np.linspace(*run.path.pieces.edge[[first, last]], 60)[1:-1]
-        made = straying.over(int(first_interval[first]), int(first_interval[last]))
+        made = deviation_of_run.over(int(first_interval[first]), int(first_interval[last]))
         for one, all_of_it in zip(made, whole, strict=True):
-            found, wanted = (stretches(s, inside, inside).most for s in (one, all_of_it))
+            found, wanted = (by_interval(s, inside, inside).most for s in (one, all_of_it))
             np.testing.assert_allclose(found, wanted, rtol=1e-6, atol=1e-9)
 
 
@@ -209,7 +215,7 @@ WAITING = {
 @pytest.mark.parametrize("name", sorted(WAITING))
 @settings(max_examples=1, deadline=None, phases=[Phase.reuse, Phase.generate])
 @given(data=st.data())
-def test_no_motion_strays_further_however_little_it_rests(name, data) -> None:
+def test_no_motion_deviates_further_however_little_it_rests(name, data) -> None:
     """Crawling moves, an override of time, and both; each within one and the same bounds."""
     program = data.draw(programs(0.04))
     controller = Controller(ABB, ROBOT, WAITING[name])
@@ -222,7 +228,7 @@ def test_no_motion_strays_further_however_little_it_rests(name, data) -> None:
         assume(False)
     slower += [in_slow_time(controller, made, rate) for made in (run, slower[-1]) for rate in rates]
     path_q, sigma = places(run)
-    bands = strays_of(controller, run)
+    bands = deviation_bounds(controller, run)
     assert len(bands) in (1, 3)
     for driven in (run, *slower):
-        assert min(excess(strays, path_q, sigma, driven) for strays in bands) < 2e-6
+        assert min(excess(deviations, path_q, sigma, driven) for deviations in bands) < 2e-6

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Obstacle
 from flyby.core.cell.geometry import Geometry
-from flyby.core.collision.deviation.bounds import Strays, stretches
+from flyby.core.collision.deviation.bounds import DeviationBounds, by_interval
 from flyby.core.collision.proof.boxes import Boxes
 from flyby.core.collision.proof.items import Items, Sweeps
 from flyby.core.collision.proof.sweep import sweep
@@ -68,17 +68,23 @@ def boxed(q: FloatArray, rate: FloatArray, bend: FloatArray) -> Boxes:
 
 
 def asked(
-    scene: CollisionScene, boxes: Boxes, items: Items, astray: FloatArray, residual: float = 0.0
+    scene: CollisionScene, boxes: Boxes, items: Items, most_off: FloatArray, residual: float = 0.0
 ) -> Sweeps:
-    return asked_within(scene, boxes, items, Strays.within(astray), residual)
+    return asked_within(scene, boxes, items, DeviationBounds.within(most_off), residual)
 
 
 def asked_within(
-    scene: CollisionScene, boxes: Boxes, items: Items, strays: Strays, residual: float = 0.0
+    scene: CollisionScene,
+    boxes: Boxes,
+    items: Items,
+    deviations: DeviationBounds,
+    residual: float = 0.0,
 ) -> Sweeps:
     found = Sweeps(*(np.empty(len(items.pair)) for _ in Sweeps._fields))
-    here = stretches(strays, np.zeros(1), np.zeros(1))
-    sweep(scene.frames, scene.outlines, scene.pairs, boxes, strays, here, residual, items, found)
+    here = by_interval(deviations, np.zeros(1), np.zeros(1))
+    sweep(
+        scene.frames, scene.outlines, scene.pairs, boxes, deviations, here, residual, items, found
+    )
     return found
 
 
@@ -108,26 +114,26 @@ def test_no_bound_is_above_a_sampled_distance(data, name) -> None:
 
 @settings(max_examples=40)
 @given(st.data(), st.sampled_from(sorted(SCENES)))
-def test_strays_take_off_what_joints_off_the_path_can_do(data, name) -> None:
+def test_deviations_take_off_what_joints_off_the_path_can_do(data, name) -> None:
     scene = SCENES[name]
     q, rate, bend = data.draw(motions(scene.robot.size))
-    astray = np.array([data.draw(st.floats(0.0, 0.02)) for _ in q])
+    most_off = np.array([data.draw(st.floats(0.0, 0.02)) for _ in q])
     seed = data.draw(st.integers(0, 10**6))
-    off = np.random.default_rng(seed).choice([-1.0, 1.0], (len(T), len(q))) * astray
+    off = np.random.default_rng(seed).choice([-1.0, 1.0], (len(T), len(q))) * most_off
     q_off = q + np.outer(T, rate) + 0.5 * np.outer(T**2, bend) + off
     least = scene.distances(q_off).distance.min(axis=0)
     at_middle = scene.distances(q[None])
     pairs = np.arange(len(scene.pairs))
     rows = np.zeros(len(pairs), np.int64)
     items = Items(rows, pairs, at_middle.normal[0], at_middle.distance[0])
-    found = asked(scene, boxed(q, rate, bend), items, astray)
+    found = asked(scene, boxed(q, rate, bend), items, most_off)
     apart = least > 0.0
     assert (found.lower[apart] <= least[apart] + 1e-9).all()
 
 
 @settings(max_examples=60)
 @given(st.data(), st.sampled_from(sorted(SCENES)))
-def test_strays_along_ways_take_off_what_they_can_do(data, name) -> None:
+def test_deviations_along_ways_take_off_what_they_can_do(data, name) -> None:
     """Each joint off the path along two ways, by shares of its own, and by what is left."""
     scene = SCENES[name]
     size = scene.robot.size
@@ -138,7 +144,9 @@ def test_strays_along_ways_take_off_what_they_can_do(data, name) -> None:
     share[0, 0] *= rng.integers(0, 2)
     rest = rng.uniform(0, 1e-3, size)
     most = rest + np.abs(share).max(axis=1) @ np.abs(ways)
-    strays = Strays(np.array([-1.0, 1.0]), ways[None], share[None], rest[None], most[None])
+    deviations = DeviationBounds(
+        np.array([-1.0, 1.0]), ways[None], share[None], rest[None], most[None]
+    )
     factor = np.where(rng.integers(0, 2, (len(T), 2)), share[:, 0], share[:, 1])
     off = factor @ ways + rng.choice([-1.0, 1.0], (len(T), size)) * rest
     q_off = q + np.outer(T, rate) + 0.5 * np.outer(T**2, bend) + off
@@ -146,12 +154,12 @@ def test_strays_along_ways_take_off_what_they_can_do(data, name) -> None:
     at_middle = scene.distances(q[None])
     pairs = np.arange(len(scene.pairs))
     items = Items(np.zeros(len(pairs), np.int64), pairs, at_middle.normal[0], at_middle.distance[0])
-    found = asked_within(scene, boxed(q, rate, bend), items, strays)
+    found = asked_within(scene, boxed(q, rate, bend), items, deviations)
     apart = least > 0.0
     assert (found.lower[apart] <= least[apart] + 1e-9).all()
     boxes = asked(scene, boxed(q, rate, bend), items, most)
     assert (found.lower >= boxes.lower - 1e-12).all()
-    assert (found.stray <= boxes.stray + 1e-12).all()
+    assert (found.deviation <= boxes.deviation + 1e-12).all()
 
 
 def test_a_plane_is_second_order_near_a_grazing_contact() -> None:
@@ -186,4 +194,4 @@ def test_a_residual_counts_once_for_each_body_that_moves() -> None:
         frames = [scene.bodies[b].frame for b in scene.pairs[k]]
         shared = scene.frames.moves[frames[0]] & scene.frames.moves[frames[1]]
         moving = sum(bool((scene.frames.moves[f] & ~shared).any()) for f in frames)
-        assert found.stray[k] == pytest.approx(0.001 * moving)
+        assert found.deviation[k] == pytest.approx(0.001 * moving)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .....core.collision.deviation.bounds import Strays
+from .....core.collision.deviation.bounds import DeviationBounds
 from .....core.collision.proof.certificate import BUDGET
 from .....core.collision.proof.enclosure import Enclosure
 from .....core.collision.proof.findings import Budget, Cause, Finding
@@ -58,7 +58,7 @@ def prove(
     """
     enclosure = enclosure_of(task, motion)
     left = Budget(BUDGET)
-    prover = Prover(enclosure, scene, Strays.within(np.zeros(task.robot.size)), 0.0, left)
+    prover = Prover(enclosure, scene, DeviationBounds.within(np.zeros(task.robot.size)), 0.0, left)
     wanted = max(clearance, CONTACT)
     spans, pieces = [(0.0, motion.duration)], range(len(motion))
     finding = prover.prove(spans, pieces, wanted)

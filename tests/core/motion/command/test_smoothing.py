@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.motion.command.smoothing import Motion, Smoothing, window_for_jerk
+from flyby.core.motion.command.smoothing import JointMotion, Smoothing, window_for_jerk
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
@@ -43,16 +43,16 @@ def test_limits_and_ends_hold_and_the_motion_lasts_the_window_longer(arm, window
 
 @settings(max_examples=6, deadline=None)
 @given(window=WINDOWS)
-def test_no_joint_strays_further_than_its_bound(arm, window) -> None:
+def test_no_joint_deviates_further_than_its_bound(arm, window) -> None:
     """At most a T²/24 from where it would be in the middle of the window."""
     smooth = arm.controller(MotionModel(smoothing=(window,))).run(program(arm), period=0.002)
     t = smooth.trajectory.t
     middle = np.clip(t - 0.5 * window, 0, smooth.timing.duration)
-    stray = np.abs(smooth.trajectory.q - smooth.timing.states_at(middle)[0]).max(axis=0)
+    deviation = np.abs(smooth.trajectory.q - smooth.timing.states_at(middle)[0]).max(axis=0)
     inside = (t > 0.5 * window) & (t < t[-1] - 0.5 * window)
     bound = arm.robot.limits.acceleration * window**2 / 24
-    assert (stray[None] <= bound * 1.01 + 1e-9).all()
-    assert inside.any() and stray.max() > 1e-7
+    assert (deviation[None] <= bound * 1.01 + 1e-9).all()
+    assert inside.any() and deviation.max() > 1e-7
 
 
 def test_the_mean_of_a_trapezoid_is_known() -> None:
@@ -61,7 +61,7 @@ def test_the_mean_of_a_trapezoid_is_known() -> None:
     dq = np.minimum(np.minimum(t, 1.0), 3.0 - t)
     q = np.where(t < 1, 0.5 * t**2, np.where(t < 2, t - 0.5, 2 - 0.5 * (3 - t) ** 2))
     at = np.array([0.6, 1.7, 2.8])
-    mean, rate, bend = Smoothing((0.2,)).command(Motion(t, q[:, None], dq[:, None]), at)
+    mean, rate, bend = Smoothing((0.2,)).command(JointMotion(t, q[:, None], dq[:, None]), at)
     middle = np.array([0.5 * 0.5**2, 1.6 - 0.5, 2 - 0.5 * 0.3**2])
     np.testing.assert_allclose(mean[:, 0] - middle, [0.04 / 24, 0, -0.04 / 24], atol=1e-12)
     np.testing.assert_allclose(rate[:, 0], [0.5, 1.0, 0.3], atol=1e-12)
@@ -77,14 +77,14 @@ def test_rates_are_those_of_the_mean(seed, window) -> None:
     dq = np.zeros((26, 2))
     at, h = np.sort(rng.uniform(0, 1 + window, 12)), 1e-5
     at = at[np.abs(at[:, None] - np.concatenate([t, t + window])).min(axis=1) > 2 * h]
-    smoothing, motion = Smoothing((window,)), Motion(t, q, dq)
+    smoothing, motion = Smoothing((window,)), JointMotion(t, q, dq)
     _, rate, bend = smoothing.command(motion, at)
     above, below = (smoothing.command(motion, at + s * h) for s in (1, -1))
     np.testing.assert_allclose((above[0] - below[0]) / (2 * h), rate, atol=1e-6)
     np.testing.assert_allclose((above[1] - below[1]) / (2 * h), bend, rtol=1e-4, atol=1e-4)
 
 
-def trapezoids(seed: int, begin: float = 0.0) -> Motion:
+def trapezoids(seed: int, begin: float = 0.0) -> JointMotion:
     """Two joints that start, pause and stop at bounded accelerations; knots every 2 ms."""
     rng = np.random.default_rng(seed)
     t = np.linspace(0.0, 1.2, 601)
@@ -97,7 +97,7 @@ def trapezoids(seed: int, begin: float = 0.0) -> Motion:
     q = rng.normal(size=2) + np.concatenate(
         [np.zeros((1, 2)), np.cumsum(0.5 * np.diff(t)[:, None] * (rate[1:] + rate[:-1]), axis=0)]
     )
-    return Motion(begin + t, q, rate)
+    return JointMotion(begin + t, q, rate)
 
 
 CASCADES = st.lists(st.floats(0.005, 0.08), min_size=1, max_size=4).map(tuple)
@@ -138,22 +138,22 @@ def test_a_cascade_begins_and_ends_at_rest_and_passes_no_limit(seed, widths) -> 
 
 @settings(max_examples=20, deadline=None)
 @given(seed=st.integers(0, 1000), widths=CASCADES)
-def test_a_cascade_strays_no_further_than_half_its_variance_allows(seed, widths) -> None:
+def test_a_cascade_deviates_no_further_than_half_its_variance_allows(seed, widths) -> None:
     motion, smoothing = trapezoids(seed), Smoothing(widths)
     t = np.linspace(0.0, 1.2 + smoothing.window, 500)
     off = smoothing.command(motion, t)[0] - motion.at(t - 0.5 * smoothing.window)[0]
     limit = np.abs(np.diff(motion.dq, axis=0)).max(axis=0) / 0.002
-    bound = limit * smoothing.stray
+    bound = limit * smoothing.deviation
     assert (np.abs(off).max(axis=0) <= bound * (1 + 1e-6) + 1e-12).all()
 
 
 @pytest.mark.parametrize("widths", [(0.06,), (0.02, 0.05), (0.04, 0.04, 0.04)])
-def test_a_cascade_strays_just_that_far_under_a_steady_acceleration(widths) -> None:
+def test_a_cascade_deviates_just_that_far_under_a_steady_acceleration(widths) -> None:
     t, smoothing = np.linspace(0, 1, 201), Smoothing(widths)
-    motion = Motion(t, 1.5 * t[:, None] ** 2, 3.0 * t[:, None])
+    motion = JointMotion(t, 1.5 * t[:, None] ** 2, 3.0 * t[:, None])
     at = np.array([0.5, 0.8])
     off = smoothing.command(motion, at)[0] - motion.at(at - 0.5 * smoothing.window)[0]
-    np.testing.assert_allclose(off, 3.0 * smoothing.stray, rtol=1e-6)
+    np.testing.assert_allclose(off, 3.0 * smoothing.deviation, rtol=1e-6)
 
 
 @settings(max_examples=15, deadline=None)
@@ -162,7 +162,7 @@ def test_a_cascade_is_linear_and_knows_no_order_and_no_beginning(seeds, widths) 
     one, other = (trapezoids(seed) for seed in seeds)
     smoothing = Smoothing(widths)
     t = np.linspace(0.0, 1.2 + smoothing.window, 200)
-    both = Motion(one.t, one.q - 2 * other.q, one.dq - 2 * other.dq)
+    both = JointMotion(one.t, one.q - 2 * other.q, one.dq - 2 * other.dq)
     parts = zip(smoothing.command(one, t), smoothing.command(other, t), strict=True)
     for made, (a, b) in zip(smoothing.command(both, t), parts, strict=True):
         np.testing.assert_allclose(made, a - 2 * b, atol=1e-8)
@@ -196,7 +196,7 @@ def test_widths_have_exact_derivatives(seed, widths) -> None:
 def test_an_hour_loses_no_digits() -> None:
     """The same motion at the end of an hour of rest at an angle far from zero."""
     motion, smoothing = trapezoids(7), Smoothing((0.04, 0.04, 0.04))
-    late = Motion(
+    late = JointMotion(
         np.append(-3600.0, motion.t), *(np.vstack([a[:1], a]) for a in (motion.q, motion.dq))
     )
     t = np.linspace(0.0, 1.3, 100)

@@ -15,7 +15,7 @@ from flyby.core.motion.geometry.corners import Room
 from flyby.core.motion.geometry.zones import ZonePlanner
 from flyby.core.motion.gradients.sensitivity import (
     Directions,
-    Places,
+    PathPlaces,
     configurations,
     has_tangents,
     reach_tangent,
@@ -66,9 +66,11 @@ def controller(blend: Blend, overlap: Overlap = Overlap.HALF) -> Controller:
     return Controller(find_vendor("abb"), ROBOT, model)
 
 
-def everywhere(path: Path, each: int = 7) -> Places:
+def everywhere(path: Path, each: int = 7) -> PathPlaces:
     count = 2 * len(path.segments.scale) - 1
-    return Places(np.repeat(np.arange(count), each), np.tile(np.linspace(0.0, 1.0, each), count))
+    return PathPlaces(
+        np.repeat(np.arange(count), each), np.tile(np.linspace(0.0, 1.0, each), count)
+    )
 
 
 def rooms(path: Path) -> list[Room]:
@@ -121,7 +123,7 @@ def test_places_begin_and_end_where_zones_do(angles: list[list[float]], radii: l
     assume(spread_out(q))
     path = controller(PARABOLA).plan(program(q, np.array(radii)))
     count = len(path.segments.scale)
-    ends = Places(np.repeat(np.arange(2 * count - 1), 2), np.tile([0.0, 1.0], 2 * count - 1))
+    ends = PathPlaces(np.repeat(np.arange(2 * count - 1), 2), np.tile([0.0, 1.0], 2 * count - 1))
     sigma, found = sigma_of(path, ends), configurations(path, ends)
     # In order along the path, each part begins where the one before ends.
     order = [k for i in range(count - 1) for k in (i, count + i)] + [count - 1]

@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
 from flyby.core.motion.gradients.stamping_adjoint import StampGradient, stamp_adjoint
-from flyby.core.motion.timing.stamping import Limits, Stamp, StampingError, stamp
+from flyby.core.motion.timing.stamping import Stamp, StampingError, StampLimits, stamp
 
 INPUTS = ("spacing", "a", "b", "lower", "upper", "ceiling")
 STEP = 1e-5
 
 
-def random_limits(seed: int, count: int, rows: int, curvature: float) -> Limits:
+def random_limits(seed: int, count: int, rows: int, curvature: float) -> StampLimits:
     """Rows of any direction, a part of the bounds infinite, sometimes a stop inside."""
     rng = np.random.default_rng(seed)
     shape = (count, 2, rows)
@@ -25,7 +25,7 @@ def random_limits(seed: int, count: int, rows: int, curvature: float) -> Limits:
     ceiling = rng.uniform(0.1, 4.0, count + 1)
     if count > 3 and rng.random() < 0.3:
         ceiling[rng.integers(2, count - 1)] = 0.0
-    return Limits(
+    return StampLimits(
         rng.uniform(0.05, 1.0, count),
         rng.normal(size=shape),
         curvature * rng.normal(size=shape),
@@ -41,7 +41,7 @@ def compiled() -> None:
     stamp_adjoint(stamp(random_limits(0, 4, 2, 0.5)))
 
 
-def moved(limits: Limits, directions: dict[str, np.ndarray], step: float) -> Limits:
+def moved(limits: StampLimits, directions: dict[str, np.ndarray], step: float) -> StampLimits:
     """The limits one step along the directions; infinite bounds stay."""
     with np.errstate(invalid="ignore"):
         return dataclasses.replace(
@@ -62,7 +62,7 @@ def difference(functions: list[float], step: float) -> float:
 
 
 def stamps_around(
-    limits: Limits, directions: dict[str, np.ndarray], x_start: float, x_end: float
+    limits: StampLimits, directions: dict[str, np.ndarray], x_start: float, x_end: float
 ) -> list[Stamp]:
     """Stamps at -2, -1, 1, 2 steps; rejects the example unless all have the same active set."""
     try:

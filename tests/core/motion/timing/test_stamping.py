@@ -10,9 +10,9 @@ from scipy.optimize import linprog
 
 from flyby.core.errors import InputError
 from flyby.core.motion.timing.stamping import (
-    Limits,
     Stamp,
     StampingError,
+    StampLimits,
     StandingStillError,
     joint_limits,
     stamp,
@@ -24,14 +24,14 @@ RATES = ("a", "b", "lower", "upper")
 
 def random_limits(
     seed: int, count: int, rows: int, *, curvature: float = 1.0, unbounded: float = 0.2
-) -> Limits:
+) -> StampLimits:
     """Rows of any direction; a share ``unbounded`` of the bounds is infinite."""
     rng = np.random.default_rng(seed)
     shape = (count, 2, rows)
     lower, upper = -rng.uniform(0.1, 2.0, shape), rng.uniform(0.1, 2.0, shape)
     lower[rng.random(shape) < unbounded] = -np.inf
     upper[rng.random(shape) < unbounded] = np.inf
-    return Limits(
+    return StampLimits(
         spacing=rng.uniform(0.05, 1.0, count),
         a=rng.normal(size=shape),
         b=curvature * rng.normal(size=shape),
@@ -41,7 +41,7 @@ def random_limits(
     )
 
 
-def half_planes(limits: Limits, first: int) -> tuple[np.ndarray, np.ndarray]:
+def half_planes(limits: StampLimits, first: int) -> tuple[np.ndarray, np.ndarray]:
     """(A, h) with A x[first:] ≤ h: all finite rows of the intervals from ``first`` on."""
     count = len(limits.spacing)
     normals, bounds = [], []
@@ -62,7 +62,7 @@ def half_planes(limits: Limits, first: int) -> tuple[np.ndarray, np.ndarray]:
 
 def maximum(
     weights: np.ndarray,
-    limits: Limits,
+    limits: StampLimits,
     first: int,
     boxes: np.ndarray,
     extra: np.ndarray | float = 0.0,
@@ -77,7 +77,7 @@ def maximum(
     return result.x
 
 
-def row_values(limits: Limits, result: Stamp) -> tuple[np.ndarray, np.ndarray]:
+def row_values(limits: StampLimits, result: Stamp) -> tuple[np.ndarray, np.ndarray]:
     """Value of each row, and the size of its terms."""
     x = np.stack([result.x[:-1], result.x[1:]], axis=1)[..., None]
     u = result.u[:, None, None]
@@ -85,14 +85,14 @@ def row_values(limits: Limits, result: Stamp) -> tuple[np.ndarray, np.ndarray]:
     return limits.a * u + limits.b * x, scale + np.abs(limits.b * x)
 
 
-def assert_within_limits(limits: Limits, result: Stamp) -> None:
+def assert_within_limits(limits: StampLimits, result: Stamp) -> None:
     values, size = row_values(limits, result)
     assert np.all(values <= limits.upper + 1e-12 * size)
     assert np.all(values >= limits.lower - 1e-12 * size)
     assert np.all((result.x >= 0.0) & (result.x <= limits.ceiling))
 
 
-def joint_path(seed: int, count: int = 60, joints: int = 3) -> Limits:
+def joint_path(seed: int, count: int = 60, joints: int = 3) -> StampLimits:
     """A smooth joint path, finely sampled."""
     rng = np.random.default_rng(seed)
     sigma = np.linspace(0.0, 1.0, count + 1)[:, None]
@@ -110,7 +110,7 @@ def joint_path(seed: int, count: int = 60, joints: int = 3) -> Limits:
     )
 
 
-def monotone(limits: Limits) -> Limits:
+def monotone(limits: StampLimits) -> StampLimits:
     """The limits with |b| ≤ |a| / (2Δ): then one x is the greatest at all knots at once."""
     largest = np.abs(limits.a) / (2.0 * limits.spacing[:, None, None])
     return dataclasses.replace(limits, b=np.clip(limits.b, -largest, largest))
@@ -130,9 +130,9 @@ widths = st.integers(1, 5)
 counts = st.integers(2, 6)
 
 
-def interval(limits: Limits, k: int) -> Limits:
+def interval(limits: StampLimits, k: int) -> StampLimits:
     """The limits of interval k alone."""
-    return Limits(
+    return StampLimits(
         limits.spacing[k : k + 1],
         *(getattr(limits, name)[k : k + 1] for name in RATES),
         limits.ceiling[k : k + 2],
@@ -218,7 +218,7 @@ def test_more_limits_are_never_faster(seed, count, rows):
     extra = monotone(
         dataclasses.replace(random_limits(seed + 1, count, rows), spacing=limits.spacing)
     )
-    both = Limits(
+    both = StampLimits(
         limits.spacing,
         *(np.concatenate([getattr(limits, n), getattr(extra, n)], axis=2) for n in RATES),
         np.minimum(limits.ceiling, extra.ceiling),
@@ -229,7 +229,7 @@ def test_more_limits_are_never_faster(seed, count, rows):
 @given(seeds, st.integers(2, 40), widths)
 def test_path_driven_backwards_takes_as_long(seed, count, rows):
     limits = monotone(random_limits(seed, count, rows))
-    backwards = Limits(
+    backwards = StampLimits(
         limits.spacing[::-1],
         -limits.a[::-1, ::-1],
         *(getattr(limits, name)[::-1, ::-1] for name in ("b", "lower", "upper")),
@@ -241,7 +241,7 @@ def test_path_driven_backwards_takes_as_long(seed, count, rows):
 @given(seeds)
 def test_smooth_joint_path_takes_as_long_backwards(seed):
     limits = joint_path(seed, count=200)
-    backwards = Limits(
+    backwards = StampLimits(
         limits.spacing[::-1],
         -limits.a[::-1, ::-1],
         *(getattr(limits, name)[::-1, ::-1] for name in ("b", "lower", "upper")),
@@ -265,7 +265,7 @@ def test_faster_joints_take_proportionally_less_time(seed, factor):
 @given(seeds, st.floats(-12.0, 12.0))
 def test_unit_of_the_path_parameter_does_not_matter(seed, exponent):
     limits, factor = monotone(random_limits(seed, 20, 4)), 10.0**exponent
-    rescaled = Limits(
+    rescaled = StampLimits(
         limits.spacing * factor,
         limits.a / factor,
         limits.b / factor**2,
@@ -290,7 +290,7 @@ def test_stop_inside_splits_the_path(seed, knot):
     limits = joint_path(seed)
     limits.ceiling[knot] = 0.0
     parts = [
-        Limits(
+        StampLimits(
             limits.spacing[part],
             *(getattr(limits, name)[part] for name in RATES),
             limits.ceiling[part.start : part.stop + 1],
@@ -301,7 +301,7 @@ def test_stop_inside_splits_the_path(seed, knot):
     assert stamp(limits).duration == pytest.approx(expected, rel=1e-12)
 
 
-def straight(count: int, length: float, velocity: float, acceleration: float) -> Limits:
+def straight(count: int, length: float, velocity: float, acceleration: float) -> StampLimits:
     """A single joint that moves by ``length``."""
     return joint_limits(
         np.full(count, 1.0 / count),
@@ -395,7 +395,7 @@ def test_unusable_numbers_are_named(name, value, message):
 
 def test_wrong_shapes_are_refused():
     with pytest.raises(InputError, match="spacing"):
-        Limits(*(np.zeros(0),) * 6)
+        StampLimits(*(np.zeros(0),) * 6)
     sound = straight(4, 1.0, 1.0, 1.0)
     for name in ("a", "b", "lower", "upper", "ceiling"):
         with pytest.raises(InputError, match=f"^{name} has shape"):

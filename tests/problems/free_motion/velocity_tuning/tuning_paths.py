@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.motion.timing.stamping import Limits, joint_limits
+from flyby.core.motion.timing.stamping import StampLimits, joint_limits
 from flyby.core.motion.timing.timing import Timing
 from flyby.core.program.program import Program
 from flyby.core.program.zone import Radius
@@ -45,7 +45,7 @@ def slider(
     )
     ceiling = limits.ceiling.copy()
     ceiling[[0, -1]] = 0.0
-    limits = Limits(spacing, limits.a, limits.b, limits.lower, limits.upper, ceiling)
+    limits = StampLimits(spacing, limits.a, limits.b, limits.lower, limits.upper, ceiling)
     return FixedPath(limits, one, 0.0 * one, Rigid(inertia * one, 0.0 * one, held * one))
 
 

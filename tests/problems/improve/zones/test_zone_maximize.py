@@ -27,7 +27,7 @@ from flyby.core.robot.shape import Box, Sphere
 from flyby.core.spatial.pose import Pose
 from flyby.problems.improve.rounding import Rounding
 from flyby.problems.improve.zones import maximize
-from flyby.problems.improve.zones.deviation import segment_strays
+from flyby.problems.improve.zones.deviation import segment_deviations
 from flyby.problems.improve.zones.maximize import ZoneSolution, maximize_zones
 from flyby.problems.improve.zones.options import ZoneOptions
 from flyby.problems.improve.zones.points import Points, find_points, passable_stops
@@ -415,7 +415,7 @@ def test_zones_leave_room_for_what_their_own_smoothing_does(
     made = maximize_zones(controller, slow, _cell())
     assert made.proven and made.changed and not refused
     run = controller.run(made.program)
-    needed = segment_strays(controller, run, run.path.route.moves)
+    needed = segment_deviations(controller, run, run.path.route.moves)
     assert (needed <= grown[-len(needed) :]).all() and needed.max() > 1e-4
 
 

@@ -25,7 +25,7 @@ from flyby.core.registry import find_vendor
 from flyby.core.robot.shape import Sphere
 from flyby.core.spatial.pose import Pose
 from flyby.problems.improve.zones.clearing import SLACK, Clearing, Shortfall
-from flyby.problems.improve.zones.displacement import placed, strayed
+from flyby.problems.improve.zones.displacement import deviated, placed
 from flyby.problems.improve.zones.maximize import maximize_zones
 from flyby.problems.improve.zones.neighbourhood import CornerPath, Neighbourhoods
 from flyby.problems.improve.zones.predefined import choose
@@ -274,11 +274,11 @@ def test_no_pair_comes_nearer_by_straying_joints_than_is_reckoned(seed: int) -> 
     off = q + made.choice([-1.0, 1.0], (20, 6)) * deviation
     here, there = scene.distances(q[None]).distance[0], scene.distances(off).distance.min(axis=0)
     centre = placed(scene.frames, q[None])
-    most = strayed(scene.frames, scene.outlines, scene.pairs, centre, deviation)[0]
+    most = deviated(scene.frames, scene.outlines, scene.pairs, centre, deviation)[0]
     assert (there >= here - most - 1e-6)[here > 0.0].all()
     # The first joint carries the whole arm, and changes nothing between two of its bodies.
     alone = np.array([0.01, 0.0, 0.0, 0.0, 0.0, 0.0])
-    most = strayed(scene.frames, scene.outlines, scene.pairs, centre, alone)[0]
+    most = deviated(scene.frames, scene.outlines, scene.pairs, centre, alone)[0]
     own = scene.frames.moves[scene.outlines.frame[scene.pairs], 0].all(axis=1)
     assert own.any() and (most[own] == 0.0).all() and (most[~own] > 0.0).all()
 
