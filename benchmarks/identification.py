@@ -49,7 +49,7 @@ from flyby.identification.fit.problem import first_nuisances
 from flyby.identification.fit.run_pool import RunPool
 from flyby.identification.fit.selection import LeftOut, leave_out
 from flyby.identification.logs import load_run
-from flyby.identification.logs.records import robot_of_record
+from flyby.identification.logs.records import find_record
 from flyby.identification.prediction import Prediction
 
 ABB = "abb/irb6640-180-255"
@@ -66,9 +66,9 @@ def files() -> dict[str, list[Path]]:
         return {}
     found: dict[str, list[Path]] = {}
     for path in sorted(Path(folder).glob("**/*.json")):
-        robot = robot_of_record(path)
-        if robot is not None:
-            found.setdefault(robot, []).append(path)
+        record = find_record(path)
+        if record is not None:
+            found.setdefault(record.robot, []).append(path)
     return found
 
 
@@ -82,10 +82,9 @@ def parameters(robot: str) -> ParameterSet:
 @cache
 def prepared(path: Path) -> PreparedRun:
     """A run, laid on what is emulated today."""
-    robot = robot_of_record(path)
-    assert robot is not None
-    arm, vendor = find_robot(robot), find_vendor(robot.split("/")[0])
-    return prepare(load_run(path, find_robot), vendor, arm, vendor.motion_of(arm))
+    run = load_run(path, find_robot)
+    arm, vendor = find_robot(run.robot), find_vendor(run.robot.split("/")[0])
+    return prepare(run, vendor, arm, vendor.motion_of(arm))
 
 
 @cache

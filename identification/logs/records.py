@@ -10,6 +10,7 @@ writes them.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -79,6 +80,43 @@ def load_run(path: Path, robots: Callable[[str], Robot]) -> LoggedRun:
     data = read_json(path)
     if not isinstance(data, dict):
         raise InputError(f"{path}: not a run: an object with robot, log and moves is expected")
+    return _run(path, data, robots)
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """A record of a run that has been parsed.
+
+    Args:
+        path: of the JSON file.
+        robot: catalogue name.
+        log: that it names.
+        data: all that it holds.
+    """
+
+    path: Path
+    robot: str
+    log: Path
+    data: Mapping[str, Any]
+
+    def run(self, robots: Callable[[str], Robot]) -> LoggedRun:
+        """The run; see `load_run`."""
+        return _run(self.path, dict(self.data), robots)
+
+
+def find_record(path: Path) -> Record | None:
+    """The record of a run that a JSON file is; None of other files."""
+    try:
+        data = read_json(path)
+        if not {"moves", "log"} <= set(data):
+            return None
+        log = path.parent / str(data["log"]["file"])
+        return Record(path, _robot(str(data["robot"])), log, data)
+    except (TypeError, KeyError, InputError):
+        return None
+
+
+def _run(path: Path, data: dict[str, Any], robots: Callable[[str], Robot]) -> LoggedRun:
     try:
         log = path.parent / data["log"]["file"]
         robot = _robot(str(data["robot"]))
@@ -159,23 +197,6 @@ def _place(entry: dict[str, Any], robot: Robot, tcp: FloatArray) -> FloatArray:
 def _blended(zone: Mapping[str, Any]) -> float:
     """m, how far from a waypoint orientations may blend."""
     return max(float(zone.get(key, 0.0)) for key in ("radius_m", "rule_radius_m", "pzone_ori_m"))
-
-
-def robot_of_record(path: Path) -> str | None:
-    """Catalogue name of the robot of a record of a run; None of other files."""
-    try:
-        data = read_json(path)
-        return _robot(str(data["robot"])) if {"moves", "log"} <= set(data) else None
-    except (TypeError, KeyError, InputError):
-        return None
-
-
-def log_of_record(path: Path) -> Path | None:
-    """The log that a record of a run names; None of other files."""
-    try:
-        return path.parent / str(read_json(path)["log"]["file"])
-    except (TypeError, KeyError, InputError):
-        return None
 
 
 def _robot(name: str) -> str:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from ...core.robot.model import Robot
     from ...core.vendor import Vendor
     from ...identification.logs import Columns, LoggedRun
+    from ...identification.logs.records import Record
 
 RECORD = ".json"
 LOGS = (".csv", ".txt", ".tsv", ".log", ".xml")
@@ -56,15 +57,16 @@ def find_runs(
     others = 0
     for path in paths:
         named = not path.is_dir()
-        for file in [path] if named else list(_in_folder(path, vendor)):
+        for file, record in [(path, _record(path))] if named else _in_folder(path, vendor):
             if file in files:
                 continue
-            if not named and _of_another(file, robot):
+            if not named and record is not None and record.robot != robot.name:
                 others += 1
                 continue
             files.append(file)
-            logs += [log for log in [_log_of(file)] if log is not None]
-            runs.append(_read(file, vendor, robot, columns))
+            log = _log_beside(file) if record is None else record.log
+            logs += [] if log is None else [log]
+            runs.append(_read(file, record, vendor, robot, columns))
     if not runs:
         where = ", ".join(map(str, paths))
         raise InputError(
@@ -74,28 +76,22 @@ def find_runs(
     return Found(tuple(runs), (*files, *logs), others)
 
 
-def _in_folder(folder: Path, vendor: Vendor) -> Iterator[Path]:
-    from ...identification.logs.records import robot_of_record
-
+def _in_folder(folder: Path, vendor: Vendor) -> Iterator[tuple[Path, Record | None]]:
+    """Records of runs, and programs that have their log beside them."""
     for file in sorted(folder.rglob("*")):
         suffix = file.suffix.lower()
         if suffix == RECORD:
-            if robot_of_record(file) is not None:
-                yield file
+            record = _record(file)
+            if record is not None:
+                yield file, record
         elif suffix in vendor.suffixes and _log_beside(file) is not None:
-            yield file
+            yield file, None
 
 
-def _of_another(file: Path, robot: Robot) -> bool:
-    from ...identification.logs.records import robot_of_record
+def _record(file: Path) -> Record | None:
+    from ...identification.logs.records import find_record
 
-    return file.suffix.lower() == RECORD and robot_of_record(file) != robot.name
-
-
-def _log_of(file: Path) -> Path | None:
-    from ...identification.logs.records import log_of_record
-
-    return log_of_record(file) if file.suffix.lower() == RECORD else _log_beside(file)
+    return find_record(file) if file.suffix.lower() == RECORD else None
 
 
 def _log_beside(program: Path) -> Path | None:
@@ -103,11 +99,15 @@ def _log_beside(program: Path) -> Path | None:
     return next((log for log in beside if log.is_file() and log != program), None)
 
 
-def _read(file: Path, vendor: Vendor, robot: Robot, columns: Columns | None) -> LoggedRun:
+def _read(
+    file: Path, record: Record | None, vendor: Vendor, robot: Robot, columns: Columns | None
+) -> LoggedRun:
     from ...identification.logs import LoggedRun, load_run, read_samples
 
     if file.suffix.lower() == RECORD:
-        run = load_run(file, registry().find_robot)
+        find = registry().find_robot
+        # What is no record, load_run refuses and says why.
+        run = load_run(file, find) if record is None else record.run(find)
         if run.robot != robot.name:
             raise InputError(f"{file}: the run is one of {run.robot}, not of {robot.name}")
         return run

@@ -145,7 +145,10 @@ def test_columns_that_are_missing_or_double(
     ("arguments", "message"),
     [
         (("--robot", ROBOT, "--vendor", "kuka"), "is driven by abb"),
-        (("--robot", ROBOT, "--fit", "time.nonsense"), "nothing is called 'nonsense'"),
+        (
+            ("--robot", ROBOT, "--fit", "time.nonsense"),
+            "unknown key of a motion model 'time.nonsense'",
+        ),
         (("--robot", ROBOT, "--fit", "zone.overlap"), "no number"),
         ((), "which robot"),
     ],

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from flyby.core.errors import InputError
+from flyby.core.files.reading import read_json
 from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL
 from flyby.core.program.zone import FINE, Radius
-from flyby.core.registry import find_robot
-from flyby.identification.logs import load_run, read_samples
+from flyby.core.registry import find_robot, find_vendor
+from flyby.identification.logs import load_run, read_samples, records
+from flyby.tasks.files.logged_runs import find_runs
 
 HOME = [0.2, -1.4, -1.8, -1.4, 1.5, 0.3]
 HEADER = "t,q1,q2,q3,q4,q5,q6"
@@ -214,3 +217,17 @@ def test_arcs_turn_the_tool_as_the_language_has_it(tmp_path, robot, said, turn) 
     moves = [arc if said is None else {**arc, "arc_orientation": said}]
     run = load_run(write(tmp_path, {"robot": robot, "moves": moves}), find_robot)
     assert run.program.moves[0].orientation is turn
+
+
+def test_the_records_of_a_folder_are_parsed_once(tmp_path, monkeypatch) -> None:
+    path = write(tmp_path)
+    robot = find_robot(load_run(path, find_robot).robot)
+    parsed: list[Path] = []
+
+    def counted(file: Path) -> object:
+        parsed.append(file)
+        return read_json(file)
+
+    monkeypatch.setattr(records, "read_json", counted)
+    found = find_runs([tmp_path], find_vendor(robot.name.partition("/")[0]), robot)
+    assert len(found.runs) == 1 and parsed == [path]
