@@ -177,6 +177,8 @@ class _Passes(Generic[Block]):
         count: passes that have been read.
         most: passes to be read, once it is found that nobody knows.
         watched: names of the data that decide when it ends, as far as was known before this pass.
+        written: names of the data that a pass may write.
+        skips: branches that had not been taken when ``watched`` was found.
         looked: whether the state before this pass is known; it is not where a jump is met first.
         snapshot, turned, asked, place, held: this state: data, answers in turn, questions for the
             position, the position, and outputs.
@@ -191,6 +193,8 @@ class _Passes(Generic[Block]):
     most: int | None = None
     snapshot: Snapshot | None = None
     watched: frozenset[str] | None = NOTHING
+    written: frozenset[str] = NOTHING
+    skips: int = 0
     looked: bool = False
     turned: int = 0
     asked: int = 0
@@ -403,12 +407,14 @@ class Flow(Generic[Block]):
     def _look(self, passes: _Passes[Block]) -> None:
         """Remember what decides when a loop ends, as it is before a pass."""
         host, loop = self._host, passes.loop
-        names = passes.watched = self._deciding(passes)
-        passes.looked = True
-        written = self._analysis.written(loop.body) | loop.writes
-        if names is not None:
-            names &= written
-        passes.snapshot = host.snapshot(names, written) if names is None or names else None
+        if not passes.looked or passes.skips != self._skips:
+            passes.watched = self._deciding(passes)
+            passes.written = self._analysis.written(loop.body) | loop.writes
+            passes.skips = self._skips
+            passes.looked = True
+        names = None if passes.watched is None else passes.watched & passes.written
+        some = names is None or names
+        passes.snapshot = host.snapshot(names, passes.written) if some else None
         passes.turned = host.course.turned
         passes.asked = host.position_asked
         passes.place = host.place
@@ -432,6 +438,8 @@ class Flow(Generic[Block]):
         held = host.outputs.held()
         if any(held.get(name) != passes.held.get(name) for name in read):
             return True
+        if passes.looked and passes.skips == self._skips:
+            return passes.snapshot is not None and passes.snapshot.changed()
         now = self._deciding(passes)
         if not passes.looked or now != passes.watched:  # a branch was not taken meanwhile
             left_out = frozenset(id(skip.block) for skip in self._open(passes))
