@@ -1,7 +1,8 @@
 """How far averages over time take a motion off its path, whatever its speed.
 
 A motion passes the place ℓ_c at the middle of the average's kernel k, and gets within τ seconds no
-further than τ along Θ (`course`). Let Λ be its place as k weighs it, and λ = E Λ. Then (Peano)
+further than τ along Θ (`earliest_times`). Let Λ be its place as k weighs it, and
+λ = E Λ. Then (Peano)
 
     E q(Λ) − q(λ) = ∫ G(ν) dq'(ν),    0 ≤ G(ν) ≤ min(E(Λ − ν)⁺, E(ν − Λ)⁺):
 

@@ -1,7 +1,7 @@
 """Corners too sharp for the speed that legs arrive at: their blends are made smaller.
 
-Legs that are driven superposed (`superposed`) enter a zone of radius r at V = min(v², 2 A r), v the
-programmed speed. On the tangent arc, of radius r / tan δ/2 for a deflection δ, the centripetal
+Legs that are driven superposed (`superposed_legs`) enter a zone of radius r at
+V = min(v², 2 A r), v the programmed speed. On the tangent arc, of radius r / tan δ/2 for a deflection δ, the centripetal
 acceleration may be k A at most. Where it would be more, the leg goes straight on into the zone,
 braking by k A, until an arc of a smaller radius r' takes it at the speed that is left:
 

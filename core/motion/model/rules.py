@@ -66,7 +66,7 @@ class Pace(StrEnum):
     LIMITS = "limits"
     """As fast as the limits along the path allow."""
     SUPERPOSED = "superposed"
-    """As fast as legs from rest to rest that overlap in time; see `superposed` (KUKA, UR)."""
+    """As fast as legs from rest to rest that overlap in time; see `superposed_legs` (KUKA, UR)."""
 
 
 class DurationRule(StrEnum):

@@ -4,8 +4,8 @@ Velocities bound x = σ̇² at the knots: joints |q'| √x ≤ v, TCP |p'| √x 
 Accelerations are rows on u = σ̈ and x: joints q' u + q'' x, and along the path the change of the
 TCP's speed |p'| u + (p' · p'' / |p'|) x and of the tool's rate of turn likewise. Joints that torque
 limits (`torque.Torque`) have rows of their own behind these. Centripetal acceleration |p''⊥| x is a
-ceiling again, and so are what velocities between samples allow (`between`) and how fast legs that
-overlap drive zones (`superposed`).
+ceiling again, and so are what velocities between samples allow (`between_samples`) and how fast
+legs that overlap drive zones (`superposed_legs`).
 """
 
 from __future__ import annotations
@@ -215,7 +215,7 @@ class PathLimits:
         limited: (R − 2 L,), which of the N + 2 accelerations the others are of, rising: those that
             are limited somewhere.
         shares: (S, L), what the rows of torque are made of; None where torque limits nothing.
-        zones: (Z, 4), zones that legs drive superposed; see `superposed`.
+        zones: (Z, 4), zones that legs drive superposed; see `superposed_legs`.
         binding: (K + 1, 3), at each knot the sample, the row and the segment whose velocity
             limit is the ceiling; `CENTRIPETAL` in the place of the row where that is; `ZONE` with
             the zone in the place of the segment where a zone is; a code from `BETWEEN` on where

@@ -57,7 +57,7 @@ class Timing:
         end: (K,) s, when it is left.
         duration: s, of everything, settling at the end included.
         rests: at stops on the way, beside programmed waits.
-        ramp: s, what the place on the path is averaged over afterwards; see `ramped.ramped`.
+        ramp: s, what the place on the path is averaged over afterwards; see `ramped`.
         start: how the controller's time comes up to speed; `begin`, `end` and `states_at` are
             without, see `driven_at`.
         lag: s by which the commanded joints pass a place on the path later, as they are averaged
