@@ -1,9 +1,9 @@
 """Corners too sharp for the speed that legs arrive at: their blends are made smaller.
 
-Legs that are driven superposed (`superposed_legs`) enter a zone of radius r at
-V = min(v², 2 A r), v the programmed speed. On the tangent arc, of radius r / tan δ/2 for a deflection δ, the centripetal
-acceleration may be k A at most. Where it would be more, the leg goes straight on into the zone,
-braking by k A, until an arc of a smaller radius r' takes it at the speed that is left:
+Legs that are driven superposed (`superposed_legs`) enter a zone of radius r at V = min(v², 2 A r),
+v the programmed speed. On the tangent arc, of radius r / tan δ/2 for a deflection δ, the
+centripetal acceleration may be k A at most. Where it would be more, the leg goes straight on into
+the zone, braking by k A, until an arc of a smaller radius r' takes it at the speed that is left:
 
     V − 2 k A (r − r') = k A r' / tan δ/2,     r'/r = (1 − V / (2 A r k)) / (1 − 1 / (2 tan δ/2)).
 
