@@ -147,9 +147,9 @@ def test_columns_that_are_missing_or_double(
         (("--robot", ROBOT, "--vendor", "kuka"), "is driven by abb"),
         (
             ("--robot", ROBOT, "--fit", "time.nonsense"),
-            "unknown key of a motion model 'time.nonsense'",
+            "unknown key of a motion model",
         ),
-        (("--robot", ROBOT, "--fit", "zone.overlap"), "no number"),
+        (("--robot", ROBOT, "--fit", "zone.overlap"), "is not fitted"),
         ((), "which robot"),
     ],
 )
