@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
 _STILL = 1e-9
 """m and rad below which a point has not been moved."""
-RESOLUTION = 1e-5
-"""m to which the clearance that there is is proven, for the table before and after."""
 
 
 @dataclass(frozen=True)

@@ -13,15 +13,14 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from ....core.cell.cell import Cell
-from ....core.collision.proof.certificate import certify, scenes_of
+from ....core.collision.proof.certificate import scenes_of
 from ....core.dialect import Dialect
 from ....core.errors import InputError, Note
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
 from ....core.program.program import Program
 from ...reading_back import ReadBack
-from ..solution import RESOLUTION
-from ..start_check import check_start
+from ..solve_round_verify import Feasibility
 from ..waypoints import optimize_waypoints, optimize_zones
 from ..waypoints.changeable import select
 from ..waypoints.freed_stops import with_freed_stops
@@ -30,8 +29,8 @@ from ..waypoints.options import Task as Wishes
 from ..waypoints.variables import Variables, make_variables
 from .front import Front, Point, without_dominated
 from .options import Effort, Goal, Progress, Report, Scope, Task
+from .paced_search import LATE, Candidate, Finished, PacedSearch
 from .pacing import make_pacing
-from .solve_round_verify import LATE, Bench, Candidate, Finished
 
 _FASTEST = 1e-3
 """Share of the shortest time that the fastest program may take longer, to be frugal in it."""
@@ -113,9 +112,9 @@ class _Work:
     def single(self, program: Program, goal: Goal) -> Front:
         """The program that serves a goal best."""
         notes: list[Note] = []
-        bench, given = self._prepared(program, notes)
-        found = bench.search(goal, bench.start)
-        finished = bench.finish(goal, found.x)
+        search, given = self._prepared(program, notes)
+        found = search.search(goal, search.start)
+        finished = search.finish(goal, found.x)
         point = given if finished is None else self._point(finished)
         if _rank(goal, given) <= _rank(goal, point):
             notes.append(Note("nothing better was found: this is the program as it was given"))
@@ -132,14 +131,14 @@ class _Work:
     def front(self, program: Program, count: int) -> Front:
         """All of it."""
         notes: list[Note] = []
-        bench, given = self._prepared(program, notes)
+        search, given = self._prepared(program, notes)
         candidates: list[tuple[Goal, Candidate]] = []
         with suppress(KeyboardInterrupt, _Ended):
-            self._search(bench, count, candidates)
+            self._search(search, count, candidates)
         points: list[Point] = []
         with suppress(KeyboardInterrupt):
             for k, (goal, candidate) in enumerate(candidates):
-                finished = bench.finish(goal, candidate.x)
+                finished = search.finish(goal, candidate.x)
                 if finished is None:
                     notes.append(
                         Note(f"no program of {goal.latest or candidate.duration:.4g} s was proven")
@@ -158,39 +157,39 @@ class _Work:
 
     # -------------------------------------------------------------------------- searching
 
-    def _search(self, bench: Bench, count: int, found: list[tuple[Goal, Candidate]]) -> None:
+    def _search(self, search: PacedSearch, count: int, found: list[tuple[Goal, Candidate]]) -> None:
         """Candidates from the fastest to the most frugal, added to ``found``.
 
         Where only speeds change, the program as it is is the fastest.
         """
-        first = bench.measured(Goal(), bench.start)
+        first = search.measured(Goal(), search.start)
         if first.energy == 0.0:
             raise InputError("this program takes no energy: there is nothing to save")
         by_energy = 1.0 / abs(first.energy)
         fastest = first
-        if bench.variables is not None:
-            fastest = bench.search(Goal(1.0 / first.duration), bench.start)
+        if search.variables is not None:
+            fastest = search.search(Goal(1.0 / first.duration), search.start)
         self._ask("searching", 1, 2 * count)
         latest = fastest.duration * (1.0 + _FASTEST)
         goal = Goal(0.0, by_energy, latest)
-        quick = bench.search(goal, fastest.x)
+        quick = search.search(goal, fastest.x)
         found.append((goal, quick))
         self._ask("searching", 2, 2 * count)
-        frugal = bench.search(Goal(0.0, by_energy), quick.x)
+        frugal = search.search(Goal(0.0, by_energy), quick.x)
         for k in range(1, count - 1):
             share = (k / (count - 1)) ** _CROWDED
             latest = quick.duration + share * max(frugal.duration - quick.duration, 0.0)
             goal = Goal(0.0, by_energy, latest)
-            found.append((goal, bench.search_near(goal, found[-1][1].x)))
+            found.append((goal, search.search_near(goal, found[-1][1].x)))
             self._ask("searching", 2 + k, 2 * count)
         found.append((Goal(0.0, by_energy, max(frugal.duration, quick.duration)), frugal))
-        self._back(bench, found, count)
+        self._back(search, found, count)
 
-    def _back(self, bench: Bench, found: list[tuple[Goal, Candidate]], count: int) -> None:
+    def _back(self, search: PacedSearch, found: list[tuple[Goal, Candidate]], count: int) -> None:
         """Each once more, from the slower one's values: other routes pay where time is short."""
         for k in range(len(found) - 2, 0, -1):
             goal, known = found[k]
-            other = bench.search_near(goal, found[k + 1][1].x)
+            other = search.search_near(goal, found[k + 1][1].x)
             found[k] = goal, min(known, other, key=lambda candidate: candidate.rank)
             self._ask("searching", 2 * count - k, 2 * count)
 
@@ -206,29 +205,19 @@ class _Work:
 
     # -------------------------------------------------------------------------- preparing
 
-    def _prepared(self, program: Program, notes: list[Note]) -> tuple[Bench, Point]:
+    def _prepared(self, program: Program, notes: list[Note]) -> tuple[PacedSearch, Point]:
         """Where to search, and the figures of the program that was given."""
         wishes = self.task.wishes
         program = replace(program, start=wishes.start or program.start)
         scenes = None if self.cell is None else scenes_of(self.cell)
-        run = self.controller.run(program)
-        proof = None
-        if scenes is not None:
-            proof = certify(
-                self.controller,
-                run,
-                scenes,
-                self._clearance,
-                wishes.residual,
-                resolution=RESOLUTION,
-            )
-            check_start(self.controller, run, scenes, proof, wishes.residual)
+        feasibility = Feasibility(self.controller, scenes, self._clearance, wishes.residual)
+        run, proof = feasibility.given(program)
         given = Point.of(self.controller, run, self.task.consumption, proof)
         base, wishes = self._routed(program, notes)
         driven = self.controller.run(base)
         robot, slowest = self.controller.robot, self.task.slowest
         pacing = make_pacing(base, driven.timing, robot, self.dialect, wishes, slowest)
-        bench = Bench(
+        search = PacedSearch(
             self.controller,
             base,
             pacing,
@@ -239,12 +228,12 @@ class _Work:
             self.effort,
             self.read_back,
         )
-        if not len(bench.start):
+        if not len(search.start):
             raise InputError(
                 "nothing of this program may change: the process fixes all its speeds, or they "
                 "have no words in its language"
             )
-        return bench, given
+        return search, given
 
     @property
     def _clearance(self) -> float:

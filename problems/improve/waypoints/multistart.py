@@ -17,7 +17,7 @@ from functools import partial
 
 from ....core.worker_pool import WorkerPool, worker_pool
 from ..nonsmooth_sqp import Memory
-from .solve_round_verify import FEASIBLE, FINE_BOX, Answer, Job, Stage, Workshop, work
+from .block_search import FEASIBLE, FINE_BOX, Answer, Job, Shared, Stage, work
 from .starts import starting_points, variations
 
 ROUNDS = ((14, 0.5), (14, 0.5))
@@ -64,17 +64,17 @@ class Improved:
     ended: bool
 
 
-def improve(shop: Workshop, report: Report | None = None) -> Improved:
+def improve(shared: Shared, report: Report | None = None) -> Improved:
     """The best proven values of every block.
 
     Args:
-        shop: the problem.
+        shared: the problem.
         report: is told of progress. When it, or the keyboard, ends the work, what has been found
             until then is proven, and nothing more is searched.
     """
-    jobs = _first(shop)
-    with worker_pool(partial(work, shop), shop.effort.processes, len(jobs)) as pool:
-        made = _Improvement(shop, pool, report)
+    jobs = _first(shared)
+    with worker_pool(partial(work, shared), shared.effort.processes, len(jobs)) as pool:
+        made = _Improvement(shared, pool, report)
         try:
             made.search(jobs)
             made.vary()
@@ -91,7 +91,7 @@ class _Improvement:
     """One run.
 
     Args:
-        shop, report: as above.
+        shared, report: as above.
         pool: does the searches.
 
     Attributes:
@@ -100,38 +100,38 @@ class _Improvement:
     """
 
     def __init__(
-        self, shop: Workshop, pool: WorkerPool[Job, Answer], report: Report | None
+        self, shared: Shared, pool: WorkerPool[Job, Answer], report: Report | None
     ) -> None:
-        self._shop = shop
+        self._shared = shared
         self._pool = pool
         self._report = report
         self._found: list[Answer] = []
-        self.best: list[Answer | None] = [None] * len(shop.blocks)
+        self.best: list[Answer | None] = [None] * len(shared.blocks)
         self.over = False
 
     def search(self, jobs: list[Job]) -> None:
         """From every start, in rounds."""
         for number in range(len(ROUNDS) + 1):
             self._do(f"searching, round {number + 1}", jobs)
-            going = [] if self.over else _going_on(self._shop, number, self._found)
+            going = [] if self.over else _going_on(self._shared, number, self._found)
             self._found = [answer for answer in self._found if answer not in going]
-            iterations = _iterations(self._shop, number + 1)
+            iterations = _iterations(self._shared, number + 1)
             jobs = [Job(answer.block, answer.memory, iterations) for answer in going]
             if not jobs:
                 return
 
     def vary(self) -> None:
         """From near the best, in generations."""
-        for generation in range(self._shop.effort.generations):
+        for generation in range(self._shared.effort.generations):
             if not self.over:
-                jobs = _varied(self._shop, self._found, generation)
+                jobs = _varied(self._shared, self._found, generation)
                 self._do(f"varying, round {generation + 1}", jobs)
 
     def prove(self) -> None:
         """Refine the best, and prove the best of them that can be proven."""
         searched, self._found = self._found, []
         count = 1 if self.over else _LEAST
-        self._do("refining", _finals(self._shop, searched, count))
+        self._do("refining", _finals(self._shared, searched, count))
         queue = sorted(self._found, key=Answer.rank)
         while queue:
             turn = {a.block: a for a in reversed(queue) if self._may_lead(a)}
@@ -163,51 +163,51 @@ class _Improvement:
         self._found[before:] = [answer for answer in answers if answer is not None]
 
 
-def _first(shop: Workshop) -> list[Job]:
+def _first(shared: Shared) -> list[Job]:
     """A short search from every start."""
     return [
-        Job(k, Memory(x, 1.0), _iterations(shop, 0))
-        for k, block in enumerate(shop.blocks)
-        for x in starting_points(block, shop.controller.plan(block.program), shop.effort)
+        Job(k, Memory(x, 1.0), _iterations(shared, 0))
+        for k, block in enumerate(shared.blocks)
+        for x in starting_points(block, shared.controller.plan(block.program), shared.effort)
     ]
 
 
-def _iterations(shop: Workshop, number: int) -> int:
+def _iterations(shared: Shared, number: int) -> int:
     """Of round ``number``; the last one has all that are left."""
-    left = shop.effort.iterations - sum(iterations for iterations, _ in ROUNDS[:number])
+    left = shared.effort.iterations - sum(iterations for iterations, _ in ROUNDS[:number])
     return max(0, left if number >= len(ROUNDS) else min(left, ROUNDS[number][0]))
 
 
-def _going_on(shop: Workshop, number: int, found: Sequence[Answer]) -> list[Answer]:
+def _going_on(shared: Shared, number: int, found: Sequence[Answer]) -> list[Answer]:
     """The searches of which more is to be expected after round ``number``."""
-    if number == len(ROUNDS) or not _iterations(shop, number + 1):
+    if number == len(ROUNDS) or not _iterations(shared, number + 1):
         return []
     going: list[Answer] = []
-    for k in range(len(shop.blocks)):
+    for k in range(len(shared.blocks)):
         own = sorted((a for a in found if a.block == k), key=Answer.rank)
         chosen = own[: max(_LEAST, round(ROUNDS[number][1] * len(own)))]
         going += [answer for answer in chosen if not answer.finished]
     return going
 
 
-def _varied(shop: Workshop, found: Sequence[Answer], generation: int) -> list[Job]:
+def _varied(shared: Shared, found: Sequence[Answer], generation: int) -> list[Job]:
     """Searches from near the best path of each block."""
     jobs: list[Job] = []
-    for k, block in enumerate(shop.blocks):
+    for k, block in enumerate(shared.blocks):
         best = min((a for a in found if a.block == k), key=Answer.rank, default=None)
         if best is None or best.violation > FEASIBLE:
             continue
         jobs += [
-            Job(k, Memory(x, _NEAR_BOX), min(_NEAR_ITERATIONS, shop.effort.iterations))
-            for x in variations(block, best.x, shop.effort, generation)
+            Job(k, Memory(x, _NEAR_BOX), min(_NEAR_ITERATIONS, shared.effort.iterations))
+            for x in variations(block, best.x, shared.effort, generation)
         ]
     return jobs
 
 
-def _finals(shop: Workshop, found: Sequence[Answer], count: int) -> list[Job]:
+def _finals(shared: Shared, found: Sequence[Answer], count: int) -> list[Job]:
     """Refinements of the best ``count`` of each block, no two of them alike."""
     jobs: list[Job] = []
-    for k in range(len(shop.blocks)):
+    for k in range(len(shared.blocks)):
         chosen: list[Answer] = []
         for answer in sorted((a for a in found if a.block == k), key=Answer.rank):
             alike = any(abs(a.objective - answer.objective) < _ALIKE for a in chosen)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from ....core.cell.cell import Cell
-from ....core.collision.proof.certificate import SceneOf, certify, scenes_of
+from ....core.collision.proof.certificate import SceneOf, scenes_of
 from ....core.collision.proof.verdict import Certificate
 from ....core.errors import FlybyError, MotionError, Note
 from ....core.motion.emulator.controller import Controller
@@ -16,15 +17,16 @@ from ....core.program.program import Program
 from ....core.program.zone import Fine
 from ...reading_back import ReadBack, read_as_written
 from ...scene_notes import scene_notes
-from ..solution import RESOLUTION, Solution, measure, moved_points
-from ..start_check import check_start
+from ..rounding import Rounding
+from ..solution import Solution, measure, moved_points
+from ..solve_round_verify import Feasibility, solve_round_verify
 from .block_emulation import drivable
+from .block_search import Answer, Shared
 from .blocks import Block, cut
 from .changeable import Selection, select
 from .freed_stops import with_freed_stops
 from .multistart import Report, improve
 from .options import Effort, Freedom, Task, ViaCount
-from .solve_round_verify import Answer, Workshop
 from .variables import make_variables
 from .via_selection import Counted, change_count, idle_points
 
@@ -108,24 +110,21 @@ class _Optimization:
 
     def solution(self, program: Program, read_back: ReadBack) -> Solution:
         """All of it."""
-        scenes = scenes_of(self.cell)
-        given = self.controller.run(program, self.task.start)
-        proof = self._proof(given, scenes)
-        check_start(self.controller, given, scenes, proof, self.task.residual)
+        given, proof = self._feasibility.given(program)
         self.given = self._costs(given)
-        notes = list(scene_notes(scenes, program))
+        notes = list(scene_notes(self._scenes, program))
         base = with_freed_stops(self.controller, program, self.task, notes)
-        found = self._improved(base, self.task, self.effort, scenes, notes)
+        found = self._improved(base, self.task, self.effort, notes)
         if found is not None and self.task.vias is ViaCount.CHANGE:
-            found = self._counted(found, scenes)
+            found = self._counted(found)
         if found is not None:
-            found = self._as_read(program, found, scenes, read_back, notes)
+            found = self._as_read(program, found, read_back, notes)
         before = measure(self.controller, given, proof)
         if found is None or found.cost >= self._cost(given):
             notes.append(Note("nothing better was found: this is the program as it was given"))
             return Solution(program, program, before, before, proof, tuple(notes))
         if self.task.vias is ViaCount.KEEP:
-            notes += self._idle(found, scenes)
+            notes += self._idle(found)
         after = measure(self.controller, found.run, found.certificate)
         return Solution(
             program,
@@ -142,12 +141,23 @@ class _Optimization:
         wanted = self.task.clearance
         return self.cell.clearance if wanted is None else wanted
 
+    @cached_property
+    def _scenes(self) -> SceneOf:
+        return scenes_of(self.cell)
+
+    @property
+    def _feasibility(self) -> Feasibility:
+        """What the whole program has to stand."""
+        task = self.task
+        return Feasibility(
+            self.controller, self._scenes, self._clearance, task.residual, task.start
+        )
+
     def _improved(
         self,
         program: Program,
         task: Task,
         effort: Effort,
-        scenes: SceneOf,
         notes: list[Note],
     ) -> Counted | None:
         """The best proven program; None where the input is not bettered."""
@@ -160,43 +170,18 @@ class _Optimization:
         blocks = drivable(self.controller, run.path, cut_blocks, notes)
         if not blocks:
             return None
-        shop = Workshop(self.controller, scenes, task, effort, self._clearance, blocks)
-        made = improve(shop, self.report)
+        shared = Shared(self.controller, self._scenes, task, effort, self._clearance, blocks)
+        made = improve(shared, self.report)
         self.ended = self.ended or made.ended
         chosen = [a if a is not None and a.objective < 1.0 - _GAIN else None for a in made.best]
-        return self._together(program, task, blocks, chosen, scenes, notes)
-
-    def _together(
-        self,
-        program: Program,
-        task: Task,
-        blocks: Sequence[Block],
-        chosen: list[Answer | None],
-        scenes: SceneOf,
-        notes: list[Note],
-    ) -> Counted | None:
-        """The blocks put together; one that does not hold in the whole is left as it was."""
-        while any(answer is not None for answer in chosen):
-            run = self._driven(_assembled(program, blocks, chosen, task), task)
-            proof = None if run is None else self._proof(run, scenes)
-            if run is not None and proof is not None and proof.proven:
-                return Counted(run, proof, self._cost(run), task)
-            culprit = _culprit(blocks, chosen, proof)
-            why = proof.message if proof is not None else "it cannot be driven"
-            notes.append(
-                Note(
-                    f"what was found from here on was given up, as the whole is not proven: {why}",
-                    blocks[culprit].first,
-                )
-            )
-            chosen[culprit] = None
-        return None
+        whole = _Whole(program, task.rounding, blocks, chosen, notes)
+        held = solve_round_verify(self._feasibility, whole)
+        return None if held is None else self._judged(*held, task)
 
     def _as_read(
         self,
         given: Program,
         found: Counted,
-        scenes: SceneOf,
         read_back: ReadBack,
         notes: list[Note],
     ) -> Counted | None:
@@ -207,23 +192,29 @@ class _Optimization:
             notes.append(Note(f"given up, as the new program cannot be written: {error}"))
             return None
         notes += written.notes
-        run = self._driven(written.program, found.task)
-        proof = None if run is None else self._proof(run, scenes)
-        if run is None or proof is None or not proof.proven:
+        run, proof = self._feasibility.verified(written.program)
+        kept = self._judged(run, proof, found.task)
+        if kept is None:
             why = "it cannot be driven" if proof is None else proof.message
             notes.append(Note(f"given up, as the program read from the new text fails: {why}"))
-            return None
-        return replace(found, run=run, certificate=proof, cost=self._cost(run))
+        return kept
 
-    def _counted(self, found: Counted, scenes: SceneOf) -> Counted:
+    def _judged(self, run: Run | None, proof: Certificate | None, task: Task) -> Counted | None:
+        """A program with its cost; None if it is not proven."""
+        if run is None or proof is None or not proof.proven:
+            return None
+        return Counted(run, proof, self._cost(run), task)
+
+    def _counted(self, found: Counted) -> Counted:
         """With via points left out that serve nothing, and new ones that pay."""
 
         def improved(program: Program, task: Task, effort: Effort) -> Counted | None:
             if self.ended:
                 return None
             try:
-                found = self._improved(program, task, effort, scenes, [])
-                return found or self._as_it_is(program, task, scenes)
+                found = self._improved(program, task, effort, [])
+                # Nothing is left to change, or to better.
+                return found or self._judged(*self._feasibility.verified(program), task)
             except KeyboardInterrupt:
                 # Between searches, too: what is proven already stays.
                 self.ended = True
@@ -238,22 +229,12 @@ class _Optimization:
         robot = self.controller.robot
         return change_count(found, improved, selected, self.effort, robot.arm_size)
 
-    def _as_it_is(self, program: Program, task: Task, scenes: SceneOf) -> Counted | None:
-        """A program in which nothing is left to change, or to better; None if it is not proven."""
-        run = self._driven(program, task)
-        proof = None if run is None else self._proof(run, scenes)
-        if run is None or proof is None or not proof.proven:
-            return None
-        return Counted(run, proof, self._cost(run), task)
-
-    def _idle(self, found: Counted, scenes: SceneOf) -> list[Note]:
+    def _idle(self, found: Counted) -> list[Note]:
         """An offer to leave out via points that serve nothing."""
 
         def judged(program: Program) -> float | None:
-            run = self._driven(program, found.task)
-            if run is None or not self._proof(run, scenes).proven:
-                return None
-            return self._cost(run)
+            kept = self._judged(*self._feasibility.verified(program), found.task)
+            return None if kept is None else kept.cost
 
         run, robot = found.run, self.controller.robot
         selection = select(run.program, run.path, robot, found.task, self.freedom)
@@ -261,22 +242,6 @@ class _Optimization:
             Note("serves nothing any more: without it the program is as fast and as safe", i)
             for i in idle_points(found, selection, judged)
         ]
-
-    def _driven(self, program: Program, task: Task) -> Run | None:
-        try:
-            return self.controller.run(program, task.start)
-        except MotionError:
-            return None
-
-    def _proof(self, run: Run, scenes: SceneOf) -> Certificate:
-        return certify(
-            self.controller,
-            run,
-            scenes,
-            self._clearance,
-            self.task.residual,
-            resolution=RESOLUTION,
-        )
 
     def _cost(self, run: Run) -> float:
         """The objective: of time and energy the shares of what the given program takes."""
@@ -291,31 +256,64 @@ class _Optimization:
         return run.duration, self.controller.energy(run.program, run.timing).value
 
 
-def _assembled(
-    program: Program, blocks: Sequence[Block], answers: Sequence[Answer | None], task: Task
-) -> Program:
-    """The program with what has changed in every block; moves keep their places in the source."""
-    moves: list[Move] = list(program.moves)
-    for block, answer in zip(blocks, answers, strict=True):
-        if answer is None:
-            continue
-        changed = block.variables.written(answer.x, task.rounding).moves
-        for k, move in enumerate(changed):
-            old = moves[block.first + k]
-            moves[block.first + k] = replace(old, target=move.target, zone=move.zone)
-    return program.with_moves(tuple(moves))
+@dataclass(frozen=True)
+class _Whole:
+    """The blocks put together; one that does not hold in the whole is left as it was.
 
+    Args:
+        program: the whole, as it was.
+        rounding: of new numbers.
+        blocks: of it.
+        chosen: what was found for each; None where it stays.
+        notes: of what is left as it was.
+    """
 
-def _culprit(
-    blocks: Sequence[Block], answers: Sequence[Answer | None], proof: Certificate | None
-) -> int:
-    """The block whose change is to be given up."""
-    live = [k for k, answer in enumerate(answers) if answer is not None]
-    if proof is not None and proof.move is not None:
-        for k in live:
-            if blocks[k].first <= proof.move <= blocks[k].last:
-                return k
-    return live[-1]
+    program: Program
+    rounding: Rounding
+    blocks: Sequence[Block]
+    chosen: list[Answer | None]
+    notes: list[Note]
+
+    def rounded(self) -> Program | None:
+        """The whole with what has changed in every block; moves keep their places in the source."""
+        if not any(answer is not None for answer in self.chosen):
+            return None
+        moves: list[Move] = list(self.program.moves)
+        for block, answer in zip(self.blocks, self.chosen, strict=True):
+            if answer is None:
+                continue
+            changed = block.variables.written(answer.x, self.rounding).moves
+            for k, move in enumerate(changed):
+                old = moves[block.first + k]
+                moves[block.first + k] = replace(old, target=move.target, zone=move.zone)
+        return self.program.with_moves(tuple(moves))
+
+    def undrivable(self, error: MotionError) -> None:
+        """The last change is given up."""
+        self._give_up(None, "it cannot be driven")
+
+    def accepted(self, run: Run, certificate: Certificate | None) -> bool:
+        """Whether it is proven; if not, the change where it is not is given up."""
+        assert certificate is not None
+        if not certificate.proven:
+            self._give_up(certificate.move, certificate.message)
+        return certificate.proven
+
+    def _give_up(self, move: int | None, why: str) -> None:
+        live = [k for k, answer in enumerate(self.chosen) if answer is not None]
+        there = [
+            k
+            for k in live
+            if move is not None and self.blocks[k].first <= move <= self.blocks[k].last
+        ]
+        culprit = (there or live[-1:])[0]
+        self.notes.append(
+            Note(
+                f"what was found from here on was given up, as the whole is not proven: {why}",
+                self.blocks[culprit].first,
+            )
+        )
+        self.chosen[culprit] = None
 
 
 def _stays(program: Program, selection: Selection, freedom: Freedom) -> list[Note]:

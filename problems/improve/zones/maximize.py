@@ -14,7 +14,7 @@ import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.cell.cell import Cell
-from ....core.collision.proof.certificate import SceneOf, certify, scenes_of
+from ....core.collision.proof.certificate import SceneOf, scenes_of
 from ....core.collision.proof.verdict import Certificate
 from ....core.errors import FlybyError, MotionError, Note
 from ....core.motion.emulator.controller import Controller
@@ -23,8 +23,8 @@ from ....core.program.program import Program
 from ....core.program.zone import Radius, Zone
 from ...reading_back import ReadBack, read_as_written
 from ...scene_notes import scene_notes
-from ..solution import RESOLUTION, Solution, measure
-from ..start_check import check_start
+from ..solution import Solution, measure
+from ..solve_round_verify import Feasibility, solve_round_verify
 from .changes import ZoneChange, changes
 from .clearing import Clearing
 from .deviation import segment_deviations
@@ -98,6 +98,9 @@ class _Maximization:
         self._tell = tell
         self._wanted = cell.clearance if options.clearance is None else options.clearance
         self._scenes: SceneOf = scenes_of(cell)
+        self._feasibility = Feasibility(
+            controller, self._scenes, self._wanted, options.residual, options.start
+        )
 
     def run(self, read_back: ReadBack) -> ZoneSolution:
         """All of it."""
@@ -107,85 +110,25 @@ class _Maximization:
         points = find_points(
             self._controller, program, options.start, freed, options.kept, options.apart
         )
-        before = self._controller.run(program, options.start)
-        proof = self._certified(before)
-        check_start(self._controller, before, self._scenes, proof, options.residual)
+        before, proof = self._feasibility.given(program)
         found, zones = self._grown(points, before)
         self._tell("certifying the new program")
         repair = Repair(points, program, zones, options.rounding)
-        notes: dict[Note, None] = dict.fromkeys(points.notes)
-        after, certificate = self._proven(repair, (before, proof), read_back, notes)
+        proven = proof is not None and proof.proven
+        larger = _LargerZones(repair, before, proven, read_back, dict.fromkeys(points.notes))
+        after, certificate = solve_round_verify(self._feasibility, larger) or (before, proof)
         return ZoneSolution(
             program,
             after.program if repair.changed else program,
             measure(self._controller, before, proof),
             measure(self._controller, after, certificate),
             certificate,
-            (*notes, *scene_notes(self._scenes, program)),
+            (*larger.notes, *scene_notes(self._scenes, program)),
             zones=changes(points, program, repair.zones, found),
         )
 
-    def _proven(
-        self,
-        repair: Repair,
-        given: tuple[Run, Certificate],
-        read_back: ReadBack,
-        notes: dict[Note, None],
-    ) -> tuple[Run, Certificate]:
-        """The new program driven, and its certificate; zones are made smaller as needed.
-
-        It is no slower than the one that was given.
-        """
-        while repair.changed:
-            after = self._as_read(repair, read_back, notes)
-            if after is None:
-                continue
-            certificate = self._certified(after)
-            if not certificate.proven and repair.refused(after, certificate):
-                continue
-            if is_slower(given[0], after):
-                if not repair.slower(given[0], after):
-                    repair.give_up()
-            elif certificate.proven or not given[1].proven:
-                return after, certificate
-            else:
-                repair.give_up()
-        return given
-
-    def _as_read(self, repair: Repair, read_back: ReadBack, notes: dict[Note, None]) -> Run | None:
-        """The new program as read from its text, driven; None where it cannot be.
-
-        Zones that the text has no place for, or that cannot be driven, are then what they were.
-        """
-        try:
-            written = read_as_written(self._program, repair.program, read_back)
-        except FlybyError as error:
-            notes[Note(f"no zone is changed, as none can be written: {error}")] = None
-            repair.give_up()
-            return None
-        notes.update(dict.fromkeys(written.notes))
-        repair.hold(i for i, _ in written.refused)
-        if not repair.changed:
-            return None
-        try:
-            return self._controller.run(written.program, self._options.start)
-        except MotionError as error:
-            if not repair.undrivable(error.move):
-                repair.give_up()
-            return None
-
     def _rules(self, points: Points) -> Rules:
         return Rules(points.route, self._controller.model)
-
-    def _certified(self, run: Run) -> Certificate:
-        return certify(
-            self._controller,
-            run,
-            self._scenes,
-            self._wanted,
-            self._options.residual,
-            resolution=RESOLUTION,
-        )
 
     def _grown(self, points: Points, before: Run) -> tuple[dict[int, Found], dict[int, Zone]]:
         """What was found at each corner, and the zones that come of it.
@@ -247,3 +190,56 @@ class _Maximization:
             Clearing(self._scenes(tool), self._wanted, deviation, self._options.residual)
             for tool, deviation in zip(tools, deviations, strict=True)
         ]
+
+
+@dataclass(frozen=True)
+class _LargerZones:
+    """Larger zones on their way into the text; those that do not hold there are made smaller.
+
+    Args:
+        repair: the new zones, and the way back.
+        before: the program as it was given; the new one is no slower.
+        proven: whether that one is proven.
+        read_back: see `maximize_zones`.
+        notes: what the user should know; more come to them.
+    """
+
+    repair: Repair
+    before: Run
+    proven: bool
+    read_back: ReadBack
+    notes: dict[Note, None]
+
+    def rounded(self) -> Program | None:
+        """The new program as read from its text; zones it has no place for are what they were."""
+        repair = self.repair
+        if not repair.changed:
+            return None
+        try:
+            written = read_as_written(repair.given, repair.program, self.read_back)
+        except FlybyError as error:
+            self.notes[Note(f"no zone is changed, as none can be written: {error}")] = None
+            repair.give_up()
+            return None
+        self.notes.update(dict.fromkeys(written.notes))
+        repair.hold(i for i, _ in written.refused)
+        return written.program if repair.changed else None
+
+    def undrivable(self, error: MotionError) -> None:
+        """Zones next to the move are put back."""
+        if not self.repair.undrivable(error.move):
+            self.repair.give_up()
+
+    def accepted(self, run: Run, certificate: Certificate | None) -> bool:
+        """Whether it is proven, and no slower."""
+        proven = certificate is not None and certificate.proven
+        if certificate is not None and not proven and self.repair.refused(run, certificate):
+            return False
+        if is_slower(self.before, run):
+            if not self.repair.slower(self.before, run):
+                self.repair.give_up()
+            return False
+        if not proven and self.proven:
+            self.repair.give_up()
+            return False
+        return True

@@ -46,7 +46,7 @@ class Repair:
         self, points: Points, program: Program, zones: Mapping[int, Zone], rounding: Rounding
     ) -> None:
         self._points = points
-        self._given = program
+        self.given = program
         self._old = {i: program.moves[points.move[i]].zone for i in zones}
         self._group = {i: members for members in points.groups for i in members}
         self._rounding = rounding
@@ -63,7 +63,7 @@ class Repair:
     @property
     def program(self) -> Program:
         """The new program."""
-        return with_zones(self._given, self._points, self.zones)
+        return with_zones(self.given, self._points, self.zones)
 
     def refused(self, run: Run, certificate: Certificate) -> bool:
         """Make the zones smaller that a certificate is refused for.

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Cell, Obstacle
-from flyby.core.collision.proof.certificate import certify, scenes_of
-from flyby.core.errors import InputError, MotionError
+from flyby.core.collision.proof.certificate import scenes_of
+from flyby.core.errors import InputError, MotionError, Note
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.emulator.run import Run
 from flyby.core.program.program import Program
@@ -306,22 +306,30 @@ def test_progress_is_told_to_the_end() -> None:
     assert found.changed
 
 
-def test_what_is_proven_is_what_is_read_back() -> None:
+def test_what_is_handed_out_is_what_was_read_back() -> None:
+    read: list[Program] = []
+
     def read_back(program: Program) -> Program:
-        """A text with a tenth of a degree for its last digit."""
-        moves = list(program.moves)
-        for k, move in enumerate(moves[:-1]):
-            assert isinstance(move.target, JointTarget)
-            joints = tuple(round(math.degrees(q), 1) * math.pi / 180 for q in move.target.joints)
-            moves[k] = replace(move, target=replace(move.target, joints=joints))
-        return program.with_moves(tuple(moves))
+        read.append(replace(program, notes=(Note("as read from its text"),)))
+        return read[-1]
 
     found = optimize_waypoints(controller(), PROGRAM, SCENE.cell, PLANE, QUICK, read_back)
-    if found.changed:
-        proof = certify(controller(), controller().run(found.program), scenes_of(SCENE.cell), 0.005)
-        assert proof.proven
-    else:
-        assert any("new text" in note.message for note in found.notes)
+    assert found.changed and found.proven
+    assert found.program is read[-1]
+
+
+def test_a_text_that_says_a_program_that_collides_is_given_up(faster: Solution) -> None:
+    """What is proven is the program that was read, not the one that was found."""
+
+    def read_back(program: Program) -> Program:
+        """A text that has no place for via points: all moves lead straight to the end."""
+        moves = [replace(move, target=PROGRAM.moves[-1].target) for move in program.moves]
+        return program.with_moves(tuple(moves))
+
+    assert faster.changed, "without the text's fault something better is found"
+    found = optimize_waypoints(controller(), PROGRAM, SCENE.cell, PLANE, QUICK, read_back)
+    assert not found.changed and found.program is PROGRAM
+    assert any("the program read from the new text fails" in note.message for note in found.notes)
 
 
 # ------------------------------------------------------------------------ what a tool holds

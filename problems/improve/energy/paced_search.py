@@ -8,27 +8,23 @@ from functools import cached_property
 import numpy as np
 
 from ....core.arrays import FloatArray
-from ....core.collision.proof.certificate import SceneOf, certify
+from ....core.collision.proof.certificate import SceneOf
 from ....core.collision.proof.verdict import Certificate
 from ....core.errors import MotionError
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
-from ....core.motion.gradients.sensitivity import PathPlaces
 from ....core.program.program import Program
 from ...reading_back import ReadBack
 from ..nonsmooth_sqp import Memory, Settings, search, violation
-from ..rounding import STEP
-from ..waypoints.block_emulation import crowd, rooms_of
+from ..solve_round_verify import Feasibility, solve_round_verify
+from ..waypoints.aim import FINE, Aim, with_room
 from ..waypoints.block_problem import BlockProblem
 from ..waypoints.blocks import Block
-from ..waypoints.solve_round_verify import wider_margin
 from ..waypoints.variables import Variables
 from .options import Effort, Goal, Task
 from .paced_problem import Evaluated, Fixed, PacedProblem
 from .pacing import Pacing
 
-_COARSE, _FINE = 2, 4
-"""Density of places of a search and of a refinement."""
 _NEAR, _NEAR_BOX = 45, 0.3
 """Iterations at most and first trust box of a search that begins at a neighbour's values."""
 _REFINING, _SETTLING = Settings(20, 0.2), Settings(10, 0.1)
@@ -41,7 +37,6 @@ LATE = 1e-4
 _APART = 1e-7
 _HOPELESS = 0.02
 """Share by which a program ends too late where aiming earlier is no use."""
-_STEPS = STEP * 2.0 ** np.arange(8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +81,7 @@ class Finished:
 
 
 @dataclass(frozen=True)
-class Bench:
+class PacedSearch:
     """What all searches of a program share.
 
     Args:
@@ -153,12 +148,12 @@ class Bench:
         pacing: Pacing,
         x: FloatArray,
         settings: Settings,
-        manner: _Manner | None = None,
+        aim: Aim | None = None,
     ) -> Candidate | None:
         """From one start; None where it cannot be driven."""
         if goal.latest is not None:
             goal = replace(goal, latest=goal.latest * (1.0 - _EARLY))
-        problem = self._problem(goal, pacing, manner or _Manner(_COARSE))
+        problem = self._problem(goal, pacing, aim)
         start = problem.point(x)
         if start is None:
             return None
@@ -169,12 +164,12 @@ class Bench:
             # A pose target is singular where the search stands: no way on.
             return _candidate(start)
 
-    def _problem(self, goal: Goal, pacing: Pacing, manner: _Manner | None = None) -> PacedProblem:
-        manner = manner or _Manner(_COARSE)
+    def _problem(self, goal: Goal, pacing: Pacing, aim: Aim | None = None) -> PacedProblem:
+        geometry = self._geometry(aim or Aim(self.effort.margin))
         consumption = self.task.consumption
-        return PacedProblem(self.controller, self._geometry(manner), pacing, goal, consumption)
+        return PacedProblem(self.controller, geometry, pacing, goal, consumption)
 
-    def _geometry(self, manner: _Manner) -> BlockProblem | Fixed:
+    def _geometry(self, aim: Aim) -> BlockProblem | Fixed:
         if self.variables is None or self.scenes is None:
             return self._fixed
         apart = self._apart
@@ -183,10 +178,10 @@ class Bench:
             Block(0, len(apart.moves) - 1, apart, Variables(apart, self.variables.parts)),
             self.scenes,
             replace(self.task.wishes, time_weight=1.0),
-            self.clearance + self.effort.margin + manner.margin,
+            self.clearance + aim.margin,
             self.clearance,
-            manner.density,
-            manner.more,
+            aim.density,
+            aim.more,
         )
 
     @cached_property
@@ -210,40 +205,32 @@ class Bench:
         is what it is.
         Accelerations are rounded first, as their steps are large, and all else is sought again.
         """
-        manner, aim = _Manner(_FINE), goal
-        best: Finished | None = None
-        for _ in range(self.effort.proofs + 1):
-            x, run = self._refined(aim, x, manner)
-            if run is None:
-                break
-            proof = self._proof(run)
-            late = 0.0 if goal.latest is None else run.timing.duration / goal.latest - 1.0
-            if proof is not None and not proof.proven:
-                if self.variables is None:
-                    break
-                manner = self._wider(manner, run, proof)
-                continue
-            if best is not None and run.timing.duration >= best.duration:
-                break
-            best = self._finished(run, proof)
-            if aim.latest is None or not LATE < late < _HOPELESS:
-                break
-            aim = replace(aim, latest=aim.latest * (1.0 - 1.5 * late))
-        return best
+        aim = Aim(self.effort.margin, FINE)
+        refined = _Refined(self, goal, x, aim, goal, self.effort.proofs + 1)
+        solve_round_verify(self.feasibility, refined)
+        return refined.best
 
-    def _refined(self, goal: Goal, x: FloatArray, manner: _Manner) -> tuple[FloatArray, Run | None]:
-        """Values near x that can be written, and their program as it is read and driven."""
+    @property
+    def feasibility(self) -> Feasibility:
+        """What the program has to stand."""
+        residual = self.task.wishes.residual
+        return Feasibility(
+            self.controller, self.scenes, self.clearance, residual, self.program.start, None
+        )
+
+    def rounded(self, goal: Goal, x: FloatArray, aim: Aim) -> tuple[FloatArray, Program | None]:
+        """Values near x that can be written, and their program as it is read."""
         if self.variables is not None:
-            found = self._searched(goal, self.pacing, x, _REFINING, manner)
+            found = self._searched(goal, self.pacing, x, _REFINING, aim)
             if found is None:
                 return x, None
             x = found.x
         x = self._with_rounded_accelerations(x)
-        found = self._searched(goal, self._paces_alone(x), x, _SETTLING, manner)
+        found = self._searched(goal, self._paces_alone(x), x, _SETTLING, aim)
         if found is None:
             return x, None
         x = self._released(goal, self._with_room(found.x))
-        return x, self._driven(self.read_back(self._written(x)))
+        return x, self.read_back(self._written(x))
 
     def _released(self, goal: Goal, x: FloatArray) -> FloatArray:
         """Values with the programmed speed wherever a lower one is not reached either."""
@@ -253,7 +240,8 @@ class Bench:
         y = self.pacing.released(x[self._split :], point.timing, self.controller.robot)
         return np.concatenate([x[: self._split], y])
 
-    def _finished(self, run: Run, proof: Certificate | None) -> Finished:
+    def finished(self, run: Run, proof: Certificate | None) -> Finished:
+        """The figures of a driven program."""
         consumption = self.task.consumption
         energy = self.controller.energy(run.program, run.timing, consumption).value
         return Finished(run, run.timing.duration, energy, proof)
@@ -285,59 +273,64 @@ class Bench:
 
     def _with_room(self, x: FloatArray) -> FloatArray:
         """Values with zones small enough for their neighbours when all is rounded."""
-        variables = self.variables
-        if variables is None:
+        if self.variables is None:
             return x
         shape, y = x[: self._split], x[self._split :]
-        for step in _STEPS:
-            try:
-                path = self.controller.plan(self._written(np.concatenate([shape, y])))
-            except MotionError:
-                return x
-            tight = {room.corner for room in rooms_of(path) if room.left.value < -1e-9}
-            if not tight:
-                break
-            for corner in tight:
-                shape = variables.with_smaller_zone(shape, path.route.zone_moves[corner], step)
-        return np.concatenate([shape, y])
-
-    def _driven(self, program: Program) -> Run | None:
-        try:
-            return self.controller.run(program, self.program.start)
-        except MotionError:
-            return None
-
-    def _proof(self, run: Run) -> Certificate | None:
-        if self.scenes is None:
-            return None
-        residual = self.task.wishes.residual
-        return certify(self.controller, run, self.scenes, self.clearance, residual)
-
-    def _wider(self, manner: _Manner, run: Run, proof: Certificate) -> _Manner:
-        """How to search where a proof has failed: with more room, and closer there."""
-        margin = self.effort.margin + manner.margin
-        wider = wider_margin(margin, self.clearance, proof) - self.effort.margin
-        more = manner.more
-        if proof.sigma is not None and proof.configuration is not None:
-            q = np.array(proof.configuration)
-            near = crowd(run.path, 0.5 * sum(proof.sigma), q, _FINE)
-            more = near if more is None else more.with_more(near)
-        return _Manner(_FINE, wider, more)
+        room = with_room(
+            shape,
+            self.variables,
+            lambda own: self.controller.plan(self._written(np.concatenate([own, y]))),
+        )
+        return np.concatenate([room, y])
 
 
-@dataclass(frozen=True)
-class _Manner:
-    """How closely to look at distances.
+@dataclass
+class _Refined:
+    """Values on their way to a program that is proven, and not late.
 
     Args:
-        density: of places.
-        margin: m that comes to that of the effort.
-        more: places.
+        search: whose they are.
+        goal: what is wanted.
+        x: (n,), the values.
+        aim: how closely to look at distances.
+        nearer: what is aimed at: the goal, or an earlier end.
+        left: attempts.
+        best: the soonest one that is proven.
     """
 
-    density: int
-    margin: float = 0.0
-    more: PathPlaces | None = None
+    search: PacedSearch
+    goal: Goal
+    x: FloatArray
+    aim: Aim
+    nearer: Goal
+    left: int
+    best: Finished | None = None
+
+    def rounded(self) -> Program | None:
+        """The program as it is read, with the values found next."""
+        if not self.left:
+            return None
+        self.left -= 1
+        self.x, program = self.search.rounded(self.nearer, self.x, self.aim)
+        return program
+
+    def undrivable(self, error: MotionError) -> None:
+        """There is no other way to round it."""
+        self.left = 0
+
+    def accepted(self, run: Run, certificate: Certificate | None) -> bool:
+        """Whether it is proven, and no earlier end is worth aiming at."""
+        if certificate is not None and not certificate.proven:
+            self.aim = self.aim.after(run, certificate, self.search.clearance)
+            return self.search.variables is None
+        if self.best is not None and run.timing.duration >= self.best.duration:
+            return True
+        self.best = self.search.finished(run, certificate)
+        late = 0.0 if self.goal.latest is None else run.timing.duration / self.goal.latest - 1.0
+        if self.nearer.latest is None or not LATE < late < _HOPELESS:
+            return True
+        self.nearer = replace(self.nearer, latest=self.nearer.latest * (1.0 - 1.5 * late))
+        return False
 
 
 def _candidate(point: Evaluated) -> Candidate:

@@ -1,0 +1,238 @@
+"""What one search does: from a start at few places, refined at many, and proven between them."""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import dataclass, replace
+from enum import Enum, auto
+from functools import cached_property
+
+import numpy as np
+
+from ....core.arrays import FloatArray
+from ....core.collision.proof.certificate import SceneOf
+from ....core.collision.proof.verdict import Certificate
+from ....core.errors import MotionError
+from ....core.motion.emulator.controller import Controller
+from ....core.motion.emulator.run import Run
+from ....core.program.program import Program
+from ..nonsmooth_sqp import Memory, Settings, search, violation
+from ..solve_round_verify import Feasibility, solve_round_verify
+from .aim import FINE, Aim, with_room
+from .block_problem import BlockProblem
+from .blocks import Block
+from .options import Effort, Task
+
+FINE_BOX = 0.2
+"""First trust box of a refinement."""
+_FINE_ITERATIONS = 25
+_AGAIN_ITERATIONS, _AGAIN_BOX = 10, 0.05
+"""Of a refinement with a wider margin, which begins near its end."""
+FEASIBLE = 1e-4
+"""m of violation that a refinement mends."""
+
+
+@dataclass(frozen=True)
+class Shared:
+    """What all searches share.
+
+    Args:
+        controller, scenes, task, effort: see `optimize`.
+        clearance: m to keep.
+        blocks: the problems.
+    """
+
+    controller: Controller
+    scenes: SceneOf
+    task: Task
+    effort: Effort
+    clearance: float
+    blocks: tuple[Block, ...]
+
+    @cached_property
+    def searching(self) -> Controller:
+        """The controller with the sampling of searches."""
+        other = copy(self.controller)
+        other.sampling = self.effort.sampling
+        return other
+
+    @property
+    def feasibility(self) -> Feasibility:
+        """What a block alone has to stand."""
+        return Feasibility(
+            self.controller, self.scenes, self.clearance, self.task.residual, resolution=None
+        )
+
+
+class Stage(Enum):
+    """What is to be done."""
+
+    SEARCH = auto()
+    REFINE = auto()
+    PROVE = auto()
+
+
+@dataclass(frozen=True)
+class Job:
+    """One search.
+
+    Args:
+        block: index of the block.
+        memory: where to begin, and with what.
+        iterations: of a search, at most.
+        stage: what is to be done.
+    """
+
+    block: int
+    memory: Memory
+    iterations: int = _FINE_ITERATIONS
+    stage: Stage = Stage.SEARCH
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What came of a search.
+
+    Args:
+        block: index of the block.
+        x: the best values.
+        objective: there, in shares of the input's.
+        violation: largest one there.
+        finished: whether the search came to its end.
+        memory: to go on with.
+        certificate: of the driven block, if it was to be proven.
+    """
+
+    block: int
+    x: FloatArray
+    objective: float
+    violation: float
+    finished: bool
+    memory: Memory
+    certificate: Certificate | None = None
+
+    @property
+    def proven(self) -> bool:
+        """Whether the values keep the clearance."""
+        return self.certificate is not None and self.certificate.proven
+
+    def rank(self) -> tuple[float, float]:
+        """Smaller is better: feasible ones first."""
+        return (0.0 if self.violation < FEASIBLE else self.violation), self.objective
+
+
+def work(shared: Shared, job: Job) -> Answer:
+    """Do a job."""
+    margin = shared.effort.margin
+    if job.stage is Stage.SEARCH:
+        return _searched(shared.searching, shared, job, Settings(job.iterations), Aim(margin))
+    if job.stage is Stage.REFINE:
+        settings = Settings(_FINE_ITERATIONS, FINE_BOX)
+        return _searched(shared.controller, shared, job, settings, Aim(margin, FINE))
+    if shared.task.rounding.predefined:
+        shared, job = _with_chosen_zones(shared, job)
+    refined = _Refined(shared, job, Aim(margin, FINE), shared.effort.proofs + 1)
+    solve_round_verify(shared.feasibility, refined)
+    assert refined.answer is not None, "there is one attempt at least"
+    return refined.answer
+
+
+def _searched(
+    controller: Controller, shared: Shared, job: Job, settings: Settings, aim: Aim
+) -> Answer:
+    """The best values near a start."""
+    memory = job.memory
+    try:
+        problem = BlockProblem(
+            controller,
+            shared.blocks[job.block],
+            shared.scenes,
+            shared.task,
+            shared.clearance + aim.margin,
+            shared.clearance,
+            aim.density,
+            aim.more,
+        )
+        start = problem.point(memory.x)
+    except MotionError:
+        # As it is it can be driven, but not with these zones, or this sampling.
+        start = None
+    if start is None:
+        return Answer(job.block, memory.x, np.inf, np.inf, True, memory)
+    try:
+        found = search(problem, start, settings, memory)
+    except MotionError:
+        # A pose target is singular where the search stands: no derivatives, no way on.
+        return Answer(job.block, start.x, start.objective, violation(start), True, memory)
+    point = found.point
+    return Answer(
+        job.block, point.x, point.objective, found.violation, found.finished, found.memory
+    )
+
+
+@dataclass
+class _Refined:
+    """Refined values on their way to a proof.
+
+    Where it fails, the search is told to look there more closely, and aims wider.
+
+    Args:
+        shared, job: see `work`.
+        aim: of the next search.
+        left: searches.
+        answer: of the last one.
+    """
+
+    shared: Shared
+    job: Job
+    aim: Aim
+    left: int
+    answer: Answer | None = None
+
+    def rounded(self) -> Program | None:
+        """The block with the values found next, so rounded that zones have room."""
+        if not self.left:
+            return None
+        self.left -= 1
+        shared, settings = self.shared, Settings(_AGAIN_ITERATIONS, _AGAIN_BOX)
+        job = replace(self.job, memory=Memory(self.job.memory.x, _AGAIN_BOX))
+        answer = _searched(shared.controller, shared, job, settings, self.aim)
+        if not shared.task.rounding.predefined:
+            # Predefined: the next smaller zone would be far smaller; to be cut by a hair does no
+            # harm.
+            variables = shared.blocks[job.block].variables
+            room = with_room(
+                answer.x, variables, lambda x: shared.controller.plan(self._written(x))
+            )
+            answer = replace(answer, x=room)
+        self.job, self.answer = replace(job, memory=answer.memory), answer
+        return self._written(answer.x) if np.isfinite(answer.objective) else None
+
+    def undrivable(self, error: MotionError) -> None:
+        """There is no other way to round it."""
+        self.left = 0
+
+    def accepted(self, run: Run, certificate: Certificate | None) -> bool:
+        """Whether it is proven."""
+        assert self.answer is not None
+        assert certificate is not None
+        self.answer = replace(self.answer, certificate=certificate)
+        if not certificate.proven:
+            self.aim = self.aim.after(run, certificate, self.shared.clearance)
+        return certificate.proven
+
+    def _written(self, x: FloatArray) -> Program:
+        shared = self.shared
+        return shared.blocks[self.job.block].variables.written(x, shared.task.rounding)
+
+
+def _with_chosen_zones(shared: Shared, job: Job) -> tuple[Shared, Job]:
+    """The job with predefined zones, for which its points are refined once more."""
+    block = shared.blocks[job.block]
+    chosen = block.variables.with_chosen_zones(job.memory.x, shared.task.rounding)
+    blocks = list(shared.blocks)
+    blocks[job.block] = replace(block, variables=chosen)
+    shared = replace(shared, blocks=tuple(blocks))
+    x = np.clip(job.memory.x, chosen.lower, chosen.upper)
+    refined = work(shared, replace(job, memory=Memory(x, FINE_BOX), stage=Stage.REFINE))
+    return shared, replace(job, memory=refined.memory)
