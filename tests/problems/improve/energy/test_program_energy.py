@@ -25,8 +25,8 @@ from flyby.core.source.patch.edits import alike
 from flyby.problems.improve.energy import Front, Goal, Scope, Task, optimize_energy, pareto
 from flyby.problems.improve.energy.front import Point, without_dominated
 from flyby.problems.improve.energy.paced_problem import Fixed, PacedProblem
+from flyby.problems.improve.energy.paced_search import LATE
 from flyby.problems.improve.energy.pacing import make_pacing
-from flyby.problems.improve.energy.solve_round_verify import LATE
 from flyby.problems.improve.waypoints import Effort
 from flyby.problems.improve.waypoints import Task as Wishes
 from flyby.validation.scenes.scene import PARABOLAS, with_zone

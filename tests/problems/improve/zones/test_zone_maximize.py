@@ -25,6 +25,7 @@ from flyby.core.program.zone import FINE, ContourFraction, Fine, Radius, Zone
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.shape import Box, Sphere
 from flyby.core.spatial.pose import Pose
+from flyby.problems.improve import solve_round_verify
 from flyby.problems.improve.rounding import Rounding
 from flyby.problems.improve.zones import maximize
 from flyby.problems.improve.zones.deviation import segment_deviations
@@ -354,7 +355,7 @@ def test_zones_that_are_not_proven_become_smaller_and_at_last_what_they_were():
 
 
 def test_what_cannot_be_proven_goes_back_to_the_program_that_can(monkeypatch):
-    certify, count = maximize.certify, 0
+    certify, count = solve_round_verify.certify, 0
 
     def once(*args, **words):
         nonlocal count
@@ -362,7 +363,7 @@ def test_what_cannot_be_proven_goes_back_to_the_program_that_can(monkeypatch):
         proof = certify(*args, **words)
         return proof if count == 1 else replace(proof, verdict=Verdict.UNPROVEN, sigma=None)
 
-    monkeypatch.setattr(maximize, "certify", once)
+    monkeypatch.setattr(solve_round_verify, "certify", once)
     made = maximize_zones(CONTROLLER, PROGRAM, _cell())
     assert count == 2 and not made.changed and made.proven
     assert all(change.after == SMALL for change in made.zones)
