@@ -11,7 +11,7 @@ from ..core.arrays import FloatArray, IntArray
 from ..core.errors import InputError
 from ..core.motion.command.trajectory import Trajectory
 from ..core.robot.model import Robot
-from .belonging import check_axes, check_coverage, check_path, check_time
+from .compatibility import check_axes, check_coverage, check_path, check_time
 from .logs.cleaning import CleanLog
 from .matching import Match, match
 

@@ -14,11 +14,11 @@ from ..core.program.target import JointTarget
 from ..core.program.tool import Tool
 from ..core.robot.model import Robot
 from .alignment import Alignment, align
-from .belonging import check_limits
+from .compatibility import check_limits
 from .logs.cleaning import CleanLog
 from .logs.run import LoggedRun
 from .residuals import Figures, Residuals, figures, residuals
-from .tearing import mended, tear
+from .torn_samples import find_torn, mended
 
 PERIOD = 5e-4
 """s between samples of the emulation. At 1 m/s round a radius of 10 mm, chords are 3 µm off."""
@@ -124,7 +124,7 @@ def _predict(
         check_limits(robot, log.q)
         driven = controller.run(program, start_of(program, log, robot), period, override)
         aligned = align(robot, driven.trajectory, log)
-        torn = tear(driven.trajectory, aligned)
+        torn = find_torn(driven.trajectory, aligned)
         if torn is None:
             return _prediction(name, robot, driven, log, aligned)
         read = _prediction(name, robot, driven, log, aligned).figures

@@ -19,7 +19,7 @@ from ...core.program.speed import Speed
 from ...core.program.target import JointTarget
 from ...core.program.zone import FINE
 from .checking import Refused, check
-from .plan import Candidate, Corner, Kind, Plan, Skipped
+from .plan import Candidate, Kind, Plan, PlannedCorner, Skipped
 from .postures import Site
 from .star import Leg, Spoke, Star
 from .words import Words
@@ -53,7 +53,7 @@ APPROACH = 0.25
 
 
 @dataclass(frozen=True)
-class _Signed(Corner):
+class _Signed(PlannedCorner):
     """A corner to one side or the other.
 
     Args:
@@ -215,7 +215,7 @@ class Family:
         for corner, (spoke, then) in zip(corners, pairwise(spokes), strict=True):
             moves.append(star.inward(spoke, said[spoke.leg], self.words.zone(corner.radius)))
             moves.append(star.outward(then, said[then.leg]))
-        designed = tuple(Corner(corner.turn, corner.radius) for corner in corners)
+        designed = tuple(PlannedCorner(corner.turn, corner.radius) for corner in corners)
         name = self._name(kind, speed, number)
         return self._candidate(name, kind, speed, designed, begin, moves)
 
@@ -274,7 +274,7 @@ class Family:
         name: str,
         kind: Kind,
         speed: float | None,
-        corners: tuple[Corner, ...],
+        corners: tuple[PlannedCorner, ...],
         begin: MoveJ,
         moves: Sequence[Move],
     ) -> Candidate:
@@ -289,7 +289,7 @@ def _joint_target(q: FloatArray) -> JointTarget:
     return JointTarget(tuple(float(value) for value in q))
 
 
-def _need(corner: Corner, ramp: float) -> float:
+def _need(corner: PlannedCorner, ramp: float) -> float:
     """m, length of a corner's legs: a stop at one end, the zone at the other, both clear of where
     the speed is reached."""
     return max(ZONE_ROOM * corner.radius, corner.radius + 2.0 * ramp)

@@ -57,7 +57,7 @@ _STEP = 0.02
 
 
 @dataclass(frozen=True)
-class Figure:
+class StudiedFigure:
     """A figure of the motion model.
 
     Args:
@@ -95,9 +95,9 @@ def studied(model: MotionModel, robot: Robot) -> MotionModel:
     )
 
 
-def figures_of(model: MotionModel) -> list[Figure]:
+def figures_of(model: MotionModel) -> list[StudiedFigure]:
     """What a log can tell of a studied model, but for the leads of elastic joints."""
-    found: list[Figure] = []
+    found: list[StudiedFigure] = []
     for name, blend in (
         ("tcp", model.tcp),
         ("joint", model.joint),
@@ -105,25 +105,25 @@ def figures_of(model: MotionModel) -> list[Figure]:
     ):
         bends = (MoveJ,) if name == "joint" else (MoveL, MoveC)
         for k, beta in enumerate(blend.beta if blend.kind == "polynomial" else ()):
-            found.append(Figure(f"blend.{name}.beta[{k}]", beta, SPREAD_BETA, bends))
+            found.append(StudiedFigure(f"blend.{name}.beta[{k}]", beta, SPREAD_BETA, bends))
     for k, width in enumerate(model.smoothing):
-        found.append(Figure(f"time.smoothing_s[{k}]", width, SPREAD_WIDTH))
+        found.append(StudiedFigure(f"time.smoothing_s[{k}]", width, SPREAD_WIDTH))
     assert model.settling is not None
-    found.append(Figure("time.settling_s", model.settling, SPREAD_SETTLING))
+    found.append(StudiedFigure("time.settling_s", model.settling, SPREAD_SETTLING))
     if model.in_position > 0.0:
-        found.append(Figure("time.in_position_rad", model.in_position, SPREAD_NEARNESS))
+        found.append(StudiedFigure("time.in_position_rad", model.in_position, SPREAD_NEARNESS))
         if model.in_position_time is not None:
             time = model.in_position_time
-            found.append(Figure("time.in_position_time_s", time, SPREAD_SETTLING))
+            found.append(StudiedFigure("time.in_position_time_s", time, SPREAD_SETTLING))
     for key, limit in (
         ("limit.tcp_acceleration", model.tcp_acceleration),
         ("limit.reorientation_acceleration", model.reorientation_acceleration),
     ):
         if limit is not None:
-            found.append(Figure(key, limit, SPREAD_SCALE * limit))
+            found.append(StudiedFigure(key, limit, SPREAD_SCALE * limit))
     for joint, scale in enumerate(model.joint_acceleration_scale):
         key = f"limit.joint_acceleration_scale[{joint}]"
-        found.append(Figure(key, scale, SPREAD_SCALE * scale))
+        found.append(StudiedFigure(key, scale, SPREAD_SCALE * scale))
     return found
 
 
@@ -147,7 +147,7 @@ class Informer:
     vendor: Vendor
     robot: Robot
     model: MotionModel
-    figures: tuple[Figure, ...]
+    figures: tuple[StudiedFigure, ...]
     period: float
 
     @classmethod
@@ -194,7 +194,7 @@ class Informer:
         return _information(np.stack(columns, axis=1), clock)
 
     def _shifted(
-        self, figure: Figure, program: Program, path: Path, start: JointTarget, t: FloatArray
+        self, figure: StudiedFigure, program: Program, path: Path, start: JointTarget, t: FloatArray
     ) -> FloatArray:
         """(T, N), the command where a figure is a step larger."""
         value = figure.value + _STEP * figure.spread

@@ -153,7 +153,7 @@ def usual_radii(reach: float) -> tuple[float, ...]:
 
 
 @dataclass(frozen=True)
-class Corner:
+class PlannedCorner:
     """A fly-by point as it is designed.
 
     Args:
@@ -183,7 +183,7 @@ class Candidate:
     kind: Kind
     posture: int
     speed: float | None
-    corners: tuple[Corner, ...]
+    corners: tuple[PlannedCorner, ...]
     program: Program
     start: FloatArray
 

@@ -30,7 +30,7 @@ POSTURE = 0.5
 
 
 @dataclass(frozen=True)
-class Candidate:
+class CandidateModel:
     """A model to be compared.
 
     Args:
@@ -42,16 +42,16 @@ class Candidate:
     parameters: ParameterSet
 
 
-def candidates(parameters: ParameterSet) -> list[Candidate]:
+def candidates(parameters: ParameterSet) -> list[CandidateModel]:
     """All parameters, and all but those of one figure of the motion file, for each figure; a
     figure that is not fitted stays where the base of the parameters has it."""
     figures: dict[str, list[str]] = {}
     for one in parameters.parameters:
         figure = figure_of(one.keys[0]).key
         figures.setdefault(figure, []).append(one.name)
-    found = [Candidate("all", parameters)]
+    found = [CandidateModel("all", parameters)]
     if len(figures) > 1:
-        found += [Candidate(f"all but {k}", parameters.without(v)) for k, v in figures.items()]
+        found += [CandidateModel(f"all but {k}", parameters.without(v)) for k, v in figures.items()]
     return found
 
 
@@ -225,7 +225,7 @@ def leave_out(
 def compare_models(
     runs: Sequence[PreparedRun],
     nuisances: Sequence[Nuisance],
-    candidates: Sequence[Candidate],
+    candidates: Sequence[CandidateModel],
     groups: Sequence[tuple[int, ...]],
     workers: int = 1,
     tell: Callable[[str], None] | None = None,

@@ -13,7 +13,7 @@ from flyby.core.errors import InputError
 from flyby.core.program.tool import FLANGE, Tool
 from flyby.core.spatial.pose import Pose
 from flyby.identification.alignment import align, moving_time
-from flyby.identification.belonging import check_coverage, check_limits, check_path
+from flyby.identification.compatibility import check_coverage, check_limits, check_path
 from flyby.identification.logs.cleaning import clean_samples
 from flyby.identification.matching import COARSE, match
 from flyby.identification.residuals import figures, residuals

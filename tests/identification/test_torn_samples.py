@@ -13,7 +13,7 @@ from flyby.core.registry import find_vendor
 from flyby.identification.alignment import align
 from flyby.identification.logs.cleaning import clean_samples
 from flyby.identification.prediction import predict
-from flyby.identification.tearing import mended, tear
+from flyby.identification.torn_samples import find_torn, mended
 
 from .faulty_logs import ROBOT, emulated, joints, program
 
@@ -43,7 +43,7 @@ def test_torn_samples_are_put_together(run, seed, delay, ahead) -> None:
     t, q, whole = read(run, seed, delay)
     log = clean_samples(t, q)
     found = align(ROBOT, run.trajectory, log)
-    torn = tear(run.trajectory, found)
+    torn = find_torn(run.trajectory, found)
     assert torn is not None
     assert torn.delay == pytest.approx(delay, abs=2e-4)
     healed = mended(log, run.trajectory, found, torn)
@@ -59,11 +59,11 @@ def test_torn_samples_are_put_together(run, seed, delay, ahead) -> None:
 @settings(max_examples=8, deadline=None)
 @given(seed=st.integers(0, 10**6), bend=st.floats(0.0, 5e-4))
 def test_whole_samples_stay(run, seed, bend) -> None:
-    """Noise, jitter, and a path that is emulated a little wrong are no tears."""
+    """Noise, jitter, and a path that is emulated a little wrong are no torn samples."""
     t, q, _ = read(run, seed, 0.0)
     q = q + bend * np.sin(3.0 * t)[:, None] * np.array([1.0, -0.5, 0.7, 0.2, -1.0, 0.4])
     found = align(ROBOT, run.trajectory, clean_samples(t, q))
-    assert tear(run.trajectory, found) is None
+    assert find_torn(run.trajectory, found) is None
 
 
 @settings(max_examples=12, deadline=None)
@@ -82,7 +82,7 @@ def test_lags_are_no_tears(run, seed, late, first, noise, uneven) -> None:
     q = np.stack([joints(run, t - lag)[:, j] for j, lag in enumerate(lags)], -1)
     q = q + noise * rng.normal(size=q.shape)
     found = align(ROBOT, run.trajectory, clean_samples(t, q))
-    assert tear(run.trajectory, found) is None
+    assert find_torn(run.trajectory, found) is None
 
 
 def test_predictions_mend_what_they_compare_and_say_what_was_read(run) -> None:

@@ -50,7 +50,7 @@ _STILL = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Tear:
+class TornSamples:
     """How the samples of a log are torn.
 
     Args:
@@ -70,7 +70,7 @@ class Tear:
         return int(np.count_nonzero(self.breaks))
 
 
-def tear(trajectory: Trajectory, alignment: Alignment) -> Tear | None:
+def find_torn(trajectory: Trajectory, alignment: Alignment) -> TornSamples | None:
     """How a log is torn; None if its samples are whole.
 
     Args:
@@ -98,10 +98,12 @@ def tear(trajectory: Trajectory, alignment: Alignment) -> Tear | None:
         return None
     if least > BEYOND_LAGS * _left_by_lags(off[some], speed[some], direction[some]):
         return None
-    return Tear(best, np.argmin(_left(off, late, best), axis=1).astype(np.int64), share)
+    return TornSamples(best, np.argmin(_left(off, late, best), axis=1).astype(np.int64), share)
 
 
-def mended(log: CleanLog, trajectory: Trajectory, alignment: Alignment, found: Tear) -> CleanLog:
+def mended(
+    log: CleanLog, trajectory: Trajectory, alignment: Alignment, found: TornSamples
+) -> CleanLog:
     """The log with all joints of a sample as they were when its first one was read.
 
     Args:
