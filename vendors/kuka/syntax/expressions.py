@@ -51,7 +51,7 @@ def parse_expression(cursor: Cursor) -> Expression:
     if kinds[index] in _ALONE and kinds[index + 1] not in _CONTINUING:
         return _primary(cursor)
     start = cursor.index
-    manual = _chain(cursor, RELATION, _disjunction)
+    manual = _manual(cursor)
     if not _is_ambiguous(cursor, start, cursor.index):
         return manual
     after = cursor.index
@@ -73,59 +73,6 @@ def _is_ambiguous(cursor: Cursor, start: int, end: int) -> bool:
             relation = relation or kind in RELATION
             logic = logic or kind in _LOGIC
     return relation and logic
-
-
-def _usual(cursor: Cursor) -> Expression:
-    """With comparisons before AND, EXOR and OR."""
-
-    def comparison(cursor: Cursor) -> Expression:
-        return _chain(cursor, RELATION, _sum)
-
-    def conjunction(cursor: Cursor) -> Expression:
-        return _chain(cursor, AND, comparison)
-
-    def exclusion(cursor: Cursor) -> Expression:
-        return _chain(cursor, EXOR, conjunction)
-
-    return _chain(cursor, OR, exclusion)
-
-
-def _disjunction(cursor: Cursor) -> Expression:
-    return _chain(cursor, OR, _exclusion)
-
-
-def _exclusion(cursor: Cursor) -> Expression:
-    return _chain(cursor, EXOR, _conjunction)
-
-
-def _conjunction(cursor: Cursor) -> Expression:
-    return _chain(cursor, AND, _sum)
-
-
-def _sum(cursor: Cursor) -> Expression:
-    return _chain(cursor, SUM, _product)
-
-
-def _product(cursor: Cursor) -> Expression:
-    return _chain(cursor, PRODUCT, parse_frame)
-
-
-def parse_frame(cursor: Cursor) -> Expression:
-    """Operands of the geometric operator."""
-    return _chain(cursor, FRAME, _primary)
-
-
-def _chain(cursor: Cursor, operators: frozenset[str], operand: Parse) -> Expression:
-    """Operands with operators of one priority between them."""
-    start = cursor.start
-    first = operand(cursor)
-    if cursor.kind not in operators:
-        return first
-    rest = []
-    while (operator := cursor.kind) in operators:
-        cursor.advance()
-        rest.append((operator, operand(cursor)))
-    return Operation(cursor.span_from(start), first, tuple(rest))
 
 
 def _primary(cursor: Cursor) -> Expression:
@@ -275,3 +222,34 @@ def parse_indices(cursor: Cursor) -> tuple[Expression | None, ...]:
                 break
         cursor.expect("]", "to close the index")
     return tuple(items)
+
+
+def _operations(operators: frozenset[str], operand: Parse) -> Parse:
+    """Reads operands with operators of one priority between them."""
+
+    def parse(cursor: Cursor) -> Expression:
+        start = cursor.start
+        first = operand(cursor)
+        if cursor.kind not in operators:
+            return first
+        rest = []
+        while (operator := cursor.kind) in operators:
+            cursor.advance()
+            rest.append((operator, operand(cursor)))
+        return Operation(cursor.span_from(start), first, tuple(rest))
+
+    return parse
+
+
+def _all_operations(*levels: frozenset[str]) -> Parse:
+    """Reads expressions; the levels of operators from the loosest on."""
+    parse: Parse = _primary
+    for operators in reversed(levels):
+        parse = _operations(operators, parse)
+    return parse
+
+
+_manual = _all_operations(RELATION, OR, EXOR, AND, SUM, PRODUCT, FRAME)
+"""As KUKA's table has the priorities."""
+_usual = _all_operations(OR, EXOR, AND, RELATION, SUM, PRODUCT, FRAME)
+"""With comparisons before AND, EXOR and OR."""
