@@ -1,0 +1,1 @@
+"""A base for languages of one statement a line: labels, jumps, registers, calls, points."""

@@ -1,0 +1,201 @@
+"""Expressions of line-oriented languages: numbers, numbered data, sums and comparisons.
+
+``R[1] + 1``, ``R[R[2]] * 0.5``, ``DI[1] = ON AND R[3] < 4``: numbers in the form of the text, data
+as a word and an index, ``ON`` and ``OFF`` for truths; from the tightest to the loosest ``* /``,
+``+ -``, comparisons, ``NOT``, ``AND``, ``OR``.
+"""
+
+from __future__ import annotations
+
+import operator
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from ...errors import SourceError, Span
+from ..text.files import SourceText
+
+Value = float | bool
+DEEPEST = 30
+"""Brackets inside each other."""
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A number that is written out, with its sign."""
+
+    span: Span
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """``ON`` or ``OFF``."""
+
+    span: Span
+    value: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Datum:
+    """A numbered datum: a register, a signal, a point.
+
+    Args:
+        word: before the bracket, in capitals.
+        index: in the bracket.
+    """
+
+    span: Span
+    word: str
+    index: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """A sign or word with its operands; ``NOT`` and a sign before a datum have one."""
+
+    span: Span
+    word: str
+    operands: tuple[Expression, ...]
+
+
+Expression = Number | Truth | Datum | Operation
+
+COMPUTE: dict[str, Callable[..., Value]] = {
+    "+": operator.add,
+    "-": lambda a, b=None: -a if b is None else a - b,
+    "*": operator.mul,
+    "/": operator.truediv,
+    "=": operator.eq,
+    "<>": operator.ne,
+    "<": operator.lt,
+    ">": operator.gt,
+    "<=": operator.le,
+    ">=": operator.ge,
+    "NOT": operator.not_,
+    "AND": lambda a, b: bool(a) and bool(b),
+    "OR": lambda a, b: bool(a) or bool(b),
+}
+_LEVELS = (("OR",), ("AND",), ("=", "<>", "<", ">", "<=", ">="), ("+", "-"), ("*", "/"))
+_TOKEN = re.compile(
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<word>[A-Za-z_]\w*)"
+    r"|(?P<sign><>|<=|>=|[-+*/=<>\[\]()]))"
+)
+
+
+def parse(source: SourceText, start: int, end: int) -> Expression:
+    """The expression that a stretch of a text is.
+
+    Raises:
+        SourceError: it is none.
+    """
+    reader = _Reader(source, start, end)
+    found = reader.level(0)
+    reader.finish()
+    return found
+
+
+def parse_all(source: SourceText, start: int, end: int) -> tuple[Expression, ...]:
+    """The operands, with blanks between them, that a stretch of a text holds; sums in brackets.
+
+    Raises:
+        SourceError: it holds something else.
+    """
+    reader = _Reader(source, start, end)
+    return tuple(reader.operands())
+
+
+def data_in(expression: Expression) -> Iterator[Datum]:
+    """The numbered data in an expression, those in indices included."""
+    if isinstance(expression, Datum):
+        yield expression
+        yield from data_in(expression.index)
+    elif isinstance(expression, Operation):
+        for operand in expression.operands:
+            yield from data_in(operand)
+
+
+class _Reader:
+    """Reads one expression, or several, from left to right."""
+
+    def __init__(self, source: SourceText, start: int, end: int) -> None:
+        self._source = source
+        self._at = start
+        self._end = end
+        self._depth = 0
+        self._token: re.Match[str] | None = None
+        self._advance()
+
+    def _advance(self) -> None:
+        if self._token is not None:
+            self._at = self._token.end()
+        self._token = _TOKEN.match(self._source.text, self._at, self._end)
+
+    @property
+    def _word(self) -> str:
+        found = self._token
+        return "" if found is None else found[0].strip().upper()
+
+    @property
+    def _start(self) -> int:
+        return self._at if self._token is None else self._token.end() - len(self._token[0].strip())
+
+    def _error(self, message: str) -> SourceError:
+        return self._source.error(message, min(self._start, self._end), self._end)
+
+    def finish(self) -> None:
+        if self._token is not None or self._source.text[self._at : self._end].strip():
+            raise self._error("the expression should end here")
+
+    def operands(self) -> Iterator[Expression]:
+        while self._token is not None:
+            yield self._operand()
+        self.finish()
+
+    def level(self, number: int) -> Expression:
+        if number == len(_LEVELS):
+            return self._operand()
+        start = self._start
+        left = self.level(number + 1)
+        while (word := self._word) in _LEVELS[number]:
+            self._advance()
+            right = self.level(number + 1)
+            left = Operation(self._source.span(start, self._at), word, (left, right))
+        return left
+
+    def _operand(self) -> Expression:
+        start, word = self._start, self._word
+        if word in ("-", "+", "NOT"):
+            self._advance()
+            inner = self._operand()
+            span = self._source.span(start, self._at)
+            if isinstance(inner, Number):
+                return Number(span, -inner.value if word == "-" else inner.value)
+            return inner if word == "+" else Operation(span, word, (inner,))
+        if word == "(":
+            inner = self._bracketed(")")
+            return inner
+        if self._token is not None and self._token["number"]:
+            self._advance()
+            return Number(self._source.span(start, self._at), float(word))
+        if self._token is not None and self._token["word"]:
+            self._advance()
+            if word in ("ON", "OFF"):
+                return Truth(self._source.span(start, self._at), word == "ON")
+            if self._word == "[":
+                index = self._bracketed("]")
+                return Datum(self._source.span(start, self._at), word, index)
+            raise self._error(f"{word} has no index: write {word}[1]")
+        raise self._error("a number or a numbered datum should stand here")
+
+    def _bracketed(self, closing: str) -> Expression:
+        self._depth += 1
+        if self._depth > DEEPEST:
+            raise self._error(f"more than {DEEPEST} brackets inside each other")
+        self._advance()
+        inner = self.level(0)
+        if self._word != closing:
+            raise self._error(f"a '{closing}' should stand here")
+        self._advance()
+        self._depth -= 1
+        return inner

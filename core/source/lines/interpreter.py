@@ -1,0 +1,325 @@
+"""Runs a program of lines: statements → the moves, waits and kept statements that the robot does.
+
+What the text leaves open (inputs, registers that nobody sets) travels as `Unknown`; where a jump
+depends on one, `core.source.execution.flow` decides, and where a move does, it is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import NoReturn
+from weakref import proxy
+
+from ...errors import InputError, Note, SourceError, Span
+from ...program import move
+from ...program.move import Wait
+from ...program.program import Program
+from ..execution.analysis import Analysis
+from ..execution.answers import Course
+from ..execution.flow import Flow, Loop
+from ..execution.limits import Meter
+from ..execution.outputs import Outputs
+from ..execution.provenance import Part, Reads
+from ..execution.scopes import unknown_name
+from ..execution.steps import NOTHING
+from ..execution.transcript import MoveParts, Transcript
+from ..reading import ReadOptions
+from .analysis import Statements, expressions_of
+from .expressions import Number
+from .program import (
+    Assign,
+    Body,
+    Call,
+    Drive,
+    End,
+    Grammar,
+    If,
+    Jump,
+    Kept,
+    LineProgram,
+    Operand,
+    Pause,
+    Return,
+    Statement,
+)
+from .values import Snapshot, Unknown, Values
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """Numbers that stand in the text (see `core.source.execution.provenance.Source`)."""
+
+    span: Span
+    datum: str | None
+    numbers: Sequence[Span | None]
+
+    @property
+    def root(self) -> Span:
+        """The same: parts of it are not read apart."""
+        return self.span
+
+
+class _Jumped(Exception):
+    def __init__(self, jump: Jump) -> None:
+        self.jump = jump
+
+
+class _Returned(Exception):
+    pass
+
+
+class _Finished(Exception):
+    pass
+
+
+def run_lines(program: LineProgram, grammar: Grammar, options: ReadOptions) -> Program:
+    """The program that a routine drives.
+
+    Args:
+        program: the routines.
+        grammar: of the language.
+        options: entry, answers and limits; without an entry the lines before the first routine are
+            run, or the only routine there is.
+
+    Raises:
+        SourceError: what it does cannot be followed; file, line and cause are named.
+    """
+    name = (options.entry or "").lower()
+    if not name and not program.routines[""].statements and len(program.routines) == 2:
+        name = next(key for key in program.routines if key)
+    body = program.routines.get(name)
+    where = Span(program.file, 1, 1, 0, 0)
+    if body is None:
+        known = [key for key in program.routines if key]
+        raise SourceError(
+            unknown_name("routine", options.entry or "", known, "choose another entry"), where
+        )
+    run = _Interpreter(program, grammar, options)
+    run.run(body)
+    return Program(run.statements(), options.entry or name or "main", notes=run.notes())
+
+
+class _Interpreter:
+    """One run of a program; it is the host of the rules for branches and loops."""
+
+    position_asked = 0
+
+    def __init__(self, program: LineProgram, grammar: Grammar, options: ReadOptions) -> None:
+        self._program = program
+        self._grammar = grammar
+        self._start = options.start
+        self.course = Course(options.answers)
+        self.meter = Meter(options.limits, options.executed)
+        self.outputs = Outputs()
+        self.place: object = None
+        self._out = Transcript(lambda span: program.text[span.start : span.end])
+        self._tree = Statements(program, grammar)
+        self._analysis = Analysis(self._tree)
+        self._flow: Flow[Body] = Flow(self._analysis, proxy(self))
+        self._values = Values(program.text, grammar, self.course, self.outputs)
+        self._reads = Reads()
+        self._loops: dict[int, Body] = {}
+
+    # ---------------------------------------------------------------------- the run
+
+    def run(self, body: Body) -> None:
+        """Carry a routine out to its end."""
+        with suppress(_Finished):
+            self._routine(body)
+
+    def statements(self) -> tuple[move.Statement, ...]:
+        """What was carried out."""
+        return self._out.statements(self._reads)
+
+    def notes(self) -> tuple[Note, ...]:
+        """What is to be said about the run."""
+        return (*self._out.notes.notes(), *self.course.notes())
+
+    def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
+        """See `core.source.execution.flow.Host`."""
+        return Snapshot(self._values.registers, names)
+
+    def note_once(self, kind: str, message: str, span: Span) -> None:
+        """See `core.source.execution.flow.Host`."""
+        self._out.notes.once(kind, message, span)
+
+    def finish(self, message: str, span: Span) -> NoReturn:
+        """See `core.source.execution.flow.Host`."""
+        self._out.notes.once("end", message, span)
+        raise _Finished
+
+    # -------------------------------------------------------------------- statements
+
+    def _routine(self, body: Body) -> None:
+        with self._flow.routine(), suppress(_Returned):
+            try:
+                self._body(body)
+            except _Jumped as found:
+                raise SourceError(
+                    f"there is no label {found.jump.label} in this routine", found.jump.span
+                ) from None
+
+    def _body(self, body: Body) -> None:
+        index = 0
+        while index < len(body.statements):
+            try:
+                self._carry_out(body.statements[index])
+                index += 1
+            except _Jumped as found:
+                index = self._after(body, index, found.jump)
+
+    def _after(self, body: Body, index: int, jump: Jump) -> int:
+        """Index of the statement behind a jump out of one of them.
+
+        Raises:
+            _Jumped: the label stands in no statement of the block.
+        """
+        target = body.labels.get(jump.label)
+        if target is None:
+            raise _Jumped(jump)
+        if target > index:
+            return target
+        statement = body.statements[index]
+        key = id(statement)
+        between = self._loops.setdefault(key, Body(body.statements[target : index + 1]))
+        unconditional = isinstance(statement, Jump)
+        loop = Loop(
+            between,
+            jump.span,
+            self._program.text[jump.span.start : jump.span.end].strip(),
+            NOTHING if unconditional else self._tree.reads(expressions_of(statement)),
+            endless=unconditional,
+        )
+        try:
+            return target if self._flow.jump(loop, key, self._run) else index + 1
+        except _Jumped as found:
+            return self._after(body, index, found.jump)
+
+    def _run(self, block: Body) -> bool:
+        self._body(block)
+        return True
+
+    def _carry_out(self, statement: Statement) -> None:
+        self.meter.statement(statement.span)
+        if isinstance(statement, Drive):
+            self._drive(statement)
+        elif isinstance(statement, Assign):
+            self._assign(statement)
+        elif isinstance(statement, If):
+            self._if(statement)
+        elif isinstance(statement, Jump):
+            raise _Jumped(statement)
+        elif isinstance(statement, Call):
+            self._call(statement)
+        elif isinstance(statement, Return):
+            raise _Returned
+        elif isinstance(statement, End):
+            raise _Finished
+        elif isinstance(statement, Pause):
+            self._pause(statement)
+        elif isinstance(statement, Kept):
+            self._out.keep(statement.span, statement.name, statement.why, statement.stops)
+
+    def _if(self, statement: If) -> None:
+        value = self._values.value(statement.condition)
+        if isinstance(value, Unknown):
+            span = statement.condition.span
+            choice = self._flow.choose(span, value.reason, [statement.then], None)
+            if choice.block is not None:
+                self._body(choice.block)
+        elif value:
+            self._body(statement.then)
+
+    def _call(self, statement: Call) -> None:
+        name = statement.routine
+        body = self._program.routines.get(name.lower())
+        if body is None:
+            if self.course.skips(name):
+                self.outputs.forget()
+                self._out.keep(statement.span, name, "it is skipped, as the answers say")
+                return
+            known = [key for key in self._program.routines if key]
+            offer = (
+                "it might move the robot, so it is not stepped over: put it into the file, or "
+                f'answer [calls] {name} = "skip"'
+            )
+            raise SourceError(unknown_name("routine", name, known, offer), statement.span)
+        self.meter.call(name, statement.span)
+        try:
+            self._routine(body)
+        finally:
+            self.meter.back()
+
+    def _pause(self, statement: Pause) -> None:
+        if statement.time is not None:
+            value = self._values.value(statement.time)
+            if not isinstance(value, Unknown):
+                self._out.emit(Wait(max(0.0, float(value)), statement.span))
+                return
+            why = f"its time depends on {value.reason} and is taken as zero"
+        else:
+            assert statement.condition is not None
+            mark = self.outputs.mark()
+            if self._values.value(statement.condition) is False:
+                self.outputs.forget(self.outputs.asked_since(mark))
+            why = "taken as satisfied at once: waiting takes no time here"
+        self._out.keep(statement.span, "a wait", why, stops=True)
+
+    def _assign(self, statement: Assign) -> None:
+        value = self._values.value(statement.value)
+        name = self._values.name(statement.target)
+        registers = self._values.registers
+        if statement.target.word in self._grammar.registers:
+            if name is None:  # it may be any of them
+                unknown = Unknown("a register whose number is not known")
+                registers.update(dict.fromkeys(registers, unknown))
+            else:
+                registers[name] = value
+            return
+        if name is None:
+            self.outputs.forget()
+        else:
+            self.outputs.write(name, None if isinstance(value, Unknown) else value)
+        word = statement.target.word
+        self._out.keep(statement.span, word, "outputs do not move the robot")
+
+    # ------------------------------------------------------------------------- moves
+
+    def _drive(self, statement: Drive) -> None:
+        operands = (statement.target, statement.speed, statement.zone, statement.via)
+        found = [None if one is None else self._operand(one) for one in operands]
+        numbers = [() if one is None else one[0] for one in found]
+        try:
+            move = statement.build(*numbers)
+        except (InputError, ValueError) as error:
+            raise SourceError(str(error), statement.span) from None
+        target, speed, zone, via = (None if one is None else one[1] for one in found)
+        assert target is not None and speed is not None and zone is not None
+        self.meter.move(statement.span)
+        for part in filter(None, (target, speed, zone, via)):
+            for source in filter(None, part.sources):
+                self._reads.by_move(source, self._out.move_index)
+        self._out.emit_move(move, MoveParts(statement.span, target, speed, zone, via))
+        self.place = move
+
+    def _operand(self, operand: Operand) -> tuple[tuple[float, ...], Part]:
+        """The numbers of a part of a move, and where they stand."""
+        if operand.point is None:
+            numbers = tuple(self._values.number(one) for one in operand.numbers)
+            sources = tuple(
+                Literal(one.span, None, (one.span,)) if isinstance(one, Number) else None
+                for one in operand.numbers
+            )
+            return numbers, Part(operand.span, sources if any(sources) else ())
+        index = self._values.number(operand.point.index)
+        key = operand.point.word, int(index)
+        point = self._program.points.get(key)
+        text = f"{key[0]}[{key[1]}]"
+        if point is None:
+            known = [f"{word}[{number}]" for word, number in self._program.points]
+            raise SourceError(unknown_name("point", text, known, "define it"), operand.point.span)
+        numbers = tuple(self._values.number(one) for one in point.numbers)
+        spans = tuple(one.span if isinstance(one, Number) else None for one in point.numbers)
+        return numbers, Part(operand.span, (Literal(point.span, text, spans),))

@@ -1,0 +1,103 @@
+"""Changed numbers in the user's own lines; every other byte stays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+
+from ...errors import InputError, Span
+from ...program.move import Move
+from ...program.origin import Ownership
+from ...program.program import Program
+from ..patch.edits import Edit, patched, reading_of
+from ..patch.plan import Plan, Wish, first_possible
+from ..patch.uses import Kind, MovePart, Use, uses
+from ..reading import Files
+from ..write.options import PatchOptions
+
+NumbersOf = Callable[[Kind, MovePart, Move], Sequence[float]]
+"""The numbers of a part of a move, in the order in which a line has them."""
+
+
+def patch_lines(
+    program: Program, options: PatchOptions, numbers: NumbersOf, number: Callable[[float], str]
+) -> Files:
+    """The files of a program with the numbers that it has now.
+
+    A number is changed where it stands, in a point or at the move, if all moves that read it are to
+    have the same; else, as the options say, the change is refused, or the move gets numbers of its
+    own in the place of the point.
+
+    Args:
+        program: read by `interpreter.run_lines`, then changed.
+        options: what may get numbers of its own.
+        numbers: of a part; what the language cannot say it refuses (`InputError`).
+        number: a number as the language writes it.
+
+    Returns:
+        The files that changed, by name.
+
+    Raises:
+        FlybyError: a change has no place in the text, or the text is not read as ``program``.
+    """
+    reading = reading_of(program)
+    parts = uses(reading.again({}), program, lambda old, new: None)
+
+    def text_at(span: Span) -> str:
+        return reading.files[span.file].text[span.start : span.end]
+
+    literals = _Literals(text_at, numbers, number)
+
+    def attempt(in_place: Collection[Ownership]) -> Files:
+        plan = Plan(parts, literals, options, in_place)
+        edits = [edit for use in plan.changes for edit in _edits(plan, use, literals)]
+        return patched(program, reading, edits)
+
+    return first_possible(options, attempt)
+
+
+class _Literals:
+    """What the numbers of the lines must say; see `core.source.patch.plan.Literals`."""
+
+    def __init__(
+        self, text: Callable[[Span], str], numbers: NumbersOf, number: Callable[[float], str]
+    ) -> None:
+        self.text = text
+        self._numbers = numbers
+        self._number = number
+
+    def written(self, use: Use) -> list[str]:
+        """The numbers of a part as a line has them."""
+        return [self._number(value) for value in self._numbers(use.kind, use.new, use.move)]
+
+    def wish(self, use: Use) -> Wish:
+        """What the literals of a part must say."""
+        spans = use.origin.numbers
+        old = self._numbers(use.kind, use.old, use.move)
+        new = self._numbers(use.kind, use.new, use.move)
+        if len(spans) != len(new) or len(old) != len(new):
+            return Wish({s: self.text(s) for s in spans if s is not None}, complete=False)
+        texts = {
+            span: self.text(span) if before == value else self._number(value)
+            for span, before, value in zip(spans, old, new, strict=True)
+            if span is not None
+        }
+        missing = any(
+            span is None and before != value
+            for span, before, value in zip(spans, old, new, strict=True)
+        )
+        return Wish(texts, complete=not missing)
+
+
+def _edits(plan: Plan, use: Use, literals: _Literals) -> list[Edit]:
+    try:
+        against = plan.against(use)
+        if plan.changeable(use) and plan.wish(use).complete and not against:
+            return [Edit(span, text, use.index) for span, text in plan.texts(use).items()]
+        if use.origin.numbers:
+            plan.check_shared(use, against)
+        else:
+            plan.check_computed()
+        plan.check_executions(use)
+        return [Edit(use.origin.span, " ".join(literals.written(use)), use.index)]
+    except InputError as error:
+        raise use.error(str(error)) from None
