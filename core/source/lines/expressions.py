@@ -18,6 +18,8 @@ from ..text.files import SourceText
 Value = float | bool
 DEEPEST = 30
 """Brackets inside each other."""
+LONGEST = 100
+"""Signs and words between operands, and before them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +125,7 @@ class _Reader:
         self._at = start
         self._end = end
         self._depth = 0
+        self._operators = 0
         self._token: re.Match[str] | None = None
         self._advance()
 
@@ -143,6 +146,13 @@ class _Reader:
     def _error(self, message: str) -> SourceError:
         return self._source.error(message, min(self._start, self._end), self._end)
 
+    def _count(self) -> None:
+        """Go past an operator."""
+        self._operators += 1
+        if self._operators > LONGEST:
+            raise self._error(f"more than {LONGEST} operators: split the expression")
+        self._advance()
+
     def finish(self) -> None:
         if self._token is not None or self._source.text[self._at : self._end].strip():
             raise self._error("the expression should end here")
@@ -158,7 +168,7 @@ class _Reader:
         start = self._start
         left = self.level(number + 1)
         while (word := self._word) in _LEVELS[number]:
-            self._advance()
+            self._count()
             right = self.level(number + 1)
             left = Operation(self._source.span(start, self._at), word, (left, right))
         return left
@@ -166,7 +176,7 @@ class _Reader:
     def _operand(self) -> Expression:
         start, word = self._start, self._word
         if word in ("-", "+", "NOT"):
-            self._advance()
+            self._count()
             inner = self._operand()
             span = self._source.span(start, self._at)
             if isinstance(inner, Number):

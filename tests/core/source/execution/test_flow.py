@@ -84,6 +84,10 @@ def below(name: str, most: int) -> Asked:
     return Asked((name,), lambda data: data[name] < most)  # type: ignore[operator]
 
 
+def reached(name: str, most: int) -> Asked:
+    return Asked((name,), lambda data: data[name] >= most)  # type: ignore[operator]
+
+
 def counted(name: str) -> Set:
     return Set(name, Asked((name,), lambda data: data[name] + 1))  # type: ignore[operator]
 
@@ -230,7 +234,7 @@ ENDLESS = "the program is an endless loop (while)"
 WAITS = "the loop (while) only waits for what the program does not change itself"
 ONCE = "the end of the loop depends on a signal: its body runs once"
 
-BRANCHES = {
+BRANCHES: dict[str, tuple[list[Statement], str, str]] = {
     "moves": ([If(SIGNAL, block(A)), B], "A B", "branch 1 of 1, the first that moves"),
     "does not move": ([If(SIGNAL, block(FLAG)), B], "B", "taken as not fulfilled"),
     "only ELSE moves": ([If(SIGNAL, block(FLAG), block(A)), B], "A B", "branch 2 of 2, the first"),
@@ -254,7 +258,7 @@ def test_a_branch_is_taken_that_moves_and_comes_back(name: str) -> None:
     assert any(said in message for message in run.said), run.said
 
 
-LOOPS = {
+LOOPS: dict[str, tuple[list[Statement], Data, str, str | None]] = {
     "unknown condition": ([While(SIGNAL, block(A)), B], {}, "A B", ONCE),
     "unknown condition, no motion": ([While(SIGNAL, block(FLAG)), B], {}, "B", "left at once"),
     "counter": ([While(below("n", 3), block(A, counted("n"))), B], {"n": 0}, "A A A B", None),
@@ -299,7 +303,7 @@ LOOPS = {
                 block(
                     A,
                     counted("n"),
-                    If(Asked(("n",), lambda d: d["n"] >= 3), block(BREAK)),
+                    If(reached("n", 3), block(BREAK)),
                     If(SIGNAL, block(BREAK)),
                 ),
             ),
@@ -375,7 +379,7 @@ def test_a_loop_ends(name: str) -> None:
 
 def test_a_loop_that_gets_on_is_followed_past_an_open_way_out_for_so_long() -> None:
     run = Run(n=0)
-    late = If(Asked(("n",), lambda d: d["n"] >= 1000), block(BREAK))
+    late = If(reached("n", 1000), block(BREAK))
     body = block(A, counted("n"), late, If(SIGNAL, block(BREAK)))
     assert run.execute(While(ALWAYS, body), B).split() == ["A"] * FOLLOWED + ["B"]
 
