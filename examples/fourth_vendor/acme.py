@@ -120,8 +120,13 @@ class Acme:
         raise ValueError(f"unknown word {word}")
 
 
-_NAMED = {"LABEL": Label, "JUMP": Jump, "CALL": Call, "ROUTINE": Routine}
-_ALONE = {"RETURN": Return, "END": End}
+_NAMED: dict[str, type[Label | Jump | Call | Routine]] = {
+    "LABEL": Label,
+    "JUMP": Jump,
+    "CALL": Call,
+    "ROUTINE": Routine,
+}
+_ALONE: dict[str, type[Return | End]] = {"RETURN": Return, "END": End}
 _THEN = re.compile(r"\s(?=(?:JUMP|CALL|RETURN|END|MOVE[JLC])\b)")
 _PARTS = re.compile(r"(.*)\sSPEED\s+(\S+)\s+(\S+)\s+ZONE\s(.*)")
 _NUMBERS = {"MOVEL": 7, "MOVEC": 7}
@@ -151,11 +156,11 @@ def _drive(line: Line, word: str, begin: int) -> Drive:
     zone = Operand(
         source.span(found.start(4), found.end(4)), parse_all(source, found.start(4), found.end(4))
     )
-    kinds = tuple(("tcp", "reorientation")[k - 2] for k in given)
 
     def build(target: Numbers, speed: Numbers, zone: Numbers, via: Numbers) -> Move:
         (radius,) = zone
-        pace = Speed(**dict(zip(kinds, speed, strict=True)))
+        tcp, turn = (dict(zip(given, speed, strict=True)).get(k) for k in (2, 3))
+        pace = Speed(tcp, turn)
         blend: Zone = FINE if radius == 0 else Radius(radius)
         if word == "MOVEJ":
             return MoveJ(JointTarget(tuple(target)), pace, blend)

@@ -11,10 +11,10 @@ A file of answers is TOML::
     [sequences]                  # one answer after the other; the last one stays
     "get_digital_in(1)" = [false, false, true]
 
-    [branches]                   # at a line: the branch taken, 1 for the first, 0 for none
+    [branches]                   # at a line: the branch taken, 1 for the first, 0 for ELSE or none
     "main.mod:120" = 1
 
-    [passes]                     # at a line: how often a loop runs whose end is not known
+    [passes]                     # at a line: how often a loop runs that nothing known ends
     "main.mod:200" = 3
 
     [calls]                      # routines whose text is not at hand and that move nothing

@@ -369,7 +369,8 @@ LOOPS: dict[str, tuple[list[Statement], Data, str, str | None]] = {
 @pytest.mark.parametrize("name", LOOPS)
 def test_a_loop_ends(name: str) -> None:
     statements, data, driven, said = LOOPS[name]
-    run = Run(**data)
+    run = Run()
+    run.data.update(data)
     assert run.execute(*statements) == driven
     if said is None:
         assert run.said == [] or "condition depends" in run.said[0]
