@@ -12,7 +12,7 @@
 - ``own_corpus_run_fraction``: the share of the corpus in ``tests/corpus`` that is emulated to the
   end.
 
-Needs the project's tests beside it, hypothesis and lark: pip install flyby[testing] lark
+Needs the project's tests beside it: pip install flyby[testing]
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from pathlib import Path
 
@@ -76,3 +77,24 @@ def test_every_entry_point_is_packaged() -> None:
         package, _, module = target.partition(":")[0].rpartition(".")
         assert package in SETUPTOOLS["packages"], target
         assert (folder_of(package) / f"{module}.py").is_file(), target
+
+
+def test_extras_that_are_named_exist() -> None:
+    """In docs, messages and scripts."""
+    known = PYPROJECT["project"]["optional-dependencies"]
+    named = {
+        (extra.strip(), path.name)
+        for pattern in (
+            "*.md",
+            "docs/**/*.md",
+            "benchmarks/*.py",
+            *(f"{s}/**/*.py" for s in SHELVES),
+        )
+        for path in ROOT.glob(pattern)
+        for extras in re.findall(r"(?:flyby|\.)\[([a-z, ]+)\]'?", path.read_text("utf-8"))
+        if "pip install" in path.read_text("utf-8")
+        for extra in extras.split(",")
+    }
+    assert len(named) > 3
+    for extra, place in named:
+        assert extra in known, (extra, place)
