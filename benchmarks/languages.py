@@ -29,6 +29,7 @@ from fuzzing import Seeds, failures, told
 from report import Figure, cpu_seconds, main
 
 from flyby.core.errors import FlybyError
+from flyby.core.language import Sources
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import Opaque
 from flyby.core.program.program import Program
@@ -36,7 +37,7 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.model import Robot
 from flyby.core.source.execution.answers import Answers, load_answers
 from flyby.core.source.patch.edits import TOLERANCE, difference, reading_of
-from flyby.core.vendor import Sources, Vendor
+from flyby.core.vendor import Vendor
 
 TESTS = Path(__file__).parents[1] / "tests"
 CORPUS = TESTS / "corpus"

@@ -18,8 +18,9 @@ from ..tasks.translate import carried
 from .console import print_rich
 
 if TYPE_CHECKING:
+    from ..core.language import Sources
     from ..core.program.program import Program
-    from ..core.vendor import Sources, Vendor
+    from ..core.vendor import Vendor
     from ..problems.improve.solution import Solution
 
 

@@ -26,8 +26,8 @@ from .source.write.options import AS_COMMENTS
 from .spatial.pose import Pose
 
 if TYPE_CHECKING:
+    from .language import Reader
     from .robot.model import Robot
-    from .vendor import Reader
 
 _NEAR = 1e-5
 """m and rad: ten times what single precision leaves of metres."""

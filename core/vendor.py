@@ -8,9 +8,10 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Protocol, TypeVar, runtime_checkable
+from typing import TYPE_CHECKING, TypeVar
 
 from .errors import InputError, UnknownNameError
+from .language import Patcher, Reader, Recorder, Sources, Writer
 
 if TYPE_CHECKING:
     import numpy as np
@@ -30,76 +31,6 @@ LANGUAGE_PARTS = ("reader", "writer", "patcher", "recorder")
 Part = TypeVar("Part")
 MotionLayer = Callable[["MotionModel"], "MotionModel"]
 """Lays what is known of one robot on the motion model of its vendor's controllers."""
-Sources = Mapping[str, str]
-"""Texts of a program's source files by file name."""
-
-
-@runtime_checkable
-class Reader(Protocol):
-    """Reads the vendor's source; errors are `SourceError` with file, line and column."""
-
-    def read(self, text: str, file: str, options: ReadOptions) -> Program:
-        """The program that a routine of ``text`` drives; no file is opened.
-
-        Args:
-            text: the source.
-            file: its name, for messages.
-            options: entry, robot, answers, limits.
-        """
-        ...
-
-    def read_file(self, path: Path, options: ReadOptions) -> Program:
-        """The same of a file, and of the files that belong to it (`ReadOptions.others`)."""
-        ...
-
-
-@runtime_checkable
-class Writer(Protocol):
-    """Writes the vendor's source."""
-
-    def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
-        """Source files that the robot's controller would load, by file name.
-
-        Args:
-            program: what to say.
-            robot: for its external axes.
-            options: of the language, by name; unknown ones are refused.
-
-        Raises:
-            FlybyError: the language cannot say what the program holds.
-        """
-        ...
-
-
-@runtime_checkable
-class Patcher(Protocol):
-    """Changes targets, zones and speeds in the user's own files and no other byte."""
-
-    def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
-        """The files that ``program`` was read from, with the numbers that it has now.
-
-        Args:
-            program: read from files (`Program.reading`), then changed.
-            robot: whose it is.
-            options: of the patcher, by name; unknown ones are refused.
-
-        Returns:
-            The files that changed, by the name they were read by.
-
-        Raises:
-            FlybyError: a change has no place in the text, or reading the patched text does not
-                give the changed program.
-        """
-        ...
-
-
-@runtime_checkable
-class Recorder(Protocol):
-    """Writes source that drives a program and logs itself."""
-
-    def record(self, program: Program, robot: Robot, period: float) -> Sources:
-        """Source files by file name; joint values are logged every ``period`` s."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from ..core.motion.emulator.move_figures import zone_reaches
 from ..core.motion.emulator.run import Run
 from ..core.motion.geometry.segments import ARC_SEGMENT, JOINT_SEGMENT
 from ..core.program.tool import WORLD
-from ..core.robot.chain_kernels import poses
+from ..core.robot.kinematics.chain_kernels import poses
 from ..core.robot.model import Robot
 from ..core.robot.work_chain import work_chain
 

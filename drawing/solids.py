@@ -12,7 +12,7 @@ from ..core.cell.cell import Cell
 from ..core.cell.floor import FLOOR
 from ..core.cell.geometry import Geometry, Mesh
 from ..core.robot.assembly import Stage, assemble
-from ..core.robot.chain_kernels import poses
+from ..core.robot.kinematics.chain_kernels import poses
 from ..core.robot.model import Robot
 from ..core.robot.shape import Box, Capsule, Cylinder, Shape, Sphere
 from ..core.spatial.pose import Pose

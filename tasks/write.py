@@ -17,8 +17,8 @@ from .options.keywords import by_keywords
 from .setup import RobotOptions, Setup, with_setup
 
 if TYPE_CHECKING:
+    from ..core.language import Sources
     from ..core.program.program import Program
-    from ..core.vendor import Sources
 
 OPAQUE = ("keep", "comment")
 

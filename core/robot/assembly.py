@@ -6,8 +6,8 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..spatial.pose import Pose
-from .chain import Chain
 from .joint import Joint, JointKind
+from .kinematics.chain import Chain
 
 Stage = Pose | tuple[Joint, int]
 """A fixed step, or a joint with the index of its value in the configuration."""

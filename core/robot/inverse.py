@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 
 from ..arrays import FloatArray
 from ..errors import MotionError
-from .arm_geometry import EXACT, Family, Recognised
-from .chain import Chain
-from .closed_form import SLACK
 from .joint import Joint, JointKind
-from .numerical import solve_numerically
-from .spherical_wrist import solve_spherical_wrist
-from .tracking import track
-from .ur_geometry import solve_parallel_axes
+from .kinematics.arm_geometry import EXACT, Family, Recognised
+from .kinematics.chain import Chain
+from .kinematics.closed_form import SLACK
+from .kinematics.numerical import solve_numerically
+from .kinematics.spherical_wrist import solve_spherical_wrist
+from .kinematics.tracking import track
+from .kinematics.ur_geometry import solve_parallel_axes
 
 FULL_TURN = 2 * math.pi
 LIMIT_SLACK = 1e-9

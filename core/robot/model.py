@@ -13,15 +13,15 @@ from numpy.typing import ArrayLike
 from ..arrays import FloatArray
 from ..errors import InputError, UnknownNameError
 from ..spatial.pose import IDENTITY, Pose, Vector3
-from .arm_geometry import Recognised, recognise
 from .assembly import Stage, assemble
-from .chain import Chain
-from .chain_derivatives import hessians, jacobian_rates
-from .chain_kernels import jacobians, poses
 from .dynamics import Dynamics, Tree, TreeNode
 from .inertia import Inertia
 from .inverse import Solution, equivalent_turns, solve
 from .joint import ExternalAxis, ExternalRole, Joint, Limits
+from .kinematics.arm_geometry import Recognised, recognise
+from .kinematics.chain import Chain
+from .kinematics.chain_derivatives import hessians, jacobian_rates
+from .kinematics.chain_kernels import jacobians, poses
 from .shape import LinkShape
 
 STANDARD_GRAVITY: Vector3 = (0.0, 0.0, -9.80665)

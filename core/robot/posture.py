@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arm_geometry import Family
+from .kinematics.arm_geometry import Family
 from .model import Robot
 
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .chain_kernels import poses
 from .inverse import FULL_TURN, SOLVERS
+from .kinematics.chain_kernels import poses
 from .model import Robot
 
 

@@ -7,8 +7,8 @@ from typing import Protocol
 from ..errors import InputError
 from ..spatial.pose import Pose
 from .assembly import assemble, joined, reversed_chain
-from .chain import Chain
 from .joint import ExternalRole
+from .kinematics.chain import Chain
 from .model import Robot
 
 

@@ -1,10 +1,10 @@
 """Sequential quadratic programming: `NLP`, `solve`, and what goes with them."""
 
 from .derivatives import DerivativeCheck, check_derivatives
-from .errors import NlpError
-from .hessians import HessianKind
 from .multistart import MultiStart, scattered_starts, solve_from
-from .nlp import NLP
+from .problem.errors import NlpError
+from .problem.hessians import HessianKind
+from .problem.nlp import NLP
 from .qp.backends import BackendKind
 from .result import Iteration, Result, Status
 from .solver import solve

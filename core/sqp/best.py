@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..arrays import FloatArray
-from .evaluation import Point
-from .kkt import Residuals
+from .problem.evaluation import Point
+from .problem.optimality import Residuals
 
 
 @dataclass(slots=True)

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from .linear import Definiteness
-from .matrices import SparseMatrix, Sparsity
+from .algebra.linear import Definiteness
+from .algebra.matrices import SparseMatrix, Sparsity
 
 _SLACK = 1e-9
 """Share of a row's size by which a Hessian may fall short of being semidefinite."""

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray
-from .arrays import matrix, numbers, scalar, vector
-from .nlp import NLP
 from .options import start_point
+from .problem.arrays import matrix, numbers, scalar, vector
+from .problem.nlp import NLP
 
 _STEP = 6e-6
 """About the cube root of the rounding unit: best for central differences."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .matrices import SparseMatrix, Sparsity
+from .algebra.matrices import SparseMatrix, Sparsity
 from .qp.problem import QpSolution, QpStatus, QuadraticProgram
 from .qp.subproblems import Subproblems
 

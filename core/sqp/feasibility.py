@@ -7,12 +7,12 @@ from collections.abc import Callable
 import numpy as np
 
 from ..arrays import FloatArray
-from .errors import CallableError
-from .evaluation import Point
 from .filter import Filter
 from .model import Model
+from .problem.errors import CallableError
+from .problem.evaluation import Point
+from .problem.scaled import ScaledProblem
 from .restoration import Limits, Outcome, Restoration, Restored
-from .scaled import ScaledProblem
 from .search import Search, Step
 
 _RESTARTS = 3

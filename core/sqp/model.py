@@ -7,16 +7,16 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import FloatArray
-from . import violation
 from .convexify import ActiveSet, ConvexModel, raised
 from .damping import Damping
-from .evaluation import Point
 from .filter import NO_VIOLATION
-from .hessians import HessianSource
-from .kkt import at_bounds, bound_multipliers, lagrangian_slope
 from .options import StepBox, box_limits
+from .problem import violation
+from .problem.evaluation import Point
+from .problem.hessians import HessianSource
+from .problem.optimality import at_bounds, bound_multipliers, lagrangian_slope
+from .problem.scaled import ScaledProblem
 from .qp.problem import QpSolution, QpStatus, QuadraticProgram, in_units
-from .scaled import ScaledProblem
 from .workspace import Workspace
 
 _FIRST_RADIUS = 1e3

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray
-from .arrays import numbers, whole_number
-from .errors import NlpError
-from .nlp import NLP
 from .options import start_point
+from .problem.arrays import numbers, whole_number
+from .problem.errors import NlpError
+from .problem.nlp import NLP
 from .result import Result
 from .solver import solve
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray
-from .arrays import numbers, scalar, whole_number
-from .errors import NlpError
-from .nlp import NLP
+from .problem.arrays import numbers, scalar, whole_number
+from .problem.errors import NlpError
+from .problem.nlp import NLP
 from .result import Iteration, Result
 
 Callback = Callable[[Iteration], bool | None]

@@ -13,13 +13,13 @@ from enum import Enum, auto
 import numpy as np
 
 from ..arrays import FloatArray
+from .algebra.matrices import SparseMatrix, Sparsity
 from .elastic import Elastic
-from .errors import CallableError
-from .evaluation import Point
-from .kkt import at_bounds
-from .matrices import SparseMatrix, Sparsity
+from .problem.errors import CallableError
+from .problem.evaluation import Point
+from .problem.optimality import at_bounds
+from .problem.scaled import ScaledProblem
 from .qp.problem import QpSolution, QpStatus, QuadraticProgram
-from .scaled import ScaledProblem
 
 Limits = tuple[FloatArray, FloatArray]
 

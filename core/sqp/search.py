@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import FloatArray
-from .errors import CallableError
-from .evaluation import Point
 from .filter import Filter
 from .model import Model
+from .problem.errors import CallableError
+from .problem.evaluation import Point
+from .problem.scaled import ScaledProblem
 from .qp.problem import QpSolution
-from .scaled import ScaledProblem
 
 _HALVINGS = 30
 _NEAR_MISSES = 12

@@ -19,21 +19,21 @@ from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray
 from .best import Best
-from .errors import CallableError
-from .evaluation import Point
 from .feasibility import Feasibility, NowhereError
 from .filter import Filter
-from .hessians import HessianKind, choose_kind, make_source
-from .kkt import Residuals
 from .model import Model, NoSubproblemError
 from .multipliers import first_multipliers, own_curvature, steepest_descent
-from .nlp import NLP
 from .options import Callback, Options, StepBox, start_point
+from .problem.errors import CallableError
+from .problem.evaluation import Point
+from .problem.hessians import HessianKind, choose_kind, make_source
+from .problem.nlp import NLP
+from .problem.optimality import Residuals
+from .problem.scaled import ScaledProblem
 from .qp.backends import BackendKind, make_backends
 from .qp.problem import QpSolution
 from .restoration import Outcome, Restoration
 from .result import Iteration, Result, Status, Timings
-from .scaled import ScaledProblem
 from .search import Search, Step
 from .verdict import Ending, Evidence, is_far, near, nothing_to_gain, verdict
 from .workspace import Workspace, make_workspace

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from .kkt import Residuals
+from .problem.optimality import Residuals
 from .result import Status
 
 _UNBOUNDED = 1e20

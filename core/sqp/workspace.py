@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from threading import Lock
 
+from .algebra.matrices import Sparsity, identity
 from .convexify import Convexifier
 from .elastic import Elastic
-from .matrices import Sparsity, identity
-from .nlp import NLP
-from .patterns import Pattern
+from .problem.nlp import NLP
+from .problem.patterns import Pattern
 from .qp.problem import Backend
 from .qp.subproblems import Subproblems
 

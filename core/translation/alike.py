@@ -15,8 +15,8 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import MotionError
-from ..robot.arm_geometry import Family
 from ..robot.inverse import Solution
+from ..robot.kinematics.arm_geometry import Family
 from ..robot.model import Robot
 from ..robot.posture import posture
 

@@ -23,7 +23,7 @@ from ..motion.model.rules import Overlap
 from ..motion.path.path import OverlapError, Path, Route
 from ..program.program import Program
 from ..program.zone import FINE, Angle, ContourFraction, Radius, Zone
-from ..robot.chain_kernels import poses
+from ..robot.kinematics.chain_kernels import poses
 from .emulation import Party
 
 _ROUNDS = 12

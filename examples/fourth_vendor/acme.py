@@ -33,6 +33,7 @@ from pathlib import Path
 
 from flyby.core.errors import InputError
 from flyby.core.hookspec import VendorRegister, hookimpl
+from flyby.core.language import Sources
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.model.provenance import Provenance
 from flyby.core.motion.model.rules import Overlap
@@ -71,7 +72,7 @@ from flyby.core.source.reading import Files, ReadOptions, read_with
 from flyby.core.source.text.files import SourceFile, SourceText, read_source
 from flyby.core.source.write.options import PatchOptions
 from flyby.core.spatial.pose import Pose
-from flyby.core.vendor import Sources, Vendor, lazy_robots
+from flyby.core.vendor import Vendor, lazy_robots
 
 HERE = Path(__file__).parent
 
@@ -197,7 +198,7 @@ class Language:
     """Reads, writes and patches ACME programs."""
 
     def read(self, text: str, file: str, options: ReadOptions) -> Program:
-        """See `flyby.core.vendor.Reader`."""
+        """See `flyby.core.language.Reader`."""
         return read_with({file: SourceFile(file, text)}, file, options, _read)
 
     def read_file(self, path: Path, options: ReadOptions) -> Program:
@@ -206,13 +207,13 @@ class Language:
         return read_with({found.name: found}, found.name, options, _read)
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
-        """See `flyby.core.vendor.Writer`; there are no options."""
+        """See `flyby.core.language.Writer`; there are no options."""
         if options:
             raise InputError(f"ACME knows no option {sorted(options)[0]!r}")
         return {f"{program.name}.acme": "".join(f"{_line(s)}\n" for s in program.statements)}
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
-        """See `flyby.core.vendor.Patcher`."""
+        """See `flyby.core.language.Patcher`."""
         chosen = PatchOptions.of(options, "ACME patcher")
         return patch_lines(program, chosen, _numbers_of, repr)
 

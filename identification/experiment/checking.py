@@ -16,7 +16,7 @@ from ...core.program.speed import Speed
 from ...core.program.target import JointTarget
 from ...core.program.tool import WORLD
 from ...core.program.zone import FINE, Radius
-from ...core.robot.chain_kernels import jacobians, poses
+from ...core.robot.kinematics.chain_kernels import jacobians, poses
 from ...core.robot.work_chain import work_chain
 from .plan import Candidate
 from .postures import REGULAR, reach_of, regularity

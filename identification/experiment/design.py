@@ -15,6 +15,7 @@ from ...core.collision.proof.certificate import certify, scenes_of
 from ...core.collision.proof.verdict import Certificate
 from ...core.collision.scene.scene import CollisionScene
 from ...core.errors import FlybyError, InputError
+from ...core.language import Sources
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.emulator.run import Run
 from ...core.program.move import Move, MoveC
@@ -22,7 +23,7 @@ from ...core.program.program import Program
 from ...core.program.target import JointTarget, PoseTarget
 from ...core.program.zone import FINE
 from ...core.source.patch.edits import difference
-from ...core.vendor import Sources, Vendor
+from ...core.vendor import Vendor
 from .candidates import Family
 from .checking import Refused, check
 from .information import Informer

@@ -12,11 +12,11 @@ import numpy as np
 from ...core.arrays import FloatArray
 from ...core.collision.proof.verdict import Certificate
 from ...core.errors import InputError
+from ...core.language import Sources
 from ...core.motion.emulator.run import Run
 from ...core.program.program import Program
 from ...core.program.tool import FLANGE, Tool
 from ...core.robot.model import Robot
-from ...core.vendor import Sources
 from .postures import Site
 
 TURNS = tuple(math.radians(turn) for turn in (30, 60, 90, 120, 150))

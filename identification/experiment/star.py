@@ -22,7 +22,7 @@ from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget
 from ...core.program.tool import WORLD, Tool
 from ...core.program.zone import FINE, Zone
-from ...core.robot.chain_kernels import jacobians, poses
+from ...core.robot.kinematics.chain_kernels import jacobians, poses
 from ...core.robot.model import Robot
 from ...core.robot.work_chain import work_chain
 from ...core.spatial.pose import Pose

@@ -25,7 +25,7 @@ import numpy as np
 
 from ...core.arrays import FloatArray, IntArray
 from ...core.sqp import BackendKind
-from ...core.sqp.matrices import SparseMatrix, Sparsity, identity
+from ...core.sqp.algebra.matrices import SparseMatrix, Sparsity, identity
 from ...core.sqp.qp.backends import make_backends
 from ...core.sqp.qp.problem import QpSolution, QpStatus, QuadraticProgram, failed
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from ...core.errors import FlybyError
 
 if TYPE_CHECKING:
+    from ...core.language import Sources
     from ...core.program.program import Program
     from ...core.source.reading import Files
-    from ...core.vendor import Sources
     from ..setup import Setup
 
 OWN = {"shared": "own", "derived": "own"}

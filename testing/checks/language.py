@@ -11,11 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ...core.errors import FlybyError, InputError
+from ...core.language import Sources
 from ...core.program.program import Program
 from ...core.robot.model import Robot
 from ...core.source.patch.edits import difference
 from ...core.source.write.approach import with_approach
-from ...core.vendor import LANGUAGE_PARTS, Sources, Vendor
+from ...core.vendor import LANGUAGE_PARTS, Vendor
 from .subject import PROGRAM_EXAMPLES, Subject
 
 

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, find, settings
 from hypothesis import strategies as st
 
+from ...core.language import Sources
 from ...core.program.move import ArcOrientation, Move
 from ...core.program.program import Program
 from ...core.program.speed import Speed
@@ -20,7 +21,7 @@ from ...core.program.zone import Zone
 from ...core.registry import find_vendor
 from ...core.robot.model import Robot
 from ...core.source.patch.edits import TOLERANCE
-from ...core.vendor import Sources, Vendor
+from ...core.vendor import Vendor
 from ..strategies import (
     OfKind,
     Parts,

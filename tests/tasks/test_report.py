@@ -20,7 +20,7 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
-from flyby.core.robot.chain_kernels import poses
+from flyby.core.robot.kinematics.chain_kernels import poses
 from flyby.core.spatial.pose import Pose
 from flyby.drawing.geometry import path_geometry
 from flyby.tasks.results.report import Report, make_report

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import strategies as st
 from hypothesis.errors import Unsatisfiable
 
+from flyby.core.language import Sources
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.emulator.run import Run
 from flyby.core.motion.geometry.pieces import Sampling
@@ -21,7 +22,7 @@ from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_vendor
 from flyby.core.robot.model import Robot
 from flyby.core.spatial.pose import Pose
-from flyby.core.vendor import Sources, Vendor
+from flyby.core.vendor import Vendor
 from flyby.testing.checks import emulation
 from flyby.testing.checks.emulation import FINE_SAMPLING, EmulationChecks
 

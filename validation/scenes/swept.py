@@ -12,7 +12,7 @@ from ...core.arrays import FloatArray
 from ...core.cell.geometry import Geometry
 from ...core.errors import InputError
 from ...core.robot.assembly import assemble
-from ...core.robot.chain_kernels import poses
+from ...core.robot.kinematics.chain_kernels import poses
 from ...core.robot.model import Robot
 from ...core.robot.shape import Capsule, Cylinder, Sphere
 

@@ -34,7 +34,7 @@ from scipy import sparse
 from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.sqp import NLP
-from ...core.sqp.entries import Entries
+from ...core.sqp.algebra.entries import Entries
 from .ranges import check_force, check_nodes
 
 

@@ -26,7 +26,7 @@ from scipy import sparse
 from ...core.arrays import FloatArray, IntArray
 from ...core.errors import InputError
 from ...core.sqp import NLP
-from ...core.sqp.entries import Entries
+from ...core.sqp.algebra.entries import Entries
 from .arcs import Arcs
 from .avoidance import STRIDE, AvoidanceRows, Bernstein, Chords, Samples, State, columns
 from .ranges import check_force, check_nodes

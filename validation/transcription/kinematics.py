@@ -8,9 +8,9 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.robot.assembly import Stage, assemble
-from ...core.robot.chain import Chain
-from ...core.robot.chain_derivatives import hessians
-from ...core.robot.chain_kernels import jacobians, poses
+from ...core.robot.kinematics.chain import Chain
+from ...core.robot.kinematics.chain_derivatives import hessians
+from ...core.robot.kinematics.chain_kernels import jacobians, poses
 from ...core.robot.model import Robot
 from ...core.spatial.pose import Pose
 

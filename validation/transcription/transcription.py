@@ -10,7 +10,7 @@ from scipy import sparse
 
 from ...core.arrays import FloatArray, IntArray
 from ...core.sqp import NLP
-from ...core.sqp.entries import Entries
+from ...core.sqp.algebra.entries import Entries
 from .capsule_box import Clearances
 from .curves import Blend, Curve, Line
 from .field_rows import AtPoints, FieldRows

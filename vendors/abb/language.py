@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ...core.language import Sources
     from ...core.program.program import Program
     from ...core.robot.model import Robot
     from ...core.source.reading import Files, ReadOptions
-    from ...core.vendor import Sources
     from .write.options import RapidOptions
 
 SUFFIXES = (".mod", ".modx", ".prg", ".sys", ".sysx", ".pgf")
@@ -24,25 +24,25 @@ class Rapid:
     """
 
     def read(self, text: str, file: str, options: ReadOptions) -> Program:
-        """See `flyby.core.vendor.Reader.read`."""
+        """See `flyby.core.language.Reader.read`."""
         from .run.reader import read
 
         return read(text, file, options)
 
     def read_file(self, path: Path, options: ReadOptions) -> Program:
-        """See `flyby.core.vendor.Reader.read_file`."""
+        """See `flyby.core.language.Reader.read_file`."""
         from .run.reader import read_file
 
         return read_file(path, options)
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
-        """See `flyby.core.vendor.Writer.write`."""
+        """See `flyby.core.language.Writer.write`."""
         from .write.writer import RapidWriter
 
         return RapidWriter(_options(robot, options)).write(program)
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
-        """See `flyby.core.vendor.Patcher.patch`."""
+        """See `flyby.core.language.Patcher.patch`."""
         from ...core.source.patch.edits import reading_of
         from ...core.source.write.options import PatchOptions
         from .motion.targets import axis_kinds
@@ -53,7 +53,7 @@ class Rapid:
         return patch(program, PatchOptions.of(options, "RAPID patcher"), kinds or ())
 
     def record(self, program: Program, robot: Robot, period: float) -> Sources:
-        """See `flyby.core.vendor.Recorder.record`."""
+        """See `flyby.core.language.Recorder.record`."""
         from .motion.targets import axis_kinds
         from .record import record
         from .write.options import RapidOptions

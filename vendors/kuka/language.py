@@ -7,17 +7,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ...core.language import Sources
     from ...core.program.program import Program
     from ...core.robot.model import Robot
     from ...core.source.reading import Files, ReadOptions
-    from ...core.vendor import Sources
 
 
 class Krl:
     """Reader, writer, patcher and recorder."""
 
     def read(self, text: str, file: str, options: ReadOptions) -> Program:
-        """See `flyby.core.vendor.Reader.read`."""
+        """See `flyby.core.language.Reader.read`."""
         from ...core.source.reading import read_with
         from ...core.source.text.files import SourceFile, decode
         from .run.reader import read_sources
@@ -27,7 +27,7 @@ class Krl:
         return read_with(files, file, options, read_sources)
 
     def read_file(self, path: Path, options: ReadOptions) -> Program:
-        """See `flyby.core.vendor.Reader.read_file`."""
+        """See `flyby.core.language.Reader.read_file`."""
         from ...core.source.reading import read_with
         from .run.files import collect
         from .run.reader import read_sources
@@ -35,19 +35,19 @@ class Krl:
         return read_with(collect(path, options.others), str(path), options, read_sources)
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
-        """See `flyby.core.vendor.Writer.write`."""
+        """See `flyby.core.language.Writer.write`."""
         from .write.writer import write
 
         return write(program, robot, options)
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
-        """See `flyby.core.vendor.Patcher.patch`."""
+        """See `flyby.core.language.Patcher.patch`."""
         from .patch.patcher import patch
 
         return patch(program, robot, options)
 
     def record(self, program: Program, robot: Robot, period: float) -> Sources:
-        """See `flyby.core.vendor.Recorder.record`."""
+        """See `flyby.core.language.Recorder.record`."""
         from .record import record
 
         return record(program, robot, period)

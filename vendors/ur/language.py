@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ...core.language import Sources
     from ...core.program.program import Program
     from ...core.robot.model import Robot
     from ...core.source.reading import Files, ReadOptions
-    from ...core.vendor import Sources
 
 SUFFIXES = (".script", ".urscript")
 
@@ -19,31 +19,31 @@ class UrScript:
     """Reader, writer, patcher and recorder."""
 
     def read(self, text: str, file: str, options: ReadOptions) -> Program:
-        """See `flyby.core.vendor.Reader.read`."""
+        """See `flyby.core.language.Reader.read`."""
         from .run.reader import read
 
         return read(text, file, options)
 
     def read_file(self, path: Path, options: ReadOptions) -> Program:
-        """See `flyby.core.vendor.Reader.read_file`."""
+        """See `flyby.core.language.Reader.read_file`."""
         from .run.reader import read_file
 
         return read_file(path, options)
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
-        """See `flyby.core.vendor.Writer.write`."""
+        """See `flyby.core.language.Writer.write`."""
         from .write.writer import write
 
         return write(program, robot, options)
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
-        """See `flyby.core.vendor.Patcher.patch`."""
+        """See `flyby.core.language.Patcher.patch`."""
         from .patch.patcher import patch
 
         return patch(program, robot, options)
 
     def record(self, program: Program, robot: Robot, period: float) -> Sources:
-        """See `flyby.core.vendor.Recorder.record`."""
+        """See `flyby.core.language.Recorder.record`."""
         from .record import record
 
         return record(program, robot, period)

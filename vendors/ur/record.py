@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from ...core.errors import InputError
+from ...core.language import Sources
 from ...core.program.program import Program
 from ...core.robot.model import Robot
 from ...core.source.write.options import OpaqueStyle
-from ...core.vendor import Sources
 from .write.formatting import number
 from .write.options import ScriptOptions
 from .write.writer import SUFFIX, Script, body, indented

@@ -16,8 +16,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray
+from ...robot.kinematics.vectors import Vector, add, load_row, scale, subtract
 from ...robot.shape import Box, Capsule, Cylinder, Sphere
-from ...robot.vectors import Vector, add, load_row, scale, subtract
 from .segments import segment_box, segment_segment
 from .solid import Solid, extent
 

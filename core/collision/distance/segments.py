@@ -10,7 +10,7 @@ import math
 
 from numba import njit
 
-from ...robot.vectors import Vector, add, cross, dot, scale, subtract
+from ...robot.kinematics.vectors import Vector, add, cross, dot, scale, subtract
 
 TINY = 1e-14
 """m² (or 1) below which a length or a sine is zero."""

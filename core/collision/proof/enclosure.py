@@ -20,7 +20,7 @@ from ...motion.geometry.corners import POSITION
 from ...motion.geometry.curve_bounds import expand
 from ...motion.geometry.curves import Curves, Samples, parameter_jet
 from ...motion.path.path import Path
-from ...robot.chain import Chain
+from ...robot.kinematics.chain import Chain
 from .boxes import Boxes
 from .tcp_enclosure import enclose
 

@@ -25,7 +25,17 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from ...robot.vectors import Vector, add, cross, dot, load_rotation, load_row, scale, subtract, turn
+from ...robot.kinematics.vectors import (
+    Vector,
+    add,
+    cross,
+    dot,
+    load_rotation,
+    load_row,
+    scale,
+    subtract,
+    turn,
+)
 from ..deviation.bounds import BoundsByInterval, DeviationBounds
 from ..scene.frames import FrameTree, place_frames
 from ..scene.outline import Outlines, lever, support

@@ -26,9 +26,9 @@ from ...motion.path.branch_proof import (
     stays_in_tube,
 )
 from ...motion.path.tcp_samples import CONVERGED, SINGULAR, States, make_scratch, state_at
-from ...robot.chain import Chain
-from ...robot.chain_bounds import bias
-from ...robot.chain_kernels import jacobians
+from ...robot.kinematics.chain import Chain
+from ...robot.kinematics.chain_bounds import bias
+from ...robot.kinematics.chain_kernels import jacobians
 from .boxes import Boxes
 
 

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from ...arrays import FloatArray
 from ...robot.assembly import Stage
 from ...robot.joint import Joint, JointKind
-from ...robot.model import Robot
-from ...robot.vectors import (
+from ...robot.kinematics.vectors import (
     Rotation,
     Vector,
     add,
@@ -30,6 +29,7 @@ from ...robot.vectors import (
     subtract,
     turn,
 )
+from ...robot.model import Robot
 from ...spatial.pose import IDENTITY, Pose
 
 WORLD = 0

@@ -14,8 +14,8 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
+from ...robot.kinematics.vectors import Vector, load_row
 from ...robot.shape import Box, Capsule, Cylinder, Sphere
-from ...robot.vectors import Vector, load_row
 from ..distance.convex import hull
 from ..distance.solid import Polytope, Solid, extent
 from .bodies import Body

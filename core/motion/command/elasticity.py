@@ -31,7 +31,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...errors import InputError
-from ...robot.chain_kernels import jacobians, motions
+from ...robot.kinematics.chain_kernels import jacobians, motions
 from ...robot.model import Robot
 from ..model.elasticity import Elasticity
 from ..model.point_masses import chain_to_axis, filled

@@ -12,8 +12,8 @@ from ...errors import MotionError, Note
 from ...program.move import Move
 from ...program.program import Program
 from ...program.target import JointTarget
-from ...robot.chain_kernels import poses
 from ...robot.joint import JointKind
+from ...robot.kinematics.chain_kernels import poses
 from ...robot.model import Robot
 from ...spatial.rotation import quaternion_from_matrix
 from ...vendor import Vendor

@@ -10,8 +10,8 @@ from numba import njit
 
 from ...arrays import FloatArray, IntArray
 from ...errors import Note
-from ...robot.chain import Chain
-from ...robot.chain_kernels import motion
+from ...robot.kinematics.chain import Chain
+from ...robot.kinematics.chain_kernels import motion
 from ..geometry.quintic import basis, bends, slopes
 from ..path.tcp_samples import States
 from ..timing.limits import SegmentLimits

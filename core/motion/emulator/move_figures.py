@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...arrays import FloatArray
-from ...robot.chain_kernels import poses
+from ...robot.kinematics.chain_kernels import poses
 from ..geometry.corners import POSITION
 from ..geometry.corners import STOP as STOP_CORNER
 from ..path.path import Path

@@ -18,7 +18,7 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray
-from ...robot.lean import lean
+from ...robot.kinematics.lean import lean
 from .curves import ARC, LINE, Curves, Samples, TcpCurves, parameter_jet
 
 Bounds = tuple[float, float, float]

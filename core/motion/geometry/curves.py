@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
-from ...robot.lean import lean
+from ...robot.kinematics.lean import lean
 
 LINE, POLYNOMIAL, ARC = 0, 1, 2
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ...robot.chain import Chain
+from ...robot.kinematics.chain import Chain
 from .reach import Part, Reach
 from .segments import ARC_SEGMENT, JOINT_SEGMENT, Segments
 from .zone_exits import tcp_apart

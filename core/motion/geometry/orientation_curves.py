@@ -13,8 +13,8 @@ import math
 import numpy as np
 
 from ...arrays import FloatArray
-from ...robot.lean import lean
-from ...robot.vectors import Vector, add, cross, dot, load, scale, turn
+from ...robot.kinematics.lean import lean
+from ...robot.kinematics.vectors import Vector, add, cross, dot, load, scale, turn
 
 _TERMS = 11
 _SERIES = np.array(

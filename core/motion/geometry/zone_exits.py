@@ -8,8 +8,8 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray
-from ...robot.chain import Chain
-from ...robot.chain_kernels import jacobian, pose
+from ...robot.kinematics.chain import Chain
+from ...robot.kinematics.chain_kernels import jacobian, pose
 
 
 @njit(cache=True, error_model="numpy")

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...errors import MotionError, Note
 from ...program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction, Zone
-from ...robot.chain import Chain
+from ...robot.kinematics.chain import Chain
 from ..model.motion_model import MotionModel
 from ..model.rules import OrientationZone, Overlap, Pace, Space
 from .corners import JOINT_CORNER, POSITION, TCP_CORNER, Corners, Room

@@ -16,7 +16,7 @@ from ...arrays import FloatArray
 from ...errors import InputError
 from ...program.program import Program
 from ...program.target import JointTarget, PoseTarget
-from ...robot.chain_kernels import jacobians
+from ...robot.kinematics.chain_kernels import jacobians
 from ..geometry.corners import ZoneGradient
 from ..model.consumption import SQUARED_TORQUE, Consumption
 from ..path.configurations import located

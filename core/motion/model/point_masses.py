@@ -6,7 +6,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...errors import InputError
-from ...robot.chain import Chain
+from ...robot.kinematics.chain import Chain
 from ...robot.model import Robot
 
 

@@ -6,7 +6,7 @@ from J q' = V. All derivatives here are by t = (σ − σ_m) / h with |t| ≤ 1.
     |q_j(t) − q_mj − t q_mj'| ≤ r_j.
 
 In it J(t) = J_m + Σ_m δ_m ∂_mJ + R, with δ the way from q_m, the derivatives those at q_m, and R of
-second order, bounded by levers (`flyby.core.robot.chain_bounds`). So, entrywise,
+second order, bounded by levers (`flyby.core.robot.kinematics.chain_bounds`). So, entrywise,
 
     |J_m⁻¹ J − 1| ≤ K = |Σ_m q_m' J_m⁻¹ ∂_mJ| + P,    P = Σ_m r_m |J_m⁻¹ ∂_mJ| + |J_m⁻¹| |R|,
 
@@ -30,10 +30,10 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from ...robot.chain import Chain
-from ...robot.chain_bounds import Columns, bound_columns, turn_columns
-from ...robot.lean import lean
-from ...robot.linear import factor, invert_factors, solve
+from ...robot.kinematics.chain import Chain
+from ...robot.kinematics.chain_bounds import Columns, bound_columns, turn_columns
+from ...robot.kinematics.lean import lean
+from ...robot.kinematics.linear import factor, invert_factors, solve
 
 LEAST = 1e-9
 """rad or m: rounding of configurations from Newton's method."""

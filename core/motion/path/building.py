@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
 from ...errors import MotionError, Note
-from ...robot.chain import Chain
+from ...robot.kinematics.chain import Chain
 from ...robot.singularities import nearest_singularity
 from ..geometry.corners import JOINT_CORNER, POSITION
 from ..geometry.curves import Curves, Samples, TcpCurves

@@ -15,7 +15,7 @@ from ...errors import InputError, MotionError, Span
 from ...program.move import Move
 from ...program.target import JointTarget
 from ...program.tool import Tool, WorkObject
-from ...robot.chain_kernels import pose
+from ...robot.kinematics.chain_kernels import pose
 from ...robot.model import Robot
 from ...robot.work_chain import work_chain
 from ...spatial.pose import Pose

@@ -16,11 +16,11 @@ from ...errors import InputError, MotionError
 from ...program.move import Move
 from ...program.target import Configuration, JointTarget, PoseTarget
 from ...robot.assembly import assemble
-from ...robot.chain_kernels import pose
 from ...robot.inverse import UnreachableError
 from ...robot.joint import JointKind
+from ...robot.kinematics.chain_kernels import pose
+from ...robot.kinematics.tracking import track
 from ...robot.model import Robot
-from ...robot.tracking import track
 from ...spatial.pose import Pose
 
 Label = Callable[[Robot, FloatArray], Configuration | None]

@@ -6,8 +6,13 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from ...robot.chain import Chain
-from ...robot.chain_kernels import acceleration_gradient, jacobian, motion, velocity_gradient
+from ...robot.kinematics.chain import Chain
+from ...robot.kinematics.chain_kernels import (
+    acceleration_gradient,
+    jacobian,
+    motion,
+    velocity_gradient,
+)
 from ..geometry.curves import Curves, evaluate, pull
 from .tcp_samples import States
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...arrays import FloatArray, IntArray
 from ...errors import MotionError, Note
 from ...program.zone import Zone
-from ...robot.chain import Chain
+from ...robot.kinematics.chain import Chain
 from ...robot.model import Robot
 from ..geometry.corners import Corners
 from ..geometry.curves import Curves

@@ -21,8 +21,8 @@ from ...program.program import Program
 from ...program.target import JointTarget
 from ...program.tool import WORLD, Tool, WorkObject
 from ...program.zone import FINE, Zone
-from ...robot.chain import Chain
-from ...robot.chain_kernels import pose
+from ...robot.kinematics.chain import Chain
+from ...robot.kinematics.chain_kernels import pose
 from ...robot.model import Robot
 from ...robot.work_chain import work_chain
 from ..geometry.corners import Corners

@@ -18,11 +18,16 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from ...robot.chain import Chain
-from ...robot.chain_kernels import acceleration_gradient, jacobian, motion, velocity_gradient
-from ...robot.lean import lean
-from ...robot.linear import factor, solve, solve_transposed
-from ...robot.tracking import pose_error
+from ...robot.kinematics.chain import Chain
+from ...robot.kinematics.chain_kernels import (
+    acceleration_gradient,
+    jacobian,
+    motion,
+    velocity_gradient,
+)
+from ...robot.kinematics.lean import lean
+from ...robot.kinematics.linear import factor, solve, solve_transposed
+from ...robot.kinematics.tracking import pose_error
 from ..geometry.curves import Samples, TcpCurves, evaluate, pull
 from ..geometry.orientation_curves import orientation, pull_orientation
 

@@ -12,10 +12,10 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from ...robot.chain import Chain
-from ...robot.chain_kernels import jacobian
-from ...robot.lean import lean
-from ...robot.tracking import pose_error, track
+from ...robot.kinematics.chain import Chain
+from ...robot.kinematics.chain_kernels import jacobian
+from ...robot.kinematics.lean import lean
+from ...robot.kinematics.tracking import pose_error, track
 from ..geometry.curve_bounds import bound_jerk, make_taylor
 from ..geometry.curves import Samples, TcpCurves
 from .branch_proof import LEAST, TubeWork, invert, make_tube_work, stays_in_tube

@@ -23,8 +23,13 @@ from numba import njit
 
 from ...arrays import FloatArray
 from ...errors import InputError
-from ...robot.chain import Chain
-from ...robot.chain_kernels import acceleration_gradient, jacobians, motions, velocity_gradient
+from ...robot.kinematics.chain import Chain
+from ...robot.kinematics.chain_kernels import (
+    acceleration_gradient,
+    jacobians,
+    motions,
+    velocity_gradient,
+)
 from ...robot.model import Robot
 from ..model.point_masses import chain_to_axis, filled
 from ..model.torque import Borne, Torque

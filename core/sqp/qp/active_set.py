@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray
-from ..linear import Saddle
+from ..algebra.linear import Saddle
 from .problem import QpSolution, QpStatus, QuadraticProgram
 
 _PATIENCE = 3

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-from ..nlp import NlpError
+from ..problem.errors import NlpError
 from .problem import Backend
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from ...arrays import BoolArray, FloatArray, IntArray
-from ..matrices import Sparsity
+from ..algebra.matrices import Sparsity
 from .problem import QpSolution, QpStatus, QuadraticProgram, failed
 
 _SOLVED = ("Solved", "AlmostSolved")

@@ -16,7 +16,7 @@ from scipy import sparse
 from scipy.linalg import LinAlgError
 
 from ...arrays import FloatArray, IntArray
-from ..dense import Cholesky, array_of
+from ..algebra.dense import Cholesky, array_of
 from .problem import QpSolution, QpStatus, QuadraticProgram, failed
 
 _TO_BOUNDARY = 0.995

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import FloatArray
-from ..matrices import SparseMatrix
+from ..algebra.matrices import SparseMatrix
 from .problem import QpSolution, QuadraticProgram
 
 _SWEEPS = 4

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..linear import SaddlePatterns
+from ..algebra.linear import SaddlePatterns
 from .interior_point_kernels import (
     FAILED,
     INEXACT,

@@ -17,8 +17,8 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray
-from ..ldl import Factors, substitute
-from ..linear import Places
+from ..algebra.ldl import Factors, substitute
+from ..algebra.linear import Places
 from .interior_point_scaling import Scaled, values
 from .interior_point_state import (
     Point,

@@ -8,8 +8,8 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray
-from ..ldl import Factors, factorise, substitute
-from ..linear import Places
+from ..algebra.ldl import Factors, factorise, substitute
+from ..algebra.linear import Places
 from .interior_point_scaling import Scaled
 
 _LINEAR = 1e-11

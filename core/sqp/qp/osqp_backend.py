@@ -7,7 +7,7 @@ import osqp
 from scipy import sparse
 
 from ...arrays import FloatArray
-from ..matrices import SparseMatrix, Sparsity
+from ..algebra.matrices import SparseMatrix, Sparsity
 from .problem import QpSolution, QpStatus, QuadraticProgram, failed
 
 _INFINITY = 1e30

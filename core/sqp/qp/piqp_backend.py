@@ -11,7 +11,7 @@ from scipy import sparse
 
 from ...arrays import BoolArray
 from ...errors import InputError
-from ..matrices import SparseMatrix, Sparsity
+from ..algebra.matrices import SparseMatrix, Sparsity
 from .problem import (
     QpSolution,
     QpStatus,

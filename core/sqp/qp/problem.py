@@ -15,7 +15,7 @@ from typing import Protocol
 import numpy as np
 
 from ...arrays import FloatArray
-from ..matrices import SparseMatrix
+from ..algebra.matrices import SparseMatrix
 
 
 class QpStatus(Enum):

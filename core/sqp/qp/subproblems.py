@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..linear import Saddle
+from ..algebra.linear import Saddle
 from . import active_set
 from .equilibration import units_of
 from .problem import Backend, QpSolution, QpStatus, QuadraticProgram

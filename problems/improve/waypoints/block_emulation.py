@@ -27,7 +27,7 @@ from ....core.motion.gradients.sensitivity import (
 from ....core.motion.path.path import Path
 from ....core.motion.timing.timing import Timing
 from ....core.program.program import Program
-from ....core.robot.chain_kernels import jacobians
+from ....core.robot.kinematics.chain_kernels import jacobians
 from .blocks import Block
 from .oriented import OrientedPoint
 from .variables import JointPoint, PosePoint, ViaPoint

@@ -19,8 +19,8 @@ from ....core.errors import MotionError
 from ....core.motion.gradients.derivatives import ProgramGradient
 from ....core.program.move import Move
 from ....core.program.target import JointTarget
-from ....core.robot.chain import Chain
-from ....core.robot.chain_kernels import jacobian
+from ....core.robot.kinematics.chain import Chain
+from ....core.robot.kinematics.chain_kernels import jacobian
 from ....core.spatial.rotation import rotation_vector
 from ..rounding import Rounding
 

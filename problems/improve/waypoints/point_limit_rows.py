@@ -10,8 +10,8 @@ import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.motion.path.path import Path
-from ....core.robot.chain import Chain
-from ....core.robot.chain_kernels import jacobian, pose
+from ....core.robot.kinematics.chain import Chain
+from ....core.robot.kinematics.chain_kernels import jacobian, pose
 from ....core.spatial.rotation import rotation_vector, skew
 from .blocks import Block
 from .options import Task

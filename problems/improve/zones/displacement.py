@@ -14,7 +14,7 @@ from numba import njit
 from ....core.arrays import FloatArray, IntArray
 from ....core.collision.scene.frames import FrameTree, place_frames
 from ....core.collision.scene.outline import Outlines, lever, support
-from ....core.robot.vectors import load_row, scale
+from ....core.robot.kinematics.vectors import load_row, scale
 
 
 class Placed(NamedTuple):

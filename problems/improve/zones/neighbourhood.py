@@ -23,7 +23,7 @@ from ....core.motion.model.motion_model import MotionModel
 from ....core.motion.path.building import build_path
 from ....core.motion.path.path import Path, Route
 from ....core.program.zone import FINE, Zone
-from ....core.robot.chain import Chain
+from ....core.robot.kinematics.chain import Chain
 from ....core.robot.model import Robot
 
 LIMIT_SLACK = 1e-6

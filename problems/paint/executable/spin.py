@@ -18,8 +18,8 @@ from ....core.arrays import FloatArray, IntArray
 from ....core.errors import InputError
 from ....core.program.tool import WORLD
 from ....core.robot.inverse import UnreachableError
+from ....core.robot.kinematics.tracking import track
 from ....core.robot.model import Robot
-from ....core.robot.tracking import track
 from ....core.robot.work_chain import work_chain
 from ..spray.trajectory import PaintTrajectory
 from .frames import gun_frames, turned

@@ -14,7 +14,7 @@ import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.errors import InputError, Note
-from ....core.sqp.matrices import SparseMatrix, Sparsity, empty
+from ....core.sqp.algebra.matrices import SparseMatrix, Sparsity, empty
 from ....core.sqp.qp.backends import BackendKind, make_backends
 from ....core.sqp.qp.problem import QpStatus, QuadraticProgram
 from ....core.sqp.qp.subproblems import Subproblems

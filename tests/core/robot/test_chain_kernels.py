@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.arrays import FloatArray
-from flyby.core.robot.chain import Chain
-from flyby.core.robot.chain_kernels import (
+from flyby.core.robot.kinematics.chain import Chain
+from flyby.core.robot.kinematics.chain_kernels import (
     acceleration_gradient,
     jacobian,
     jacobians,

@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.robot.arm_geometry import Family
 from flyby.core.robot.inverse import UnreachableError
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
+from flyby.core.robot.kinematics.arm_geometry import Family
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
 

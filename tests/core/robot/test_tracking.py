@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.robot.catalogue import load_robot
-from flyby.core.robot.chain import Chain
-from flyby.core.robot.chain_kernels import pose
-from flyby.core.robot.linear import solve_in_place
-from flyby.core.robot.tracking import rotation_error, track
+from flyby.core.robot.kinematics.chain import Chain
+from flyby.core.robot.kinematics.chain_kernels import pose
+from flyby.core.robot.kinematics.linear import solve_in_place
+from flyby.core.robot.kinematics.tracking import rotation_error, track
 from flyby.core.spatial.rotation import matrix_from_rotation_vector, rotation_vector
 
 SETTINGS = settings(max_examples=80, deadline=None)
@@ -129,7 +129,7 @@ def test_seven_joints_take_the_step_of_least_norm() -> None:
     converged, _, _ = track(chain, guess, *pose_of(chain, q), np.arange(7), out)
     assert converged
     # The move has no part in the null space, in which the pose does not change.
-    from flyby.core.robot.chain_kernels import jacobians
+    from flyby.core.robot.kinematics.chain_kernels import jacobians
 
     null = np.linalg.svd(jacobians(chain, out[None])[0])[2][6]
     assert abs(null @ (out - guess)) < 1e-6

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError, UnknownNameError
 from flyby.core.program.tool import FLANGE, WORLD, Tool, WorkObject
-from flyby.core.robot.chain_kernels import jacobians, poses
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
+from flyby.core.robot.kinematics.chain_kernels import jacobians, poses
 from flyby.core.robot.work_chain import work_chain
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector

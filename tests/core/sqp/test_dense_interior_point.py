@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from scipy import sparse
 
 from flyby.core.sqp import NLP, BackendKind, Status, solve
-from flyby.core.sqp import dense as full
-from flyby.core.sqp.linear import Definiteness, Saddle
-from flyby.core.sqp.matrices import SparseMatrix, Sparsity, from_scipy
+from flyby.core.sqp.algebra import dense as full
+from flyby.core.sqp.algebra.linear import Definiteness, Saddle
+from flyby.core.sqp.algebra.matrices import SparseMatrix, Sparsity, from_scipy
 from flyby.core.sqp.qp import active_set
 from flyby.core.sqp.qp.clarabel_backend import ClarabelBackend
 from flyby.core.sqp.qp.dense_interior_point import DenseInteriorPointBackend

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import sparse
 
-from flyby.core.sqp.matrices import SparseMatrix, empty, from_scipy, identity
+from flyby.core.sqp.algebra.matrices import SparseMatrix, empty, from_scipy, identity
 from flyby.core.sqp.qp import active_set
 from flyby.core.sqp.qp.backends import make_backends
 from flyby.core.sqp.qp.equilibration import units_of

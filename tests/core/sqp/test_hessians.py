@@ -7,9 +7,9 @@ import pytest
 
 from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, HessianKind
-from flyby.core.sqp.differences import Differences
-from flyby.core.sqp.patterns import Pattern
-from flyby.core.sqp.scaled import ScaledProblem
+from flyby.core.sqp.problem.differences import Differences
+from flyby.core.sqp.problem.patterns import Pattern
+from flyby.core.sqp.problem.scaled import ScaledProblem
 
 from .honesty import solved
 from .jets import log

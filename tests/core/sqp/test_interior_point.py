@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy import sparse
 
 from flyby.core.arrays import FloatArray
-from flyby.core.sqp.matrices import from_scipy
+from flyby.core.sqp.algebra.matrices import from_scipy
 from flyby.core.sqp.qp.clarabel_backend import ClarabelBackend
 from flyby.core.sqp.qp.interior_point import InteriorPointBackend
 from flyby.core.sqp.qp.problem import QpSolution, QpStatus, QuadraticProgram

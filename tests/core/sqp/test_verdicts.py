@@ -11,7 +11,7 @@ import pytest
 
 from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, Iteration, Status, solve
-from flyby.core.sqp.kkt import Residuals
+from flyby.core.sqp.problem.optimality import Residuals
 from flyby.core.sqp.verdict import Ending, Evidence, verdict
 
 from .honesty import assert_honest, solved

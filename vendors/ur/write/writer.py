@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ....core.errors import InputError, MotionError
+from ....core.language import Sources
 from ....core.program.move import Move, Opaque, Wait
 from ....core.program.program import Program
 from ....core.robot.model import Robot
 from ....core.source.text.files import lines_of
 from ....core.source.text.names import Names
 from ....core.source.write.options import AS_COMMENTS, OpaqueStyle
-from ....core.vendor import Sources
 from ..syntax.names import NAME_RULES
 from .declarations import Line
 from .formatting import comment, number

@@ -13,7 +13,7 @@ from .....core.errors import InputError, Note
 from .....core.motion.command.trajectory import Trajectory, sample_times
 from .....core.motion.model.consumption import SQUARED_TORQUE, Consumption
 from .....core.program.tool import WORLD, Tool
-from .....core.robot.chain_kernels import poses
+from .....core.robot.kinematics.chain_kernels import poses
 from .....core.robot.work_chain import work_chain
 from .....core.spatial.rotation import quaternion_from_matrix
 from ..task.limits import Limits

@@ -14,8 +14,8 @@ import numpy as np
 from .....core.arrays import FloatArray, IntArray
 from .....core.errors import InputError
 from .....core.program.tool import WORLD, Tool
-from .....core.robot.chain_derivatives import hessians
-from .....core.robot.chain_kernels import jacobians
+from .....core.robot.kinematics.chain_derivatives import hessians
+from .....core.robot.kinematics.chain_kernels import jacobians
 from .....core.robot.work_chain import work_chain
 from .task import Task
 

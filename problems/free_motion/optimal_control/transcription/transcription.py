@@ -15,7 +15,7 @@ from scipy import sparse
 
 from .....core.arrays import FloatArray
 from .....core.sqp import NLP
-from .....core.sqp.entries import Entries
+from .....core.sqp.algebra.entries import Entries
 from ..motion.layout import Layout
 from ..task.limits import Limits
 from ..task.sampled import Plant, TcpSpeed, TorqueField

@@ -14,8 +14,8 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Tool, WorkObject
 from flyby.core.program.zone import FINE, Radius
-from flyby.core.robot.chain_kernels import poses
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
+from flyby.core.robot.kinematics.chain_kernels import poses
 from flyby.core.robot.work_chain import work_chain
 from flyby.core.spatial.pose import Pose
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from flyby.core.language import Sources
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import MoveJ, Wait
 from flyby.core.program.program import Program
@@ -15,7 +16,7 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.translation.translate import translate
-from flyby.core.vendor import Sources, Vendor
+from flyby.core.vendor import Vendor
 
 START = JointTarget((0.0, 0.0, 0.0, 0.0, 0.5, 0.0))
 BENT = {"kuka": (0.0, -1.5, 1.5, 0.0, 0.5, 0.0), "ur": (0.0, -1.5, 1.5, 0.0, 0.5, 0.0)}

@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from flyby.core.errors import FlybyError, InputError, MotionError, SourceError
+from flyby.core.language import Sources
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import Opaque
 from flyby.core.program.program import Program
 from flyby.core.registry import find_robot, find_vendor
-from flyby.core.vendor import Sources, Vendor
+from flyby.core.vendor import Vendor
 
 ROBOTS = {"abb": "abb/irb6640-180-255", "kuka": "kuka/kr30-3", "ur": "ur/ur10e"}
 AXES = "[9E9,9E9,9E9,9E9,9E9,9E9]"

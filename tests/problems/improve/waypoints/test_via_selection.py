@@ -22,7 +22,7 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget, Target
 from flyby.core.program.tool import WORLD
 from flyby.core.program.zone import FINE, Radius
-from flyby.core.robot.chain_kernels import poses
+from flyby.core.robot.kinematics.chain_kernels import poses
 from flyby.core.robot.work_chain import work_chain
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import quaternion_from_matrix

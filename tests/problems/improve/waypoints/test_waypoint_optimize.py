@@ -20,7 +20,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_vendor
-from flyby.core.robot.chain_kernels import poses
+from flyby.core.robot.kinematics.chain_kernels import poses
 from flyby.core.robot.shape import Box as BoxShape
 from flyby.core.robot.work_chain import work_chain
 from flyby.core.spatial.pose import Pose

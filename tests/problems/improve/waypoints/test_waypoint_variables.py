@@ -22,7 +22,7 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import FINE, Radius, Zone
 from flyby.core.registry import find_robot, find_vendor
-from flyby.core.robot.chain_kernels import poses
+from flyby.core.robot.kinematics.chain_kernels import poses
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import quaternion_from_matrix, rotation_vector
 from flyby.problems.improve.rounding import Rounding

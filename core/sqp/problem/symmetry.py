@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..algebra.matrices import SparseMatrix, Sparsity
 from .errors import NlpError
-from .matrices import SparseMatrix, Sparsity
 
 _ASYMMETRY = 1e-2
 """Share of the largest entry by which two that should be equal may differ: Hessians by differences

@@ -12,7 +12,7 @@ from numba import njit
 from numpy.typing import ArrayLike
 from scipy import sparse
 
-from ..arrays import FloatArray, IntArray
+from ...arrays import FloatArray, IntArray
 
 
 class Sparsity:

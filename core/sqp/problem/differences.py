@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from ..arrays import BoolArray, FloatArray, IntArray
+from ...arrays import BoolArray, FloatArray, IntArray
+from ..algebra.matrices import SparseMatrix
 from .errors import CallableError
 from .evaluation import Evaluation, Point
-from .kkt import lagrangian_slope
-from .matrices import SparseMatrix
+from .optimality import lagrangian_slope
 
 _STEP = 6e-8
 _ASIDE = 1e-2

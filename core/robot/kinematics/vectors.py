@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 from .lean import lean
 
 Vector = tuple[float, float, float]

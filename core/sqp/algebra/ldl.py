@@ -14,7 +14,7 @@ from numba import njit
 from scipy import sparse
 from scipy.sparse import linalg
 
-from ..arrays import FloatArray, IntArray
+from ...arrays import FloatArray, IntArray
 
 _LEAST_PIVOT = 1e-300
 

@@ -10,10 +10,10 @@ from typing import TypeVar
 import numpy as np
 from scipy import sparse
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
+from ..algebra.matrices import SparseMatrix, empty
 from .arrays import matrix, numbers, scalar, vector
 from .errors import CallableError, NlpError
-from .matrices import SparseMatrix, empty
 from .nlp import NLP
 from .patterns import Pattern
 from .symmetry import Symmetry

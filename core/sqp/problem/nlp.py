@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import sparse
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 from .arrays import numbers, whole_number
-from .errors import NlpError as NlpError
+from .errors import NlpError
 
 Matrix = FloatArray | sparse.sparray | sparse.spmatrix
 

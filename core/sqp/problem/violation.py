@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 
 
 def total(value: FloatArray, lower: FloatArray, upper: FloatArray) -> float:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
+from ..algebra.matrices import SparseMatrix, Sparsity, from_scipy
 from .arrays import matrix
 from .errors import NlpError
-from .matrices import SparseMatrix, Sparsity, from_scipy
 
 
 class Pattern:

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 from .chain import Chain
 from .lean import lean
 from .vectors import (

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 from . import violation
 from .evaluation import Evaluation, Point
-from .kkt import Residuals, lagrangian_slope, residuals, row_terms, slope_terms
 from .nlp import NLP
+from .optimality import Residuals, lagrangian_slope, residuals, row_terms, slope_terms
 from .patterns import Pattern
 
 

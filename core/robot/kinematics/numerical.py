@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 from .chain import Chain
 from .chain_kernels import jacobian
 from .tracking import least_step, pose_error, track

@@ -7,13 +7,13 @@ from typing import Protocol
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
+from ..algebra.matrices import SparseMatrix
 from .differences import Differences
 from .errors import NlpError
 from .evaluation import Evaluation, Point
-from .kkt import lagrangian_slope
-from .matrices import SparseMatrix
 from .nlp import NLP
+from .optimality import lagrangian_slope
 
 LARGEST_DENSE = 400
 """Variables up to which a quasi-Newton matrix is a dense one."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from ..arrays import FloatArray, IntArray
+from ...arrays import FloatArray, IntArray
 from .lean import lean
 
 

@@ -7,7 +7,7 @@ import copy
 import numpy as np
 from scipy import sparse
 
-from ..arrays import FloatArray, IntArray
+from ...arrays import FloatArray, IntArray
 
 
 class Entries:

@@ -10,7 +10,7 @@ import math
 
 from numba import njit
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 from .arm_geometry import ArmGeometry
 from .vectors import Rotation, Vector, add, compose, cross, dot, load, scale, subtract
 

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numba import njit
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 from .arm_geometry import ArmGeometry
 from .closed_form import (
     ALIGNED,

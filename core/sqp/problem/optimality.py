@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray
+from ...arrays import BoolArray, FloatArray
+from ..algebra.matrices import SparseMatrix
 from . import violation
-from .matrices import SparseMatrix
 
 _ON_BOUND = 1e-8
 _ROUNDING = 1e-14

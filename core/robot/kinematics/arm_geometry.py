@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 from .chain import Chain
 
 EXACT = 1e-9

@@ -10,7 +10,7 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
-from ..arrays import BoolArray, FloatArray
+from ...arrays import BoolArray, FloatArray
 from .matrices import SparseMatrix, Sparsity
 
 _LEAST_SIZE = 100

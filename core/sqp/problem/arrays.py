@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 from .errors import NlpError
 
 _REAL = "biuf"

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 from .chain import Chain
 from .lean import lean
 

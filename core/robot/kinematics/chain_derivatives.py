@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 from .chain import Chain
 from .chain_kernels import jacobians
 from .vectors import Vector, cross

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from ..arrays import BoolArray, FloatArray, IntArray
+from ...arrays import BoolArray, FloatArray, IntArray
 from . import dense
 from .ldl import Factors, Ldl, factorise, substitute
 from .matrices import SparseMatrix, Sparsity

@@ -1,0 +1,1 @@
+"""Kinematics of an arm: the chain from work object to TCP, its derivatives and bounds, and back."""

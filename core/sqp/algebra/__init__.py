@@ -1,0 +1,1 @@
+"""Linear algebra of the solver: patterns, factorisations, saddle-point systems."""

@@ -1,0 +1,1 @@
+"""The problem: its callables checked, scaled and differentiated."""
