@@ -62,6 +62,8 @@ RICH = {
 CORNERS = {"blend.tcp.kind": "arc", "zone.pace": "superposed", "limit.centripetal": 1.2}
 """Where corners that are too sharp for their speed are cut."""
 JERK = {"time.jerk": 30.0}
+SWIFT = {"torque.own_s2": (0.8, 0.8, 0.8)}
+"""Where axes have not been in position for long when they stop."""
 EXAMPLES: dict[str, tuple[Any, dict[str, Any]]] = {
     "period_s": (0.01, {}),
     "blend.tcp.kind": ("arc", {}),
@@ -86,10 +88,10 @@ EXAMPLES: dict[str, tuple[Any, dict[str, Any]]] = {
     "time.ramp_s": (0.03, {}),
     "time.smoothing_s": ((0.04, 0.02), {}),
     "time.settling_s": (0.03, {"time.in_position_rad": 0.0}),
-    "time.in_position_rad": (3e-3, {}),
-    "time.in_position_time_s": (0.06, {}),
+    "time.in_position_rad": (3e-3, SWIFT),
+    "time.in_position_time_s": (0.06, SWIFT),
     "time.jerk": (25.0, JERK),
-    "limit.tcp_acceleration": (6.0, CORNERS),
+    "limit.tcp_acceleration": (3.5, CORNERS),
     "limit.reorientation_acceleration": (2.0, {}),
     "limit.centripetal": (1.5, CORNERS),
     "limit.joint_acceleration_scale": ((1.0, 1.0, 1.0, 0.25, 0.25, 0.25), {}),
@@ -297,7 +299,7 @@ def test_it_is_fitted_with_what_is_kept_of_other_emulations(number: str) -> None
     """Derivatives with stages that are kept are differences of emulations made anew."""
     key = FITTED[number]
     beside = EXAMPLES[key][1]
-    base = pair(key)[1 if key.endswith("beta") else 0]
+    base = pair(key)[1]
     run = prepared(beside is CORNERS, beside is JERK)
     named = ParameterSet.named(base, [number])
     (one,) = named.parameters
