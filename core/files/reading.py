@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from ..errors import InputError
-from .writing import recover
+from .recovery import recover
 
 MOST_TOML_BYTES = 2_000_000
 """The largest that are written, motion models with their fits, have some 20 000."""

@@ -9,7 +9,7 @@ from ...core.errors import InputError, Note
 from ..options.door import spelt, switched
 
 if TYPE_CHECKING:
-    from ...core.source.not_executed.search import Bystander
+    from ...core.source.not_executed.search import NotExecuted
     from ...core.vendor import Vendor
     from ...problems.improve.solution import Solution
 
@@ -24,12 +24,12 @@ def not_executed_notes(made: Solution, vendor: Vendor) -> tuple[Note, ...]:
         made: with the program as it is read from its new text.
         vendor: whose language it is.
     """
-    from ...core.source.not_executed.search import bystanders
+    from ...core.source.not_executed.search import not_executed
 
     wording = None if vendor.speaks is None else vendor.speaks.wording
     if wording is None or not made.changed or _is_anew(made):
         return ()
-    return tuple(map(_note, bystanders(made.original, made.program, wording)))
+    return tuple(map(_note, not_executed(made.original, made.program, wording)))
 
 
 def refuse_not_executed(notes: Sequence[Note]) -> None:
@@ -46,7 +46,7 @@ def refuse_not_executed(notes: Sequence[Note]) -> None:
         )
 
 
-def _note(found: Bystander) -> Note:
+def _note(found: NotExecuted) -> Note:
     lines = list(dict.fromkeys(str(place.line) for place in found.places))
     more = f" and {len(lines) - _SHOWN} more" if len(lines) > _SHOWN else ""
     where = f"line{'s' if len(lines) > 1 else ''} {', '.join(lines[:_SHOWN])}{more}"

@@ -118,7 +118,8 @@ def write_all(option: str, files: Mapping[Path, bytes], made: Path | None = None
     Raises:
         InputError: naming the option.
     """
-    from ...core.files.writing import WriteError, write_files
+    from ...core.files.disk import WriteError
+    from ...core.files.writing import write_files
 
     try:
         notes = write_files(files, made)

@@ -17,7 +17,7 @@ from ...core.program.origin import MoveOrigin, Origin, Ownership
 from ...core.program.program import Program
 from ...core.program.target import JointTarget, Target
 from ...core.program.zone import Fine, Radius, Zone
-from ...core.source.not_executed.search import bystanders
+from ...core.source.not_executed.search import not_executed
 from ...core.source.patch.edits import difference, reading_of
 from ...core.source.reading import Files, Reading, ReadOptions
 from ...core.source.text.files import SourceFile
@@ -90,7 +90,7 @@ class PatchingChecks(Subject):
         named = change.origin.datum is not None
         for span in (own, change.origin.span) if named else (own,):
             text = reading.files[span.file].text[span.start : span.end]
-            told = bystanders(
+            told = not_executed(
                 _beside(program, reading, text), _beside(change.program, reading, text), wording
             )
             wanted = [one for one in told if one.datum == change.origin.datum or not named]

@@ -16,7 +16,10 @@ from typing import Any
 import pytest
 
 from flyby.core.errors import InputError
-from flyby.core.files.writing import PREFIX, WriteError, recover, write_file, write_files
+from flyby.core.files.disk import WriteError
+from flyby.core.files.journal import PREFIX
+from flyby.core.files.recovery import recover
+from flyby.core.files.writing import write_file, write_files
 
 STEPS = (
     "open", "mkdir", "replace", "rename", "fsync", "unlink", "chmod", "chown", "stat", "lstat",

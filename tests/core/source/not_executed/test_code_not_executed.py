@@ -15,7 +15,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_robot, find_vendor
-from flyby.core.source.not_executed.search import bystanders
+from flyby.core.source.not_executed.search import not_executed
 from flyby.core.source.text.references import reference_of, references
 from flyby.core.spatial.pose import Pose
 
@@ -98,7 +98,7 @@ def found(name: str, text: str, tmp_path: Path, which: Sequence[int]) -> dict[st
     supplied = find_vendor(vendor)
     program = supplied.read_file(path, robot=find_robot(robot))
     assert supplied.speaks is not None and supplied.speaks.wording is not None
-    concerned = bystanders(program, moved(program, which), supplied.speaks.wording)
+    concerned = not_executed(program, moved(program, which), supplied.speaks.wording)
     return {one.datum: [place.line for place in one.places] for one in concerned}
 
 
@@ -125,13 +125,13 @@ def test_zones_and_data_of_other_names(tmp_path: Path) -> None:
     assert vendor.speaks is not None and vendor.speaks.wording is not None
     moves = list(program.moves)
     moves[1] = replace(moves[1], zone=Radius(0.02, 0.03, 0.03, 0.05, 0.03, 0.05))
-    (one,) = bystanders(program, program.with_moves(tuple(moves)), vendor.speaks.wording)
+    (one,) = not_executed(program, program.with_moves(tuple(moves)), vendor.speaks.wording)
     assert one.datum == "zz" and one.move == 1 and [p.line for p in one.places] == [11]
     # A move that has got a datum of its own leaves the old one alone.
     assert moves[1].origin is not None
     own = replace(moves[1].origin, zone=replace(moves[1].origin.zone, datum="zz_2"))
     moves[1] = replace(moves[1], origin=own)
-    assert bystanders(program, program.with_moves(tuple(moves)), vendor.speaks.wording) == ()
+    assert not_executed(program, program.with_moves(tuple(moves)), vendor.speaks.wording) == ()
 
 
 ELEMENTS = {
@@ -268,7 +268,7 @@ def test_other_modules_mean_their_own_data(tmp_path: Path) -> None:
     others = [tmp_path / name for name in files if name.startswith("o")]
     program = kuka.read_file(tmp_path / "m.src", robot=find_robot("kuka/kr30-3"), others=others)
     assert kuka.speaks is not None and kuka.speaks.wording is not None
-    (one,) = bystanders(program, moved(program, [0]), kuka.speaks.wording)
+    (one,) = not_executed(program, moved(program, [0]), kuka.speaks.wording)
     assert [(Path(place.file).name, place.line) for place in one.places] == [("other.src", 2)]
 
 

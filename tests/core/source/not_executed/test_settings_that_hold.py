@@ -11,7 +11,7 @@ from flyby.core.program.move import MoveJ
 from flyby.core.program.program import Program
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_robot, find_vendor
-from flyby.core.source.not_executed.search import bystanders
+from flyby.core.source.not_executed.search import not_executed
 
 _ROBOTS = {
     "abb": ("abb/irb6640-180-255", "mod"),
@@ -58,7 +58,7 @@ def told(
     assert files
     after = before.reading.again(files)  # type: ignore[attr-defined]
     assert supplied.speaks is not None and supplied.speaks.wording is not None
-    found = bystanders(before, after, supplied.speaks.wording)
+    found = not_executed(before, after, supplied.speaks.wording)
     return {one.datum: sorted({place.line for place in one.places}) for one in found}
 
 
