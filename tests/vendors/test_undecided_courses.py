@@ -50,13 +50,14 @@ class Dialect:
 LANGUAGES = {
     "abb": Dialect(
         "m.mod",
-        "MODULE m\nVAR num n:=0; VAR bool go:=TRUE;\nPROC main()\nBODY\nENDPROC\nENDMODULE\n",
+        "MODULE m\nVAR num n:=0; VAR num k; VAR bool go:=TRUE;\n"
+        "PROC main()\nBODY\nENDPROC\nENDMODULE\n",
         f"MoveAbsJ [[#,0,0,0,0,0],[{EXTERNAL}]],v100,fine,tool0;",
         ("di1=1", "di2=1"),
     ),
     "kuka": Dialect(
         "m.src",
-        "DEF m()\nDECL INT N\nDECL BOOL GO\nBODY\nEND\n",
+        "DEF m()\nDECL INT N,I,K\nDECL BOOL GO\nBODY\nEND\n",
         "PTP {A1 #,A2 -90,A3 90,A4 0,A5 0,A6 0}",
         ("$IN[1]", "$IN[2]"),
     ),
@@ -340,6 +341,20 @@ CASES = {
         "while True:\n<A>\nif <IN>:\nbreak\nend\n<B>\nend\n<C>",
         "A B C",
         WAY_OUT,
+    ),
+    "a jump back in a loop, which closes a loop anew in each of its passes": Case(
+        "FOR i FROM 1 TO 2 DO\nn:=0;\nagain:\n<A>\nn:=n+1;\nIF n<2 GOTO again;\nENDFOR\n<B>",
+        "FOR I=1 TO 2\nN=0\nAGAIN:\n<A>\nN=N+1\nIF N<2 THEN\nGOTO AGAIN\nENDIF\nENDFOR\n<B>",
+        "i = 0\nwhile i < 2:\nn = 0\nwhile n < 2:\n<A>\nn = n + 1\nend\ni = i + 1\nend\n<B>",
+        "A A A A B",
+    ),
+    "two jumps back to one label": Case(
+        "k:=0;\nagain:\n<A>\nn:=n+1;\nIF n<2 GOTO again;\n"
+        "n:=0;\nk:=k+1;\nIF k<2 GOTO again;\n<B>",
+        "N=0\nK=0\nAGAIN:\n<A>\nN=N+1\nIF N<2 THEN\nGOTO AGAIN\nENDIF\n"
+        "N=0\nK=K+1\nIF K<2 THEN\nGOTO AGAIN\nENDIF\n<B>",
+        "k = 0\nwhile k < 2:\nn = 0\nwhile n < 2:\n<A>\nn = n + 1\nend\nk = k + 1\nend\n<B>",
+        "A A A A B",
     ),
     "an output that only others change": Case(
         "SetDO do9,1;\nWHILE DOutput(do9)=1 DO\n<A>\nENDWHILE\n<B>",

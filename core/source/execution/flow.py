@@ -220,9 +220,8 @@ class Flow(Generic[Block]):
         self._routine = 0
         self._depth = 0
         self._loop = 0
-        self._jumps: dict[tuple[int, object], _Passes[Block]] = {}
-        self._began = 0
-        self._jumped = 0
+        self._jumps: dict[tuple[int, object, object], _Passes[Block]] = {}
+        self._reached: dict[tuple[int, object], tuple[int, int]] = {(0, None): (0, 0)}
 
     # ------------------------------------------------------------------- branches
 
@@ -361,34 +360,53 @@ class Flow(Generic[Block]):
             passes.most = self._host.course.passes(loop.span, reason, moving)
         return passes.most
 
-    def jump(self, loop: Loop[Block], key: object, run: Callable[[Block], bool]) -> bool:
+    def label(self, label: object) -> None:
+        """A label is reached, but not by a jump back: the loops that jumps to it close begin anew.
+
+        Args:
+            label: its key.
+        """
+        for place in [p for p in self._jumps if p[:2] == (self._routine, label)]:
+            del self._jumps[place]
+        self._reached[self._routine, label] = self._skips, self._host.outputs.mark()
+
+    def jump(
+        self, loop: Loop[Block], label: object, key: object, run: Callable[[Block], bool]
+    ) -> bool:
         """Whether a jump back is carried out.
 
         Args:
             loop: what stands between the label and the jump.
+            label: key of the label, as `label` is given it.
             key: of the jump.
             run: runs a block where the jump stands; False if it leaves a loop round it.
         """
-        place = self._routine, key
+        place = self._routine, label, key
         passes = self._jumps.get(place)
         if passes is None:
-            passes = self._jumps[place] = _Passes(loop, self._began, self._jumped)
+            since, mark = self._reached.get(place[:2]) or self._reached[self._routine, None]
+            passes = self._jumps[place] = _Passes(loop, since, mark)
             passes.held = self._host.outputs.held()
         passes.count += 1
         self._host.meter.statement(loop.span)
         if self._ends(passes, run):
             del self._jumps[place]
             return False
-        passes.mark = self._jumped = self._host.outputs.mark()
+        for other, inner in [*self._jumps.items()]:
+            # Loops to the same label that end before this one does begin anew in its next pass.
+            if other[:2] == place[:2] and inner.loop.span.start < loop.span.start:
+                del self._jumps[other]
+        passes.mark = self._host.outputs.mark()
+        self._reached[place[:2]] = self._skips, passes.mark
         self._look(passes)
         return True
 
     @contextmanager
     def routine(self) -> Iterator[None]:
         """Inside a routine: jumps and ways out of others do not count."""
-        outer = self._routine, self._loop, self._began, self._jumped
-        self._routine, self._loop, self._began = self._number(), 0, self._skips
-        self._jumped = self._host.outputs.mark()
+        outer = self._routine, self._loop
+        self._routine, self._loop = self._number(), 0
+        self.label(None)  # where the routine begins
         self._depth += 1
         try:
             yield
@@ -396,7 +414,9 @@ class Flow(Generic[Block]):
             self._depth -= 1
             for place in [p for p in self._jumps if p[0] == self._routine]:
                 del self._jumps[place]
-            self._routine, self._loop, self._began, self._jumped = outer
+            for reached in [r for r in self._reached if r[0] == self._routine]:
+                del self._reached[reached]
+            self._routine, self._loop = outer
 
     # --------------------------------------------------------------------- inside
 

@@ -38,6 +38,7 @@ from .program import (
     If,
     Jump,
     Kept,
+    Label,
     LineProgram,
     Operand,
     Pause,
@@ -182,7 +183,7 @@ class _Interpreter:
         if target > index:
             return target
         statement = body.statements[index]
-        key = id(statement)
+        label, key = id(body.statements[target]), id(statement)
         between = self._loops.setdefault(key, Body(body.statements[target : index + 1]))
         unconditional = isinstance(statement, Jump)
         loop = Loop(
@@ -193,7 +194,8 @@ class _Interpreter:
             endless=unconditional,
         )
         try:
-            return target if self._flow.jump(loop, key, self._run) else index + 1
+            stays = self._flow.jump(loop, label, key, self._run)
+            return target + 1 if stays else index + 1
         except _Jumped as found:
             return self._after(body, index, found.jump)
 
@@ -209,6 +211,8 @@ class _Interpreter:
             self._assign(statement)
         elif isinstance(statement, If):
             self._if(statement)
+        elif isinstance(statement, Label):
+            self._flow.label(id(statement))
         elif isinstance(statement, Jump):
             raise _Jumped(statement)
         elif isinstance(statement, Call):

@@ -207,24 +207,26 @@ class Interpreter:
         Raises:
             _Jump: the label is further out.
         """
+
+        def carry_out(way: Block) -> bool:
+            self.run_block(way, scope)
+            return True
+
         while goto.name in block.labels:
             target = block.labels[goto.name]
             if target > index:
-                return target
+                return target - 1  # the label itself
             always = goto is block.statements[index]
             body = self._loops.setdefault(id(goto), Block(block.statements[target - 1 : index + 1]))
             loop = Loop(body, goto.span, f"GOTO {goto.name}", endless=always)
+            label = id(block.statements[target - 1])
             try:
-                if self.flow.jump(loop, id(goto), lambda way: self._carry_out(way, scope)):
+                if self.flow.jump(loop, label, id(goto), carry_out):
                     return target
                 return index + 1
             except _Jump as jump:
                 goto = jump.goto
         raise _Jump(goto)
-
-    def _carry_out(self, block: Block, scope: Scope) -> bool:
-        self.run_block(block, scope)
-        return True
 
     def _run_statement(self, statement: Statement, scope: Scope) -> None:
         self.meter.statement(statement.span)
@@ -248,7 +250,9 @@ class Interpreter:
             raise _Jump(statement)
         elif isinstance(statement, LateInvoke):
             self._late(statement, scope)
-        elif not isinstance(statement, Label):
+        elif isinstance(statement, Label):
+            self.flow.label(id(statement))
+        else:
             self._keyword(statement, scope)
 
     def _keyword(self, statement: Keyword, scope: Scope) -> None:

@@ -11,7 +11,7 @@ from ....core.source.execution import flow
 from ....core.source.execution.flow import Undecided
 from ....core.source.execution.transcript import Notes
 from ..syntax.expression_tree import Expression, Name, Number, Truth
-from ..syntax.tree import Block, Exit, For, Goto, If, Loop, Repeat, Return, Switch, While
+from ..syntax.tree import Block, Exit, For, Goto, If, Label, Loop, Repeat, Return, Switch, While
 from ..values.data import Data
 from ..values.evaluator import Evaluator
 from ..values.operators import OperandError, apply
@@ -247,23 +247,29 @@ class Flow:
         Raises:
             Jump: the label is further out.
         """
+
+        def carry_out(way: Block) -> bool:
+            self._run_block(way, scope)
+            return True
+
         while goto.name in block.labels:
             target = block.labels[goto.name]
             if target > index:
-                return target
+                return target - 1  # the label itself
             always = goto is block.statements[index]
             body = self._jumps.setdefault(id(goto), Block(block.statements[target - 1 : index + 1]))
             loop = flow.Loop(body, goto.span, f"GOTO {goto.name.upper()}", endless=always)
+            label = id(block.statements[target - 1])
             try:
-                stays = self._rules.jump(loop, id(goto), lambda way: self._carried_out(way, scope))
+                stays = self._rules.jump(loop, label, id(goto), carry_out)
                 return target if stays else index + 1
             except Jump as jump:
                 goto = jump.goto
         raise Jump(goto)
 
-    def _carried_out(self, block: Block, scope: Scope) -> bool:
-        self._run_block(block, scope)
-        return True
+    def label(self, statement: Label) -> None:
+        """A label, which a jump back does not go over again."""
+        self._rules.label(id(statement))
 
     def goto_(self, statement: Goto, scope: Scope) -> None:
         """``GOTO``"""

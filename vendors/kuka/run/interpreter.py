@@ -211,7 +211,9 @@ class Interpreter:
         if handler is not None:
             self._advance.stopped = False
             handler(statement, scope)
-        if not isinstance(statement, Label):
+        if isinstance(statement, Label):
+            self._flow.label(statement)
+        else:
             self._advance.passed = False
 
     def _evaluated(
