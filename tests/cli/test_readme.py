@@ -15,21 +15,6 @@ README = (ROOT / "README.md").read_text("utf-8")
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 
-def test_the_python_example_runs(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
-    (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    assert len([line for line in example.splitlines() if line]) <= 11
-    (tmp_path / "examples").symlink_to(ROOT / "examples")
-    monkeypatch.chdir(tmp_path)
-    exec(compile(example, "README.md", "exec"), {})
-    emulated, _, optimised = capsys.readouterr().out.splitlines()[:3]
-    assert re.match(r"\d+\.\d{3} s; move 4 takes \d+\.\d{3} s: \w+", emulated)
-    before, after = map(float, re.findall(r"(\d+\.\d{3}) s", optimised)[:2])
-    assert after < before and "is proven" in optimised
-    assert [path.name for path in (tmp_path / "out").iterdir()] == ["two_joints.mod"]
-
-
 def test_the_main_command_runs(
     flyby: Callable[..., Result], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -1,0 +1,141 @@
+"""Every Python block of README.md and docs/ runs, and every path that they name exists."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import flyby
+
+ROOT = Path(__file__).parents[2]
+DOCUMENTS = {
+    str(page.relative_to(ROOT)): page.read_text("utf-8")
+    for page in (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
+}
+BLOCKS = {
+    name: blocks
+    for name, text in DOCUMENTS.items()
+    if (blocks := re.findall(r"^```python\n(.*?)^```$", text, re.DOTALL | re.MULTILINE))
+}
+BESIDE = {"docs/guides/plugins.md": "examples/fourth_vendor/page.py"}
+"""Where the code of a page would stand that reads files beside itself."""
+PARTS = (
+    "benchmarks|cli|core|docs|drawing|examples|identification|problems|tasks|testing|tests|"
+    "validation|vendors"
+)
+PATH = re.compile(rf"(?<![\w./…-])(?:{PARTS})/[\w./*-]*")
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What running a page left: lines that it printed, its folder and its names."""
+
+    lines: list[str]
+    folder: Path
+    names: dict[str, Any]
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Ran]:
+    """What running a page left; each is run once."""
+    return cache(lambda page: _run(page, tmp_path_factory.mktemp("page")))
+
+
+def _run(page: str, folder: Path) -> Ran:
+    """All blocks of a page in order, in one namespace, in a folder with examples and logs."""
+    (folder / "examples").symlink_to(ROOT / "examples")
+    _log_square(folder / "logs")
+    names: dict[str, Any] = {"__name__": "page", "__file__": str(ROOT / BESIDE.get(page, page))}
+    printed = io.StringIO()
+    with contextlib.chdir(folder), contextlib.redirect_stdout(printed):
+        for block in BLOCKS[page]:
+            exec(compile(block, page, "exec"), names)
+    return Ran(printed.getvalue().splitlines(), folder, names)
+
+
+def _log_square(folder: Path) -> None:
+    """A program with a log beside it: its emulation by a clock that began 0.2 s earlier."""
+    folder.mkdir()
+    shutil.copy(ROOT / "examples" / "square.mod", folder)
+    program = flyby.read(folder / "square.mod", robot="abb/irb6640-180-255")
+    driven = flyby.emulate(program).trajectory
+    columns = np.column_stack([driven.t + 0.2, driven.q])
+    head = "t,q1,q2,q3,q4,q5,q6"
+    np.savetxt(folder / "square.csv", columns, "%.9g", ",", header=head, comments="")
+
+
+@pytest.mark.parametrize("page", BLOCKS)
+def test_a_page_runs(page: str, ran: Callable[[str], Ran]) -> None:
+    shows = any("print(" in block for block in BLOCKS[page])
+    assert bool(ran(page).lines) == shows
+
+
+def test_no_block_of_python_is_written_another_way() -> None:
+    for page, text in DOCUMENTS.items():
+        assert len(re.findall(r"(?m)^\s*(?:```|~~~) ?py", text)) == len(BLOCKS.get(page, [])), page
+        assert ">>> " not in text, page
+
+
+def test_guides_use_the_front_door() -> None:
+    for page, blocks in BLOCKS.items():
+        if page != "docs/guides/plugins.md":
+            assert "import flyby" in blocks[0].splitlines(), page
+
+
+def test_the_readme_reads_emulates_optimises_and_writes_in_ten_lines(
+    ran: Callable[[str], Ran],
+) -> None:
+    (example,) = BLOCKS["README.md"]
+    assert len([line for line in example.splitlines() if line]) <= 11
+    emulated, _, optimised = ran("README.md").lines[:3]
+    assert re.match(r"\d+\.\d{3} s; move 4 takes \d+\.\d{3} s: \w+", emulated)
+    before, after = map(float, re.findall(r"(\d+\.\d{3}) s", optimised)[:2])
+    assert after < before and "is proven" in optimised
+    written = (ran("README.md").folder / "out").iterdir()
+    assert [path.name for path in written] == ["two_joints.mod"]
+
+
+def test_a_translation_is_written_in_the_language_of_its_robot(ran: Callable[[str], Ran]) -> None:
+    written = (ran("docs/guides/translation.md").folder / "translated").iterdir()
+    assert {path.suffix for path in written} == {".src", ".dat"}
+
+
+def test_the_gradients_of_the_page_on_collisions_are_of_near_pairs(
+    ran: Callable[[str], Ran],
+) -> None:
+    samples, pairs = ran("docs/reference/collision.md").names["which"]
+    assert len(samples) == len(pairs) > 0
+
+
+@pytest.mark.parametrize("page", DOCUMENTS)
+def test_paths_that_are_named_exist(page: str) -> None:
+    missing = [
+        path
+        for path in (found.rstrip(".") for found in PATH.findall(DOCUMENTS[page]))
+        if not any(ROOT.glob(path.rstrip("/")))
+    ]
+    assert not missing
+
+
+def test_the_modules_of_the_emulator_are_in_their_folders() -> None:
+    folder, seen = "", 0
+    _, _, section = DOCUMENTS["docs/architecture.md"].partition("\n## The emulator, ")
+    for line in section.partition("\n## ")[0].splitlines():
+        if line.startswith("| "):
+            _, where, modules = (cell.strip() for cell in line.strip("|").split("|"))
+            folder = where.strip("`/") or folder
+            for module in re.findall(r"`(\w+)`", modules):
+                if module.islower():
+                    assert (ROOT / "core" / "motion" / folder / f"{module}.py").exists(), module
+                    seen += 1
+    assert seen > 50
