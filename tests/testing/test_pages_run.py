@@ -127,6 +127,13 @@ def test_paths_that_are_named_exist(page: str) -> None:
     assert not missing
 
 
+@pytest.mark.parametrize("page", DOCUMENTS)
+def test_modules_that_are_named_without_a_folder_exist(page: str) -> None:
+    """`via_selection.py` is found somewhere in a folder of the package."""
+    named = set(re.findall(r"`(\w+\.py)`", DOCUMENTS[page]))
+    assert named <= {path.name for part in PARTS.split("|") for path in (ROOT / part).rglob("*.py")}
+
+
 def test_the_modules_of_the_emulator_are_in_their_folders() -> None:
     folder, seen = "", 0
     _, _, section = DOCUMENTS["docs/architecture.md"].partition("\n## The emulator, ")
