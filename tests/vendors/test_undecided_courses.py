@@ -356,6 +356,33 @@ CASES = {
         "k = 0\nwhile k < 2:\nn = 0\nwhile n < 2:\n<A>\nn = n + 1\nend\nk = k + 1\nend\n<B>",
         "A A A A B",
     ),
+    "what a loop has waited for holds behind it": Case(
+        "WHILE go DO\nWaitTime 0.1;\nENDWHILE\nIF go THEN\n<A>\nELSE\n<B>\nENDIF",
+        "GO=TRUE\nWHILE GO\nWAIT SEC 0.1\nENDWHILE\nIF GO THEN\n<A>\nELSE\n<B>\nENDIF",
+        "while go:\nsync()\nend\nif go:\n<A>\nelse:\n<B>\nend",
+        "B",
+        WAITS,
+    ),
+    "a wait in a loop without a condition goes where its way out leads": Case(
+        "WHILE TRUE DO\nIF NOT go GOTO out;\nENDWHILE\n<A>\nout:\n<B>",
+        "GO=TRUE\nLOOP\nIF NOT GO THEN\nGOTO OUT\nENDIF\nWAIT SEC 0.1\nENDLOOP\n<A>\nOUT:\n<B>",
+        "while True:\nif not go:\nbreak\nend\nsync()\nend\n<B>",
+        "B",
+        WAITS,
+    ),
+    "a count that a branch not taken ends is not known behind its loop": Case(
+        "WHILE n<3 DO\n<A>\nIF <IN> n:=n+1;\nENDWHILE\nIF n>=3 THEN\n<B>\nENDIF\n<C>",
+        "N=0\nWHILE N<3\n<A>\nIF <IN> THEN\nN=N+1\nENDIF\nENDWHILE\n"
+        "IF N>=3 THEN\n<B>\nENDIF\n<C>",
+        "while n < 3:\n<A>\nif <IN>:\nn = n + 1\nend\nend\nif n >= 3:\n<B>\nend\n<C>",
+        "A B C",
+    ),
+    "a counted loop runs to its end beside a way out": Case(
+        "WHILE n<110 DO\n<A>\nIF <IN> GOTO out;\nn:=n+1;\nENDWHILE\n<B>\nout:\n<C>",
+        "FOR I=1 TO 110\n<A>\nIF <IN> THEN\nGOTO OUT\nENDIF\nENDFOR\n<B>\nOUT:\n<C>",
+        "while n < 110:\n<A>\nif <IN>:\nreturn 0\nend\nn = n + 1\nend\n<B>\n<C>",
+        "A " * 110 + "B C",
+    ),
     "an output that only others change": Case(
         "SetDO do9,1;\nWHILE DOutput(do9)=1 DO\n<A>\nENDWHILE\n<B>",
         "$OUT[9]=TRUE\nWHILE $OUT[9]\n<A>\nENDWHILE\n<B>",

@@ -19,7 +19,8 @@ after a pass than before. If it does not get on, the first of these is so:
   value is a way out, too. A loop that gets on is followed past such a way out, but not for ever
   (`FOLLOWED`).
 - It reads outputs that only others can change: from now on these may have changed.
-- It does not move the robot: it waits for others, and is left, as all waits are satisfied at once.
+- It does not move the robot: it waits for others, and is left, as all waits are satisfied at once;
+  what its condition reads has values afterwards that end it, as after a wait.
 - It is endless. One pass is read, and the program ends there.
 
 A loop that neither has a condition nor a way out is endless, whether it moves the robot or not. A
@@ -41,10 +42,10 @@ from .outputs import Outputs
 from .steps import NOTHING, Block, Exit
 
 FOLLOWED = 100
-"""Passes of a loop that gets on and moves the robot, after which a way out is taken that nobody can
-decide."""
+"""Passes of a loop without a condition that gets on and moves the robot, after which a way out is
+taken that nobody can decide."""
 FOLLOWED_UNMOVED = 1000
-"""The same where it does not move the robot."""
+"""The same where it has a condition, which may well end it, or does not move the robot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +113,10 @@ class Host(Protocol):
         ...
 
 
+def _nothing() -> None:
+    pass
+
+
 @dataclass(frozen=True, slots=True)
 class Loop(Generic[Block]):
     """A loop.
@@ -125,6 +130,8 @@ class Loop(Generic[Block]):
         writes: names of the data that the loop itself steps on.
         endless: whether no condition ends it.
         labels: that stand in it beside those of its body.
+        ended: gives the data that its condition reads values with which it does not let the loop
+            go on, for a loop that is left though they say that it goes on.
     """
 
     body: Block
@@ -135,6 +142,7 @@ class Loop(Generic[Block]):
     writes: frozenset[str] = NOTHING
     endless: bool = False
     labels: frozenset[str] = NOTHING
+    ended: Callable[[], None] = _nothing
 
 
 @dataclass(frozen=True, slots=True)
@@ -516,7 +524,7 @@ class Flow(Generic[Block]):
         gets_on = self._gets_on(passes)
         skip = self._way_out(passes)
         if skip is not None:
-            followed = FOLLOWED if moving else FOLLOWED_UNMOVED
+            followed = FOLLOWED if moving and loop.endless else FOLLOWED_UNMOVED
             if gets_on and answer is None and passes.count < followed:
                 return False
             if passes.most is None:
@@ -524,6 +532,8 @@ class Flow(Generic[Block]):
             if passes.count < passes.most:
                 return False
             self._leave_by(skip, loop, run)
+            if not self._leaves(skip, loop):
+                loop.ended()
             return True
         if gets_on:
             return False
@@ -538,6 +548,10 @@ class Flow(Generic[Block]):
                 "it is taken as satisfied at once",
                 loop.span,
             )
+            way = self._known_way(loop.body) if loop.endless else None
+            if way is not None:
+                run(way)
+            loop.ended()
             return True
         self._endless(passes, moving, answer)
         return False
@@ -548,6 +562,18 @@ class Flow(Generic[Block]):
             how is not Exit.PASS and (how is not Exit.JUMP or label not in inside)
             for how, label in self._analysis.ways_out(loop.body)
         )
+
+    def _known_way(self, block: Block) -> Block | None:
+        """The first branch in a loop without a condition that leaves it."""
+        for step in self._analysis.steps(block):
+            for inner in step.inner:
+                leads = self._analysis.leads_to(inner)
+                if leads is not None and leads > (Exit.LOOP if step.loop else Exit.PASS):
+                    return inner
+                found = None if step.loop else self._known_way(inner)
+                if found is not None:
+                    return found
+        return None
 
     def _leave_by(
         self, skip: _Skip[Block], loop: Loop[Block], run: Callable[[Block], bool]

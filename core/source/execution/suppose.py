@@ -65,14 +65,19 @@ class Supposing(Generic[Node]):
             truth: what it is afterwards.
         """
         parts = self.parts(condition)
+        together: Collection[Node] = parts.all_of if truth else parts.any_of
         if parts.asks:
+            # Those of its parts that hold in any case, and can be evaluated again, tell.
+            for part in together:
+                self.suppose(part, truth)
+            if parts.negated is not None:
+                self.suppose(parts.negated, not truth)
             return
         mark = self.outputs.mark()
         value = self.holds(condition)
         if value is truth or value is None:
             return
         asked = self.outputs.asked_since(mark)
-        together: Collection[Node] = parts.all_of if truth else parts.any_of
         if parts.negated is not None:
             self.suppose(parts.negated, not truth)
         elif together:

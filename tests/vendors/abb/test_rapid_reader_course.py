@@ -120,7 +120,9 @@ def test_a_datum_of_a_module_that_is_not_at_hand_is_written():
         ("n=0", []),
         ("a{2}=7", [5]),
         ("n<>n", [3]),
-        ("DInput(di1)=1 AND bGo", []),
+        ("DInput(di1)=1 AND bGo", [1]),
+        ("NOT (TestDI(di1) OR bOn)", [2]),
+        ("TestDI(di1) OR bGo", []),
         ("nMost=9", []),
     ],
 )

@@ -499,6 +499,7 @@ def branch(condition):
         ),
         (f"grip=FALSE\nGRP(1,2)\n{branch('grip')}", [1, 9]),
         # Somebody else changes what the program waits for.
+        (f"i=2\nWAIT FOR ready( ) AND (i==5)\n{branch('i==2')}", [9]),
         (f"grip=TRUE\nWAIT FOR NOT grip\n{branch('NOT grip')}", [1, 9]),
         (f"grip=TRUE\nWAIT FOR NOT grip\n{branch('grip')}", [9]),
         (f"grip=TRUE\n$OUT[4]=FALSE\nWAIT FOR NOT grip AND $OUT[4]\n{branch('$OUT[4]')}", [1, 9]),
@@ -523,6 +524,7 @@ def test_outputs_keep_what_the_program_sets(krl, body, passed):
     src = (
         f"DEF demo( )\n{INIT}{body}\nEND\nDEF set3( )\nhelp( )\nEND\nDEF help( )\ngrip=TRUE\nEND\n"
         "DEF put(n:IN,v:IN)\nINT n\nBOOL v\n$OUT[n]=v\nEND\n"
+        "DEFFCT BOOL ready( )\nRETURN ($IN[1])\nENDFCT\n"
     )
     assert visited(krl(src=src, data=f"INT i=0\n{SIGNALS}")) == passed
 

@@ -18,6 +18,7 @@ from ..values.operators import OperandError, apply
 from ..values.scope import Cell, Scope
 from ..values.types import NUM, Unknown, Value, find_unknown
 from .analysis import RapidTree
+from .waits import suppose
 
 
 class Carrying(Protocol):
@@ -182,5 +183,6 @@ def run_while(run: Carrying, statement: While, scope: Scope) -> None:
         frozenset(names_in(condition)),
         asks=any(run.tree.called(condition, scope.home)),
         endless=isinstance(condition, Truth) and condition.value,
+        ended=lambda: suppose(run.evaluator, condition, scope, False),
     )
     run.flow.loop(loop, goes_on, carry_out)

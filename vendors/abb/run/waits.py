@@ -11,6 +11,7 @@ from ....core.source.execution.suppose import Parts, Supposing
 from ..syntax.traversal import calls_in, names_in
 from ..syntax.tree import Call, Expression, Invoke, Name, Operation, Unary
 from ..values.arguments import bind
+from ..values.evaluator import Evaluator
 from ..values.outputs import READING
 from ..values.scope import Scope
 from ..values.types import Unknown, Value
@@ -25,13 +26,18 @@ def wait_until(run: Keeping, invoke: Invoke, scope: Scope) -> None:
     """``WaitUntil [\\InPos] Cond [\\MaxTime] [\\TimeFlag] …`` ("RAPID Reference Manual")."""
     condition = bind(invoke, ("Cond",), (*_OPTIONS, *_LOOKS)).value(0)
     run.keep(invoke, scope)
+    suppose(run.evaluator, condition, scope)
+
+
+def suppose(evaluator: Evaluator, condition: Expression, scope: Scope, truth: bool = True) -> None:
+    """Give data the values with which a condition that was waited for is what it was to be."""
     Supposing(
-        run.evaluator.outputs,
+        evaluator.outputs,
         _parts,
-        lambda part: _holds(run, part, scope),
-        lambda datum, other: _equate(run, datum, other, scope),
-        lambda part: _forget(run, part, scope),
-    ).suppose(condition)
+        lambda part: _holds(evaluator, part, scope),
+        lambda datum, other: _equate(evaluator, datum, other, scope),
+        lambda part: _forget(evaluator, part, scope),
+    ).suppose(condition, truth)
 
 
 def _parts(condition: Expression) -> Parts[Expression]:
@@ -52,35 +58,39 @@ def _parts(condition: Expression) -> Parts[Expression]:
     return Parts(asks=asks)
 
 
-def _holds(run: Keeping, condition: Expression, scope: Scope) -> bool | None:
-    value = run.evaluator.evaluate(condition, scope)
+def _holds(evaluator: Evaluator, condition: Expression, scope: Scope) -> bool | None:
+    value = evaluator.evaluate(condition, scope)
     return None if isinstance(value, Unknown) else value is True
 
 
-def _equate(run: Keeping, datum: Expression, other: Expression | bool, scope: Scope) -> bool:
-    value = other if isinstance(other, bool) else run.evaluator.evaluate(other, scope)
-    return _give(run, datum, value, scope)
+def _equate(
+    evaluator: Evaluator, datum: Expression, other: Expression | bool, scope: Scope
+) -> bool:
+    value = other if isinstance(other, bool) else evaluator.evaluate(other, scope)
+    return _give(evaluator, datum, value, scope)
 
 
-def _give(run: Keeping, datum: Expression, value: Value, scope: Scope) -> bool:
+def _give(evaluator: Evaluator, datum: Expression, value: Value, scope: Scope) -> bool:
     """Whether a datum, or an output, could be given a value."""
     if isinstance(datum, Call) and datum.name in READING:
         datum = next((a.value for a in datum.arguments if a.value is not None), datum)
     if not isinstance(datum, Name):
         return False
-    name = run.evaluator.signal(datum, scope)
+    name = evaluator.signal(datum, scope)
     if name is not None:
-        run.evaluator.outputs.write(name, float(value) if isinstance(value, float | bool) else None)
+        evaluator.outputs.write(name, float(value) if isinstance(value, float | bool) else None)
         return True
     cell = scope.find(datum.name)
     if cell is None or cell.constant:
         return False
-    run.evaluator.assign(datum, value, scope)
+    evaluator.assign(datum, value, scope)
     return True
 
 
-def _forget(run: Keeping, condition: Expression, scope: Scope) -> None:
+def _forget(evaluator: Evaluator, condition: Expression, scope: Scope) -> None:
     """What a condition is about has been changed by others, to what is not known."""
     for name in sorted(names_in(condition)):
         datum = Name(condition.span, name, name)
-        _give(run, datum, Unknown(f"what '{name}' was waited for to be", condition.span), scope)
+        _give(
+            evaluator, datum, Unknown(f"what '{name}' was waited for to be", condition.span), scope
+        )

@@ -19,6 +19,7 @@ from ..values.scope import Scope
 from ..values.values import Unknown, Value, find_unknown, shown, unplaced
 from .analysis import KrlTree
 from .exits import Jump, Left, Returned
+from .waiting import Waited
 
 Evaluated = Callable[[Expression, Scope, Span], Value]
 """A value; if reading it stops the advance run, the robot stops at the statement's place."""
@@ -34,6 +35,7 @@ class Flow:
         data: of the program.
         tree: the program's statements.
         rules: decide what the text leaves open.
+        waited: what holds when a loop has waited for others.
         notes: takes notes.
     """
 
@@ -45,6 +47,7 @@ class Flow:
         data: Data,
         tree: KrlTree,
         rules: flow.Flow[Block],
+        waited: Waited,
         notes: Notes,
     ) -> None:
         self._run_block = run_block
@@ -53,6 +56,7 @@ class Flow:
         self._data = data
         self._tree = tree
         self._rules = rules
+        self._waited = waited
         self._notes = notes
         self._jumps: dict[int, Block] = {}  # bodies of loops that a GOTO closes, by its id
 
@@ -132,7 +136,7 @@ class Flow:
         def goes_on() -> bool | Undecided:
             return self._holds(condition, scope, statement.span, "WHILE")
 
-        loop = self._loop(statement.body, condition, words, endless, scope)
+        loop = self._loop(statement.body, condition, words, endless, scope, ended=False)
         self._rules.loop(loop, goes_on, self._pass(scope))
 
     def repeat_(self, statement: Repeat, scope: Scope) -> None:
@@ -145,7 +149,7 @@ class Flow:
             ends = self._holds(condition, scope, statement.span, "UNTIL")
             return ends if isinstance(ends, Undecided) else not ends
 
-        loop = self._loop(statement.body, condition, words, endless, scope)
+        loop = self._loop(statement.body, condition, words, endless, scope, ended=True)
         loop = replace(loop, span=statement.span)  # its first line, as of all loops
         self._rules.loop(loop, goes_on, self._pass(scope), tested_first=False)
 
@@ -203,8 +207,15 @@ class Flow:
                 )
 
     def _loop(
-        self, body: Block, condition: Expression, words: str, endless: bool, scope: Scope
+        self,
+        body: Block,
+        condition: Expression,
+        words: str,
+        endless: bool,
+        scope: Scope,
+        ended: bool,
     ) -> flow.Loop[Block]:
+        """A loop; ``ended`` is what its condition is when it has ended."""
         return flow.Loop(
             body,
             condition.span,
@@ -212,6 +223,7 @@ class Flow:
             self._tree.data_read([condition], scope.module),
             asks=self._tree.asks([condition], scope.module),
             endless=endless,
+            ended=lambda: self._waited.ended(condition, scope, ended),
         )
 
     def _pass(self, scope: Scope) -> Callable[[Block], bool]:

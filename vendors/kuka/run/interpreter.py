@@ -125,8 +125,9 @@ class Interpreter:
         )
         host = KrlHost(course, meter, data, evaluator.names, scopes, position, own_position, notes)
         rules = Rules(analysis, host)
+        waited = Waited(data, evaluator, course)
         self._flow = flow = Flow(
-            self.run_block, self._evaluated, evaluator, data, tree, rules, notes
+            self.run_block, self._evaluated, evaluator, data, tree, rules, waited, notes
         )
         functions = {
             **InlineForms(basis, data).functions(),
@@ -136,7 +137,7 @@ class Interpreter:
         self._calls = Calls(
             data, evaluator, course, self._routines, basis, functions, writes, keeping
         )
-        waits = Waits(evaluator, Waited(data, evaluator, course), writes, transcript, keeping)
+        waits = Waits(evaluator, waited, writes, transcript, keeping)
         self._handlers: dict[type, Callable[..., None]] = {
             Assign: self._assign,
             Motion: motions.read,

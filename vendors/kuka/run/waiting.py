@@ -41,14 +41,21 @@ class Waited:
             mark = outputs.mark()
             if self._evaluator.evaluate(condition, scope) is False:
                 outputs.forget(outputs.asked_since(mark))
-            return
+        self.ended(condition, scope, True)
+
+    def ended(self, condition: Expression, scope: Scope, truth: bool) -> None:
+        """Give data the values with which a condition is what it was waited for to be.
+
+        Raises:
+            SourceError: it has no value.
+        """
         Supposing(
-            outputs,
+            self._data.outputs,
             lambda part: self._parts(part, scope),
             lambda part: self._holds(part, scope),
             lambda datum, other: self._equate(datum, other, scope),
             lambda part: self._forget(part, scope),
-        ).suppose(condition)
+        ).suppose(condition, truth)
 
     def _asks(self, condition: Expression) -> bool:
         """Whether it can only be evaluated once."""
@@ -56,21 +63,22 @@ class Waited:
         return answered or any(True for _ in calls_in(condition))
 
     def _parts(self, condition: Expression, scope: Scope) -> Parts[Expression]:
+        asks = self._asks(condition)
         if isinstance(condition, Ambiguous):
             condition = self._meant(condition, scope)
         if isinstance(condition, Unary) and condition.operator == "not":
-            return Parts(negated=condition.operand)
+            return Parts(negated=condition.operand, asks=asks)
         if not isinstance(condition, Operation):
-            return Parts()
+            return Parts(asks=asks)
         operators = {operator for operator, _ in condition.rest}
         operands = (condition.first, *(operand for _, operand in condition.rest))
         if operators == {"and"}:
-            return Parts(all_of=operands)
+            return Parts(all_of=operands, asks=asks)
         if operators == {"or"}:
-            return Parts(any_of=operands)
+            return Parts(any_of=operands, asks=asks)
         if len(operands) == 2 and operators <= {"==", "<>"}:
-            return Parts(sides=(operands[0], operands[1]), equal=operators == {"=="})
-        return Parts()
+            return Parts(sides=(operands[0], operands[1]), equal=operators == {"=="}, asks=asks)
+        return Parts(asks=asks)
 
     def _meant(self, condition: Ambiguous, scope: Scope) -> Expression:
         try:

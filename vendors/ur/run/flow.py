@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from ....core.source.execution.flow import Flow, Loop, Undecided
+from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.transcript import Transcript
 from ..syntax.traversal import assigned, returns
 from ..syntax.tree import Block, Constant, Expression, If, Number, While
@@ -14,6 +15,7 @@ from ..values.scope import Scope
 from ..values.values import Unknown
 from .analysis import ScriptTree
 from .exits import Break, Continue, Frame
+from .waiting import has_ended
 
 
 class FlowRun(Evaluation, Protocol):
@@ -32,6 +34,10 @@ class FlowRun(Evaluation, Protocol):
     @property
     def flow(self) -> Flow[Block]:
         """Decides what is not known."""
+
+    @property
+    def outputs(self) -> Outputs:
+        """What the program has set."""
 
     @property
     def frames(self) -> list[Frame]:
@@ -112,6 +118,7 @@ def loop(run: FlowRun, statement: While, scope: Scope) -> None:
             run.tree.reads(statement.condition),
             asks=run.tree.asks(statement.condition),
             endless=_always(statement.condition),
+            ended=lambda: has_ended(run, run.outputs, statement.condition, scope),
         ),
         goes_on,
         carry_out,
