@@ -50,11 +50,12 @@ class Delivery:
             InputError: files were to be changed in place that other code depends on.
             typer.Exit: the program is not proven.
         """
-        if told and self.made.changed and not self.places.anywhere:
+        made = self.made
+        if told and made.changed and not self.places.anywhere:
             print_rich("nothing was written: --in-place or --out FOLDER writes the new program")
         if self.places.in_place:
-            refuse_not_executed(not_executed_notes(self.made, self.vendor))
-        if not self.made.proven:
+            refuse_not_executed(not_executed_notes(made.original, made.program, self.vendor))
+        if not made.proven:
             raise typer.Exit(1)
 
 
@@ -70,9 +71,9 @@ def deliver(made: Solution, vendor: Vendor, places: FilePlaces, unproven: bool) 
     Raises:
         InputError: see `FilePlaces.write`.
     """
-    refused = places.in_place and bool(not_executed_notes(made, vendor))
+    noted = not_executed_notes(made.original, made.program, vendor) if places.in_place else ()
     written: list[Path] = []
-    if made.changed and (made.proven or unproven) and not refused:
+    if made.changed and (made.proven or unproven) and not noted:
         written = places.write(made.texts, made.original)
     return Delivery(made, vendor, places, written)
 

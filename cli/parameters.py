@@ -62,7 +62,12 @@ def _parameter(kind: type[TaskOptions], name: str) -> inspect.Parameter:
         hint = hint | None
     elif entry.kind is float and default is not inspect.Parameter.empty:
         default = float(f"{default / entry.scale.factor:.{_DIGITS}g}")
-    option = typer.Option(entry.flag or flag_of(name), help=entry.help, metavar=entry.metavar)
+    option = typer.Option(
+        entry.flag or flag_of(name),
+        help=entry.help,
+        metavar=entry.metavar,
+        min=entry.extent.least if entry.ranged else None,
+    )
     return inspect.Parameter(
         name,
         inspect.Parameter.KEYWORD_ONLY,

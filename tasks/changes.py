@@ -12,7 +12,7 @@ from .files.not_executed import not_executed_notes
 from .options import texts
 from .options.door import spelt, switched
 from .options.entries import ANGLE, COUNT, DISTANCE, NOT_NEGATIVE, Extent, number, value
-from .setup import CellOptions, Setup, like, start_of
+from .setup import RobotOptions, Setup, like, start_of
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
@@ -28,7 +28,7 @@ ALL = "all"
 
 
 @dataclass(frozen=True, kw_only=True)
-class ChangeOptions(CellOptions):
+class ChangeOptions(RobotOptions):
     """What must stay and what must be kept, of every program that is changed in a cell."""
 
     clearance: float | None = number(
@@ -128,7 +128,7 @@ def delivered(made: Made, read_back: ProgramTexts, setup: Setup) -> Made:
     """
     if not made.changed:
         return made
-    noted = not_executed_notes(made, setup.vendor)
+    noted = not_executed_notes(made.original, made.program, setup.vendor)
     return replace(
         made,
         program=like(made.program, made.original, setup),

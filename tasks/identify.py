@@ -46,7 +46,7 @@ class IdentifyOptions(RobotOptions):
         "Also tell which figures earn their place, by leaving out runs of the same zone, speed, "
         "moves, posture, or each run.",
     )
-    workers: int = number(os.cpu_count() or 1, "Processes.", COUNT, Extent(1))
+    workers: int = number(os.cpu_count() or 1, "Processes.", COUNT, Extent(1), ranged=True)
     found: Callable[[tuple[Path, ...]], object] | None = field(
         default=None, repr=False, compare=False
     )

@@ -11,7 +11,7 @@ from .files.texts import ProgramTexts
 from .options.door import given
 from .options.entries import COUNT, Extent, choice, number, switch, value
 from .options.keywords import by_keywords
-from .setup import with_setup
+from .setup import CellOptions, with_setup
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
@@ -22,7 +22,7 @@ CHANGE = "change"
 
 
 @dataclass(frozen=True, kw_only=True)
-class OptimizeOptions(WaypointOptions):
+class OptimizeOptions(WaypointOptions, CellOptions):
     """How a program is made faster."""
 
     objective: float | str = value(

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from ..core.errors import InputError
+from .files.not_executed import not_executed_notes, refuse_not_executed
 from .files.outputs import check_outputs, write_all, write_in
 from .files.places import FilePlaces
 from .files.texts import OWN
@@ -19,6 +20,9 @@ from .setup import RobotOptions, Setup, with_setup
 if TYPE_CHECKING:
     from ..core.language import Sources
     from ..core.program.program import Program
+    from ..core.source.reading import Files
+    from ..core.translation.translate import Translation
+    from ..problems.improve.solution import Solution
 
 OPAQUE = ("keep", "comment")
 
@@ -48,7 +52,7 @@ class WriteOptions(RobotOptions):
 
 
 def write_with(
-    what: Program | WithFiles, out: str | Path, options: WriteOptions
+    what: Program | Translation | WithFiles, out: str | Path, options: WriteOptions
 ) -> tuple[Path, ...]:
     """Write a program as new files, or the files of a result.
 
@@ -56,8 +60,8 @@ def write_with(
     and a solution's text is the one that its proof is of.
 
     Args:
-        what: a program, written anew with all its moves in one routine, or what another task has
-            made: a `Solution`, a translation, a recording, an experiment, a painting.
+        what: a program or a translation, written anew with all its moves in one routine, or what
+            another task has made: a `Solution`, a recording, an experiment, a painting.
         out: a folder, which is made if it is missing, or of a program the file's name, beside
             which further ones are put if the language takes several.
 
@@ -69,22 +73,25 @@ def write_with(
         FlybyError: the language cannot say what the program holds.
     """
     from ..core.program.program import Program
+    from ..core.translation.translate import Translation
 
-    out = Path(out)
+    out, inputs = Path(out), _read(what)
+    if isinstance(what, Translation):
+        what = what.program
     if not isinstance(what, Program):
         if getattr(what, "proven", True) is False and not options.unproven:
             raise InputError(
                 f"it is not proven to keep its clearance: {switched('unproven')} writes it"
             )
         files = {Path(name): data for name, data in what.files.items()}
-        return tuple(write_in(spelt("out"), out, files, _read(what), options.force))
+        return tuple(write_in(spelt("out"), out, files, inputs, options.force))
     program, setup = with_setup(what, options)
     folder = out.suffix.lower() not in setup.vendor.suffixes
     chosen = {} if options.opaque is None else {"opaque": options.opaque}
     files = sources_by_path(program, setup, out, chosen, folder=folder, option=spelt("out"))
     check_outputs(
         {f"{spelt('out')}: {path.name}": path for path in files},
-        _read(program),
+        inputs,
         options.force,
         out if folder else None,
     )
@@ -143,13 +150,20 @@ def texts_as_files(sources: Sources) -> dict[str, bytes]:
 
 
 def _read(what: object) -> list[Path]:
-    """The files that a program, or a result's program, was read from: they are not written to."""
-    from ..core.program.program import Program
+    """The files that a program, or a result's programs, were read from, a program's main one first.
+
+    They are not written to.
+    """
     from ..core.source.reading import Reading
 
-    program = what if isinstance(what, Program) else getattr(what, "original", None)
-    reading = getattr(program, "reading", None)
-    return [Path(name) for name in reading.files] if isinstance(reading, Reading) else []
+    given = getattr(what, "given", None)
+    programs = what, *(getattr(what, name, None) for name in ("original", "program"))
+    found: list[str] = []
+    for program in (*programs, getattr(given, "program", None)):
+        reading = getattr(program, "reading", None)
+        if isinstance(reading, Reading):
+            found += [reading.main, *reading.files]
+    return [Path(name) for name in dict.fromkeys(found)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -164,27 +178,33 @@ class PatchOptions(TaskOptions):
     force: bool = switch("Replace output files.")
 
 
-def patch_with(program: Program, options: PatchOptions) -> tuple[Path, ...]:
+def patch_with(what: Program | Solution, options: PatchOptions) -> tuple[Path, ...]:
     """Write the user's own files with the targets, zones and speeds that a program has now.
 
     Every other byte stays. The files are read again first: they give the changed program, or
-    nothing is written.
+    nothing is written. In place, nothing is written either where code that was not executed uses
+    what has changed.
 
     Args:
-        program: as `flyby.read` gave it, then changed.
+        what: a program as `flyby.read` gave it, then changed; or what an optimisation made of one,
+            which is written with the text that its proof is of.
 
     Returns:
-        The files.
+        The files; none where nothing has changed.
 
     Raises:
-        InputError: no place is named, or two are, or a file must not be written.
+        InputError: no place is named, or two are, a file must not be written, or a solution is not
+            proven, or its program cannot be in the place of the old one.
         FlybyError: a change has no place in the text.
     """
-    program, setup = with_setup(program, RobotOptions())
+    from ..core.program.program import Program
+
+    original = what if isinstance(what, Program) else what.original
+    original, setup = with_setup(original, RobotOptions())
     places = FilePlaces(
         None if options.out is None else Path(options.out),
         options.in_place,
-        _read(program),
+        _read(original),
         options.force,
     )
     places.check()
@@ -193,12 +213,52 @@ def patch_with(program: Program, options: PatchOptions) -> tuple[Path, ...]:
             f"where do the files go? Name a folder by {spelt('out')}, or give "
             f"{switched('in_place')}"
         )
-    from ..core.source.patch.edits import reading_of
-
-    files = setup.vendor.patch(program, setup.robot, OWN if options.own else {})
-    if options.out is None and not files:
-        return ()
-    return tuple(places.write(files, reading_of(program).again({})))
+    if isinstance(what, Program):
+        before, after, files = _changed(original, setup, options)
+    else:
+        before, after, files = what.original, what.program, _proven_texts(what, options)
+    if options.in_place:
+        refuse_not_executed(not_executed_notes(before, after, setup.vendor))
+    return tuple(places.write(files, before)) if files or options.out is not None else ()
 
 
 patch = by_keywords(patch_with, PatchOptions)
+
+
+def _changed(
+    program: Program, setup: Setup, options: PatchOptions
+) -> tuple[Program, Program, Files]:
+    """A program as its files give it, as they give it once changed, and the files that change."""
+    from ..core.source.patch.edits import reading_of
+
+    reading = reading_of(program)
+    files = setup.vendor.patch(program, setup.robot, OWN if options.own else {})
+    if options.in_place and not files:
+        for name, file in reading.files.items():
+            if Path(name).is_file() and Path(name).read_bytes() != file.data:
+                raise InputError(
+                    f"{switched('in_place')}: {name} holds something else than what this program "
+                    "was read from, such as a text that an optimisation has made: give its "
+                    "solution, not the program alone"
+                )
+    return reading.again({}), reading.again(files), files
+
+
+def _proven_texts(made: Solution, options: PatchOptions) -> Files:
+    """The texts of a solution that may take the place of its files."""
+    if not made.changed:
+        return {}
+    if options.own:
+        raise InputError(
+            f"{switched('own')} is of programs: a solution has the text that its proof is of"
+        )
+    if not made.proven:
+        raise InputError(
+            "it is not proven to keep its clearance: flyby.write with unproven=True writes it"
+        )
+    old, new = ([type(s) for s in p.statements] for p in (made.original, made.program))
+    if old != new:
+        raise InputError(
+            "its moves are others: it was written anew, and flyby.write puts it into a folder"
+        )
+    return made.texts

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .changes import ChangeOptions, delivered, freed_stops, move_index, rounding_of
 from .files.texts import ProgramTexts
-from .options.entries import switch
+from .options.entries import switch, value
 from .options.keywords import by_keywords
-from .setup import start_of, with_setup
+from .setup import CellOptions, start_of, with_setup
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
@@ -17,9 +18,12 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ZoneOptions(ChangeOptions):
+class ZoneOptions(ChangeOptions, CellOptions):
     """How zones are made larger."""
 
+    keep: Sequence[int] = value(
+        (), "A move whose zone stays; may be given several times.", kind=int, several=True
+    )
     predefined: bool = switch("Choose among the vendor's predefined zones.")
     own: bool = switch("Moves that share one datum, or compute their zone, get one of their own.")
 

@@ -61,11 +61,13 @@ class Translation:
         losses: what could not be carried over, in the order of the source; moves and lines are
             the source's.
         start: where the new robot stands at first.
+        original: the program that was given.
     """
 
     program: Program
     losses: tuple[Note, ...]
     start: JointTarget
+    original: Program = field(repr=False)
 
 
 def translate(
@@ -138,6 +140,7 @@ class _Translator:
             ),
             self.losses.sorted(),
             placed.start,
+            self.source_program,
         )
 
     # ------------------------------------------------------------- what is driven at all

@@ -9,27 +9,28 @@ from ...core.errors import InputError, Note
 from ..options.door import spelt, switched
 
 if TYPE_CHECKING:
+    from ...core.program.program import Program
     from ...core.source.not_executed.search import NotExecuted
     from ...core.vendor import Vendor
-    from ...problems.improve.solution import Solution
 
 _SHOWN = 5
 """Lines that a note names."""
 
 
-def not_executed_notes(made: Solution, vendor: Vendor) -> tuple[Note, ...]:
+def not_executed_notes(before: Program, after: Program, vendor: Vendor) -> tuple[Note, ...]:
     """Where a new program changes more than what was driven.
 
     Args:
-        made: with the program as it is read from its new text.
+        before: as it was read.
+        after: as it is read from its new text; the same object where nothing has changed.
         vendor: whose language it is.
     """
     from ...core.source.not_executed.search import not_executed
 
     wording = None if vendor.speaks is None else vendor.speaks.wording
-    if wording is None or not made.changed or _is_anew(made):
+    if wording is None or after is before or _is_anew(before, after):
         return ()
-    return tuple(map(_note, not_executed(made.original, made.program, wording)))
+    return tuple(map(_note, not_executed(before, after, wording)))
 
 
 def refuse_not_executed(notes: Sequence[Note]) -> None:
@@ -58,7 +59,7 @@ def _note(found: NotExecuted) -> Note:
     )
 
 
-def _is_anew(made: Solution) -> bool:
+def _is_anew(before: Program, after: Program) -> bool:
     """Whether the statements are others: such a program is no change of the old one's files."""
-    old, new = made.original.statements, made.program.statements
+    old, new = before.statements, after.statements
     return [type(s) for s in old] != [type(s) for s in new]

@@ -43,7 +43,6 @@ DISTANCE = Scale("a distance in mm", "a distance in m", 1e-3)
 ANGLE = Scale("degrees", "rad", math.pi / 180)
 TIME = Scale("seconds", "seconds")
 MILLISECONDS = Scale("milliseconds", "seconds", 1e-3)
-MINUTES = Scale("minutes", "seconds", 60.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +101,8 @@ class Entry:
         flag: at the command line, where it is not simply the name.
         metavar: of its value there.
         typed: whether the command line has it at all.
+        ranged: whether the command line's own parser refuses a number below the least one, as a
+            wrong argument (status 2).
     """
 
     help: str
@@ -114,6 +115,7 @@ class Entry:
     flag: str | None = None
     metavar: str | None = None
     typed: bool = True
+    ranged: bool = False
 
     def check(self, name: str, value: object) -> None:
         """Refuse a value that the option does not take.
@@ -216,9 +218,11 @@ def number(
     extent: Extent = ANY,
     *,
     flag: str | None = None,
+    ranged: bool = False,
 ) -> Any:
     """A number; default and extent are stated as they are typed."""
-    entry = Entry(help, int if scale is COUNT else float, scale, extent, flag=flag)
+    kind = int if scale is COUNT else float
+    entry = Entry(help, kind, scale, extent, flag=flag, ranged=ranged)
     scaled = isinstance(default, int | float) and scale.factor != 1.0
     return _field(scale.factor * default if scaled else default, entry)
 

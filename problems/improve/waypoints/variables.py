@@ -349,10 +349,6 @@ class Variables:
         found = [part.gradient(made, self.of(k, x)) for k, part in enumerate(self.parts)]
         return np.concatenate(found or [np.zeros(0)])
 
-    def with_parts(self, which: Sequence[int]) -> Variables:
-        """Some of the parts alone."""
-        return Variables(self.program, [self.parts[k] for k in which])
-
 
 def make_variables(program: Program, robot: Robot, selection: Selection, task: Task) -> Variables:
     """The variables of a selection: of every via point its target, then its zone."""
