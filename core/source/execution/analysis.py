@@ -42,10 +42,8 @@ class Analysis(Generic[Block]):
         """Whether what moves the robot stands in a block or in a routine that it calls."""
 
         def find() -> bool:
-            return any(
-                step.moves or any(map(self.moves, (*step.calls, *step.inner)))
-                for step in self.steps(block)
-            )
+            # Not from what the called ones do: of two that call each other one is not known yet.
+            return any(step.moves for step in self._reached(block, _NONE_LEFT_OUT))
 
         return self._once("moves", block, False, find)
 
