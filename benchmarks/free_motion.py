@@ -9,10 +9,10 @@ from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.robot.inertia import carried_inertia
-from flyby.problems.free_motion.optimal_control import Surroundings, Task
+from flyby.problems.free_motion.optimal_control import MotionTask, Surroundings
 from flyby.validation.scenes.scene import Scene
 
-Question = tuple[Task, Surroundings, list[FloatArray]]
+Question = tuple[MotionTask, Surroundings, list[FloatArray]]
 """A task, what to keep clear of, and the corners of a free path on its only leg."""
 
 
@@ -30,7 +30,7 @@ def questions(scene: Scene) -> list[Question]:
     found = []
     for program in scene.programs:
         q = configurations(program)
-        task = Task(
+        task = MotionTask(
             scene.cell.robot,
             q[0],
             q[-1],

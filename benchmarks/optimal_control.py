@@ -38,17 +38,17 @@ from flyby.core.sqp import solve
 from flyby.problems.free_motion.optimal_control import (
     ControlLimits,
     Effort,
+    MotionTask,
     Objective,
     Optimum,
     SchemeKind,
     Surroundings,
-    Task,
     energy_of,
     optimize,
 )
 from flyby.problems.free_motion.optimal_control.motion.first_guess import Polyline, first_guess
 from flyby.problems.free_motion.optimal_control.motion.scheme import Scheme
-from flyby.problems.free_motion.optimal_control.task.limits import Limits
+from flyby.problems.free_motion.optimal_control.task.limits import MotionLimits
 from flyby.problems.free_motion.optimal_control.task.sampled import Plant, TorqueField
 from flyby.problems.free_motion.optimal_control.transcription.sample_rows import EnergyTerm
 from flyby.problems.free_motion.optimal_control.transcription.transcription import (
@@ -96,7 +96,7 @@ def _clutter(limits: ControlLimits) -> Question:
         scene.cell, start, goal, scene.tool, options=options, controller=controller, scenes=scenes
     )
     q = configurations(planned.program)
-    task = Task(
+    task = MotionTask(
         scene.cell.robot,
         q[0],
         q[-1],
@@ -131,14 +131,14 @@ def _energy_ratio(found: list[Optimum]) -> float:
 
 
 def _beside_ipopt(case: str, weight: float) -> Iterator[Figure]:
-    task = Task(
+    task = MotionTask(
         find_robot("abb/irb6640-180-255"),
         np.radians(FREE_START),
         np.radians(FREE_END),
         limits=ControlLimits(torque=TORQUE),
         objective=Objective(weight),
     )
-    limits, plant = Limits.of(task), Plant(task)
+    limits, plant = MotionLimits.of(task), Plant(task)
     scheme = Scheme(SchemeKind.LINEAR)
     guess = first_guess(task, limits, plant, Polyline.direct(task), scheme, 60, None)
     unit = None

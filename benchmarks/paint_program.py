@@ -28,7 +28,7 @@ from flyby.problems.paint.thickness.optimize import optimize
 from flyby.problems.paint.thickness.options import OuterLoop, PaintLimits, PaintWeights
 from flyby.problems.paint.thickness.reference import Reference
 from flyby.problems.paint.thickness.robust import NO_ERRORS, scenarios
-from flyby.problems.paint.thickness.round import TOLERANCE, Candidate, Round
+from flyby.problems.paint.thickness.round import TOLERANCE, JudgedTrajectory, Round
 from flyby.problems.paint.thickness.variables import Variables
 from flyby.validation.surfaces.sheets import plate
 
@@ -139,7 +139,7 @@ def _visited(program: NLP, visits: list[tuple[float, FloatArray]]) -> NLP:
 
 def _as_good(
     step: Round, visits: list[tuple[float, FloatArray]], cost: float
-) -> tuple[float, Candidate]:
+) -> tuple[float, JudgedTrajectory]:
     """The first visit that keeps all limits at no more than a cost, else the last one."""
     for when, x in visits:
         found = step.judged(x)

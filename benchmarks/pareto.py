@@ -55,9 +55,9 @@ from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_vendor
 from flyby.problems.free_motion.optimal_control import Effort as FreeEffort
+from flyby.problems.free_motion.optimal_control import MotionTask as FreeTask
 from flyby.problems.free_motion.optimal_control import Objective as FreeObjective
 from flyby.problems.free_motion.optimal_control import Optimum, energy_of, optimize
-from flyby.problems.free_motion.optimal_control import Task as FreeTask
 from flyby.problems.free_motion.velocity_tuning import (
     Drive,
     FixedPath,
@@ -67,10 +67,18 @@ from flyby.problems.free_motion.velocity_tuning import (
     tune_by_cones,
     tune_by_sweeps,
 )
-from flyby.problems.free_motion.velocity_tuning import Task as TuningTask
-from flyby.problems.improve.energy import Front, Goal, Point, Scope, Task, optimize_energy, pareto
+from flyby.problems.free_motion.velocity_tuning import TuningTask as TuningTask
+from flyby.problems.improve.energy import (
+    EnergyTask,
+    Front,
+    FrontPoint,
+    Goal,
+    Scope,
+    optimize_energy,
+    pareto,
+)
 from flyby.problems.improve.waypoints import Effort, optimize_waypoints
-from flyby.problems.improve.waypoints import Task as Wishes
+from flyby.problems.improve.waypoints import WaypointTask as Wishes
 from flyby.problems.improve.zones.points import passable_stops
 from flyby.validation.scenes.scene import SECOND_ORDER_BLENDS, UNHURRIED, Scene, with_zone
 from flyby.validation.scenes.stud_welding import stud_welding
@@ -216,10 +224,10 @@ def _fastest(base: Baseline, program: Program, starts: int) -> Program:
     return replace(found.program, start=program.start)
 
 
-def _point(base: Baseline, program: Program, goal: Goal) -> Point:
+def _point(base: Baseline, program: Program, goal: Goal) -> FrontPoint:
     """The program that serves a goal best, begun at the fastest one."""
     scope = Scope.WAYPOINTS if len(program.moves) > 1 else Scope.SPEEDS
-    task = Task(scope, wishes=Wishes(axes=base.scene.free, tilt=math.pi))
+    task = EnergyTask(scope, wishes=Wishes(axes=base.scene.free, tilt=math.pi))
     cell, effort = base.scene.cell, Effort(starts=1, generations=0, workers=1)
     (point,) = optimize_energy(
         base.controller, program, goal, cell, task, effort, ABB.speaks, _written
@@ -241,7 +249,7 @@ def two_joint_front() -> tuple[Controller, Front]:
     """The front of the two-joint program, begun at the fastest one that is found."""
     base = Baseline.of(two_joints())
     program = _fastest(base, base.scene.programs[0], 6)
-    task = Task(wishes=Wishes(axes=base.scene.free, tilt=math.pi))
+    task = EnergyTask(wishes=Wishes(axes=base.scene.free, tilt=math.pi))
     effort = Effort(starts=1, generations=0, workers=1)
     cell = base.scene.cell
     front = pareto(base.controller, program, cell, task, POINTS, effort, ABB.speaks, _written)

@@ -63,8 +63,8 @@ from flyby.core.sqp import NLP
 from flyby.problems.improve.solution import Solution, measure
 from flyby.problems.improve.waypoints import (
     Effort,
-    Task,
     ViaCount,
+    WaypointTask,
     optimize_waypoints,
     optimize_zones,
 )
@@ -76,7 +76,7 @@ from flyby.validation.scenes.scene import PARABOLAS, SECOND_ORDER, SECOND_ORDER_
 from flyby.validation.scenes.stud_welding import stud_welding, stud_welding_with_panel
 from flyby.validation.scenes.two_joints import two_joints
 from flyby.validation.transcription import Grid, Optimum, optimize
-from flyby.validation.transcription import Task as TranscriptionTask
+from flyby.validation.transcription import TranscriptionTask as TranscriptionTask
 
 SCENES: dict[str, tuple[Callable[[], Scene], MotionModel]] = {
     "2dof": (two_joints, SECOND_ORDER_BLENDS),
@@ -174,7 +174,7 @@ def _solved(
         )
         held = measure(controller, run, proof)
         return Solution(program, program, held, held, proof)
-    task = Task(axes=scene.free, tilt=math.pi, freed=freed, keep=scene.process, vias=vias)
+    task = WaypointTask(axes=scene.free, tilt=math.pi, freed=freed, keep=scene.process, vias=vias)
     return solver(controller, program, scene.cell, task, effort)
 
 

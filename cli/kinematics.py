@@ -15,7 +15,7 @@ from .console import print_json, print_rich, print_table, warn
 
 if TYPE_CHECKING:
     from ..core.program.target import Configuration
-    from ..core.robot.inverse import Solution
+    from ..core.robot.inverse import InverseSolution
     from ..core.robot.model import Robot
     from ..core.spatial.pose import Pose
 
@@ -131,7 +131,7 @@ def _label_text(label: Configuration | None) -> str:
     return " ".join(f"{k}={v}" for k, v in parts.items() if not isinstance(v, tuple))
 
 
-def _solution_json(solution: Solution, label: Configuration | None) -> dict[str, Any]:
+def _solution_json(solution: InverseSolution, label: Configuration | None) -> dict[str, Any]:
     branch = solution.branch
     return {
         "joints_rad": [float(value) for value in solution.q],

@@ -25,7 +25,7 @@ from .parameters import AsJson, Force, Out, ProgramFile, with_options
 
 if TYPE_CHECKING:
     from ..core.robot.model import Robot
-    from ..problems.improve.energy import Front, Point
+    from ..problems.improve.energy import Front, FrontPoint
     from ..tasks.results.fronts import ProgramFront
 
 
@@ -109,7 +109,7 @@ def _json(
     }
 
 
-def _point_json(point: Point, files: list[str]) -> dict[str, Any]:
+def _point_json(point: FrontPoint, files: list[str]) -> dict[str, Any]:
     proof = point.certificate
     return {
         "time_s": point.duration,

@@ -19,7 +19,7 @@ from .program.move import Move, Wait
 from .program.program import Program
 from .program.target import JointTarget, PoseTarget
 from .source.execution.answers import Answers
-from .source.execution.limits import Limits
+from .source.execution.limits import ExecutionLimits
 from .source.patch.edits import alike
 from .source.reading import Reading, ReadOptions
 from .source.write.options import AS_COMMENTS
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 _NEAR = 1e-5
 """m and rad: ten times what single precision leaves of metres."""
-_UNLIMITED = Limits(10**9, 10**9, 10**9)
+_UNLIMITED = ExecutionLimits(10**9, 10**9, 10**9)
 
 
 def check_alone(

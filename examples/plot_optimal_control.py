@@ -23,10 +23,10 @@ from flyby.core.robot.inertia import carried_inertia
 from flyby.problems.free_motion.optimal_control import (
     ControlLimits,
     Effort,
+    MotionTask,
     Objective,
     Optimum,
     Surroundings,
-    Task,
     optimize,
 )
 from flyby.problems.free_motion.optimal_control.motion.result import sampled_trajectory
@@ -39,7 +39,7 @@ START, END = (0.0, -15.0, 15.0, 0.0, 60.0, 0.0), (70.0, 20.0, -10.0, 40.0, -50.0
 
 def free_motion(weight: float) -> Optimum:
     """A wide motion of an IRB 6640 under torque limits."""
-    task = Task(
+    task = MotionTask(
         find_robot("abb/irb6640-180-255"),
         np.radians(START),
         np.radians(END),
@@ -56,7 +56,7 @@ def round_the_box() -> Optimum:
     targets = [program.start, *(move.target for move in program.moves)]
     q = np.array([target.joints for target in targets if isinstance(target, JointTarget)])
     around = Surroundings(CollisionScene(scene.cell, scene.tool), scene.cell.clearance)
-    task = Task(
+    task = MotionTask(
         scene.cell.robot,
         q[0],
         q[-1],

@@ -1,4 +1,4 @@
-"""How far a log strays from what was emulated for it: in space, and in time."""
+"""How far a log deviates from what was emulated for it: in space, and in time."""
 
 from __future__ import annotations
 

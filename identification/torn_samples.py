@@ -1,7 +1,8 @@
 """Logs whose samples mix joints of two cycles, put together by the emulated motion.
 
 What reads joints one after the other while the controller goes on gets the first few of one cycle
-and the rest of the next. Single samples of this kind stray from their neighbours (`logs.cleaning`);
+and the rest of the next. Single samples of this kind deviate from their neighbours
+(`logs.cleaning`);
 where most are torn, each after another joint, only the path tells: joints from the b-th on are
 where the emulated motion is Δ later,
 

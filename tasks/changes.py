@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..core.vendor import Vendor
     from ..problems.improve.rounding import Rounding
     from ..problems.improve.solution import Solution
-    from ..problems.improve.waypoints import PointLimit, Task
+    from ..problems.improve.waypoints import PointLimit, WaypointTask
     from .files.texts import ProgramTexts
 
 Made = TypeVar("Made", bound="Solution")
@@ -79,7 +79,7 @@ def task_of(
     objective: float | str = "time",
     vias: str = "keep",
     predefined: bool = False,
-) -> Task:
+) -> WaypointTask:
     """The task that options describe.
 
     Args:
@@ -93,7 +93,7 @@ def task_of(
     Raises:
         InputError: naming the option.
     """
-    from ..problems.improve.waypoints import Free, Task, ViaCount
+    from ..problems.improve.waypoints import Free, ViaCount, WaypointTask
     from ..problems.improve.zones.sizes import pattern_for
 
     by_move, for_all = _limits(program, options.limit)
@@ -101,7 +101,7 @@ def task_of(
     kept = [move_index(program, text, "keep") for text in keep if text.isdecimal()]
     speeds = [_speed(program, text) for text in keep if not text.isdecimal()]
     held = {*kept, *(i for i, move in enumerate(program.moves) if move.speed.name in speeds)}
-    return Task(
+    return WaypointTask(
         time_weight=weight(objective, spelt("objective")),
         keep=kept,
         keep_speeds=speeds,

@@ -80,7 +80,7 @@ def free_motion_with(
             limits was found.
     """
     from ..core.robot.inertia import carried_inertia
-    from ..problems.free_motion.optimal_control import Effort, Objective, Task, optimize
+    from ..problems.free_motion.optimal_control import Effort, MotionTask, Objective, optimize
     from .results.motions import FreeMotion
 
     setup = setup_of(options)
@@ -89,7 +89,7 @@ def free_motion_with(
     vias = [configuration(q, spelt("vias", "--via"), robot) for q in options.vias]
     tool = _tool(setup, options.tool)
     consumption = consumption_of(options.motors, robot)
-    task = Task(
+    task = MotionTask(
         robot,
         start=ends[0],
         end=ends[1],

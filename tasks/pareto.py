@@ -60,7 +60,7 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
         MotionError: the program cannot be driven.
     """
     from ..core.motion.emulator.controller import Controller
-    from ..problems.improve.energy import Scope, Task, pareto
+    from ..problems.improve.energy import EnergyTask, Scope, pareto
     from .results.fronts import ProgramFront
 
     program, setup = with_setup(program, options)
@@ -72,7 +72,7 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
                 )
     scope = Scope.SPEEDS if setup.cell is None else Scope(options.change)
     wishes = task_of(program, setup, options)
-    task = Task(scope, consumption_of(options.motors, setup.robot), wishes)
+    task = EnergyTask(scope, consumption_of(options.motors, setup.robot), wishes)
     texts = ProgramTexts(setup, program, own=True, anew=True, keep=True)
 
     def report(state: Progress) -> None:

@@ -68,7 +68,7 @@ def tune_with(program: Program, options: TuneOptions) -> TunedMotion:
     from ..problems.free_motion.velocity_tuning import (
         FixedPath,
         Objective,
-        Task,
+        TuningTask,
         drives_of,
         tune,
     )
@@ -86,7 +86,7 @@ def tune_with(program: Program, options: TuneOptions) -> TunedMotion:
     )
     drives = drives_of(setup.robot) if options.torques else ()
     jerk = None if options.jerk is None else _jerk(options.jerk, setup.robot)
-    found = tune(Task(FixedPath.of(controller, program, timing), drives, jerk, objective))
+    found = tune(TuningTask(FixedPath.of(controller, program, timing), drives, jerk, objective))
     tuned = controller.sample(program, found.timing(timing), options.period)
     return TunedMotion(program, setup.robot, found, timing, tuned)
 

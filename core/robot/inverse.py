@@ -68,7 +68,7 @@ class Branch:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Solution:
+class InverseSolution:
     """A configuration of the arm.
 
     Args:
@@ -84,7 +84,7 @@ class Solution:
 
 
 @dataclass(frozen=True, slots=True)
-class Candidate:
+class UnboundedSolution:
     """A solution before limits are looked at; a ``doubtful`` one may equal another."""
 
     q: FloatArray
@@ -95,7 +95,7 @@ class Candidate:
 
 def solve(
     chain: Chain, joints: Sequence[Joint], known: Recognised | None, R: FloatArray, p: FloatArray
-) -> tuple[Solution, ...]:
+) -> tuple[InverseSolution, ...]:
     """All solutions within limits for a flange pose in the base's frame.
 
     Args:
@@ -115,11 +115,11 @@ def solve(
     if not candidates:
         raise UnreachableError(_out_of_reach(known, least), least)
     settled, inside = _settled(joints, np.array([candidate.q for candidate in candidates]))
-    solutions: list[Solution] = []
+    solutions: list[InverseSolution] = []
     for candidate, q, fits in zip(candidates, settled, inside, strict=True):
         if not fits or (candidate.doubtful and any(_same(candidate, q, s) for s in solutions)):
             continue
-        solutions.append(Solution(q, candidate.branch, candidate.singular))
+        solutions.append(InverseSolution(q, candidate.branch, candidate.singular))
     if not solutions:
         raise UnreachableError(_beyond_limits(joints, candidates))
     return tuple(solutions)
@@ -127,7 +127,7 @@ def solve(
 
 def _closed_form(
     chain: Chain, known: Recognised, R: FloatArray, p: FloatArray
-) -> tuple[list[Candidate], float]:
+) -> tuple[list[UnboundedSolution], float]:
     q, measures = np.empty((8, 6)), np.empty((8, 4))
     least = float(SOLVERS[known.family](known.geometry, R, p, q, measures))
     candidates = []
@@ -141,20 +141,20 @@ def _closed_form(
         names = zip(("shoulder", "elbow", "wrist"), sizes, strict=True)
         singular = frozenset(name for name, size in names if abs(size) < SINGULAR)
         doubtful = bool(singular) or not ideal
-        candidates.append(Candidate(q[number], Branch(*bits), singular, doubtful))
+        candidates.append(UnboundedSolution(q[number], Branch(*bits), singular, doubtful))
     return candidates, least
 
 
 def _searched(
     chain: Chain, joints: Sequence[Joint], R: FloatArray, p: FloatArray
-) -> tuple[list[Candidate], float]:
+) -> tuple[list[UnboundedSolution], float]:
     lower = np.array([joint.lower for joint in joints])
     upper = np.array([joint.upper for joint in joints])
     found, least = solve_numerically(chain, lower, upper, R, p)
-    return [Candidate(q, None, frozenset(), True) for q in found], least
+    return [UnboundedSolution(q, None, frozenset(), True) for q in found], least
 
 
-def _same(candidate: Candidate, q: FloatArray, other: Solution) -> bool:
+def _same(candidate: UnboundedSolution, q: FloatArray, other: InverseSolution) -> bool:
     """Whether a solution is there already, or lies in the same family of a singular wrist."""
     if "wrist" in candidate.singular and "wrist" in other.singular:
         return bool(np.abs(q[:3] - other.q[:3]).max() < SAME)
@@ -208,7 +208,7 @@ def _out_of_reach(known: Recognised | None, least: float) -> str:
     )
 
 
-def _beyond_limits(joints: Sequence[Joint], candidates: list[Candidate]) -> str:
+def _beyond_limits(joints: Sequence[Joint], candidates: list[UnboundedSolution]) -> str:
     """A sentence on the solution that breaks its worst limit by least."""
     worst = [_worst(joints, candidate.q) for candidate in candidates]
     excess, joint, value = min(worst, key=lambda found: found[0])

@@ -103,7 +103,7 @@ class ExternalAxis:
         return self.joint.name
 
 
-class Limits(NamedTuple):
+class JointLimits(NamedTuple):
     """Limits of all N values of a configuration; ``effort`` is infinite where it is not known."""
 
     lower: FloatArray

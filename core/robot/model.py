@@ -16,8 +16,8 @@ from ..spatial.pose import IDENTITY, Pose, Vector3
 from .assembly import Stage, assemble
 from .dynamics import Dynamics, Tree, TreeNode
 from .inertia import Inertia
-from .inverse import Solution, equivalent_turns, solve
-from .joint import ExternalAxis, ExternalRole, Joint, Limits
+from .inverse import InverseSolution, equivalent_turns, solve
+from .joint import ExternalAxis, ExternalRole, Joint, JointLimits
 from .kinematics.arm_geometry import Recognised, recognise
 from .kinematics.chain import Chain
 from .kinematics.chain_derivatives import hessians, jacobian_rates
@@ -103,9 +103,9 @@ class Robot:
         )
 
     @cached_property
-    def limits(self) -> Limits:
-        """Limits of all N values."""
-        return Limits.of([*self.joints, *(axis.joint for axis in self.external_axes)])
+    def limits(self) -> JointLimits:
+        """JointLimits of all N values."""
+        return JointLimits.of([*self.joints, *(axis.joint for axis in self.external_axes)])
 
     def external_axis(self, name: str) -> ExternalAxis:
         """The external axis of that name.
@@ -230,7 +230,7 @@ class Robot:
 
     def inverse(
         self, pose: Pose | FloatArray, external: Sequence[float] = ()
-    ) -> tuple[Solution, ...]:
+    ) -> tuple[InverseSolution, ...]:
         """All configurations of the arm within limits that bring the flange to a pose.
 
         Args:

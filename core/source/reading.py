@@ -9,7 +9,7 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from .execution.answers import Answers
-from .execution.limits import Executed, Limits
+from .execution.limits import Executed, ExecutionLimits
 from .text.files import SourceFile, stray_return
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ class ReadOptions:
     entry: str | None = None
     robot: Robot | None = None
     answers: Answers = field(default_factory=Answers)
-    limits: Limits = field(default_factory=Limits)
+    limits: ExecutionLimits = field(default_factory=ExecutionLimits)
     others: tuple[Path, ...] = ()
     executed: Executed | None = field(default=None, repr=False, compare=False)
     start: JointTarget | None = None

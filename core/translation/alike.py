@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import MotionError
-from ..robot.inverse import Solution
+from ..robot.inverse import InverseSolution
 from ..robot.kinematics.arm_geometry import Family
 from ..robot.model import Robot
 from ..robot.posture import posture
@@ -74,7 +74,7 @@ def _branch_signs(robot: Robot, q: FloatArray) -> Signs:
     except MotionError:
         return ()
 
-    def apart(solution: Solution) -> float:
+    def apart(solution: InverseSolution) -> float:
         return float(np.abs(np.remainder(solution.q - q[:arm] + np.pi, 2 * np.pi) - np.pi).sum())
 
     branch = min(found, key=apart).branch

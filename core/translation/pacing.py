@@ -51,7 +51,7 @@ _SIGNIFICANT = 4
 
 
 @dataclass(frozen=True)
-class Driven:
+class EmulatedProgram:
     """A program on the old robot.
 
     Args:
@@ -71,7 +71,7 @@ class Driven:
     length: FloatArray
 
     @classmethod
-    def of(cls, party: Party, program: Program, path: Path) -> Driven:
+    def of(cls, party: Party, program: Program, path: Path) -> EmulatedProgram:
         """A program along its path."""
         ends = path.route.ends
         return cls(
@@ -94,7 +94,9 @@ class Pacer:
         losses: what cannot be carried over goes here.
     """
 
-    def __init__(self, old: Driven, target: Party, dialect: Dialect, losses: LossesOfPart) -> None:
+    def __init__(
+        self, old: EmulatedProgram, target: Party, dialect: Dialect, losses: LossesOfPart
+    ) -> None:
         self._old = old
         self._target = target
         self._dialect = dialect
@@ -429,7 +431,7 @@ def _leading(robot: Robot, turned: FloatArray) -> int:
     return int(np.argmax(np.abs(turned[:arm]) / robot.limits.velocity[:arm]))
 
 
-def _acceleration_share(old: Driven, speed: Speed, k: int | None) -> float:
+def _acceleration_share(old: EmulatedProgram, speed: Speed, k: int | None) -> float:
     """The share of the joints' acceleration that a joint move is programmed with."""
     share = speed.joint_acceleration_fraction
     if speed.joint_acceleration is None or k is None:

@@ -26,7 +26,7 @@ from .emulation import Party
 from .frames import Frames
 from .half_turns import decided
 from .losses import Losses, LossesOfPart
-from .pacing import Driven, Pacer
+from .pacing import EmulatedProgram, Pacer
 from .targets import Placer
 
 _CUT_TOLD = 0.05
@@ -116,7 +116,7 @@ class _Translator:
         if program is not drivable:
             route = self.source.route(program)
         path = self.source.path(route, program)
-        driven = Driven.of(self.source, program, path)
+        driven = EmulatedProgram.of(self.source, program, path)
         frames = Frames(self.options.base, self.dialect)
         placed = Placer(self.source, self.target, self.dialect, frames).place(
             program, route, losses

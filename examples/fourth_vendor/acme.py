@@ -58,10 +58,10 @@ from flyby.core.source.lines.program import (
     Jump,
     Label,
     Line,
+    NumberedPoint,
     Numbers,
     Operand,
     Pause,
-    Point,
     Return,
     Routine,
     read_lines,
@@ -106,7 +106,7 @@ class Acme:
             datum, *numbers = parse_all(line.source, begin, line.end)
             if not isinstance(datum, Datum):
                 raise ValueError("a point is called P[1]")
-            return Point(line.span, datum, tuple(numbers))
+            return NumberedPoint(line.span, datum, tuple(numbers))
         if word == "IF":
             return _if(line, begin, self)
         if word == "WAIT":

@@ -19,7 +19,7 @@ from ...core.program.speed import Speed
 from ...core.program.target import JointTarget
 from ...core.program.zone import FINE
 from .checking import Refused, check
-from .plan import Candidate, Kind, Plan, PlannedCorner, Skipped
+from .plan import CandidateRun, Kind, Plan, PlannedCorner, Skipped
 from .postures import Site
 from .star import Leg, Spoke, Star
 from .words import Words
@@ -87,7 +87,7 @@ class Family:
     reach: float
     random: np.random.Generator
 
-    def candidates(self) -> Iterator[tuple[Candidate, Run] | Skipped]:
+    def candidates(self) -> Iterator[tuple[CandidateRun, Run] | Skipped]:
         """All runs with their emulations, and what is not possible."""
         for kind in self.plan.kinds:
             if kind is Kind.SINGLE_AXES:
@@ -114,7 +114,7 @@ class Family:
 
     # Corners
 
-    def _corners(self, kind: Kind, speed: float) -> Iterator[tuple[Candidate, Run] | Skipped]:
+    def _corners(self, kind: Kind, speed: float) -> Iterator[tuple[CandidateRun, Run] | Skipped]:
         """The runs of all corners; where there is no room for the largest zones, without them."""
         first = self.random.uniform(0, 2 * math.pi)
         corners = self._shuffled()
@@ -159,7 +159,7 @@ class Family:
 
     def _grown(
         self, kind: Kind, speed: float, corners: Sequence[_Signed], first: float
-    ) -> list[tuple[Candidate, Run]]:
+    ) -> list[tuple[CandidateRun, Run]]:
         """Runs with legs as short as the speed allows.
 
         Raises:
@@ -189,7 +189,7 @@ class Family:
 
     def _pieces(
         self, kind: Kind, speed: float, corners: Sequence[_Signed], ramp: float, first: float
-    ) -> list[tuple[Candidate, Run]]:
+    ) -> list[tuple[CandidateRun, Run]]:
         made = []
         for number, part in enumerate(_parts(corners, ramp, speed, self.plan.longest)):
             candidate = self._corner_run(kind, speed, ramp, part, first, number)
@@ -204,7 +204,7 @@ class Family:
         corners: Sequence[_Signed],
         first: float,
         number: int,
-    ) -> Candidate:
+    ) -> CandidateRun:
         star = self._star()
         turns = [corner.sign * corner.turn for corner in corners]
         spokes = star.walk(LEGS[kind], turns, [_need(corner, ramp) for corner in corners], first)
@@ -221,7 +221,7 @@ class Family:
 
     # Stops and single axes
 
-    def _stops(self, kind: Kind, speed: float) -> Iterator[tuple[Candidate, Run] | Skipped]:
+    def _stops(self, kind: Kind, speed: float) -> Iterator[tuple[CandidateRun, Run] | Skipped]:
         """Straight moves of several lengths, a stop behind each."""
         angle = self.random.uniform(0, 2 * math.pi)
         length = min(0.5 * LONGEST_LEG * self.reach, max(0.04, 0.6 * speed))
@@ -237,7 +237,7 @@ class Family:
         except FlybyError as error:
             yield Skipped(self._place(kind, speed), str(error))
 
-    def _single_axes(self) -> Iterator[tuple[Candidate, Run] | Skipped]:
+    def _single_axes(self) -> Iterator[tuple[CandidateRun, Run] | Skipped]:
         """One joint after the other to and fro, as far as it may and a quarter of that."""
         limits, q = self.controller.robot.limits, self.site.q
         said = self.words.fastest()
@@ -277,12 +277,12 @@ class Family:
         corners: tuple[PlannedCorner, ...],
         begin: MoveJ,
         moves: Sequence[Move],
-    ) -> Candidate:
+    ) -> CandidateRun:
         # Stars and axes are approached in joints.
         assert isinstance(begin.target, JointTarget)
         program = Program((begin, *moves), name, begin.target)
         start = np.array(begin.target.joints)
-        return Candidate(name, kind, self.number, speed, corners, program, start)
+        return CandidateRun(name, kind, self.number, speed, corners, program, start)
 
 
 def _joint_target(q: FloatArray) -> JointTarget:

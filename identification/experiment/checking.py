@@ -18,7 +18,7 @@ from ...core.program.tool import WORLD
 from ...core.program.zone import FINE, Radius
 from ...core.robot.kinematics.chain_kernels import jacobians, poses
 from ...core.robot.work_chain import work_chain
-from .plan import Candidate
+from .plan import CandidateRun
 from .postures import REGULAR, reach_of, regularity
 
 REACHED = 0.98
@@ -43,7 +43,7 @@ class Refused(FlybyError):
 
 
 def check(
-    controller: Controller, candidate: Candidate, margin: float, program: Program | None = None
+    controller: Controller, candidate: CandidateRun, margin: float, program: Program | None = None
 ) -> Run:
     """Emulate a run and look at it.
 
@@ -80,7 +80,7 @@ def _check_limits(controller: Controller, run: Run, margin: float) -> None:
         raise Refused(f"joint {name} would come nearer to its limit than the margin")
 
 
-def _check_regular(controller: Controller, candidate: Candidate, run: Run) -> None:
+def _check_regular(controller: Controller, candidate: CandidateRun, run: Run) -> None:
     if candidate.speed is None:
         return
     robot, tool = controller.robot, run.program.moves[0].tool

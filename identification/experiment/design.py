@@ -27,7 +27,7 @@ from ...core.vendor import Vendor
 from .candidates import Family
 from .checking import Refused, check
 from .information import Informer
-from .plan import Candidate, Designed, Experiment, Plan, Skipped, usual_radii
+from .plan import CandidateRun, Designed, Experiment, Plan, Skipped, usual_radii
 from .postures import Clear, Site, find_sites, given_site, reach_of
 from .selection import Choice, Option
 from .words import Words
@@ -134,9 +134,9 @@ class _Designer:
         wanted = self.cell.clearance + SPARE
         return lambda q: bool(scene.clearance(q, 2 * wanted).min() >= wanted)
 
-    def _candidates(self, sites: Iterable[Site]) -> list[Candidate]:
+    def _candidates(self, sites: Iterable[Site]) -> list[CandidateRun]:
         radii = tuple(sorted(self.plan.radii or usual_radii(self.reach)))
-        found: list[Candidate] = []
+        found: list[CandidateRun] = []
         for number, site in enumerate(sites):
             self.say(f"designing runs at posture {number + 1}")
             family = Family(
@@ -159,7 +159,7 @@ class _Designer:
                     found.append(made[0])
         return found
 
-    def _period(self, candidates: list[Candidate]) -> float:
+    def _period(self, candidates: list[CandidateRun]) -> float:
         """The plan's, or the first that the recorder takes."""
         program = candidates[0].program if candidates else Program(())
         if self.plan.period is not None:
@@ -175,7 +175,7 @@ class _Designer:
                 return period
         raise refusal or InputError("the recorder takes no period")
 
-    def _options(self, candidates: list[Candidate], informer: Informer) -> list[Option]:
+    def _options(self, candidates: list[CandidateRun], informer: Informer) -> list[Option]:
         options = []
         for k, candidate in enumerate(candidates):
             self.say(f"what would run {k + 1} of {len(candidates)} tell?")
@@ -203,7 +203,7 @@ class _Designer:
             runs.append(replace(made, gain=choice.take(option)))
         return runs
 
-    def _made(self, candidate: Candidate, period: float) -> Designed:
+    def _made(self, candidate: CandidateRun, period: float) -> Designed:
         """The run as text, read back, looked at and proven.
 
         Raises:

@@ -36,7 +36,7 @@ from ...core.program.target import JointTarget
 from ...core.robot.model import Robot
 from ...core.vendor import Vendor
 from ..fit.keys import with_value
-from .plan import Candidate, Precision
+from .plan import CandidateRun, Precision
 
 NOISE = 1e-4
 """rad (or m), by which logs of robots scatter about the best emulation: not their resolution."""
@@ -167,7 +167,7 @@ class Informer:
         """How many figures there are."""
         return len(self.figures) + self.robot.arm_size
 
-    def information(self, candidate: Candidate) -> FloatArray:
+    def information(self, candidate: CandidateRun) -> FloatArray:
         """(K, K), of the figures as shares of their spread.
 
         Raises:

@@ -166,7 +166,7 @@ class PlannedCorner:
 
 
 @dataclass(frozen=True)
-class Candidate:
+class CandidateRun:
     """A run that may become part of the experiment.
 
     Args:
@@ -204,7 +204,7 @@ class Designed:
             clear; None if that is not known.
     """
 
-    candidate: Candidate
+    candidate: CandidateRun
     program: Program
     sources: Sources
     run: Run

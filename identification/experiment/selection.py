@@ -15,7 +15,7 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from .information import nats
-from .plan import Candidate, Plan, Skipped
+from .plan import CandidateRun, Plan, Skipped
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +28,7 @@ class Option:
         duration: s.
     """
 
-    candidate: Candidate
+    candidate: CandidateRun
     information: FloatArray
     duration: float
 

@@ -5,15 +5,15 @@ from .fitting import Fit, fit
 from .intervals import Interval, Unseen
 from .judgement import Judgement, judge
 from .outcome import Outcome, outcomes
-from .parameters import Parameter, ParameterSet, usual_parameters
+from .parameters import FittedParameter, ParameterSet, usual_parameters
 from .runs import PreparedRun, prepare
 
 __all__ = [
     "Fit",
+    "FittedParameter",
     "Interval",
     "Judgement",
     "Outcome",
-    "Parameter",
     "ParameterSet",
     "PreparedRun",
     "Unseen",

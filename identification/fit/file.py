@@ -24,7 +24,7 @@ from ...core.motion.model.provenance import FitRecord, Provenance, provenance_te
 from .fitting import Fit
 from .intervals import CONFIDENCE, Interval
 from .keys import figure_of
-from .parameters import Parameter
+from .parameters import FittedParameter
 
 ASSUMED = Provenance("assumed", "stated where the fit began")
 ARC_TURN = "arc.turn"
@@ -100,7 +100,7 @@ def _origin(fitted: Fit, figure: str, record: FitRecord, members: list[int]) -> 
     )
 
 
-def _told(one: Parameter) -> str:
+def _told(one: FittedParameter) -> str:
     """The parameter as ``--fit`` takes it."""
     return f"{one.name} in {one.lower:g} .. {one.upper:g}"
 

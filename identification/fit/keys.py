@@ -14,7 +14,7 @@ from typing import Any
 
 from ...core.errors import InputError, UnknownNameError
 from ...core.motion.model.figures import Figure, Fit, Member, Tables, with_figures
-from ...core.motion.model.kinds import Number, Row
+from ...core.motion.model.kinds import RealNumber, Row
 from ...core.motion.model.motion_model import FIGURES, MotionModel
 
 Step = str | slice
@@ -174,7 +174,7 @@ def _updated(
 
 def _check_number(one: Figure | Member, entry: bool, key: str) -> None:
     """Refuse what is no number: of a list only an entry is one."""
-    if not isinstance(one.kind, Row if entry else Number):
+    if not isinstance(one.kind, Row if entry else RealNumber):
         raise InputError(f"{key!r}: no number, or not a single one, stands there")
 
 

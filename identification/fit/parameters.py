@@ -17,7 +17,7 @@ from .keys import fit_of, nothing, value_of, with_value
 
 
 @dataclass(frozen=True)
-class Parameter:
+class FittedParameter:
     """One number that is fitted.
 
     Args:
@@ -54,7 +54,7 @@ _SHARE = 0.5
 """Scale of what has no usual one, as a share of its start."""
 
 
-def parameter(model: MotionModel, text: str) -> Parameter:
+def parameter(model: MotionModel, text: str) -> FittedParameter:
     """The parameter that a text names.
 
     Args:
@@ -79,7 +79,7 @@ def parameter(model: MotionModel, text: str) -> Parameter:
     scale = usual.scale or _SHARE * abs(start) or _SHARE
     if found["lower"] is not None:
         lower, upper = _number(found["lower"], text), _number(found["upper"], text)
-    return Parameter(keys, start, lower, upper, scale)
+    return FittedParameter(keys, start, lower, upper, scale)
 
 
 _TEXT = re.compile(
@@ -130,7 +130,7 @@ class ParameterSet:
     """
 
     base: MotionModel
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[FittedParameter, ...]
 
     @classmethod
     def named(cls, base: MotionModel, texts: Iterable[str]) -> ParameterSet:
@@ -140,7 +140,7 @@ class ParameterSet:
             InputError: as `parameter` does, or a key occurs twice.
         """
         model = base
-        made: list[Parameter] = []
+        made: list[FittedParameter] = []
         for text in texts:
             one = parameter(model, text)
             taken = {key for other in made for key in other.keys}
@@ -200,7 +200,9 @@ class ParameterSet:
     def starting_at(self, values: FloatArray) -> ParameterSet:
         """The same with other starts (P,)."""
         made = (
-            Parameter(p.keys, float(v), min(p.lower, float(v)), max(p.upper, float(v)), p.scale)
+            FittedParameter(
+                p.keys, float(v), min(p.lower, float(v)), max(p.upper, float(v)), p.scale
+            )
             for p, v in zip(self.parameters, values, strict=True)
         )
         return ParameterSet(self.base, tuple(made))

@@ -21,7 +21,7 @@ from .run import LoggedRun
 HOLE = 3.0
 """Median periods without a sample that make a hole."""
 NOISE_FACTOR = 8.0
-"""Standard deviations of noise that no sample strays by."""
+"""Standard deviations of noise that no sample deviates by."""
 TURN_FACTOR = 0.5
 """Share of the second differences nearby that the cubic may be off by: where an acceleration jumps,
 it is off by an eighth of them."""
@@ -36,7 +36,7 @@ _AROUND = 8
 _SPAN = 8.0
 """Median periods that four neighbours may span; the cubic knows nothing across a hole."""
 BESIDE = 4.0
-"""How many times its bound a sample must stray by beside another that is off the path."""
+"""How many times its bound a sample must deviate by beside another that is off the path."""
 _SHIFT = 2.0
 _ROUNDS = 6
 _NORMAL = 1.4826
@@ -173,16 +173,18 @@ def _mark_torn(
         # By stamps, and by counting: where samples are taken evenly and stamped as they arrive,
         # the count is the better clock. A sample is off the path only if it is so by both.
         stamps = t[rows] / period
-        strays = [_strays(clock, q[rows]) for clock in (stamps, rows.astype(float))]
+        deviations = [_deviations(clock, q[rows]) for clock in (stamps, rows.astype(float))]
         known = _near(stamps)
         if noise is None:
-            noise = np.min([_spread(stray[known]) for stray, _ in strays], axis=0)
-        excess = np.min([_excess(stray, turning, noise) for stray, turning in strays], axis=0)
+            noise = np.min([_spread(deviation[known]) for deviation, _ in deviations], axis=0)
+        excess = np.min(
+            [_excess(deviation, turning, noise) for deviation, turning in deviations], axis=0
+        )
         excess[~known] = 0.0
         # Beside samples that are gone already the cubic is coarse: doubt must not creep on.
         excess[2:-2] /= np.where(rows[4:] - rows[:-4] > 4, BESIDE, 1.0)
         # A wild sample spoils the cubics of its neighbours: only the farthest of five goes.
-        size = np.min([np.linalg.norm(stray, axis=1) for stray, _ in strays], axis=0)
+        size = np.min([np.linalg.norm(deviation, axis=1) for deviation, _ in deviations], axis=0)
         size[excess <= 1] = 0.0
         wild = rows[(excess > 1) & (size >= _running_max(size, 2))]
         if len(wild) == 0:
@@ -200,10 +202,10 @@ def _spread(values: FloatArray) -> FloatArray:
     return np.asarray(_NORMAL * np.median(np.abs(values), axis=0))
 
 
-def _excess(stray: FloatArray, turning: FloatArray, noise: FloatArray) -> FloatArray:
-    """Greatest share (T,) of its bound by which a joint strays."""
+def _excess(deviation: FloatArray, turning: FloatArray, noise: FloatArray) -> FloatArray:
+    """Greatest share (T,) of its bound by which a joint deviates."""
     bound = NOISE_FACTOR * noise + TURN_FACTOR * turning + FLOOR
-    return np.asarray((np.abs(stray) / bound).max(axis=1))
+    return np.asarray((np.abs(deviation) / bound).max(axis=1))
 
 
 def _near(clock: FloatArray) -> BoolArray:
@@ -213,10 +215,10 @@ def _near(clock: FloatArray) -> BoolArray:
     return near
 
 
-def _strays(clock: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """How far samples stray from their neighbours' cubic, and the second differences nearby, both
+def _deviations(clock: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """How far samples deviate from their neighbours' cubic, and the second differences nearby, both
     (T, N); the clock (T,) runs in periods."""
-    stray = np.zeros_like(q)
+    deviation = np.zeros_like(q)
     middle = np.arange(2, len(clock) - 2)
     nodes = middle[:, None] + np.array([-2, -1, 1, 2])
     weight, slope = _cubic_weights(clock[nodes] - clock[middle][:, None])
@@ -227,12 +229,12 @@ def _strays(clock: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     typical = median_filter(speed, (5, 1), mode="nearest")
     one, two = _shifted(off, speed), _shifted(off, typical)
     nearer = np.linalg.norm(one, axis=1) < np.linalg.norm(two, axis=1)
-    stray[middle] = np.where(nearer[:, None], one, two)
-    return stray, _turning(clock, q)
+    deviation[middle] = np.where(nearer[:, None], one, two)
+    return deviation, _turning(clock, q)
 
 
 def _shifted(off: FloatArray, speed: FloatArray) -> FloatArray:
-    """What is left of strays (K, N) after the best shift in time along speeds (K, N)."""
+    """What is left of deviations (K, N) after the best shift in time along speeds (K, N)."""
     along = np.sum(off * speed, axis=1) / np.maximum(np.sum(speed * speed, axis=1), 1e-30)
     # A clock is off by a few periods at most; a shift beyond is no jitter.
     return np.asarray(off - np.clip(along, -_SHIFT, _SHIFT)[:, None] * speed)

@@ -86,7 +86,7 @@ _BEFORE_AFTER = " → "
 _Rows = tuple[Sequence[str], Sequence[Sequence[str]]]
 """Heading and rows of a table."""
 _CORNERS = 12
-"""Corners of a run that are listed; those where the log strays most."""
+"""Corners of a run that are listed; those where the log deviates most."""
 
 
 def page(
@@ -121,7 +121,7 @@ def _summary(fitted: Fit, outcomes: Sequence[Outcome], judged: Judgement | None)
         f"{fitted.parameters.size} parameters, fitted to {len(outcomes)} logged runs in "
         f"{fitted.iterations} iterations: mean robust loss {fitted.before:.4g} before, "
         f"{fitted.after:.4g} after.",
-        f"The log that strays most from its emulation is {worst.run.name}: "
+        f"The log that deviates most from its emulation is {worst.run.name}: "
         f"{1e3 * worst.after.figures.path_max:.3f} mm.",
         *(f"{names}: {what}." for names, what in fitted.scales),
         *(() if judged is None else (f"To judge the fit: {judged.told}.",)),

@@ -67,7 +67,7 @@ def _draw_corners(
     prediction: Prediction,
     geometry: PathGeometry,
 ) -> None:
-    """The corners where the log strays most."""
+    """The corners where the log deviates most."""
     worst = sorted(corners, key=lambda corner: -corner.off)[:MOST_CORNERS]
     columns = -(-len(worst) // rows)
     axes = figure.subplots(rows, columns, squeeze=False).ravel()
@@ -78,7 +78,7 @@ def _draw_corners(
     axes[0].legend(loc="best")
     if len(corners) > len(worst):
         figure.suptitle(
-            f"the {len(worst)} of {len(corners)} corners where the log strays most", fontsize=9
+            f"the {len(worst)} of {len(corners)} corners where the log deviates most", fontsize=9
         )
 
 

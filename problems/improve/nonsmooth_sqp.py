@@ -48,7 +48,7 @@ _ABOVE = 1e-4
 """Height above the objective from which on a remembered plane is no kink's."""
 
 
-class Point(Protocol):
+class SearchPoint(Protocol):
     """Where the problem has been evaluated."""
 
     @property
@@ -67,7 +67,7 @@ class Point(Protocol):
         ...
 
 
-P = TypeVar("P", bound=Point)
+P = TypeVar("P", bound=SearchPoint)
 
 
 class Model(Protocol[P]):
@@ -100,7 +100,7 @@ class Model(Protocol[P]):
 
 
 @dataclass(frozen=True, slots=True)
-class Settings:
+class SearchEffort:
     """How long to search.
 
     Args:
@@ -117,7 +117,7 @@ class Settings:
 
 
 @dataclass(frozen=True, slots=True)
-class Found(Generic[P]):
+class SearchResult(Generic[P]):
     """Where a search ended.
 
     Args:
@@ -186,12 +186,14 @@ class _Step:
     largest_multiplier: float
 
 
-def violation(point: Point) -> float:
+def violation(point: SearchPoint) -> float:
     """The largest violation of a constraint."""
     return max(0.0, -float(point.constraints.min(initial=0.0)))
 
 
-def search(model: Model[P], start: P, settings: Settings, memory: Memory | None = None) -> Found[P]:
+def search(
+    model: Model[P], start: P, settings: SearchEffort, memory: Memory | None = None
+) -> SearchResult[P]:
     """The best point found from a start.
 
     Args:
@@ -217,7 +219,7 @@ def search(model: Model[P], start: P, settings: Settings, memory: Memory | None 
                 break
             _look_around(model, state)
     memory = Memory(state.point.x, state.box, state.price, tuple(state.kinks), state.around)
-    return Found(best, violation(best), finished, memory)
+    return SearchResult(best, violation(best), finished, memory)
 
 
 def _look_around(model: Model[P], state: _State[P]) -> None:
@@ -240,14 +242,14 @@ def _look_around(model: Model[P], state: _State[P]) -> None:
     state.around *= _CLOSER
 
 
-def _better(point: Point, other: Point, feasible: float) -> bool:
+def _better(point: SearchPoint, other: SearchPoint, feasible: float) -> bool:
     mine, its = violation(point), violation(other)
     if mine > feasible or its > feasible:
         return mine < its
     return point.objective < other.objective
 
 
-def _iterate(model: Model[P], state: _State[P], settings: Settings) -> float:
+def _iterate(model: Model[P], state: _State[P], settings: SearchEffort) -> float:
     """One trial; returns the fall that the model promised."""
     point = state.point
     box = state.box * model.scale
@@ -274,7 +276,7 @@ def _iterate(model: Model[P], state: _State[P], settings: Settings) -> float:
     return promised
 
 
-def _gain(point: Point, trial: Point, price: float) -> float:
+def _gain(point: SearchPoint, trial: SearchPoint, price: float) -> float:
     fall = point.objective - trial.objective
     return float(fall + price * (violation(point) - violation(trial)))
 
@@ -285,7 +287,7 @@ def _settle(
     trial: P,
     gained: float,
     promised: float,
-    settings: Settings,
+    settings: SearchEffort,
 ) -> None:
     """Take the trial or leave it, and remember its gradient either way."""
     ratio = gained / max(promised, 1e-12)

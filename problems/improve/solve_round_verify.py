@@ -31,7 +31,7 @@ class Feasibility:
         controller: drives it.
         scenes: the cell with each tool; None without a cell, and then nothing is proven.
         clearance: m to keep.
-        residual: m by which the real robot may stray from the emulated one.
+        residual: m by which the real robot may deviate from the emulated one.
         start: where the robot stands; None for the program's own start.
         resolution: m to which the clearance that there is is proven; None to prove just the one
             to keep, which is quicker.

@@ -22,7 +22,7 @@ LOGS = (".csv", ".txt", ".tsv", ".log", ".xml")
 
 
 @dataclass(frozen=True)
-class Found:
+class LoggedRuns:
     """What was found where the user points.
 
     Args:
@@ -38,7 +38,7 @@ class Found:
 
 def find_runs(
     paths: Sequence[Path], vendor: Vendor, robot: Robot, columns: Columns | None = None
-) -> Found:
+) -> LoggedRuns:
     """Read all runs.
 
     In folders, runs of other robots are passed over; where one is named itself, it is refused.
@@ -73,7 +73,7 @@ def find_runs(
             f"{where}: no run of {robot.name}: name records of runs (JSON), programs with a log of "
             "the same name beside them, or folders of these"
         )
-    return Found(tuple(runs), (*files, *logs), others)
+    return LoggedRuns(tuple(runs), (*files, *logs), others)
 
 
 def _in_folder(folder: Path, vendor: Vendor) -> Iterator[tuple[Path, Record | None]]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from ...core.notebook import Curve, page, picture, table
 from ...core.program.program import Program
 from ...core.source.patch.runnable import runnable_files
-from ...problems.improve.energy import Front, Point
+from ...problems.improve.energy import Front, FrontPoint
 from ..files.texts import ProgramTexts
 from ..setup import Setup, like
 
@@ -92,7 +92,7 @@ class ProgramFront(Front):
         return page(repr(self)[1:-1], *parts, notes=self.notes)
 
 
-def _row(given: Point, point: Point, joints: Sequence[int]) -> tuple[str, ...]:
+def _row(given: FrontPoint, point: FrontPoint, joints: Sequence[int]) -> tuple[str, ...]:
     def change(value: float, before: float) -> str:
         # What motors take is negative where more comes back.
         return "" if point is given else f"{100.0 * (value - before) / abs(before):+.1f}"

@@ -9,7 +9,7 @@ import numpy as np
 from ...core.notebook import Curve, page, picture, table
 from ...identification.fit import Fit, Judgement, Outcome
 from ...identification.fit.selection import Score
-from ..files.logged_runs import Found
+from ..files.logged_runs import LoggedRuns
 
 RUN_COLUMNS = (
     ("run", "left"),
@@ -47,7 +47,7 @@ class IdentifiedModel:
     judgement: Judgement | None
     scores: tuple[Score, ...]
     text: str
-    found: Found
+    found: LoggedRuns
 
     @property
     def better(self) -> bool:

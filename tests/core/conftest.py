@@ -23,7 +23,7 @@ HOMES = {
 
 
 @dataclass(frozen=True, eq=False)
-class Bench:
+class ArmAtHome:
     """An arm, where it starts, and the length in m that its tests use for a leg."""
 
     robot: Robot
@@ -57,24 +57,24 @@ class Bench:
         return JointTarget(tuple(map(float, self.home + np.asarray(change, dtype=float))))
 
 
-def bench(name: str) -> Bench:
+def arm_at_home(name: str) -> ArmAtHome:
     home, leg = HOMES[name]
-    return Bench(find_robot(name), np.array(home), leg)
+    return ArmAtHome(find_robot(name), np.array(home), leg)
 
 
 @pytest.fixture(params=sorted(HOMES), scope="session")
-def arm(request) -> Bench:
+def arm(request) -> ArmAtHome:
     """Each arm in turn."""
-    return bench(request.param)
+    return arm_at_home(request.param)
 
 
 @pytest.fixture(scope="session")
-def abb() -> Bench:
+def abb() -> ArmAtHome:
     """The large arm alone."""
-    return bench("abb/irb6640-180-255")
+    return arm_at_home("abb/irb6640-180-255")
 
 
 @pytest.fixture(scope="session")
-def ur() -> Bench:
+def ur() -> ArmAtHome:
     """The arm without a spherical wrist alone."""
-    return bench("ur/ur10e")
+    return arm_at_home("ur/ur10e")

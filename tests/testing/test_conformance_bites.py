@@ -16,7 +16,7 @@ from flyby.core.errors import MotionError
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.program import Program
 from flyby.core.registry import find_vendor
-from flyby.core.robot.joint import Limits
+from flyby.core.robot.joint import JointLimits
 from flyby.core.vendor import Vendor
 from flyby.testing.conformance import VendorConformance
 
@@ -49,7 +49,9 @@ def robots(**changes: Any) -> dict[str, Any]:
 class BrokenLimits:
     """A robot whose first joint cannot move."""
 
-    limits = Limits(*(SOUND.robot("irb1600-6-145").limits.upper * 0 + x for x in (1, 1, 1, 1, 1)))
+    limits = JointLimits(
+        *(SOUND.robot("irb1600-6-145").limits.upper * 0 + x for x in (1, 1, 1, 1, 1))
+    )
 
 
 class Reader:

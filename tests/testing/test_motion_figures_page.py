@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from flyby.core.motion.model.figures import Figure, Fit, Member, Tables
-from flyby.core.motion.model.kinds import Number, Row
+from flyby.core.motion.model.kinds import RealNumber, Row
 from flyby.core.motion.model.motion_model import FIGURES
 
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "motion_figures.md"
@@ -50,7 +50,7 @@ def fitted(fit: Fit | None) -> str:
 def test_the_page_is_the_table() -> None:
     written = [text for text in PAGE.read_text("utf-8").splitlines() if text.startswith("|")]
     assert written == rows()
-    assert sum(isinstance(one.kind, Number | Row) for one in FIGURES.values()) > 20
+    assert sum(isinstance(one.kind, RealNumber | Row) for one in FIGURES.values()) > 20
 
 
 if __name__ == "__main__":

@@ -17,8 +17,8 @@ from flyby.validation.transcription import (
     Grid,
     Optimum,
     Overlap,
-    Task,
     Transcription,
+    TranscriptionTask,
     carried_over,
     check,
     initial_guess,
@@ -43,7 +43,7 @@ def emulated(made: object) -> float:
     return SCENE.controller(sampling=DENSE).run(made).timing.duration  # type: ignore[arg-type]
 
 
-def fastest(task: Task, grid: Grid, freedom: float, enough: float = 0.0) -> Optimum:
+def fastest(task: TranscriptionTask, grid: Grid, freedom: float, enough: float = 0.0) -> Optimum:
     """The fastest from several starts, or the first that takes no more than is enough (s).
 
     Each start ends in a local optimum; which one depends on how BLAS rounds on the machine.
@@ -127,17 +127,17 @@ def test_what_it_does_not_know_is_refused() -> None:
     points = waypoints()
     task = make_task()
     with pytest.raises(InputError, match="start, one via point or more"):
-        Task(SCENE.cell, points[:2], task.blend, SCENE.tool)
+        TranscriptionTask(SCENE.cell, points[:2], task.blend, SCENE.tool)
     with pytest.raises(InputError, match="nothing to optimise"):
-        Task(SCENE.cell, points[[0, 0, 0]], task.blend, SCENE.tool)
+        TranscriptionTask(SCENE.cell, points[[0, 0, 0]], task.blend, SCENE.tool)
     with pytest.raises(InputError, match="without β"):
-        Task(SCENE.cell, points, Blend(beta=(0.1,)), SCENE.tool)
+        TranscriptionTask(SCENE.cell, points, Blend(beta=(0.1,)), SCENE.tool)
     with pytest.raises(InputError, match="2 intervals or more on every blend"):
         Grid(3, 1)
     post = Obstacle("post", Geometry(Cylinder(0.1, 1.0)))
     odd = replace(SCENE.cell, obstacles=(post,))
     with pytest.raises(InputError, match=r"post: .* boxes"):
-        initial_guess(Transcription(Task(odd, points, task.blend, SCENE.tool)))
+        initial_guess(Transcription(TranscriptionTask(odd, points, task.blend, SCENE.tool)))
     allowed = replace(SCENE.cell, allowed=(("rod", "box"),))
     with pytest.raises(InputError, match="lets nothing touch"):
-        Task(allowed, points, task.blend, SCENE.tool)
+        TranscriptionTask(allowed, points, task.blend, SCENE.tool)

@@ -9,7 +9,7 @@ from flyby.core.motion.model.blend import Blend
 from flyby.core.program.target import JointTarget
 from flyby.validation.scenes.scene import SECOND_ORDER
 from flyby.validation.scenes.two_joints import two_joints
-from flyby.validation.transcription import Overlap, Task
+from flyby.validation.transcription import Overlap, TranscriptionTask
 
 SCENE = two_joints()
 
@@ -25,7 +25,9 @@ def waypoints() -> NDArray[np.float64]:
     return np.array([joint_values(t) for t in (program.start, *(m.target for m in program.moves))])
 
 
-def make_task(vias: int = 3, blend: Blend = SECOND_ORDER, overlap: Overlap = Overlap.HALF) -> Task:
+def make_task(
+    vias: int = 3, blend: Blend = SECOND_ORDER, overlap: Overlap = Overlap.HALF
+) -> TranscriptionTask:
     """Through the first so many via points."""
     points = waypoints()
-    return Task(SCENE.cell, points[[*range(vias + 1), -1]], blend, SCENE.tool, overlap)
+    return TranscriptionTask(SCENE.cell, points[[*range(vias + 1), -1]], blend, SCENE.tool, overlap)

@@ -15,7 +15,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.registry import find_vendor
 from flyby.core.source.execution.answers import Answers
-from flyby.core.source.execution.limits import Limits
+from flyby.core.source.execution.limits import ExecutionLimits
 from flyby.core.source.reading import ReadOptions
 
 EXTERNAL = ",".join(["9E9"] * 6)
@@ -402,7 +402,7 @@ def read(vendor: str, case: Case) -> Program:
     )
     reader = find_vendor(vendor).reader
     assert reader is not None
-    options = ReadOptions(answers=answers, limits=Limits(statements=2000, moves=500))
+    options = ReadOptions(answers=answers, limits=ExecutionLimits(statements=2000, moves=500))
     return reader.read(dialect.text(body), dialect.file, options)
 
 

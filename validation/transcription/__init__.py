@@ -11,7 +11,7 @@ from .guess import initial_guess
 from .layout import Grid
 from .motion import Check, Samples, carried_over, check, program, sampled
 from .optimize import Answer, Optimum, Solver, optimize
-from .task import Overlap, Task
+from .task import Overlap, TranscriptionTask
 from .transcription import Transcription
 
 __all__ = [
@@ -22,8 +22,8 @@ __all__ = [
     "Overlap",
     "Samples",
     "Solver",
-    "Task",
     "Transcription",
+    "TranscriptionTask",
     "carried_over",
     "check",
     "initial_guess",

@@ -35,7 +35,7 @@ class Field(Protocol):
         ...
 
 
-class Places(Protocol):
+class ConfigurationRows(Protocol):
     """Configurations q = Σ_p P_p c_p(θ) (R,).
 
     Attributes:
@@ -70,7 +70,7 @@ class AtPoints:
         self.theta = np.zeros((len(points), 0), dtype=np.int64)
 
     def at(self, x: FloatArray, order: int) -> Weights:
-        """See `Places`."""
+        """See `ConfigurationRows`."""
         rows = len(self.points)
         return Weights(np.ones((rows, 1)), np.zeros((rows, 1, 0)), np.zeros((rows, 1, 0, 0)))
 
@@ -87,7 +87,7 @@ class FieldRows:
 
     def __init__(
         self,
-        places: Places,
+        places: ConfigurationRows,
         field: Field,
         lower: float,
         upper: float,

@@ -8,7 +8,7 @@ import numpy as np
 from ...core.arrays import FloatArray
 from .curves import Blend
 from .layout import Layout
-from .task import Task
+from .task import TranscriptionTask
 from .transcription import Transcription
 
 _HALVINGS = 60
@@ -36,7 +36,7 @@ def initial_guess(problem: Transcription, share: float = 0.5) -> FloatArray:
     return x
 
 
-def _set_zones(x: FloatArray, layout: Layout, task: Task) -> None:
+def _set_zones(x: FloatArray, layout: Layout, task: TranscriptionTask) -> None:
     for via in range(layout.vias):
         here = task.points[via + 1]
         for side, leg, there in (
@@ -49,7 +49,7 @@ def _set_zones(x: FloatArray, layout: Layout, task: Task) -> None:
             x[layout.edge[via, side]] = task.tcp.values(edge[None])[0]
 
 
-def _exit(task: Task, here: FloatArray, there: FloatArray, radius: float) -> float:
+def _exit(task: TranscriptionTask, here: FloatArray, there: FloatArray, radius: float) -> float:
     """Share of the joint line at which the TCP leaves its sphere: the first sign change on a grid,
     then bisection."""
     shares = np.linspace(0.0, 1.0, 201)

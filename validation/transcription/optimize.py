@@ -15,7 +15,7 @@ from ...core.sqp import NLP, BackendKind, solve
 from .guess import initial_guess
 from .layout import Grid
 from .motion import Check, carried_over, check, program, sampled
-from .task import Task
+from .task import TranscriptionTask
 from .transcription import Transcription
 
 NEAR = 0.25
@@ -86,7 +86,7 @@ class Optimum:
 
 
 def optimize(
-    task: Task,
+    task: TranscriptionTask,
     grid: Grid | None = None,
     freedom: float = np.inf,
     share: float = 0.5,

@@ -30,7 +30,7 @@ class Overlap(StrEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
+class TranscriptionTask:
     """A motion from rest to rest.
 
     Args:

@@ -17,7 +17,7 @@ from .field_rows import AtPoints, FieldRows
 from .layout import Grid, Layout
 from .motion_rows import Acceleration, MotionRows, Nodes, StraightAcceleration, Velocity
 from .rows import Quadratic, Rows, SpeedMatch
-from .task import Overlap, Task
+from .task import Overlap, TranscriptionTask
 
 LEAST_RADIUS = 1e-3
 """m; a via point without a zone would be a stop, which no trajectory of this form passes."""
@@ -40,7 +40,7 @@ class Transcription:
 
     def __init__(
         self,
-        task: Task,
+        task: TranscriptionTask,
         grid: Grid | None = None,
         freedom: float = np.inf,
         margin: float = 0.0,

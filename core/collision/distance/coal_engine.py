@@ -18,7 +18,7 @@ import numpy as np
 from ...arrays import FloatArray
 from ...robot.shape import Box, Capsule, Cylinder, Sphere
 from .containment import Nesting
-from .engine import Places, Witness
+from .engine import BodyPoses, Witness
 from .solid import Polytope, Solid, TriangleMesh, core_radius, extent
 
 HAIR = 1e-9
@@ -49,20 +49,20 @@ class CoalEngine:
         self._middles = [extent(solid).centre for solid in solids]
         self._growth = [_growth(solid) for solid in self._solids]
         self._nesting = nesting
-        self._places: Places | None = None
+        self._places: BodyPoses | None = None
         self._transforms: dict[int, Any] = {}
         self._calls: dict[tuple[int, int, bool], Any] = {}
         self._request = coal.DistanceRequest()
         self._request.gjk_tolerance = GJK_TOLERANCE
         self._result = coal.DistanceResult()
 
-    def distance(self, a: int, b: int, places: Places, within: float) -> Witness | None:
+    def distance(self, a: int, b: int, places: BodyPoses, within: float) -> Witness | None:
         """Signed distance of bodies a and b, None if it is ``within`` m or more."""
         if isinstance(self._solids[a], TriangleMesh) or isinstance(self._solids[b], TriangleMesh):
             return self._to_mesh(a, b, places, within)
         return self._measure(a, b, places, within, False)
 
-    def _to_mesh(self, a: int, b: int, places: Places, within: float) -> Witness | None:
+    def _to_mesh(self, a: int, b: int, places: BodyPoses, within: float) -> Witness | None:
         """Distance by cores, of which one at least is a mesh."""
         growth = self._growth[a], self._growth[b]
         found = self._measure(a, b, places, within + sum(growth), True)
@@ -78,7 +78,7 @@ class CoalEngine:
             found = found._replace(normal=(found.point_a - found.point_b) / found.distance)
         return _grown(_turned(found) if nested else found, *growth)
 
-    def _crossing(self, a: int, b: int, places: Places, at: FloatArray | None = None) -> Witness:
+    def _crossing(self, a: int, b: int, places: BodyPoses, at: FloatArray | None = None) -> Witness:
         """A core through a surface: no depth is known but that it is the radius at least.
 
         The way out leads from the crossing (or the middle of body b) to the middle of body a, or
@@ -97,7 +97,7 @@ class CoalEngine:
         return Witness(-least, at - least * normal, at, normal, measured=False)
 
     def _measure(
-        self, a: int, b: int, places: Places, within: float, cores: bool
+        self, a: int, b: int, places: BodyPoses, within: float, cores: bool
     ) -> Witness | None:
         call = self._call(a, b, cores)
         at_a, at_b = self._placed(a, places), self._placed(b, places)
@@ -109,7 +109,7 @@ class CoalEngine:
             found = self._ask(call, beside, at_b, within)
         return self._crossing(a, b, places)
 
-    def _placed(self, body: int, places: Places) -> Any:
+    def _placed(self, body: int, places: BodyPoses) -> Any:
         """A body's place, kept while one configuration is asked for."""
         if places is not self._places:
             self._places, self._transforms = places, {}

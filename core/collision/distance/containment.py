@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ...arrays import FloatArray
 from ...spatial.rotation import matrix_from_rotation_vector
-from .engine import Places
+from .engine import BodyPoses
 from .solid import Solid, TriangleMesh, inner_points
 
 TURNS = np.array([[0.3, 0.2, 0.1], [1.1, -0.7, 0.5], [-0.4, 1.9, 0.8], [2.1, 0.6, -1.3]])
@@ -40,17 +40,17 @@ class Nesting:
         ]
         self._points = [inner_points(solid) for solid in solids]
 
-    def nested(self, a: int, b: int, places: Places) -> bool:
+    def nested(self, a: int, b: int, places: BodyPoses) -> bool:
         """Whether body a or b lies in the other, given that their surfaces are apart."""
         return self._holds(a, b, places) or self._holds(b, a, places)
 
-    def _holds(self, outer: int, inner: int, places: Places) -> bool:
+    def _holds(self, outer: int, inner: int, places: BodyPoses) -> bool:
         if self._insides[outer] is None:
             return False
         points = self._points[inner] @ places.rotation[inner].T + places.translation[inner]
         return self.inside(outer, points, places)
 
-    def inside(self, body: int, points: FloatArray, places: Places) -> bool:
+    def inside(self, body: int, points: FloatArray, places: BodyPoses) -> bool:
         """Whether one of the points (K, 3) m in the world is inside a body's closed mesh."""
         inside = self._insides[body]
         if inside is None:

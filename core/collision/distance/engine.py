@@ -11,7 +11,7 @@ from typing import NamedTuple, Protocol
 from ...arrays import FloatArray
 
 
-class Places(NamedTuple):
+class BodyPoses(NamedTuple):
     """World poses of all bodies at one configuration.
 
     Args:
@@ -45,7 +45,7 @@ class Witness(NamedTuple):
 class ContactEngine(Protocol):
     """Answers whether bodies touch."""
 
-    def touch(self, a: int, b: int, places: Places) -> bool:
+    def touch(self, a: int, b: int, places: BodyPoses) -> bool:
         """Whether bodies a and b touch, overlap, or lie one inside the other."""
         ...
 
@@ -53,6 +53,6 @@ class ContactEngine(Protocol):
 class DistanceEngine(Protocol):
     """Answers how far bodies are apart."""
 
-    def distance(self, a: int, b: int, places: Places, within: float) -> Witness | None:
+    def distance(self, a: int, b: int, places: BodyPoses, within: float) -> Witness | None:
         """Signed distance of bodies a and b, None if it is ``within`` m or more."""
         ...

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...robot.shape import Box, Capsule, Cylinder, Sphere
 from .containment import Nesting
-from .engine import Places
+from .engine import BodyPoses
 from .solid import Polytope, Solid
 
 
@@ -28,14 +28,14 @@ class FclEngine:
         self._nesting = nesting
         self._request = fcl.CollisionRequest()
 
-    def touch(self, a: int, b: int, places: Places) -> bool:
+    def touch(self, a: int, b: int, places: BodyPoses) -> bool:
         """Whether bodies a and b touch, overlap, or lie one inside the other."""
         placed = self._placed(a, places), self._placed(b, places)
         if fcl.collide(*placed, self._request, fcl.CollisionResult()) > 0:
             return True
         return self._nesting.nested(a, b, places)
 
-    def _placed(self, body: int, places: Places) -> Any:
+    def _placed(self, body: int, places: BodyPoses) -> Any:
         """A body at its place, made when it is first needed."""
         if body not in self._objects:
             self._objects[body] = fcl.CollisionObject(_shape(self._solids[body]))

@@ -14,7 +14,7 @@ class Cause(Enum):
 
     NEAR = auto()
     """A configuration on it is too near."""
-    STRAY = auto()
+    DEVIATION = auto()
     """Smoothing in time and the model's residual take up what there is."""
     UNVERIFIED = auto()
     """No enclosure of the configurations was found."""

@@ -221,7 +221,7 @@ class _Search:
         # Where the path alone is clear it is the deviations beside that leave it open.
         deviated |= stalled & (distance - travel >= self._wanted + 2.0 * ROUNDING)
         self._note(intervals, items, too_near, Cause.NEAR)
-        self._note(intervals, items, deviated & ~too_near, Cause.STRAY)
+        self._note(intervals, items, deviated & ~too_near, Cause.DEVIATION)
         self._note(intervals, items, stalled & ~deviated, Cause.STALLED)
         return ~(stalled | deviated)
 

@@ -165,7 +165,7 @@ class Reader:
                 return (
                     f"{bodies} come within {distance * MM:.3f} mm, {_shown(wanted)} have to be kept"
                 )
-            case Cause.STRAY:
+            case Cause.DEVIATION:
                 return (
                     f"not proven: {bodies} are {distance * MM:.3f} mm apart on the path, but the "
                     "controller's smoothing in time and the motion model's residual may bring "

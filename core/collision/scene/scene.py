@@ -18,7 +18,7 @@ from ..distance.answers import Contact, Distances, RecentDistances
 from ..distance.closed_form import hulls_of, measure
 from ..distance.coal_engine import CoalEngine
 from ..distance.containment import Nesting
-from ..distance.engine import ContactEngine, DistanceEngine, Places, Witness
+from ..distance.engine import BodyPoses, ContactEngine, DistanceEngine, Witness
 from ..distance.fcl_engine import FclEngine
 from .allowed_pairs import Exclusion, always_touching, drop_own_overlaps, overlap_notes, sort_pairs
 from .bodies import Body, bodies_of
@@ -157,7 +157,7 @@ class CollisionScene:
         for k in np.flatnonzero(bound[samples, column] < distance).tolist():
             m = samples[k]
             a, b = self._pairs[pairs[k]]
-            witness = self._distances.distance(a, b, Places(R[m], p[m]), float(distance[k]))
+            witness = self._distances.distance(a, b, BodyPoses(R[m], p[m]), float(distance[k]))
             if witness is not None:
                 distance[k], normal[k] = witness.distance, witness.normal
 
@@ -212,7 +212,7 @@ class CollisionScene:
         Of simple shapes it is the pair that overlaps most.
         """
         R, p = self._place(self._rows(np.asarray(q, dtype=float)[None]))
-        places = Places(R[0], p[0])
+        places = BodyPoses(R[0], p[0])
         found, bound = self._closed_forms(R, p, self.pairs, TOUCH)
         if (found.distance < TOUCH).any():
             pair = int(found.distance[0].argmin())
@@ -223,7 +223,7 @@ class CollisionScene:
                 return Contact.of(*self.pair_names(pair), self._witness(a, b, places))
         return None
 
-    def _witness(self, a: int, b: int, places: Places) -> Witness:
+    def _witness(self, a: int, b: int, places: BodyPoses) -> Witness:
         witness = self._distances.distance(a, b, places, math.inf)
         assert witness is not None, "only distances of infinity and more are left out"
         return witness
@@ -304,8 +304,8 @@ class CollisionScene:
         return touching
 
 
-def _places(R: FloatArray, p: FloatArray) -> list[Places]:
-    return [Places(*place) for place in zip(R, p, strict=True)]
+def _places(R: FloatArray, p: FloatArray) -> list[BodyPoses]:
+    return [BodyPoses(*place) for place in zip(R, p, strict=True)]
 
 
 def _chunks(rows: FloatArray) -> Iterator[FloatArray]:

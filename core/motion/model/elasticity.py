@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from ...errors import InputError
 from .figures import Fit, Stage, Tables, check_figures, figure, member
-from .kinds import FINITE, NOT_NEGATIVE, Number, Row, Whole
+from .kinds import FINITE, NOT_NEGATIVE, RealNumber, Row, Whole
 
 _LEAD = Fit(-5e-3, 5e-3, 1e-4)
 
@@ -48,7 +48,7 @@ class Coupled:
     share: float = field(
         metadata=member(
             "share",
-            Number(),
+            RealNumber(),
             "1",
             "share of what the stiffness of that one alone lets it give way by",
             fit=Fit(-2.0, 2.0, 0.1),

@@ -88,7 +88,7 @@ class Kind(Protocol):
 
 
 @dataclass(frozen=True)
-class Number:
+class RealNumber:
     """One number.
 
     Args:

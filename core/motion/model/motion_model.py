@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from .blend import PARABOLA, Blend
 from .elasticity import RIGID, Elasticity
 from .figures import Figure, Fit, Stage, check_figures, figure, figures_of, part
-from .kinds import POSITIVE, Choice, Number, Range, Row, Truth
+from .kinds import POSITIVE, Choice, Range, RealNumber, Row, Truth
 from .provenance import Provenance
 from .rules import ArcTurn, DurationRule, LineTurn, OrientationZone, Overlap, Pace, Space
 from .torque import WITHOUT_LIMIT, Torque
@@ -36,7 +36,7 @@ class MotionModel:
         default=0.004,
         metadata=figure(
             "period_s",
-            Number(POSITIVE),
+            RealNumber(POSITIVE),
             Stage.SAMPLES,
             "s",
             "interpolation period of the controller",
@@ -77,7 +77,7 @@ class MotionModel:
         default=0.5,
         metadata=figure(
             "zone.neighbour_fraction",
-            Number(
+            RealNumber(
                 Range(
                     0.0, 0.5, above=True, reason="beyond a half, neighbouring zones would overlap"
                 )
@@ -140,7 +140,7 @@ class MotionModel:
         default=0.0,
         metadata=figure(
             "time.start_ramp_s",
-            Number(_WAIT),
+            RealNumber(_WAIT),
             Stage.TIMING,
             "s",
             "over which a program's time comes up to speed when it starts",
@@ -151,7 +151,7 @@ class MotionModel:
         default=0.0,
         metadata=figure(
             "time.ramp_s",
-            Number(_WAIT),
+            RealNumber(_WAIT),
             Stage.TIMING,
             "s",
             "length of a moving average over the place on the path, before the joints are "
@@ -175,7 +175,7 @@ class MotionModel:
         default=None,
         metadata=figure(
             "time.settling_s",
-            Number(_WAIT, optional=True),
+            RealNumber(_WAIT, optional=True),
             Stage.TIMING,
             "s",
             "how long the stamped motion waits at stops on the way; without, until the commanded "
@@ -187,7 +187,7 @@ class MotionModel:
         default=0.0,
         metadata=figure(
             "time.in_position_rad",
-            Number(_WAIT),
+            RealNumber(_WAIT),
             Stage.TIMING,
             "rad (m of a linear axis)",
             "how near all axes are to be to a stop on the way for the wait to end earlier; zero "
@@ -199,7 +199,7 @@ class MotionModel:
         default=None,
         metadata=figure(
             "time.in_position_time_s",
-            Number(_WAIT, optional=True),
+            RealNumber(_WAIT, optional=True),
             Stage.TIMING,
             "s",
             "for how long they are to be; without, as long as the whole window of ramp and "
@@ -211,7 +211,7 @@ class MotionModel:
         default=None,
         metadata=figure(
             "time.jerk",
-            Number(POSITIVE, optional=True),
+            RealNumber(POSITIVE, optional=True),
             Stage.TIMING,
             "1/s",
             "joint jerk limit as a multiple of each joint's acceleration limit per second, held "
@@ -225,7 +225,7 @@ class MotionModel:
         default=None,
         metadata=figure(
             "limit.tcp_acceleration",
-            Number(POSITIVE, optional=True),
+            RealNumber(POSITIVE, optional=True),
             Stage.PATH,
             "m/s²",
             "along the path, where the program states none",
@@ -236,7 +236,7 @@ class MotionModel:
         default=None,
         metadata=figure(
             "limit.reorientation_acceleration",
-            Number(POSITIVE, optional=True),
+            RealNumber(POSITIVE, optional=True),
             Stage.TIMING,
             "rad/s²",
             "of the turn along the path, where the program states none",
@@ -247,7 +247,7 @@ class MotionModel:
         default=None,
         metadata=figure(
             "limit.centripetal",
-            Number(POSITIVE, optional=True),
+            RealNumber(POSITIVE, optional=True),
             Stage.PATH,
             "1",
             "greatest centripetal acceleration of the TCP, as a multiple of the acceleration "

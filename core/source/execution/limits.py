@@ -12,7 +12,7 @@ Executed = Callable[[Span], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class ExecutionLimits:
     """Bounds of one execution of a program.
 
     Args:
@@ -36,7 +36,7 @@ class Meter:
         executed: is told of every statement; None for nobody.
     """
 
-    def __init__(self, limits: Limits, executed: Executed | None = None) -> None:
+    def __init__(self, limits: ExecutionLimits, executed: Executed | None = None) -> None:
         self._limits = limits
         self._executed = executed
         self._statements = 0

@@ -53,7 +53,7 @@ NO_ROBOT = "name the robot: its kinematics tell"
 NO_START = "the robot has not moved yet: give a start"
 
 
-class Position:
+class PresentPosition:
     """Follows the robot from target to target; kinematics are solved when they are asked for.
 
     Args:

@@ -160,7 +160,7 @@ class Kept:
 
 
 @dataclass(frozen=True, slots=True)
-class Point:
+class NumberedPoint:
     """A numbered point.
 
     Args:
@@ -182,7 +182,18 @@ class Routine:
 
 
 Statement = (
-    Drive | Assign | Label | Jump | If | Call | Return | End | Pause | Kept | Point | Routine
+    Drive
+    | Assign
+    | Label
+    | Jump
+    | If
+    | Call
+    | Return
+    | End
+    | Pause
+    | Kept
+    | NumberedPoint
+    | Routine
 )
 
 
@@ -232,7 +243,7 @@ class LineProgram:
     file: str
     text: str
     routines: Mapping[str, Body]
-    points: Mapping[tuple[str, int], Point] = field(default_factory=dict)
+    points: Mapping[tuple[str, int], NumberedPoint] = field(default_factory=dict)
 
 
 def read_lines(text: str, file: str, grammar: Grammar, name: str) -> LineProgram:
@@ -249,7 +260,7 @@ def read_lines(text: str, file: str, grammar: Grammar, name: str) -> LineProgram
     """
     source = SourceText(unbroken(text), file)
     routines: dict[str, list[Statement]] = {"": []}
-    points: dict[tuple[str, int], Point] = {}
+    points: dict[tuple[str, int], NumberedPoint] = {}
     own, labels = routines[""], set[str]()
     for found in _LINE.finditer(source.text):
         words = found[0].strip()
@@ -262,7 +273,7 @@ def read_lines(text: str, file: str, grammar: Grammar, name: str) -> LineProgram
             if statement.name.lower() in routines:
                 raise SourceError(f"there are two routines {statement.name}", line.span)
             own, labels = routines.setdefault(statement.name.lower(), []), set()
-        elif isinstance(statement, Point):
+        elif isinstance(statement, NumberedPoint):
             key = point_key(statement.datum)
             if key in points:
                 raise SourceError(f"there are two points {line.text.split()[0]}", line.span)

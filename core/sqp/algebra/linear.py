@@ -39,7 +39,7 @@ class Definiteness:
         )
 
 
-class Places(NamedTuple):
+class EntryIndices(NamedTuple):
     """Where entries of [P, Aᵀ; A, D] go in the data that `factorise` takes.
 
     Args:
@@ -78,7 +78,7 @@ class SaddlePattern:
         of_P, of_A, of_diagonal = np.split(ldl.places, ends)
         places = np.full(P.size, -1)
         places[upper] = of_P
-        self.places = Places(places, of_A, of_diagonal)
+        self.places = EntryIndices(places, of_A, of_diagonal)
 
     def is_of(self, P: Sparsity, A: Sparsity) -> bool:
         """Whether it is of these patterns."""
@@ -169,7 +169,7 @@ class _Matrices(NamedTuple):
 def _solve(
     matrices: _Matrices,
     factors: Factors,
-    places: Places,
+    places: EntryIndices,
     right: FloatArray,
     active: BoolArray,
     values: FloatArray,

@@ -18,10 +18,10 @@ from numba import njit
 
 from ...arrays import FloatArray
 from ..algebra.ldl import Factors, substitute
-from ..algebra.linear import Places
+from ..algebra.linear import EntryIndices
 from .interior_point_scaling import Scaled, values
 from .interior_point_state import (
-    Point,
+    Iterate,
     Residuals,
     proves_infeasible,
     proves_unbounded,
@@ -49,7 +49,7 @@ _ENOUGH = 1e-6
 def minimise(
     qp: Scaled,
     factors: Factors,
-    places: Places,
+    places: EntryIndices,
     guess: FloatArray,
     accuracy: float,
     iterations: int,
@@ -72,7 +72,7 @@ def minimise(
     """
     n, m, sides = len(qp.q), len(qp.target), len(qp.place)
     system = make_system(qp, factors, places)
-    point = Point(np.zeros(n), np.zeros(n + m), np.ones(sides), np.ones(sides))
+    point = Iterate(np.zeros(n), np.zeros(n + m), np.ones(sides), np.ones(sides))
     if len(guess):
         _start_from(qp, guess, point)
     elif not _start(qp, system, point):
@@ -108,7 +108,7 @@ def minimise(
 
 
 @njit(cache=True, error_model="numpy")
-def _start(qp: Scaled, system: System, point: Point) -> bool:
+def _start(qp: Scaled, system: System, point: Iterate) -> bool:
     """The least-squares solution with all sides as soft targets, slacks and multipliers shifted
     until they are positive."""
     n = len(qp.q)
@@ -144,7 +144,7 @@ def _start(qp: Scaled, system: System, point: Point) -> bool:
 
 
 @njit(cache=True, error_model="numpy")
-def _start_from(qp: Scaled, guess: FloatArray, point: Point) -> None:
+def _start_from(qp: Scaled, guess: FloatArray, point: Iterate) -> None:
     """d = 0 with known multipliers; slacks and multipliers moved away from zero."""
     n = len(qp.q)
     for i in range(len(qp.target)):
@@ -161,7 +161,7 @@ def _start_from(qp: Scaled, guess: FloatArray, point: Point) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def _step(qp: Scaled, point: Point, at: Residuals, system: System, floor: float) -> bool:
+def _step(qp: Scaled, point: Iterate, at: Residuals, system: System, floor: float) -> bool:
     """A predictor, a corrector and the step; False if the factorisation breaks down.
 
     Args:
@@ -205,7 +205,7 @@ def _step(qp: Scaled, point: Point, at: Residuals, system: System, floor: float)
 
 
 @njit(cache=True, error_model="numpy")
-def _weigh(qp: Scaled, point: Point, system: System) -> None:
+def _weigh(qp: Scaled, point: Iterate, system: System) -> None:
     """The sides' share of the diagonal."""
     system.weight[:] = 0.0
     for k in range(len(qp.place)):
@@ -214,7 +214,9 @@ def _weigh(qp: Scaled, point: Point, system: System) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def _direction(qp: Scaled, point: Point, at: Residuals, system: System, refinements: int) -> float:
+def _direction(
+    qp: Scaled, point: Iterate, at: Residuals, system: System, refinements: int
+) -> float:
     """The step for the sides' products to gain ``system.product``; how far it may go."""
     n = len(qp.q)
     push, right, weight = system.push, system.right, system.weight

@@ -14,7 +14,7 @@ _CERTIFICATE = 1e-8
 _FAR = 1e3
 
 
-class Point(NamedTuple):
+class Iterate(NamedTuple):
     """An iterate, scaled.
 
     Args:
@@ -46,7 +46,7 @@ class Residuals(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def residuals(qp: Scaled, point: Point, at: Residuals) -> tuple[float, float]:
+def residuals(qp: Scaled, point: Iterate, at: Residuals) -> tuple[float, float]:
     """Fill in the residuals and y of the sides; the largest in proportion to what it is part of,
     unscaled, and how large a gap counts as one, scaled."""
     n, m = len(qp.q), len(qp.target)
@@ -93,7 +93,7 @@ def residuals(qp: Scaled, point: Point, at: Residuals) -> tuple[float, float]:
 
 
 @njit(cache=True, error_model="numpy")
-def proves_infeasible(qp: Scaled, point: Point) -> bool:
+def proves_infeasible(qp: Scaled, point: Iterate) -> bool:
     """Whether the multipliers alone contradict the sides: Aᵀy + z = 0 with a positive gap."""
     n = len(qp.q)
     y = point.y
@@ -117,7 +117,7 @@ def proves_infeasible(qp: Scaled, point: Point) -> bool:
 
 
 @njit(cache=True, error_model="numpy")
-def proves_unbounded(qp: Scaled, point: Point, at: Residuals) -> bool:
+def proves_unbounded(qp: Scaled, point: Iterate, at: Residuals) -> bool:
     """Whether the objective falls along d without end, and no side is in the way."""
     n = len(qp.q)
     largest = 0.0

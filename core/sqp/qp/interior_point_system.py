@@ -9,7 +9,7 @@ from numba import njit
 
 from ...arrays import FloatArray
 from ..algebra.ldl import Factors, factorise, substitute
-from ..algebra.linear import Places
+from ..algebra.linear import EntryIndices
 from .interior_point_scaling import Scaled
 
 _LINEAR = 1e-11
@@ -28,7 +28,7 @@ class System(NamedTuple):
     """
 
     factors: Factors
-    places: Places
+    places: EntryIndices
     data: FloatArray
     diagonal: FloatArray
     right: FloatArray
@@ -90,7 +90,7 @@ def solved(qp: Scaled, system: System, refinements: int) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def make_system(qp: Scaled, factors: Factors, places: Places) -> System:
+def make_system(qp: Scaled, factors: Factors, places: EntryIndices) -> System:
     size, sides = len(qp.unit), len(qp.place)
     data = np.zeros(len(factors.rows))
     for k in range(len(qp.P)):

@@ -14,19 +14,19 @@ from .motion.scheme import SchemeKind
 from .optimize import optimize
 from .search.effort import Effort
 from .search.surroundings import Surroundings
-from .task.task import ControlLimits, Objective, Task, TorqueLine, Waypoint
+from .task.task import ControlLimits, MotionTask, Objective, TorqueLine, Waypoint
 
 __all__ = [
     "Audit",
     "ControlLimits",
     "Effort",
     "Motion",
+    "MotionTask",
     "Objective",
     "Optimum",
     "SchemeKind",
     "Step",
     "Surroundings",
-    "Task",
     "TorqueLine",
     "Waypoint",
     "energy_by_joint",

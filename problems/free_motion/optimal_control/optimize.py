@@ -20,13 +20,13 @@ from .search.effort import Effort
 from .search.opening import opening
 from .search.search import Report, Search
 from .search.surroundings import Surroundings
-from .task.limits import Limits
+from .task.limits import MotionLimits
 from .task.sampled import Plant
-from .task.task import Task
+from .task.task import MotionTask
 
 
 def optimize(
-    task: Task,
+    task: MotionTask,
     around: Surroundings | None = None,
     effort: Effort | None = None,
     vias: Sequence[ArrayLike] | None = None,
@@ -49,11 +49,11 @@ def optimize(
         MotionError: the robot collides at a station or on the path to begin with, or no motion
             within the limits was found.
     """
-    of_kind("task", task, Task)
+    of_kind("task", task, MotionTask)
     of_kind("around", around, Surroundings | None)
     of_kind("effort", effort, Effort | None)
     effort = effort or Effort()
-    limits = Limits.of(task)
+    limits = MotionLimits.of(task)
     needed = limits.dynamic or task.objective.time_weight < 1.0
     plant = Plant(task) if needed else None
     check_task(task, limits, plant, around, effort.scheme)
@@ -75,7 +75,7 @@ def optimize(
     return _optimum(task, guess, searches)
 
 
-def _hurried(task: Task) -> Task:
+def _hurried(task: MotionTask) -> MotionTask:
     """The task for time alone.
 
     Where energy counts among obstacles it is done first. From a stop at every corner, slow motions
@@ -85,7 +85,7 @@ def _hurried(task: Task) -> Task:
     return replace(task, objective=replace(task.objective, time_weight=1.0))
 
 
-def _check_first(task: Task, guess: Guess, around: Surroundings) -> None:
+def _check_first(task: MotionTask, guess: Guess, around: Surroundings) -> None:
     found = prove(task, guess.motion, around.scene, around.clearance)
     if not found.certificate.proven:
         raise MotionError(
@@ -94,7 +94,7 @@ def _check_first(task: Task, guess: Guess, around: Surroundings) -> None:
         )
 
 
-def _optimum(task: Task, guess: Guess, searches: Sequence[Search]) -> Optimum:
+def _optimum(task: MotionTask, guess: Guess, searches: Sequence[Search]) -> Optimum:
     """What the last search has found."""
     search = searches[-1]
     steps = tuple(step for each in searches for step in each.steps)

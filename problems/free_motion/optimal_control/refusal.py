@@ -7,16 +7,16 @@ import numpy as np
 from ....core.errors import InputError, MotionError
 from .motion.scheme import SchemeKind
 from .search.surroundings import Surroundings
-from .task.limits import Limits
+from .task.limits import MotionLimits
 from .task.sampled import Plant, State
-from .task.task import Task
+from .task.task import MotionTask
 
 _IN_RANGE = 1e-9
 
 
 def check_task(
-    task: Task,
-    limits: Limits,
+    task: MotionTask,
+    limits: MotionLimits,
     plant: Plant | None,
     around: Surroundings | None,
     scheme: SchemeKind,
@@ -48,7 +48,7 @@ def check_task(
             _check_clear(name, q, around)
 
 
-def _check_bounded(task: Task, limits: Limits, scheme: SchemeKind) -> None:
+def _check_bounded(task: MotionTask, limits: MotionLimits, scheme: SchemeKind) -> None:
     """What cannot be bounded between nodes."""
     if scheme is SchemeKind.CONSTANT and np.isfinite(limits.jerk).any():
         raise InputError(
@@ -63,7 +63,7 @@ def _check_bounded(task: Task, limits: Limits, scheme: SchemeKind) -> None:
         )
 
 
-def check_corners(task: Task, points: np.ndarray) -> None:
+def check_corners(task: MotionTask, points: np.ndarray) -> None:
     """Refuse corners (L, n), of the joints that move, out of their ranges.
 
     Raises:
@@ -75,11 +75,11 @@ def check_corners(task: Task, points: np.ndarray) -> None:
         _check_range(task, f"corner {k} of the path to begin with", q)
 
 
-def _station_names(task: Task) -> list[str]:
+def _station_names(task: MotionTask) -> list[str]:
     return ["start", *(f"waypoint {k + 1}" for k in range(len(task.waypoints))), "end"]
 
 
-def _check_range(task: Task, name: str, q: np.ndarray) -> None:
+def _check_range(task: MotionTask, name: str, q: np.ndarray) -> None:
     limits = task.robot.limits
     out = (q < limits.lower - _IN_RANGE) | (q > limits.upper + _IN_RANGE)
     if out.any():
@@ -92,7 +92,7 @@ def _check_range(task: Task, name: str, q: np.ndarray) -> None:
         )
 
 
-def _check_held(task: Task, limits: Limits, plant: Plant, names: list[str]) -> None:
+def _check_held(task: MotionTask, limits: MotionLimits, plant: Plant, names: list[str]) -> None:
     """Torque limits have to hold the arm where it rests."""
     resting = [not np.any(task.start_velocity), *(w.stop for w in task.waypoints)]
     resting.append(not np.any(task.end_velocity))

@@ -4,7 +4,7 @@ from .cones import TuningError
 from .drives import Drive, TorqueCurve, drives_of
 from .path import FixedPath, Rigid
 from .result import Tuned, Way
-from .task import Objective, Task
+from .task import Objective, TuningTask
 from .tune import tune, tune_by_cones, tune_by_sweeps, tune_in_sequence
 
 __all__ = [
@@ -12,10 +12,10 @@ __all__ = [
     "FixedPath",
     "Objective",
     "Rigid",
-    "Task",
     "TorqueCurve",
     "Tuned",
     "TuningError",
+    "TuningTask",
     "Way",
     "drives_of",
     "tune",

@@ -24,7 +24,7 @@ import scipy.sparse as sp
 from ....core.arrays import FloatArray
 from ....core.errors import FlybyError
 from .rows import Knots, Rows, jerk_rows, kinematic_rows, torque_rows
-from .task import Task
+from .task import TuningTask
 
 _MOST = 1e4
 """Share of the known motion's x that no knot exceeds."""
@@ -50,7 +50,7 @@ class ConeProgram:
         unit: (K + 1,), x of a motion that is about as fast as can be; 0 at stops alone.
     """
 
-    def __init__(self, task: Task, unit: FloatArray) -> None:
+    def __init__(self, task: TuningTask, unit: FloatArray) -> None:
         self._task = task
         self._unit = unit
         self._knots = Knots(task.path)

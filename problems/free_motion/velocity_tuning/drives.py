@@ -80,21 +80,21 @@ class TorqueCurve:
         return np.asarray(np.interp(speed, self.speed, self.torque))
 
     @cached_property
-    def runs(self) -> tuple[Run, ...]:
+    def runs(self) -> tuple[FallingCurve, ...]:
         """Convex curves of which this one is the least."""
         if len(self.speed) == 1:
-            return (Run(np.zeros(1), np.array(self.torque), np.zeros(1)),)
+            return (FallingCurve(np.zeros(1), np.array(self.torque), np.zeros(1)),)
         points = np.array([self.speed, self.torque]).T
         slopes = list(np.diff(points[:, 1]) / np.diff(points[:, 0]))
         bounds = [0, *(k for k in range(1, len(slopes)) if slopes[k] < slopes[k - 1]), len(slopes)]
         runs = []
         for first, last in pairwise(bounds):
             part = slice(first, last)
-            runs.append(Run(points[part, 0], points[part, 1], np.array(slopes[part])))
+            runs.append(FallingCurve(points[part, 0], points[part, 1], np.array(slopes[part])))
         if slopes[-1] < 0.0:
             # Constant beyond the last point: a further line of the last, convex run.
             run = runs[-1]
-            runs[-1] = Run(
+            runs[-1] = FallingCurve(
                 np.append(run.speed, points[-1, 0]),
                 np.append(run.torque, points[-1, 1]),
                 np.append(run.slope, 0.0),
@@ -103,7 +103,7 @@ class TorqueCurve:
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class FallingCurve:
     """A convex falling curve: lines from points on; the first also before its point.
 
     Args:

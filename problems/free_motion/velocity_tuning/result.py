@@ -12,7 +12,7 @@ from ....core.motion.emulator.controller import Controller
 from ....core.motion.timing.energy import by_load, loads_of
 from ....core.motion.timing.timing import Settling, Timing
 from ....core.program.program import Program
-from .task import Task
+from .task import TuningTask
 from .usage import excess, jerks, usage
 
 
@@ -38,7 +38,7 @@ class Tuned:
         iterations: convex programs that were solved.
     """
 
-    task: Task
+    task: TuningTask
     x: FloatArray
     way: Way
     iterations: int = 0

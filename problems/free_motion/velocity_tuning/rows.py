@@ -22,9 +22,9 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from ....core.arrays import FloatArray, IntArray
-from .drives import Run
+from .drives import FallingCurve
 from .path import FixedPath
-from .task import Task
+from .task import TuningTask
 
 FLOOR = 1e-10
 """Share of the fastest motion's x at a knot below which no tangent is taken."""
@@ -69,7 +69,7 @@ class Knots:
         return sp.csr_array(made)
 
 
-def kinematic_rows(task: Task, knots: Knots) -> Iterator[Rows]:
+def kinematic_rows(task: TuningTask, knots: Knots) -> Iterator[Rows]:
     """Both sides of the rows that the path is stamped by, constant torque limits included."""
     limits = task.rows() if not _varying(task) else task.path.limits
     matrix = knots.combination(limits.a, limits.b)
@@ -79,7 +79,7 @@ def kinematic_rows(task: Task, knots: Knots) -> Iterator[Rows]:
         yield _normalised(sign * matrix[live], flat[live])
 
 
-def torque_rows(task: Task, knots: Knots, at: FloatArray) -> Iterator[Rows]:
+def torque_rows(task: TuningTask, knots: Knots, at: FloatArray) -> Iterator[Rows]:
     """Torque limits that depend on speed, or torques that do.
 
     Args:
@@ -112,7 +112,7 @@ def torque_rows(task: Task, knots: Knots, at: FloatArray) -> Iterator[Rows]:
                 )
 
 
-def jerk_rows(task: Task, knots: Knots, at: FloatArray) -> Iterator[Rows]:
+def jerk_rows(task: TuningTask, knots: Knots, at: FloatArray) -> Iterator[Rows]:
     """Jerk limits, with the intervals' times by their tangents at a motion that is known."""
     if task.jerk is None:
         return
@@ -162,7 +162,9 @@ def _time_tangents(path: FixedPath, at: FloatArray) -> tuple[FloatArray, FloatAr
     return time - slopes[0] * at[:-1] - slopes[1] * at[1:], slopes[0], slopes[1]
 
 
-def _limit_tangent(run: Run, rate: FloatArray, root: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _limit_tangent(
+    run: FallingCurve, rate: FloatArray, root: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Height at x = 0 and slope in x of the tangent to T(rate √x)."""
     height, slope = run.lines(rate * root)
     by_root = slope * rate
@@ -174,7 +176,7 @@ def _over(value: FloatArray, by: FloatArray) -> FloatArray:
     return np.asarray(np.where(by > 0.0, value / np.where(by > 0.0, by, 1.0), 0.0))
 
 
-def _varying(task: Task) -> bool:
+def _varying(task: TuningTask) -> bool:
     """Whether torques or their limits depend on speed."""
     return task.limited and any(drive.torque.falls or drive.viscous > 0.0 for drive in task.drives)
 

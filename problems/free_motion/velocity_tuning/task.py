@@ -46,7 +46,7 @@ FASTEST = Objective()
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
+class TuningTask:
     """A path with all that limits the motion on it, from rest to rest.
 
     Args:
@@ -66,12 +66,13 @@ class Task:
     objective: Objective = FASTEST
 
     def __post_init__(self) -> None:
-        of_kind("Task.path", self.path, FixedPath)
-        of_kind("Task.objective", self.objective, Objective)
-        all_of_kind("Task.drives", self.drives, Drive)
+        of_kind("TuningTask.path", self.path, FixedPath)
+        of_kind("TuningTask.objective", self.objective, Objective)
+        all_of_kind("TuningTask.drives", self.drives, Drive)
         if len(self.drives) not in (0, self.path.size):
             raise InputError(
-                f"Task.drives: one an axis ({', '.join(self.path.names)}), not {len(self.drives)}"
+                f"TuningTask.drives: one an axis ({', '.join(self.path.names)}), "
+                f"not {len(self.drives)}"
             )
         if self.jerk is not None:
             object.__setattr__(self, "jerk", self._checked_jerk())
@@ -133,8 +134,8 @@ class Task:
             jerk = np.empty(0)
         if jerk.shape != (self.path.size,) or not (jerk > 0.0).all():
             raise InputError(
-                f"Task.jerk: one number above zero an axis ({', '.join(self.path.names)}), not "
-                f"{self.jerk!r}"
+                f"TuningTask.jerk: one number above zero an axis ({', '.join(self.path.names)}), "
+                f"not {self.jerk!r}"
             )
         return jerk
 

@@ -21,7 +21,7 @@ from ...checks import of_kind
 from .cones import ConeProgram, Shares, TuningError
 from .result import Tuned, Way
 from .rows import FLOOR
-from .task import FASTEST, Task
+from .task import FASTEST, TuningTask
 from .usage import excess
 
 _ROUNDS = 40
@@ -37,7 +37,7 @@ Report = Callable[[Tuned], object]
 """Is told of every motion of a sequence; a true answer ends it with the best so far."""
 
 
-def tune(task: Task, report: Report | None = None) -> Tuned:
+def tune(task: TuningTask, report: Report | None = None) -> Tuned:
     """The best motion along a fixed path, by the simplest way that finds it.
 
     Args:
@@ -46,17 +46,17 @@ def tune(task: Task, report: Report | None = None) -> Tuned:
 
     Raises:
         InputError: torques are wanted and not known.
-        StandingStillError: a torque limit forbids standing still; raised by `Task` already.
+        StandingStillError: a torque limit forbids standing still; raised by `TuningTask` already.
         StampingError: the path cannot be passed within its limits.
         TuningError: no motion is short enough, or the solver failed.
     """
-    of_kind("task", task, Task)
+    of_kind("task", task, TuningTask)
     if not task.convex:
         return tune_in_sequence(task, report)
     return tune_by_sweeps(task) if _timely(task) else tune_by_cones(task)
 
 
-def tune_by_sweeps(task: Task) -> Tuned:
+def tune_by_sweeps(task: TuningTask) -> Tuned:
     """The fastest motion, by two sweeps.
 
     Raises:
@@ -69,7 +69,7 @@ def tune_by_sweeps(task: Task) -> Tuned:
     return found
 
 
-def tune_by_cones(task: Task) -> Tuned:
+def tune_by_cones(task: TuningTask) -> Tuned:
     """The best motion, by one cone program (two where both time and energy count).
 
     Raises:
@@ -87,7 +87,7 @@ def tune_by_cones(task: Task) -> Tuned:
     return Tuned(task, ConeProgram(task, unit).solve(shares, unit), Way.CONVEX, 1)
 
 
-def tune_in_sequence(task: Task, report: Report | None = None) -> Tuned:
+def tune_in_sequence(task: TuningTask, report: Report | None = None) -> Tuned:
     """The best motion found by a sequence of cone programs.
 
     Raises:
@@ -123,7 +123,9 @@ def tune_in_sequence(task: Task, report: Report | None = None) -> Tuned:
     return best
 
 
-def _between(task: Task, shares: Shares, best: Tuned, x: FloatArray, round_: int) -> Tuned | None:
+def _between(
+    task: TuningTask, shares: Shares, best: Tuned, x: FloatArray, round_: int
+) -> Tuned | None:
     """The best of motions on the way to one from a solver; None where none is better.
 
     The rows that both keep are convex, so that all between them keep them too.
@@ -144,17 +146,17 @@ def _cost(shares: Shares, motion: Tuned) -> float:
     return cost + shares.energy * motion.energy if shares.energy > 0.0 else cost
 
 
-def _timely(task: Task) -> bool:
+def _timely(task: TuningTask) -> bool:
     return task.objective.time_weight == 1.0
 
 
-def _hurried(task: Task) -> Task:
+def _hurried(task: TuningTask) -> TuningTask:
     """The same with time alone as its objective."""
     consumption = task.objective.consumption
     return replace(task, objective=replace(FASTEST, consumption=consumption))
 
 
-def _shares(task: Task, fastest: Tuned) -> Shares:
+def _shares(task: TuningTask, fastest: Tuned) -> Shares:
     """Time and energy in shares of those of the fastest motion."""
     most = fastest.flow
     if most == 0.0:
@@ -163,7 +165,7 @@ def _shares(task: Task, fastest: Tuned) -> Shares:
     return Shares(weight / fastest.duration, (1.0 - weight) / most)
 
 
-def _unit(task: Task) -> FloatArray:
+def _unit(task: TuningTask) -> FloatArray:
     """(K + 1,), x of the fastest motion within what the sweeps know; above zero off stops."""
     x = stamp(task.rows()).x.copy()
     moving = ~task.path.stops
@@ -171,7 +173,7 @@ def _unit(task: Task) -> FloatArray:
     return x
 
 
-def _start(task: Task, unit: FloatArray) -> FloatArray:
+def _start(task: TuningTask, unit: FloatArray) -> FloatArray:
     """A motion within all limits, by slowing the fastest one down throughout."""
     factor = 1.0
     while excess(task, factor * unit) > 0.0:
@@ -184,13 +186,13 @@ def _start(task: Task, unit: FloatArray) -> FloatArray:
     return np.asarray(factor * unit)
 
 
-def _is_tight(task: Task, least: float) -> bool:
+def _is_tight(task: TuningTask, least: float) -> bool:
     """Whether no motion but the fastest is short enough, by what a solver can tell apart."""
     duration = task.objective.duration
     return duration is not None and least > duration * (1.0 - _WITHIN)
 
 
-def _check_duration(task: Task, least: float) -> None:
+def _check_duration(task: TuningTask, least: float) -> None:
     """Refuse a bound on the duration that the fastest motion exceeds."""
     duration = task.objective.duration
     if duration is not None and least > duration * (1.0 + _WITHIN):

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from ....core.arrays import FloatArray
-from .task import Task
+from .task import TuningTask
 
 SPEED = "speed"
 """Name of what bounds the speed alone: joints, TCP, tool, programmed speeds."""
 
 
-def jerks(task: Task, x: FloatArray) -> FloatArray:
+def jerks(task: TuningTask, x: FloatArray) -> FloatArray:
     """(K + 1, N) rad/s³, as `Tuned.jerk`; at a stop the larger of both sides'.
 
     Args:
@@ -32,7 +32,7 @@ def jerks(task: Task, x: FloatArray) -> FloatArray:
     return np.asarray(np.where(stops[:, None], np.maximum(into, out), passed))
 
 
-def middle_accelerations(task: Task, x: FloatArray) -> FloatArray:
+def middle_accelerations(task: TuningTask, x: FloatArray) -> FloatArray:
     """(K, N), the mean of the joints' accelerations at both ends of each interval."""
     path = task.path
     u = np.diff(x) / (2.0 * path.limits.spacing)
@@ -40,7 +40,7 @@ def middle_accelerations(task: Task, x: FloatArray) -> FloatArray:
     return np.asarray((path.dq * u[:, None, None] + path.ddq * ends).mean(axis=1))
 
 
-def usage(task: Task, x: FloatArray) -> dict[str, FloatArray]:
+def usage(task: TuningTask, x: FloatArray) -> dict[str, FloatArray]:
     """Share (K,) of each limit that is used in each interval, at the worse of its ends; 1 is all.
 
     Args:
@@ -75,6 +75,6 @@ def usage(task: Task, x: FloatArray) -> dict[str, FloatArray]:
     return found
 
 
-def excess(task: Task, x: FloatArray) -> float:
+def excess(task: TuningTask, x: FloatArray) -> float:
     """Largest share by which a limit is exceeded at a knot; 0 for none."""
     return max(0.0, *(float(shares.max()) - 1.0 for shares in usage(task, x).values()))

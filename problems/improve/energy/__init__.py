@@ -1,16 +1,16 @@
 """The energy of a program: `pareto` and `optimize_energy`, through the emulator."""
 
-from .front import Front, Point
-from .options import Goal, Progress, Scope, Task
+from .front import Front, FrontPoint
+from .options import EnergyTask, Goal, Progress, Scope
 from .pareto import optimize_energy, pareto
 
 __all__ = [
+    "EnergyTask",
     "Front",
+    "FrontPoint",
     "Goal",
-    "Point",
     "Progress",
     "Scope",
-    "Task",
     "optimize_energy",
     "pareto",
 ]

@@ -17,7 +17,7 @@ from ....core.program.program import Program
 
 
 @dataclass(frozen=True, eq=False)
-class Point:
+class FrontPoint:
     """One program.
 
     Args:
@@ -46,7 +46,7 @@ class Point:
         run: Run,
         consumption: Consumption,
         certificate: Certificate | None,
-    ) -> Point:
+    ) -> FrontPoint:
         """The figures of a driven program."""
         made = controller.energy(run.program, run.timing, consumption)
         return cls(
@@ -69,8 +69,8 @@ class Front:
         notes: what was found on the way.
     """
 
-    given: Point
-    points: tuple[Point, ...]
+    given: FrontPoint
+    points: tuple[FrontPoint, ...]
     unit: str
     notes: tuple[Note, ...] = ()
 
@@ -81,8 +81,8 @@ class Front:
 
 
 def without_dominated(
-    points: Iterable[Point], worth: float = 0.0, near: float = 0.0
-) -> tuple[Point, ...]:
+    points: Iterable[FrontPoint], worth: float = 0.0, near: float = 0.0
+) -> tuple[FrontPoint, ...]:
     """Those that no other is both as fast and as frugal as, fastest first.
 
     Args:
@@ -91,7 +91,7 @@ def without_dominated(
         near: share of the time within which programs take equally long: of these the most frugal
             one is kept.
     """
-    kept: list[Point] = []
+    kept: list[FrontPoint] = []
     fastest = -math.inf
     for point in sorted(points, key=lambda p: (p.duration, p.energy)):
         if kept and kept[-1].energy - point.energy <= worth * abs(kept[-1].energy):

@@ -11,9 +11,9 @@ from ....core.errors import InputError
 from ....core.motion.model.consumption import SQUARED_TORQUE, Consumption
 from ...checks import positive, within
 from ..waypoints import Effort
-from ..waypoints import Task as Wishes
+from ..waypoints import WaypointTask as Wishes
 
-__all__ = ["Effort", "Goal", "Progress", "Report", "Scope", "Task", "Wishes"]
+__all__ = ["Effort", "EnergyTask", "Goal", "Progress", "Report", "Scope", "Wishes"]
 
 
 class Scope(StrEnum):
@@ -28,7 +28,7 @@ class Scope(StrEnum):
 
 
 @dataclass(frozen=True)
-class Task:
+class EnergyTask:
     """What is wanted, and what must stay.
 
     Args:
@@ -49,7 +49,7 @@ class Task:
 
     def __post_init__(self) -> None:
         if not 0.0 < self.slowest <= 1.0:
-            raise InputError(f"Task.slowest lies in (0, 1], not {self.slowest}")
+            raise InputError(f"EnergyTask.slowest lies in (0, 1], not {self.slowest}")
 
 
 @dataclass(frozen=True)

@@ -15,19 +15,19 @@ from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
 from ....core.program.program import Program
 from ...reading_back import ReadBack
-from ..nonsmooth_sqp import Memory, Settings, search, violation
+from ..nonsmooth_sqp import Memory, SearchEffort, search, violation
 from ..solve_round_verify import Feasibility, solve_round_verify
 from ..waypoints.aim import FINE, Aim, with_room
 from ..waypoints.block_problem import BlockProblem
 from ..waypoints.blocks import Block
 from ..waypoints.variables import Variables
-from .options import Effort, Goal, Task
+from .options import Effort, EnergyTask, Goal
 from .paced_problem import Evaluated, Fixed, PacedProblem
 from .pacing import Pacing
 
 _NEAR, _NEAR_BOX = 45, 0.3
 """Iterations at most and first trust box of a search that begins at a neighbour's values."""
-_REFINING, _SETTLING = Settings(20, 0.2), Settings(10, 0.1)
+_REFINING, _SETTLING = SearchEffort(20, 0.2), SearchEffort(10, 0.1)
 """Of a refinement, and of one with accelerations rounded."""
 _FEASIBLE = 1e-5
 _EARLY = 2e-5
@@ -40,7 +40,7 @@ _HOPELESS = 0.02
 
 
 @dataclass(frozen=True, eq=False)
-class Candidate:
+class PacedPoint:
     """Values of the variables.
 
     Args:
@@ -101,7 +101,7 @@ class PacedSearch:
     variables: Variables | None
     scenes: SceneOf | None
     clearance: float
-    task: Task
+    task: EnergyTask
     effort: Effort
     read_back: ReadBack
 
@@ -113,7 +113,7 @@ class PacedSearch:
 
     # -------------------------------------------------------------------------- searching
 
-    def measured(self, goal: Goal, x: FloatArray) -> Candidate:
+    def measured(self, goal: Goal, x: FloatArray) -> PacedPoint:
         """Values judged by a goal.
 
         Raises:
@@ -124,19 +124,19 @@ class PacedSearch:
             raise MotionError("the program cannot be driven as it is", 0)
         return _candidate(point)
 
-    def search(self, goal: Goal, x: FloatArray) -> Candidate:
+    def search(self, goal: Goal, x: FloatArray) -> PacedPoint:
         """The best values found from a start.
 
         Raises:
             MotionError: it cannot be driven.
         """
-        return self._found(goal, x, Settings(self.effort.iterations))
+        return self._found(goal, x, SearchEffort(self.effort.iterations))
 
-    def search_near(self, goal: Goal, x: FloatArray) -> Candidate:
+    def search_near(self, goal: Goal, x: FloatArray) -> PacedPoint:
         """The same from values that serve a goal much like this one."""
-        return self._found(goal, x, Settings(min(_NEAR, self.effort.iterations), _NEAR_BOX))
+        return self._found(goal, x, SearchEffort(min(_NEAR, self.effort.iterations), _NEAR_BOX))
 
-    def _found(self, goal: Goal, x: FloatArray, settings: Settings) -> Candidate:
+    def _found(self, goal: Goal, x: FloatArray, settings: SearchEffort) -> PacedPoint:
         found = self._searched(goal, self.pacing, x, settings)
         if found is None:
             raise MotionError("the program cannot be driven as it is", 0)
@@ -147,9 +147,9 @@ class PacedSearch:
         goal: Goal,
         pacing: Pacing,
         x: FloatArray,
-        settings: Settings,
+        settings: SearchEffort,
         aim: Aim | None = None,
-    ) -> Candidate | None:
+    ) -> PacedPoint | None:
         """From one start; None where it cannot be driven."""
         if goal.latest is not None:
             goal = replace(goal, latest=goal.latest * (1.0 - _EARLY))
@@ -333,5 +333,5 @@ class _Refined:
         return False
 
 
-def _candidate(point: Evaluated) -> Candidate:
-    return Candidate(point.x, point.duration, point.energy, violation(point), point.objective)
+def _candidate(point: Evaluated) -> PacedPoint:
+    return PacedPoint(point.x, point.duration, point.energy, violation(point), point.objective)

@@ -23,7 +23,7 @@ from ....core.program.move import Move, MoveJ
 from ....core.program.program import Program
 from ....core.robot.model import Robot
 from ....core.translation.emulation import Peaks
-from ..waypoints import Task as Wishes
+from ..waypoints import WaypointTask as Wishes
 
 _STILL = 1e-6
 """m/s below which the TCP does not move: the move turns the tool."""
@@ -41,7 +41,7 @@ _LEAST_ACCELERATION = 0.02
 
 
 @dataclass(frozen=True)
-class Number:
+class SpeedNumber:
     """One number of one move's speed.
 
     Args:
@@ -86,7 +86,7 @@ class Pacing:
         lower, upper, start, scale: (n,), of the logarithms.
     """
 
-    def __init__(self, numbers: Sequence[Number]) -> None:
+    def __init__(self, numbers: Sequence[SpeedNumber]) -> None:
         self.numbers = tuple(numbers)
         self.lower, self.upper, self.start = (
             np.log([getattr(number, name) for number in numbers])
@@ -96,7 +96,7 @@ class Pacing:
 
     @property
     def size(self) -> int:
-        """Number of variables."""
+        """SpeedNumber of variables."""
         return len(self.numbers)
 
     def applied(self, program: Program, y: FloatArray) -> Program:
@@ -175,7 +175,7 @@ def make_pacing(
         slowest: share of the speed that a move reaches below which it is not driven.
     """
     peaks = Peaks.of(timing)
-    numbers: list[Number] = []
+    numbers: list[SpeedNumber] = []
     for k, i in enumerate(timing.path.route.moves):
         move = program.moves[i]
         if _held(move, i, wishes):
@@ -209,7 +209,7 @@ def _speed(
     robot: Robot,
     dialect: Dialect | None,
     slowest: float,
-) -> list[Number]:
+) -> list[SpeedNumber]:
     """The number by which a move is driven faster or slower."""
     joint = isinstance(move, MoveJ)
     name = dialect.pace if joint and dialect is not None else "tcp"
@@ -224,7 +224,7 @@ def _speed(
     most = 2.0 * reached if programmed is None else programmed
     least = slowest * min(reached, most)
     step = _share_step(dialect) if name in _SHARES else _STEP
-    return [Number(i, name, min(reached, most), max(least, step), most, step)]
+    return [SpeedNumber(i, name, min(reached, most), max(least, step), most, step)]
 
 
 def _reached(name: str, peaks: Peaks, k: int, robot: Robot) -> float:
@@ -241,7 +241,7 @@ def _reached(name: str, peaks: Peaks, k: int, robot: Robot) -> float:
 
 def _acceleration(
     i: int, move: Move, robot: Robot, dialect: Dialect | None, leading: int
-) -> list[Number]:
+) -> list[SpeedNumber]:
     """The number by which it accelerates harder or more gently."""
     if _said(dialect, move, "joint_acceleration_fraction"):
         most = move.speed.joint_acceleration_fraction
@@ -257,7 +257,7 @@ def _acceleration(
                 return []
             programmed = float(robot.limits.acceleration[leading])
         most, least, step = programmed, _LEAST_ACCELERATION * programmed, _STEP
-    return [Number(i, name, most, least, most, step)] if least < most else []
+    return [SpeedNumber(i, name, most, least, most, step)] if least < most else []
 
 
 def _share_step(dialect: Dialect | None) -> float:

@@ -25,11 +25,11 @@ from ..waypoints import optimize_waypoints, optimize_zones
 from ..waypoints.changeable import select
 from ..waypoints.freed_stops import with_freed_stops
 from ..waypoints.options import Freedom
-from ..waypoints.options import Task as Wishes
+from ..waypoints.options import WaypointTask as Wishes
 from ..waypoints.variables import Variables, make_variables
-from .front import Front, Point, without_dominated
-from .options import Effort, Goal, Progress, Report, Scope, Task
-from .paced_search import LATE, Candidate, Finished, PacedSearch
+from .front import Front, FrontPoint, without_dominated
+from .options import Effort, EnergyTask, Goal, Progress, Report, Scope
+from .paced_search import LATE, Finished, PacedPoint, PacedSearch
 from .pacing import make_pacing
 
 _FASTEST = 1e-3
@@ -44,7 +44,7 @@ def pareto(
     controller: Controller,
     program: Program,
     cell: Cell | None = None,
-    task: Task | None = None,
+    task: EnergyTask | None = None,
     count: int = 8,
     effort: Effort | None = None,
     dialect: Dialect | None = None,
@@ -74,7 +74,9 @@ def pareto(
     """
     if count < 2:
         raise InputError(f"a front has two points at least, not {count}")
-    made = _Work(controller, cell, task or Task(), effort or Effort(), dialect, read_back, report)
+    made = _Work(
+        controller, cell, task or EnergyTask(), effort or Effort(), dialect, read_back, report
+    )
     return made.front(program, count)
 
 
@@ -83,7 +85,7 @@ def optimize_energy(
     program: Program,
     goal: Goal,
     cell: Cell | None = None,
-    task: Task | None = None,
+    task: EnergyTask | None = None,
     effort: Effort | None = None,
     dialect: Dialect | None = None,
     read_back: ReadBack = lambda program: program,
@@ -93,7 +95,9 @@ def optimize_energy(
     Never one that serves it worse than the program that is given, unless that ends too late.
     Arguments and errors are those of `pareto`.
     """
-    made = _Work(controller, cell, task or Task(), effort or Effort(), dialect, read_back, None)
+    made = _Work(
+        controller, cell, task or EnergyTask(), effort or Effort(), dialect, read_back, None
+    )
     return made.single(program, goal)
 
 
@@ -103,7 +107,7 @@ class _Work:
 
     controller: Controller
     cell: Cell | None
-    task: Task
+    task: EnergyTask
     effort: Effort
     dialect: Dialect | None
     read_back: ReadBack
@@ -132,10 +136,10 @@ class _Work:
         """All of it."""
         notes: list[Note] = []
         search, given = self._prepared(program, notes)
-        candidates: list[tuple[Goal, Candidate]] = []
+        candidates: list[tuple[Goal, PacedPoint]] = []
         with suppress(KeyboardInterrupt, _Ended):
             self._search(search, count, candidates)
-        points: list[Point] = []
+        points: list[FrontPoint] = []
         with suppress(KeyboardInterrupt):
             for k, (goal, candidate) in enumerate(candidates):
                 finished = search.finish(goal, candidate.x)
@@ -157,7 +161,9 @@ class _Work:
 
     # -------------------------------------------------------------------------- searching
 
-    def _search(self, search: PacedSearch, count: int, found: list[tuple[Goal, Candidate]]) -> None:
+    def _search(
+        self, search: PacedSearch, count: int, found: list[tuple[Goal, PacedPoint]]
+    ) -> None:
         """Candidates from the fastest to the most frugal, added to ``found``.
 
         Where only speeds change, the program as it is is the fastest.
@@ -185,7 +191,7 @@ class _Work:
         found.append((Goal(0.0, by_energy, max(frugal.duration, quick.duration)), frugal))
         self._back(search, found, count)
 
-    def _back(self, search: PacedSearch, found: list[tuple[Goal, Candidate]], count: int) -> None:
+    def _back(self, search: PacedSearch, found: list[tuple[Goal, PacedPoint]], count: int) -> None:
         """Each once more, from the slower one's values: other routes pay where time is short."""
         for k in range(len(found) - 2, 0, -1):
             goal, known = found[k]
@@ -193,8 +199,10 @@ class _Work:
             found[k] = goal, min(known, other, key=lambda candidate: candidate.rank)
             self._ask("searching", 2 * count - k, 2 * count)
 
-    def _point(self, finished: Finished) -> Point:
-        return Point.of(self.controller, finished.run, self.task.consumption, finished.certificate)
+    def _point(self, finished: Finished) -> FrontPoint:
+        return FrontPoint.of(
+            self.controller, finished.run, self.task.consumption, finished.certificate
+        )
 
     def _tell(self, stage: str, done: int, total: int) -> bool:
         return self.report is not None and bool(self.report(Progress(stage, done, total)))
@@ -205,14 +213,14 @@ class _Work:
 
     # -------------------------------------------------------------------------- preparing
 
-    def _prepared(self, program: Program, notes: list[Note]) -> tuple[PacedSearch, Point]:
+    def _prepared(self, program: Program, notes: list[Note]) -> tuple[PacedSearch, FrontPoint]:
         """Where to search, and the figures of the program that was given."""
         wishes = self.task.wishes
         program = replace(program, start=wishes.start or program.start)
         scenes = None if self.cell is None else scenes_of(self.cell)
         feasibility = Feasibility(self.controller, scenes, self._clearance, wishes.residual)
         run, proof = feasibility.given(program)
-        given = Point.of(self.controller, run, self.task.consumption, proof)
+        given = FrontPoint.of(self.controller, run, self.task.consumption, proof)
         base, wishes = self._routed(program, notes)
         driven = self.controller.run(base)
         robot, slowest = self.controller.robot, self.task.slowest
@@ -282,7 +290,7 @@ class _Ended(Exception):
     """The user has seen enough."""
 
 
-def _rank(goal: Goal, point: Point) -> tuple[float, float]:
+def _rank(goal: Goal, point: FrontPoint) -> tuple[float, float]:
     """Smaller is better: programs in time first."""
     late = 0.0 if goal.latest is None else point.duration / goal.latest - 1.0
     cost = goal.time * point.duration + goal.energy * point.energy

@@ -2,7 +2,7 @@
 
 from .multistart import Progress
 from .optimize import optimize_waypoints, optimize_zones
-from .options import Effort, Task, ViaCount
+from .options import Effort, ViaCount, WaypointTask
 from .point_limits import Box, Cone, Fixed, Free, PointLimit
 
 __all__ = [
@@ -13,8 +13,8 @@ __all__ = [
     "Free",
     "PointLimit",
     "Progress",
-    "Task",
     "ViaCount",
+    "WaypointTask",
     "optimize_waypoints",
     "optimize_zones",
 ]

@@ -21,7 +21,7 @@ from ....core.motion.gradients.derivatives import Derivatives
 from ....core.motion.gradients.sensitivity import PathPlaces
 from .block_emulation import Drive, Driver
 from .blocks import Block
-from .options import Task
+from .options import WaypointTask
 from .point_limit_rows import PointRow, point_rows
 
 _WITHIN = 0.3
@@ -91,7 +91,7 @@ class BlockProblem:
         controller: Controller,
         block: Block,
         scenes: SceneOf,
-        task: Task,
+        task: WaypointTask,
         clearance: float,
         least: float,
         density: int = 1,

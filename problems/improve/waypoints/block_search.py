@@ -16,12 +16,12 @@ from ....core.errors import MotionError
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
 from ....core.program.program import Program
-from ..nonsmooth_sqp import Memory, Settings, search, violation
+from ..nonsmooth_sqp import Memory, SearchEffort, search, violation
 from ..solve_round_verify import Feasibility, solve_round_verify
 from .aim import FINE, Aim, with_room
 from .block_problem import BlockProblem
 from .blocks import Block
-from .options import Effort, Task
+from .options import Effort, WaypointTask
 
 FINE_BOX = 0.2
 """First trust box of a refinement."""
@@ -44,7 +44,7 @@ class Shared:
 
     controller: Controller
     scenes: SceneOf
-    task: Task
+    task: WaypointTask
     effort: Effort
     clearance: float
     blocks: tuple[Block, ...]
@@ -125,9 +125,9 @@ def work(shared: Shared, job: Job) -> Answer:
     """Do a job."""
     margin = shared.effort.margin
     if job.stage is Stage.SEARCH:
-        return _searched(shared.searching, shared, job, Settings(job.iterations), Aim(margin))
+        return _searched(shared.searching, shared, job, SearchEffort(job.iterations), Aim(margin))
     if job.stage is Stage.REFINE:
-        settings = Settings(_FINE_ITERATIONS, FINE_BOX)
+        settings = SearchEffort(_FINE_ITERATIONS, FINE_BOX)
         return _searched(shared.controller, shared, job, settings, Aim(margin, FINE))
     if shared.task.rounding.predefined:
         shared, job = _with_chosen_zones(shared, job)
@@ -138,7 +138,7 @@ def work(shared: Shared, job: Job) -> Answer:
 
 
 def _searched(
-    controller: Controller, shared: Shared, job: Job, settings: Settings, aim: Aim
+    controller: Controller, shared: Shared, job: Job, settings: SearchEffort, aim: Aim
 ) -> Answer:
     """The best values near a start."""
     memory = job.memory
@@ -194,7 +194,7 @@ class _Refined:
         if not self.left:
             return None
         self.left -= 1
-        shared, settings = self.shared, Settings(_AGAIN_ITERATIONS, _AGAIN_BOX)
+        shared, settings = self.shared, SearchEffort(_AGAIN_ITERATIONS, _AGAIN_BOX)
         job = replace(self.job, memory=Memory(self.job.memory.x, _AGAIN_BOX))
         answer = _searched(shared.controller, shared, job, settings, self.aim)
         if not shared.task.rounding.predefined:

@@ -18,7 +18,7 @@ from ....core.program.program import Program
 from ....core.program.target import JointTarget
 from ....core.program.zone import ContourFraction, Fine, Radius
 from ....core.robot.model import Robot
-from .options import Freedom, Task
+from .options import Freedom, WaypointTask
 from .oriented import stays_oriented
 from .point_limits import Fixed
 
@@ -40,7 +40,9 @@ class Selection:
     passed: tuple[int, ...]
 
 
-def select(program: Program, path: Path, robot: Robot, task: Task, freedom: Freedom) -> Selection:
+def select(
+    program: Program, path: Path, robot: Robot, task: WaypointTask, freedom: Freedom
+) -> Selection:
     """What of a driven program may change.
 
     Args:
@@ -81,7 +83,7 @@ def select(program: Program, path: Path, robot: Robot, task: Task, freedom: Free
     return Selection(points, zones, dict(sorted(reasons.items())), passed)
 
 
-def _process_moves(program: Program, task: Task) -> dict[int, str]:
+def _process_moves(program: Program, task: WaypointTask) -> dict[int, str]:
     """Moves that stay as they are, and why."""
     moves = program.moves
     for i in (*task.keep, *task.limits):
@@ -121,7 +123,7 @@ def _sizable(move: Move) -> bool:
 
 
 def _why_fixed(
-    moves: Sequence[Move], i: int, after: int, task: Task, freedom: Freedom
+    moves: Sequence[Move], i: int, after: int, task: WaypointTask, freedom: Freedom
 ) -> str | None:
     if freedom is Freedom.ZONES:
         return "only zones are to change"
@@ -132,7 +134,7 @@ def _why_fixed(
     return None
 
 
-def _why_oriented(move: Move, i: int, robot: Robot, task: Task) -> str | None:
+def _why_oriented(move: Move, i: int, robot: Robot, task: WaypointTask) -> str | None:
     """Why a target cannot move at all while its tool keeps its orientation."""
     target = move.target
     if task.turn_at(i) != 0.0 or not isinstance(target, JointTarget):

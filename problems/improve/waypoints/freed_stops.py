@@ -9,14 +9,14 @@ from ....core.errors import InputError, MotionError, Note
 from ....core.motion.emulator.controller import Controller
 from ....core.program.program import Program
 from ..zones.points import passable_stops
-from .options import Task
+from .options import WaypointTask
 
 _RADII = (0.01, 0.003, 0.001)
 """m that freed stops begin with: the first with which every waypoint is still driven."""
 
 
 def with_freed_stops(
-    controller: Controller, program: Program, task: Task, notes: list[Note]
+    controller: Controller, program: Program, task: WaypointTask, notes: list[Note]
 ) -> Program:
     """The program with small zones at stops that may be passed.
 
@@ -50,14 +50,14 @@ def with_freed_stops(
     return made
 
 
-def _freed(program: Program, stops: Collection[int], radius: float, task: Task) -> Program:
+def _freed(program: Program, stops: Collection[int], radius: float, task: WaypointTask) -> Program:
     moves = list(program.moves)
     for i in stops:
         moves[i] = replace(moves[i], zone=task.pattern.resized(radius))
     return program.with_moves(tuple(moves))
 
 
-def _driven(controller: Controller, given: Program, freed: Program, task: Task) -> bool:
+def _driven(controller: Controller, given: Program, freed: Program, task: WaypointTask) -> bool:
     """Whether the same waypoints are driven."""
     try:
         route = controller.plan(freed, task.start).route

@@ -26,7 +26,7 @@ from .blocks import Block, cut
 from .changeable import Selection, select
 from .freed_stops import with_freed_stops
 from .multistart import Report, improve
-from .options import Effort, Freedom, Task, ViaCount
+from .options import Effort, Freedom, ViaCount, WaypointTask
 from .variables import make_variables
 from .via_selection import Counted, change_count, idle_points
 
@@ -38,7 +38,7 @@ def optimize_zones(
     controller: Controller,
     program: Program,
     cell: Cell,
-    task: Task | None = None,
+    task: WaypointTask | None = None,
     effort: Effort | None = None,
     read_back: ReadBack = lambda program: program,
     report: Report | None = None,
@@ -65,7 +65,7 @@ def optimize_zones(
             driven; the message names the move.
     """
     made = _Optimization(
-        controller, cell, task or Task(), effort or Effort(), Freedom.ZONES, report
+        controller, cell, task or WaypointTask(), effort or Effort(), Freedom.ZONES, report
     )
     return made.solution(program, read_back)
 
@@ -74,7 +74,7 @@ def optimize_waypoints(
     controller: Controller,
     program: Program,
     cell: Cell,
-    task: Task | None = None,
+    task: WaypointTask | None = None,
     effort: Effort | None = None,
     read_back: ReadBack = lambda program: program,
     report: Report | None = None,
@@ -85,7 +85,12 @@ def optimize_waypoints(
     those of `optimize_zones`.
     """
     made = _Optimization(
-        controller, cell, task or Task(), effort or Effort(), Freedom.WAYPOINTS_AND_ZONES, report
+        controller,
+        cell,
+        task or WaypointTask(),
+        effort or Effort(),
+        Freedom.WAYPOINTS_AND_ZONES,
+        report,
     )
     return made.solution(program, read_back)
 
@@ -101,7 +106,7 @@ class _Optimization:
 
     controller: Controller
     cell: Cell
-    task: Task
+    task: WaypointTask
     effort: Effort
     freedom: Freedom
     report: Report | None
@@ -156,7 +161,7 @@ class _Optimization:
     def _improved(
         self,
         program: Program,
-        task: Task,
+        task: WaypointTask,
         effort: Effort,
         notes: list[Note],
     ) -> Counted | None:
@@ -199,7 +204,9 @@ class _Optimization:
             notes.append(Note(f"given up, as the program read from the new text fails: {why}"))
         return kept
 
-    def _judged(self, run: Run | None, proof: Certificate | None, task: Task) -> Counted | None:
+    def _judged(
+        self, run: Run | None, proof: Certificate | None, task: WaypointTask
+    ) -> Counted | None:
         """A program with its cost; None if it is not proven."""
         if run is None or proof is None or not proof.proven:
             return None
@@ -208,7 +215,7 @@ class _Optimization:
     def _counted(self, found: Counted) -> Counted:
         """With via points left out that serve nothing, and new ones that pay."""
 
-        def improved(program: Program, task: Task, effort: Effort) -> Counted | None:
+        def improved(program: Program, task: WaypointTask, effort: Effort) -> Counted | None:
             if self.ended:
                 return None
             try:

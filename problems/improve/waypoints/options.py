@@ -39,7 +39,7 @@ class ViaCount(StrEnum):
 
 
 @dataclass(frozen=True)
-class Task:
+class WaypointTask:
     """What is wanted, and what must stay.
 
     Args:
@@ -85,13 +85,15 @@ class Task:
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.time_weight <= 1.0:
-            raise InputError(f"Task.time_weight lies between 0 and 1, not {self.time_weight}")
+            raise InputError(
+                f"WaypointTask.time_weight lies between 0 and 1, not {self.time_weight}"
+            )
         if not 0.0 <= self.tilt <= math.pi:
-            raise InputError(f"Task.tilt lies between 0 and π, not {self.tilt}")
+            raise InputError(f"WaypointTask.tilt lies between 0 and π, not {self.tilt}")
         for name in ("clearance", "residual"):
             value = getattr(self, name)
             if value is not None and not 0.0 <= value < math.inf:
-                raise InputError(f"Task.{name} is zero or more metres, not {value}")
+                raise InputError(f"WaypointTask.{name} is zero or more metres, not {value}")
 
     def free_axes(self, arm_size: int) -> list[int]:
         """Joints that joint targets may change, of an arm with so many."""
@@ -107,7 +109,7 @@ class Task:
             turn = limit.turn
         return None if turn >= math.pi else turn
 
-    def spent(self) -> Task:
+    def spent(self) -> WaypointTask:
         """The same for a program whose points have been moved already.
 
         Limits are about where a point was in the program as it was given: those points have had
@@ -120,7 +122,7 @@ class Task:
             tilt=self.tilt if self.tilt >= math.pi else 0.0,
         )
 
-    def renumbered(self, new: Callable[[int], int | None]) -> Task:
+    def renumbered(self, new: Callable[[int], int | None]) -> WaypointTask:
         """The same of a program whose moves have other indices.
 
         Args:

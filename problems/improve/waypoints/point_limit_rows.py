@@ -14,7 +14,7 @@ from ....core.robot.kinematics.chain import Chain
 from ....core.robot.kinematics.chain_kernels import jacobian, pose
 from ....core.spatial.rotation import rotation_vector, skew
 from .blocks import Block
-from .options import Task
+from .options import WaypointTask
 from .point_limits import Box, Cone, PointLimit
 from .variables import PosePoint, ViaPoint
 
@@ -61,7 +61,7 @@ class PointRow:
         return self.measure(p, R)
 
 
-def point_rows(block: Block, path: Path, task: Task) -> tuple[PointRow, ...]:
+def point_rows(block: Block, path: Path, task: WaypointTask) -> tuple[PointRow, ...]:
     """The constraints of a block's via points.
 
     Args:

@@ -25,7 +25,7 @@ from ....core.spatial.pose import Pose
 from ....core.spatial.rotation import matrix_from_rotation_vector, quaternion_from_matrix
 from ..rounding import Rounding
 from .changeable import Selection
-from .options import Task
+from .options import WaypointTask
 from .oriented import OrientedPoint
 from .point_limits import Box, PointLimit
 
@@ -350,7 +350,9 @@ class Variables:
         return np.concatenate(found or [np.zeros(0)])
 
 
-def make_variables(program: Program, robot: Robot, selection: Selection, task: Task) -> Variables:
+def make_variables(
+    program: Program, robot: Robot, selection: Selection, task: WaypointTask
+) -> Variables:
     """The variables of a selection: of every via point its target, then its zone."""
     parts: list[Part] = [_point(program, robot, group, task) for group in selection.points]
     for group in selection.zones:
@@ -363,7 +365,7 @@ def make_variables(program: Program, robot: Robot, selection: Selection, task: T
     return Variables(program, [parts[k] for k in order])
 
 
-def _point(program: Program, robot: Robot, group: tuple[int, ...], task: Task) -> Part:
+def _point(program: Program, robot: Robot, group: tuple[int, ...], task: WaypointTask) -> Part:
     target = program.moves[group[0]].target
     limits = [task.limits.get(i, task.limit) for i in group]
     turns = [turn for i in group if (turn := task.turn_at(i)) is not None]
@@ -381,7 +383,7 @@ def _joint_point(
     target: JointTarget,
     robot: Robot,
     group: tuple[int, ...],
-    task: Task,
+    task: WaypointTask,
     limits: Sequence[PointLimit],
     turn: float,
 ) -> JointPoint | OrientedPoint:

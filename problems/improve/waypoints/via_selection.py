@@ -19,7 +19,7 @@ from ....core.program.program import Program
 from .blocks import stretches
 from .changeable import Selection
 from .doubling import doubled, without
-from .options import Effort, Task
+from .options import Effort, WaypointTask
 from .point_limits import Free
 
 _SERVES_NOTHING = 1e-4
@@ -46,10 +46,10 @@ class Counted:
     run: Run
     certificate: Certificate
     cost: float
-    task: Task
+    task: WaypointTask
 
 
-Improved = Callable[[Program, Task, Effort], Counted | None]
+Improved = Callable[[Program, WaypointTask, Effort], Counted | None]
 Selected = Callable[[Counted], Selection]
 Renumbering = Callable[[int], int | None]
 
@@ -159,7 +159,7 @@ class _Turn:
         found = self.improved(program, self._confined(best).renumbered(new), effort)
         return None if found is None else replace(found, task=best.task.renumbered(new))
 
-    def _confined(self, best: Counted) -> Task:
+    def _confined(self, best: Counted) -> WaypointTask:
         """The task of a search that leaves all other stretches alone."""
         task = best.task
         here = self._here(best, range(len(best.run.program.moves)))

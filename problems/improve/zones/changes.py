@@ -9,7 +9,7 @@ from ....core.errors import MotionError, Span
 from ....core.program.program import Program
 from ....core.program.zone import Zone
 from .points import Points
-from .search import Found
+from .search import SizeBracket
 from .sizes import size_of
 
 
@@ -36,7 +36,7 @@ class ZoneChange:
 
 
 def changes(
-    points: Points, program: Program, zones: Mapping[int, Zone], found: Mapping[int, Found]
+    points: Points, program: Program, zones: Mapping[int, Zone], found: Mapping[int, SizeBracket]
 ) -> tuple[ZoneChange, ...]:
     """One entry for each zone that might change, in the order of the moves."""
     group = {corner: members for members in points.groups for corner in members}
@@ -63,7 +63,7 @@ _LESS = 0.98
 """Share of what is clear below which a zone is smaller for another reason."""
 
 
-def _limit(found: Found | None, zone: Zone, others: list[int]) -> str:
+def _limit(found: SizeBracket | None, zone: Zone, others: list[int]) -> str:
     if found is None:
         return "the robot stops here whatever the zone"
     if found.size > 0.0 and size_of(zone) < _LESS * found.size:

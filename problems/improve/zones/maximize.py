@@ -34,7 +34,7 @@ from .points import Points, find_points
 from .predefined import choices, choose
 from .repair import Repair, is_slower
 from .rules import Rules, passable
-from .search import Asking, Found, Search, Sides
+from .search import Asking, Search, Sides, SizeBracket
 from .settling import settle, with_zones
 from .side_by_side import ZoneOf, drive
 from .sizes import Growth
@@ -43,7 +43,7 @@ Tell = Callable[[str], None]
 
 _AIM = 1.1
 """On deviations that zones turn out to need, so that it takes few rounds until they have them."""
-_INTERRUPTED = Found(0.0, 0.0, MotionError("the search was interrupted"))
+_INTERRUPTED = SizeBracket(0.0, 0.0, MotionError("the search was interrupted"))
 
 
 @dataclass(frozen=True, repr=False)
@@ -130,7 +130,7 @@ class _Maximization:
     def _rules(self, points: Points) -> Rules:
         return Rules(points.route, self._controller.model)
 
-    def _grown(self, points: Points, before: Run) -> tuple[dict[int, Found], dict[int, Zone]]:
+    def _grown(self, points: Points, before: Run) -> tuple[dict[int, SizeBracket], dict[int, Zone]]:
         """What was found at each corner, and the zones that come of it.
 
         They leave room for how far smoothing in time takes the links off the path. Larger zones may
@@ -157,7 +157,7 @@ class _Maximization:
 
     def _search(
         self, points: Points, trials: Neighbourhoods, deviations: FloatArray
-    ) -> dict[int, Found]:
+    ) -> dict[int, SizeBracket]:
         """Every zone for itself."""
         rules = self._rules(points)
         looks = self._looks(points, deviations)

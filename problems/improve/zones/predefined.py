@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ....core.errors import MotionError
 from ....core.program.zone import Radius
-from .search import Asking, Found, Sides, examine, whole
+from .search import Asking, Sides, SizeBracket, examine, whole
 
 
 def choices(zones: Sequence[Radius], largest: float) -> list[Radius]:
@@ -26,9 +26,9 @@ def choose(sides: Sides, zones: Sequence[Radius]) -> Asking:
     for zone in zones:
         path = (yield [zone.tcp])[zone.tcp]
         if isinstance(path, MotionError):
-            return Found(best, zone.tcp, path)
+            return SizeBracket(best, zone.tcp, path)
         reason, left = examine(sides, whole(path, sides), (), path)
         if reason is not None or any(map(len, left)):
-            return Found(best, zone.tcp, reason)
+            return SizeBracket(best, zone.tcp, reason)
         best = zone.tcp
-    return Found(best)
+    return SizeBracket(best)

@@ -32,7 +32,7 @@ clearance."""
 
 Reason = Shortfall | MotionError
 Trial = CornerPath | MotionError
-Asking = Generator[Sequence[float], Mapping[float, Trial], "Found"]
+Asking = Generator[Sequence[float], Mapping[float, Trial], "SizeBracket"]
 """Yields sizes, is sent the paths of those sizes, returns what it found."""
 Sides = tuple[Clearing, Clearing]
 """What the stretches before and behind a waypoint are looked at by."""
@@ -41,7 +41,7 @@ Open = tuple[Cells, Cells]
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class SizeBracket:
     """What is known of the sizes of a zone.
 
     Args:
@@ -86,7 +86,7 @@ class Search:
 
     def run(self) -> Asking:
         """The search; see `Asking`."""
-        found = Found(0.0)
+        found = SizeBracket(0.0)
         ranges = [_Range(0.0, self._largest, None)]
         while ranges:
             work = ranges.pop()
@@ -100,19 +100,19 @@ class Search:
             reason, cells = self._examine(work)
             if reason is not None:
                 if self._outside(reason, work.middle):
-                    return Found(0.0, 0.0, reason)
-                found = Found(work.low, work.middle, reason)
+                    return SizeBracket(0.0, 0.0, reason)
+                found = SizeBracket(work.low, work.middle, reason)
                 ranges = [_Range(work.low, work.middle, cells)]
             elif cells is None or any(map(len, cells)):
                 ranges.append(_Range(work.middle, work.high, cells))
                 ranges.append(_Range(work.low, work.middle, cells))
         if found.fails is None:
-            return Found(self._largest)
+            return SizeBracket(self._largest)
         return replace(found, size=found.fails * (1 - self._tolerance))
 
     def _undecided(
         self, low: float, high: float
-    ) -> Generator[Sequence[float], Mapping[float, Trial], Found]:
+    ) -> Generator[Sequence[float], Mapping[float, Trial], SizeBracket]:
         """What is found where sizes up to ``low`` are clear, and those to ``high`` hardly so.
 
         That is so just before a size that fails: one a little larger tells.
@@ -121,11 +121,11 @@ class Search:
             yield from self._ask(size)
             path = self._paths[size]
             if isinstance(path, MotionError):
-                return Found(low, size, path)
+                return SizeBracket(low, size, path)
             reason, _ = examine(self._sides, whole(path, self._sides), (), path)
             if reason is not None:
-                return Found(low, size, reason)
-        return Found(low, high)
+                return SizeBracket(low, size, reason)
+        return SizeBracket(low, high)
 
     def _ask(self, *sizes: float) -> Generator[Sequence[float], Mapping[float, Trial], None]:
         wanted = [size for size in sizes if size not in self._paths]

@@ -12,7 +12,7 @@ from ..rounding import SMALLEST, Rounding
 from .neighbourhood import Neighbourhoods
 from .points import Points
 from .rules import Rules, share_legs
-from .search import Found
+from .search import SizeBracket
 from .sizes import Growth, size_of
 
 WORTH = 2e-3
@@ -24,7 +24,7 @@ def settle(
     program: Program,
     trials: Neighbourhoods,
     rules: Rules,
-    found: Mapping[int, Found],
+    found: Mapping[int, SizeBracket],
     rounding: Rounding,
 ) -> dict[int, Zone]:
     """The zone of each corner that might change.

@@ -7,7 +7,7 @@ from contextlib import suppress
 
 from ....core.program.zone import Zone
 from .neighbourhood import Neighbourhoods
-from .search import Asking, Found, Trial
+from .search import Asking, SizeBracket, Trial
 
 ZoneOf = Callable[[float], Zone]
 """The zone of a size."""
@@ -20,7 +20,7 @@ def drive(
     searches: Mapping[int, Asking],
     zones: Mapping[int, ZoneOf],
     tell: Callable[[int], None] = lambda done: None,
-) -> dict[int, Found]:
+) -> dict[int, SizeBracket]:
     """Run searches to their ends, or until the user interrupts them.
 
     Args:
@@ -32,7 +32,7 @@ def drive(
     Returns:
         What was found; after an interrupt (`KeyboardInterrupt`) of the searches that had ended.
     """
-    found: dict[int, Found] = {}
+    found: dict[int, SizeBracket] = {}
     corners = list(searches)
     with suppress(KeyboardInterrupt):
         for first in range(0, len(corners), SIDE_BY_SIDE):
@@ -45,7 +45,7 @@ def _drive(
     trials: Neighbourhoods,
     running: dict[int, Asking],
     zones: Mapping[int, ZoneOf],
-    found: dict[int, Found],
+    found: dict[int, SizeBracket],
     tell: Callable[[int], None],
 ) -> None:
     asked: dict[int, Sequence[float]] = {}

@@ -21,7 +21,7 @@ PERIOD = 0.02
 
 
 @dataclass(frozen=True, eq=False)
-class Driven:
+class EmulatedPainting:
     """A painting trajectory as it is driven.
 
     Args:
@@ -52,7 +52,7 @@ class Driven:
 
 def drive(
     controller: Controller, program: Program, planned: PaintTrajectory, station: Station
-) -> Driven:
+) -> EmulatedPainting:
     """Drive a program as the controller would, and see what the gun does.
 
     Paint flows from waypoint to waypoint as planned: the delay of the gun is compensated.
@@ -80,7 +80,9 @@ def drive(
     share = _shares(t, passed)
     duration = np.diff(t)
     flow = (share @ planned.flow) / duration
-    return Driven(PaintTrajectory(position, nozzle, duration, flow, fan), share, passed, run)
+    return EmulatedPainting(
+        PaintTrajectory(position, nozzle, duration, flow, fan), share, passed, run
+    )
 
 
 def _passed(run: Run, planned: PaintTrajectory) -> FloatArray:

@@ -20,7 +20,7 @@ from ..coating.deposition import Deposition
 from ..painting import Painting, Stage
 from ..spray.trajectory import PaintTrajectory
 from ..surface.part import Part
-from .emulated import Driven, drive
+from .emulated import EmulatedPainting, drive
 from .feedback import Execution, Progress, drive_evenly, judged
 from .lag import lag_notes
 from .spin import Clear, Posture, choose_posture
@@ -50,7 +50,7 @@ class Executable:
     program: Program
     planned: PaintTrajectory
     posture: Posture
-    driven: Driven
+    driven: EmulatedPainting
     coat: Coat
     rounds: tuple[float, ...]
     certificate: Certificate | None
@@ -136,7 +136,7 @@ def _anything(joints: FloatArray) -> bool:
     return True
 
 
-def _told(driven: Driven) -> tuple[Note, ...]:
+def _told(driven: EmulatedPainting) -> tuple[Note, ...]:
     """The emulator's notes, without places in a text that is not the user's yet; the first move
     only makes sure where the robot begins."""
     return tuple(

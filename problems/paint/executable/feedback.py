@@ -20,7 +20,7 @@ from ....core.program.program import Program
 from ..coating.coat import Coat, coat
 from ..coating.deposition import Deposition
 from ..spray.trajectory import PaintTrajectory
-from .emulated import Driven, drive
+from .emulated import EmulatedPainting, drive
 from .spin import Posture
 from .station import Station
 from .writing import DriveOptions, paint_program
@@ -51,7 +51,7 @@ class Execution:
 
     program: Program
     planned: PaintTrajectory
-    driven: Driven
+    driven: EmulatedPainting
     coat: Coat
     rounds: tuple[float, ...]
 
@@ -126,7 +126,10 @@ def _driven(
 
 
 def judged(
-    deposition: Deposition, driven: Driven, target: float, visible: BoolArray | None = None
+    deposition: Deposition,
+    driven: EmulatedPainting,
+    target: float,
+    visible: BoolArray | None = None,
 ) -> Coat:
     """The coat that a driven trajectory leaves.
 
@@ -160,7 +163,9 @@ def _factors(
     return 1.0 + lsq_linear(root.T, np.linalg.solve(root, pull), (low, high)).x
 
 
-def _by_segment(deposition: Deposition, driven: Driven, visible: BoolArray | None) -> FloatArray:
+def _by_segment(
+    deposition: Deposition, driven: EmulatedPainting, visible: BoolArray | None
+) -> FloatArray:
     """(V, S) m of paint that each programmed segment lays, as it is driven."""
     laid = np.zeros((deposition.samples.size, driven.share.shape[1]))
     for rows in _under(deposition, driven, visible).rate_rows(driven.trajectory):
@@ -168,7 +173,9 @@ def _by_segment(deposition: Deposition, driven: Driven, visible: BoolArray | Non
     return laid
 
 
-def _under(deposition: Deposition, driven: Driven, visible: BoolArray | None) -> Deposition:
+def _under(
+    deposition: Deposition, driven: EmulatedPainting, visible: BoolArray | None
+) -> Deposition:
     """The surface under a finely sampled gun."""
     if visible is None:
         return deposition

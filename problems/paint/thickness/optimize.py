@@ -20,7 +20,7 @@ from .objective import PaintObjective
 from .options import OuterLoop, PaintLimits, PaintWeights
 from .reference import Reference
 from .robust import NO_ERRORS, PaintErrors, scenarios
-from .round import TOLERANCE, Candidate, Progress, Round
+from .round import TOLERANCE, JudgedTrajectory, Progress, Round
 from .variables import Variables
 
 Surroundings = Callable[[PaintTrajectory], Reference]
@@ -85,7 +85,7 @@ def optimize(
     """
     limits, weights, loop = limits or PaintLimits(), weights or PaintWeights(), loop or OuterLoop()
     around = reference if callable(reference) else lambda _: reference
-    best: Candidate | None = None
+    best: JudgedTrajectory | None = None
     costs: list[float] = []
     iterations, now = 0, trajectory
     result: Result | None = None

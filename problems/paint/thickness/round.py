@@ -24,7 +24,7 @@ _PRICE = 100.0
 
 
 @dataclass(frozen=True, eq=False)
-class Candidate:
+class JudgedTrajectory:
     """A trajectory that was judged.
 
     Args:
@@ -42,7 +42,7 @@ class Candidate:
         """By which a point is chosen to go on from."""
         return self.cost + _PRICE * self.violation
 
-    def beats(self, other: Candidate) -> bool:
+    def beats(self, other: JudgedTrajectory) -> bool:
         """Whether it is the better result: limits first, then cost."""
         own, others = max(self.violation, TOLERANCE), max(other.violation, TOLERANCE)
         return (own, self.cost) < (others, other.cost)
@@ -65,11 +65,11 @@ class Round:
     constraints: PaintConstraints
     loop: OuterLoop
 
-    def judged(self, z: FloatArray) -> Candidate:
+    def judged(self, z: FloatArray) -> JudgedTrajectory:
         """The trajectory at z (n,), with limits kept exactly that the solver keeps to first order:
         tilt, deviation and speed."""
         point = self.constraints.repaired(z)
-        return Candidate(
+        return JudgedTrajectory(
             self.variables.trajectory(point),
             self.objective.value(point),
             self.constraints.violation(point),
@@ -77,7 +77,7 @@ class Round:
 
     def solved(
         self, qp: BackendKind | str, progress: Progress | None, before: Result | None
-    ) -> tuple[Result, list[Candidate]]:
+    ) -> tuple[Result, list[JudgedTrajectory]]:
         """What the solver says, and its iterates, the start first.
 
         Args:
@@ -85,7 +85,7 @@ class Round:
             progress: is told this round's number and the solver's iteration; True ends it.
             before: result of the round before.
         """
-        seen: list[Candidate] = []
+        seen: list[JudgedTrajectory] = []
 
         def told(iteration: Iteration) -> bool:
             seen.append(self.judged(iteration.x))

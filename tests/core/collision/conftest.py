@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell import Cell
 from flyby.core.cell.geometry import Mesh
-from flyby.core.collision.distance.engine import Places
+from flyby.core.collision.distance.engine import BodyPoses
 from flyby.core.collision.distance.solid import Polytope, Solid, TriangleMesh
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from flyby.core.robot.model import Robot
@@ -33,10 +33,10 @@ positions = st.tuples(coordinates, coordinates, coordinates).map(np.array)
 
 
 @st.composite
-def places(draw: st.DrawFn, count: int = 2) -> Places:
+def places(draw: st.DrawFn, count: int = 2) -> BodyPoses:
     """World poses of ``count`` bodies."""
     rotation = [matrix_from_rotation_vector(draw(turns)) for _ in range(count)]
-    return Places(np.array(rotation), np.array([draw(positions) for _ in range(count)]))
+    return BodyPoses(np.array(rotation), np.array([draw(positions) for _ in range(count)]))
 
 
 @st.composite

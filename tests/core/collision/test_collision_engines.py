@@ -14,7 +14,7 @@ from flyby.core.collision.distance.answers import Distances
 from flyby.core.collision.distance.closed_form import hulls_of, measure
 from flyby.core.collision.distance.coal_engine import CoalEngine
 from flyby.core.collision.distance.containment import Nesting
-from flyby.core.collision.distance.engine import Places, Witness
+from flyby.core.collision.distance.engine import BodyPoses, Witness
 from flyby.core.collision.distance.fcl_engine import FclEngine
 from flyby.core.collision.distance.solid import Solid, core_radius, extent
 from flyby.core.robot.shape import Box, Capsule, Cylinder, Sphere
@@ -42,27 +42,29 @@ COARSE = 2e-6
 """m by which the libraries' iterations may miss on curved and faceted shapes."""
 
 
-def coal_distance(a: Solid, b: Solid, at: Places, within: float = math.inf) -> Witness | None:
+def coal_distance(a: Solid, b: Solid, at: BodyPoses, within: float = math.inf) -> Witness | None:
     return CoalEngine([a, b], Nesting([a, b])).distance(0, 1, at, within)
 
 
-def coal_witness(a: Solid, b: Solid, at: Places) -> Witness:
+def coal_witness(a: Solid, b: Solid, at: BodyPoses) -> Witness:
     found = coal_distance(a, b, at)
     assert found is not None
     return found
 
 
-def scene_witness(a: Solid, b: Solid, at: Places) -> Witness:
+def scene_witness(a: Solid, b: Solid, at: BodyPoses) -> Witness:
     """By a closed form where there is one, else by coal, as scenes do it."""
     found, bound = closed_form(a, b, at)
     return found if math.isinf(bound) else coal_witness(a, b, at)
 
 
-def fcl_touch(a: Solid, b: Solid, at: Places) -> bool:
+def fcl_touch(a: Solid, b: Solid, at: BodyPoses) -> bool:
     return FclEngine([a, b], Nesting([a, b])).touch(0, 1, at)
 
 
-def closed_form(a: Solid, b: Solid, at: Places, within: float = math.inf) -> tuple[Witness, float]:
+def closed_form(
+    a: Solid, b: Solid, at: BodyPoses, within: float = math.inf
+) -> tuple[Witness, float]:
     found = Distances.farther(1, 1, within)
     R, p = at.rotation[None], at.translation[None]
     bound = measure(hulls_of([a, b]), np.array([[0, 1]]), R, p, within, found.numbers)
@@ -75,8 +77,8 @@ def rounding(a: Solid, b: Solid, found: Witness) -> float:
     return 1e-2 * max(-found.distance, 0.0) if curved else 0.0
 
 
-def side_by_side(distance: float) -> Places:
-    return Places(np.array([np.eye(3)] * 2), np.array([[0.0, 0.0, 0.0], [distance, 0.0, 0.0]]))
+def side_by_side(distance: float) -> BodyPoses:
+    return BodyPoses(np.array([np.eye(3)] * 2), np.array([[0.0, 0.0, 0.0], [distance, 0.0, 0.0]]))
 
 
 @pytest.mark.parametrize(
@@ -103,7 +105,7 @@ def test_rows_of_shapes_have_the_distance_on_paper(
 
 @MANY
 @given(simple, simple, places())
-def test_closed_forms_agree_with_coal(a: Solid, b: Solid, at: Places) -> None:
+def test_closed_forms_agree_with_coal(a: Solid, b: Solid, at: BodyPoses) -> None:
     assume(not (isinstance(a, Box) and isinstance(b, Box)))
     ours, theirs = closed_form(a, b, at)[0], coal_witness(a, b, at)
     # Where cores meet exactly, coal is asked 1e-7 m beside.
@@ -116,14 +118,14 @@ def test_closed_forms_agree_with_coal(a: Solid, b: Solid, at: Places) -> None:
 
 @MANY
 @given(convex, convex, places())
-def test_the_normal_leads_out_by_the_depth(a: Solid, b: Solid, at: Places) -> None:
+def test_the_normal_leads_out_by_the_depth(a: Solid, b: Solid, at: BodyPoses) -> None:
     """Moved along the normal, bodies that overlapped just part; those apart just meet."""
     found = scene_witness(a, b, at)
 
-    def moved(step: float) -> Places:
+    def moved(step: float) -> BodyPoses:
         shifted = at.translation.copy()
         shifted[0] += step * found.normal
-        return Places(at.rotation, shifted)
+        return BodyPoses(at.rotation, shifted)
 
     slack = 1e-4 + rounding(a, b, found)
     assert not fcl_touch(a, b, moved(-found.distance + slack))
@@ -136,7 +138,7 @@ def test_the_normal_leads_out_by_the_depth(a: Solid, b: Solid, at: Places) -> No
 
 @MANY
 @given(convex, convex, places())
-def test_contacts_agree_with_the_sign_of_the_distance(a: Solid, b: Solid, at: Places) -> None:
+def test_contacts_agree_with_the_sign_of_the_distance(a: Solid, b: Solid, at: BodyPoses) -> None:
     distance = scene_witness(a, b, at).distance
     assume(abs(distance) > COARSE)
     assert fcl_touch(a, b, at) == (distance < 0.0)
@@ -144,7 +146,9 @@ def test_contacts_agree_with_the_sign_of_the_distance(a: Solid, b: Solid, at: Pl
 
 @FEW
 @given(convex, convex, places())
-def test_no_point_of_one_body_is_nearer_than_the_distance(a: Solid, b: Solid, at: Places) -> None:
+def test_no_point_of_one_body_is_nearer_than_the_distance(
+    a: Solid, b: Solid, at: BodyPoses
+) -> None:
     found = scene_witness(a, b, at)
     heights = [
         (touching_points(solid) @ R.T + p) @ found.normal
@@ -157,9 +161,9 @@ def test_no_point_of_one_body_is_nearer_than_the_distance(a: Solid, b: Solid, at
 
 @FEW
 @given(st.one_of(convex), st.one_of(convex), places())
-def test_bounds_are_below_the_distance(a: Solid, b: Solid, at: Places) -> None:
+def test_bounds_are_below_the_distance(a: Solid, b: Solid, at: BodyPoses) -> None:
     hulls = [Capsule(0.1, 0.2), a, b]
-    shifted = Places(
+    shifted = BodyPoses(
         np.concatenate([np.eye(3)[None], at.rotation]),
         np.concatenate([np.full((1, 3), 9.0), at.translation]),
     )
@@ -175,7 +179,7 @@ def test_bounds_are_below_the_distance(a: Solid, b: Solid, at: Places) -> None:
 @FEW
 @given(convex, convex, places(), st.floats(0.01, 0.5))
 def test_a_range_leaves_near_distances_as_they_are(
-    a: Solid, b: Solid, at: Places, within: float
+    a: Solid, b: Solid, at: BodyPoses, within: float
 ) -> None:
     whole, near = coal_witness(a, b, at), coal_distance(a, b, at, within)
     assume(abs(whole.distance - within) > COARSE)
@@ -196,7 +200,7 @@ def test_a_range_leaves_near_distances_as_they_are(
 @MANY
 @given(spheres, places(), st.sampled_from([0.3, 0.9]))
 def test_a_sphere_and_a_mesh_of_a_box_are_as_a_sphere_and_the_box(
-    ball: Sphere, at: Places, size: float
+    ball: Sphere, at: BodyPoses, size: float
 ) -> None:
     """Also where the sphere's centre is inside: closed meshes have depths for it."""
     mesh = surface(trimesh.creation.box((size, size, size)))
@@ -213,7 +217,7 @@ def test_a_sphere_and_a_mesh_of_a_box_are_as_a_sphere_and_the_box(
 
 @MANY
 @given(grown, places())
-def test_depths_in_meshes_are_known_down_to_the_core(body: Solid, at: Places) -> None:
+def test_depths_in_meshes_are_known_down_to_the_core(body: Solid, at: BodyPoses) -> None:
     """While the core is outside, a capsule in a mesh is as deep as the radius less the gap."""
     mesh = surface(u_profile())
     core = Sphere(1e-6) if isinstance(body, Sphere) else Capsule(1e-6, body.length)  # type: ignore[union-attr]
@@ -230,12 +234,12 @@ def test_depths_in_meshes_are_known_down_to_the_core(body: Solid, at: Places) ->
 
 @FEW
 @given(convex, places())
-def test_meshes_and_bodies_touch_for_both_engines(body: Solid, at: Places) -> None:
+def test_meshes_and_bodies_touch_for_both_engines(body: Solid, at: BodyPoses) -> None:
     mesh = surface(u_profile())
     found = coal_witness(body, mesh, at)
     assume(abs(found.distance) > COARSE)
     assert fcl_touch(body, mesh, at) == (found.distance < 0.0)
-    back = Places(at.rotation[::-1].copy(), at.translation[::-1].copy())
+    back = BodyPoses(at.rotation[::-1].copy(), at.translation[::-1].copy())
     swapped = coal_witness(mesh, body, back)
     if found.measured:
         assert swapped.distance == pytest.approx(found.distance, abs=1e-9)
@@ -248,7 +252,7 @@ def test_meshes_and_bodies_touch_for_both_engines(body: Solid, at: Places) -> No
 @given(convex, positions)
 def test_a_body_inside_a_closed_mesh_is_no_free_body(body: Solid, offset: np.ndarray) -> None:
     size = 4.0 * extent(body).radius + 1.0
-    at = Places(np.array([np.eye(3)] * 2), np.array([0.2 * offset, np.zeros(3)]))
+    at = BodyPoses(np.array([np.eye(3)] * 2), np.array([0.2 * offset, np.zeros(3)]))
     solid = surface(trimesh.creation.icosphere(subdivisions=2, radius=size))
     found = coal_witness(body, solid, at)
     assert found.distance < 0.0
@@ -268,7 +272,7 @@ def test_a_mesh_inside_a_mesh_is_no_free_mesh() -> None:
 
 @FEW
 @given(places())
-def test_two_meshes_have_the_distance_of_their_parts(at: Places) -> None:
+def test_two_meshes_have_the_distance_of_their_parts(at: BodyPoses) -> None:
     """Two U profiles apart: against the boxes that one of them is made of."""
     mesh = surface(u_profile())
     parts = [
@@ -280,7 +284,7 @@ def test_two_meshes_have_the_distance_of_their_parts(at: Places) -> None:
     R, p = at
     expected = min(
         (
-            coal_witness(Box(size), mesh, Places(R, np.array([p[0] + R[0] @ [x, y, 0.0], p[1]])))
+            coal_witness(Box(size), mesh, BodyPoses(R, np.array([p[0] + R[0] @ [x, y, 0.0], p[1]])))
             for size, (x, y) in parts
         ),
         key=lambda witness: witness.distance,
@@ -322,7 +326,7 @@ def test_points_are_inside_where_winding_numbers_say_so(point: np.ndarray, kind:
     assume(abs(winding - round(winding)) < 1e-6)
     assume(abs(mesh.nearest.on_surface(point[None])[1][0]) > 1e-6)
     solid = surface(mesh)
-    at = Places(np.eye(3)[None], np.zeros((1, 3)))
+    at = BodyPoses(np.eye(3)[None], np.zeros((1, 3)))
     assert Nesting([solid]).inside(0, point[None], at) == (round(winding) % 2 == 1)
 
 
@@ -333,7 +337,7 @@ def test_overlapping_parts_are_solid_and_hollows_are_not() -> None:
     pair = trimesh.util.concatenate([first, second])
     inverted = pair.copy()
     inverted.invert()
-    at = Places(np.eye(3)[None], np.zeros((1, 3)))
+    at = BodyPoses(np.eye(3)[None], np.zeros((1, 3)))
     for mesh in (pair, inverted):
         nesting = Nesting([surface(mesh)])
         for x, expected in ((-0.3, True), (0.2, True), (0.9, True), (1.1, False), (-0.6, False)):
@@ -351,7 +355,7 @@ def test_rays_along_edges_and_corners_are_counted_right() -> None:
     for _ in range(3):
         cube = cube.subdivide()
     solid = surface(cube)
-    at = Places(np.eye(3)[None], np.zeros((1, 3)))
+    at = BodyPoses(np.eye(3)[None], np.zeros((1, 3)))
     grid = np.stack(np.meshgrid(*[np.linspace(-0.75, 0.75, 13)] * 3), -1).reshape(-1, 3)
     inside = (np.abs(grid) < 0.5).all(axis=1)
     outside = (np.abs(grid) > 0.5).any(axis=1)

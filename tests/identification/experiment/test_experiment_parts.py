@@ -16,7 +16,13 @@ from flyby.core.program.tool import FLANGE
 from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.experiment import information
 from flyby.identification.experiment.information import SCATTER, Informer, nats
-from flyby.identification.experiment.plan import Candidate, Kind, Plan, PlannedCorner, usual_radii
+from flyby.identification.experiment.plan import (
+    CandidateRun,
+    Kind,
+    Plan,
+    PlannedCorner,
+    usual_radii,
+)
 from flyby.identification.experiment.selection import Choice, Option
 from flyby.identification.experiment.star import Leg, Star
 from flyby.testing.strategies import regular_configurations
@@ -93,7 +99,7 @@ def option(random: np.random.Generator, number: int) -> Option:
     kind = list(Kind)[random.integers(len(Kind))]
     speed = float(random.choice([0.1, 0.5]))
     corner = PlannedCorner(1.0, float(random.choice([0.01, 0.05])))
-    candidate = Candidate(
+    candidate = CandidateRun(
         f"run{number}", kind, int(random.integers(3)), speed, (corner,), None, np.zeros(6)
     )
     return Option(candidate, told(random), float(random.uniform(2, 50)))

@@ -16,7 +16,7 @@ from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.geometry.pieces import Sampling
 from flyby.core.motion.model.elasticity import Carried, Coupled
 from flyby.core.motion.model.figures import Figure, Tables, with_figures
-from flyby.core.motion.model.kinds import Choice, Number, Row, Truth
+from flyby.core.motion.model.kinds import Choice, RealNumber, Row, Truth
 from flyby.core.motion.model.motion_file import figures_text, load_motion_model
 from flyby.core.motion.model.motion_model import FIGURES, MotionModel, first_change
 from flyby.core.motion.model.torque import Borne
@@ -197,7 +197,7 @@ def same(one: Result, other: Result) -> bool:
 def test_every_figure_has_an_example() -> None:
     assert set(EXAMPLES) == set(FIGURES)
     for key, one in FIGURES.items():
-        assert one.help and (one.unit or not isinstance(one.kind, Number | Row)), key
+        assert one.help and (one.unit or not isinstance(one.kind, RealNumber | Row)), key
 
 
 @pytest.mark.parametrize("key", FIGURES)
@@ -239,13 +239,13 @@ def refused(one: Figure) -> list[str]:
         return ['"false"', "1"]
     if isinstance(kind, Tables):
         return ["3", "[3]", "[{ joint = 3 }]"]
-    assert isinstance(kind, Number | Row)
+    assert isinstance(kind, RealNumber | Row)
     numbers = ["nan", "inf", "true", '"a"']
     if np.isfinite(kind.within.lower):
         numbers.append(repr(kind.within.lower - (0.0 if kind.within.above else 1.0)))
     if np.isfinite(kind.within.upper):
         numbers.append(repr(2.0 * kind.within.upper))
-    return numbers if isinstance(kind, Number) else [f"[{one}]" for one in numbers]
+    return numbers if isinstance(kind, RealNumber) else [f"[{one}]" for one in numbers]
 
 
 @pytest.mark.parametrize("key", FIGURES)

@@ -17,7 +17,12 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.zone import FINE
 from flyby.core.registry import find_robot, find_vendor
 from flyby.problems.improve.rounding import Rounding
-from flyby.problems.improve.waypoints import Effort, Task, optimize_waypoints, optimize_zones
+from flyby.problems.improve.waypoints import (
+    Effort,
+    WaypointTask,
+    optimize_waypoints,
+    optimize_zones,
+)
 from flyby.problems.improve.zones.maximize import maximize_zones
 from flyby.problems.improve.zones.options import ZoneOptions
 from flyby.tasks.files.texts import ProgramTexts
@@ -112,6 +117,6 @@ def test_searches_never_fail_and_never_cost_time(
 ) -> None:
     case = Driven(data, vendor, tmp_path_factory.mktemp("crowded"))
     solve = optimize_waypoints if points else optimize_zones
-    task = Task(rounding=case.rounding)
+    task = WaypointTask(rounding=case.rounding)
     made = solve(case.controller, case.program, case.cell, task, BRIEF, case.read_back)
     case.no_slower(made.program)

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.arrays import FloatArray, IntArray
-from flyby.problems.improve.nonsmooth_sqp import Settings, search, violation
+from flyby.problems.improve.nonsmooth_sqp import SearchEffort, search, violation
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def test_kinks_are_followed_to_the_optimum(seed: int, n: int) -> None:
     problem = Largest(slopes, np.ones(len(slopes)), random.normal(size=n), -10.0)
     start = problem.point(random.uniform(-0.8, 0.8, n))
     assert start is not None
-    found = search(problem, start, Settings(iterations=200, tolerance=1e-9))
+    found = search(problem, start, SearchEffort(iterations=200, tolerance=1e-9))
     assert found.point.objective < 1e-3 * max(1.0, start.objective)
 
 
@@ -71,7 +71,7 @@ def test_what_is_found_holds_the_constraint_and_is_not_worse(seed: int) -> None:
     problem = Largest(slopes, np.full(6, 0.5), normal, 0.3 * float(np.abs(normal).sum()))
     feasible = problem.point(0.6 * np.sign(normal))
     assert feasible is not None and violation(feasible) == 0.0
-    found = search(problem, feasible, Settings(iterations=60))
+    found = search(problem, feasible, SearchEffort(iterations=60))
     assert found.violation <= 1e-6
     assert found.point.objective <= feasible.objective
     assert (np.abs(found.point.x) <= 1.0 + 1e-12).all()
@@ -81,7 +81,7 @@ def test_an_infeasible_start_becomes_feasible() -> None:
     problem = Largest(np.array([[1.0, 0.0]]), np.array([0.1]), np.array([1.0, 1.0]), 0.5)
     start = problem.point(np.array([-0.9, -0.9]))
     assert start is not None
-    found = search(problem, start, Settings(iterations=60))
+    found = search(problem, start, SearchEffort(iterations=60))
     assert found.violation <= 1e-6
     # x₁ as small as the bound on x₂ lets it be.
     assert found.point.x == pytest.approx([-0.5, 1.0], abs=0.05)
@@ -93,8 +93,8 @@ def test_a_search_goes_on_where_it_ended() -> None:
     problem = Largest(np.concatenate([slopes, -slopes]), np.ones(16), np.ones(4), -10.0)
     start = problem.point(np.full(4, 0.5))
     assert start is not None
-    first = search(problem, start, Settings(iterations=5))
+    first = search(problem, start, SearchEffort(iterations=5))
     again = problem.point(first.memory.x)
     assert again is not None
-    second = search(problem, again, Settings(iterations=20), first.memory)
+    second = search(problem, again, SearchEffort(iterations=20), first.memory)
     assert second.point.objective < first.point.objective

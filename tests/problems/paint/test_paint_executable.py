@@ -21,7 +21,7 @@ from flyby.core.program.tool import WORLD, Tool, WorkObject
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
 from flyby.problems.paint.coating.coat import Coat, coat
-from flyby.problems.paint.executable.emulated import Driven, drive
+from flyby.problems.paint.executable.emulated import EmulatedPainting, drive
 from flyby.problems.paint.executable.feedback import drive_evenly
 from flyby.problems.paint.executable.frames import gun_frames, turned
 from flyby.problems.paint.executable.lag import lag_notes
@@ -200,7 +200,7 @@ def test_other_vendors_programs_drive_alike(vendor: str, robot: str):
     assert_near(driven, planned, 0.01)
 
 
-def assert_near(driven: Driven, planned: PaintTrajectory, zone: float) -> None:
+def assert_near(driven: EmulatedPainting, planned: PaintTrajectory, zone: float) -> None:
     """The driven TCP stays within a zone's size of the planned path."""
     along = np.concatenate(([0.0], np.cumsum(planned.lengths)))
     places = np.arange(0.0, along[-1], 1e-3)

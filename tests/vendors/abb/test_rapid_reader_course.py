@@ -7,7 +7,7 @@ import pytest
 from flyby.core.errors import SourceError
 from flyby.core.program.move import Opaque
 from flyby.core.source.execution.answers import Answers, load_answers
-from flyby.core.source.execution.limits import Limits
+from flyby.core.source.execution.limits import ExecutionLimits
 from flyby.core.source.reading import ReadOptions
 from flyby.vendors.abb.run.reader import read
 
@@ -18,7 +18,9 @@ AT = f"PROC at(num z)\nMoveL Offs({P},0,0,z-600),v100,fine,tool0;\nENDPROC\n"
 
 def program(body, data="", routines="", answers=None, **limits):
     text = f"MODULE M\n{data}\nPROC main()\n{body}\nENDPROC\n{AT}{routines}\nENDMODULE"
-    return read(text, "a.mod", ReadOptions(answers=answers or Answers(), limits=Limits(**limits)))
+    return read(
+        text, "a.mod", ReadOptions(answers=answers or Answers(), limits=ExecutionLimits(**limits))
+    )
 
 
 def heights(body, *rest, **options):

@@ -12,7 +12,7 @@ from flyby.core.errors import FlybyError, SourceError
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.origin import Ownership
 from flyby.core.program.program import Program
-from flyby.core.source.execution.limits import Limits
+from flyby.core.source.execution.limits import ExecutionLimits
 from flyby.core.source.reading import ReadOptions
 from flyby.vendors.abb.run.reader import read
 
@@ -199,7 +199,7 @@ def test_layout_and_case_do_not_matter(data):
     )
 
 
-IMPATIENT = ReadOptions(limits=Limits(statements=2000, moves=500))
+IMPATIENT = ReadOptions(limits=ExecutionLimits(statements=2000, moves=500))
 """Loops without end are met often here: they are given up early."""
 
 PIECES = st.sampled_from(

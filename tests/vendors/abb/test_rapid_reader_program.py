@@ -8,7 +8,7 @@ import pytest
 
 from flyby.core.errors import InputError, SourceError
 from flyby.core.program.move import Opaque, Wait
-from flyby.core.source.execution.limits import Limits
+from flyby.core.source.execution.limits import ExecutionLimits
 from flyby.core.source.reading import ReadOptions
 from flyby.vendors.abb.run.reader import read, read_file
 
@@ -191,7 +191,7 @@ def test_a_loop_with_a_way_out_is_run_to_its_end():
 
 def test_loops_without_end_are_refused():
     def refused(body, routines="", **limits):
-        options = ReadOptions(limits=Limits(**limits))
+        options = ReadOptions(limits=ExecutionLimits(**limits))
         lift = f"PROC at(num z)\nMoveL Offs({P},0,0,z-600),v100,fine,tool0;\nENDPROC\n"
         text = f"MODULE M\nVAR num k;\nPROC main()\n{body}\nENDPROC\n{lift}{routines}\nENDMODULE"
         with pytest.raises(SourceError) as caught:

@@ -9,7 +9,7 @@ from flyby.core.program.move import Opaque, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.source.execution.answers import Answer, Answers, key
-from flyby.core.source.execution.limits import Limits
+from flyby.core.source.execution.limits import ExecutionLimits
 from flyby.core.source.reading import ReadOptions
 from flyby.vendors.ur.run.reader import read
 
@@ -160,7 +160,7 @@ def test_a_loop_goes_on_until_what_it_counts_lowers_its_flag(before: str, lower:
 def test_endless_loops_are_refused_with_their_line() -> None:
     text = f"i = 0\nwhile i >= 0:\n  i = i + 1\n  {GO.format(1)}\nend"
     with pytest.raises(SourceError, match=r"t\.script:4:3: 50 moves are executed"):
-        read(text, "t.script", ReadOptions(limits=Limits(moves=50)))
+        read(text, "t.script", ReadOptions(limits=ExecutionLimits(moves=50)))
 
 
 # -------------------------------------------------------------------------- threads

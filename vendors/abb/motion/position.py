@@ -41,7 +41,7 @@ class Position:
         self.asked = 0
         self._axes = axes or ()
         self._record: Record = ()
-        self._commanded = position.Position(robot, start, _standing)
+        self._commanded = position.PresentPosition(robot, start, _standing)
 
     @property
     def robot(self) -> Robot | None:

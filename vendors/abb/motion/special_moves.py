@@ -12,7 +12,7 @@ from dataclasses import replace
 from ....core.errors import SourceError
 from ....core.program.event import Event
 from ..syntax.tree import Invoke, Name
-from ..values.scope import Cell, Scope
+from ..values.scope import Scope, Variable
 from ..values.types import ROBTARGET
 from .moves import Form, MovesHandler, MovesRun, bind_move, drive
 
@@ -57,7 +57,7 @@ def _search(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     inner = scope
     if answer is not None and any(option in bound.options for option in _STOPS):
         inner = scope.inner(scope.where)
-        inner.cells[_FOUND] = Cell(_FOUND, ROBTARGET, value=answer)
+        inner.cells[_FOUND] = Variable(_FOUND, ROBTARGET, value=answer)
         there = Name(end.span, _FOUND, point.text)
         bound = replace(bound, required=tuple(there if e is end else e for e in bound.required))
     event = Event(f"{invoke.text} {run.out.text_of(bound.named('Signal').span)}", span=invoke.span)

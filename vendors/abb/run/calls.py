@@ -9,7 +9,7 @@ from ....core.errors import SourceError, Span
 from ..syntax.tree import Argument, Expression, Name, Number, Parameter, Routine
 from ..values.arguments import check_count
 from ..values.evaluator import Evaluator
-from ..values.scope import Cell, Scope, unknown_name
+from ..values.scope import Scope, Variable, unknown_name
 from ..values.types import Foreign, Type, find_unknown, interpreted
 
 
@@ -33,7 +33,7 @@ def pass_arguments(
     caller: Scope,
     scope: Scope,
     span: Span,
-) -> list[tuple[Cell, Name]]:
+) -> list[tuple[Variable, Name]]:
     """Arguments, evaluated in ``caller``, become cells of the routine's ``scope``.
 
     Returns:
@@ -44,7 +44,7 @@ def pass_arguments(
         SourceError: they do not fit the routine's parameters.
     """
     pairs = _matched(routine, arguments, span)
-    back: list[tuple[Cell, Name]] = []
+    back: list[tuple[Variable, Name]] = []
     for parameter, argument in pairs:
         type_ = evaluator.data.type(parameter.type, scope.home, parameter.span)
         cell = _parameter(evaluator, parameter, type_, argument, caller)
@@ -55,7 +55,9 @@ def pass_arguments(
     for parameter in routine.parameters:
         if parameter.name not in scope.cells:
             type_ = evaluator.data.type(parameter.type, scope.home, parameter.span)
-            scope.cells[parameter.name] = Cell(parameter.name, type_, value=False, present=False)
+            scope.cells[parameter.name] = Variable(
+                parameter.name, type_, value=False, present=False
+            )
     return back
 
 
@@ -98,19 +100,19 @@ def _matched(
 
 def _parameter(
     evaluator: Evaluator, parameter: Parameter, type_: Type, argument: Argument, caller: Scope
-) -> Cell:
+) -> Variable:
     expression = argument.value
     if expression is None:
         if parameter.type != "switch":
             raise SourceError(f"\\{parameter.name} needs a value", argument.span)
-        return Cell(parameter.name, type_, value=True)
+        return Variable(parameter.name, type_, value=True)
     if parameter.mode != "in" or parameter.dimensions:
         return _referred(evaluator, parameter, type_, expression, caller)
     found = evaluator.locate(expression, caller, asking=not isinstance(type_, Foreign))
     if find_unknown(found.value) is None:
         evaluator.check(found.value, type_, f"parameter {parameter.name}", expression.span)
     name = found.cell.name if found.cell is not None else parameter.name
-    return Cell(
+    return Variable(
         name,
         type_,
         value=interpreted(found.value, type_, expression.span),
@@ -121,7 +123,7 @@ def _parameter(
 
 def _referred(
     evaluator: Evaluator, parameter: Parameter, type_: Type, expression: Expression, caller: Scope
-) -> Cell:
+) -> Variable:
     """The caller's own datum, for parameters that the routine may write, and for arrays."""
     if not isinstance(expression, Name):
         if parameter.dimensions and parameter.mode == "in":
@@ -135,7 +137,7 @@ def _referred(
     if cell is None or expression.path:
         # A signal, an element, a component: of a signal it counts which one it is.
         found = evaluator.locate(expression, caller, asking=cell is not None)
-        return Cell(expression.text, type_, value=found.value, source=found.source)
+        return Variable(expression.text, type_, value=found.value, source=found.source)
     evaluator.settle(cell)
     if parameter.dimensions not in (0, len(cell.dimensions)) and cell.value is not None:
         raise SourceError(
@@ -150,7 +152,7 @@ def _referred(
 
 def _anonymous(
     evaluator: Evaluator, parameter: Parameter, type_: Type, expression: Expression, caller: Scope
-) -> Cell:
+) -> Variable:
     """An array that is written out, or that a function returns."""
     value = evaluator.evaluate(expression, caller)
     sizes: list[int] = []
@@ -158,4 +160,4 @@ def _anonymous(
     while len(sizes) < parameter.dimensions and isinstance(inner, tuple):
         sizes.append(len(inner))
         inner = inner[0]
-    return Cell(parameter.name, type_, value=value, dimensions=tuple(sizes))
+    return Variable(parameter.name, type_, value=value, dimensions=tuple(sizes))

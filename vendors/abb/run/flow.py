@@ -15,7 +15,7 @@ from ..syntax.traversal import calls_in, names_in
 from ..syntax.tree import Block, Expression, For, If, Test, Truth, While
 from ..values.evaluator import Evaluator
 from ..values.operators import OperandError, apply
-from ..values.scope import Cell, Scope
+from ..values.scope import Scope, Variable
 from ..values.types import NUM, Unknown, Value, find_unknown
 from .analysis import RapidTree
 from .waits import suppose
@@ -124,7 +124,7 @@ def run_for(run: Carrying, loop: For, scope: Scope) -> None:
     """``FOR``; without STEP the controller counts down where it has to."""
     bounds = [run.evaluator.evaluate(e, scope) for e in (loop.start, loop.stop)]
     given = run.evaluator.evaluate(loop.step, scope) if loop.step is not None else None
-    counter = Cell(loop.name, NUM, constant=True)  # programs may only read it
+    counter = Variable(loop.name, NUM, constant=True)  # programs may only read it
     inner = Scope(scope.where, {loop.name: counter}, scope, scope.home)
     for value in _counts(run, loop, bounds[0], bounds[1], given):
         counter.value = value

@@ -30,11 +30,11 @@ from .signals import SIGNALS
 from .waits import WAIT_UNTIL, wait_until
 
 
-class Run(MovesRun, SettingsRun, Keeping, Running, Protocol):
+class InstructionRun(MovesRun, SettingsRun, Keeping, Running, Protocol):
     """What all of them need of a run."""
 
 
-Handler = Callable[[Run, Invoke, Scope], None]
+Handler = Callable[[InstructionRun, Invoke, Scope], None]
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,6 +21,7 @@ from ....core.source.execution.answers import Course
 from ....core.source.execution.flow import Flow, Loop
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
+from ....core.source.execution.provenance import ELSEWHERE
 from ....core.source.execution.transcript import MoveParts, Transcript
 from ....core.source.reading import ReadOptions
 from ..motion.kinematics import RobotFunctions
@@ -50,7 +51,7 @@ from ..syntax.tree import (
 from ..values.changes import Snapshot
 from ..values.data import Globals
 from ..values.evaluator import Evaluator
-from ..values.scope import NOWHERE, Cell, Home, Scope, unknown_name
+from ..values.scope import NOWHERE, Home, Scope, Variable, unknown_name
 from ..values.types import STRING, Unknown, Value, interpreted, mismatch
 from .analysis import RapidTree
 from .calls import pass_arguments, present
@@ -287,9 +288,9 @@ class Interpreter:
         statement = self._with_present_arguments(statement, scope)
         handler = INTERPRETED.get(name)
         if handler is not None:
-            self.evaluator.reader = self.out.move_index if name in MOVING else -1
+            self.evaluator.reader = self.out.move_index if name in MOVING else ELSEWHERE
             handler(self, statement, scope)
-            self.evaluator.reader = -1
+            self.evaluator.reader = ELSEWHERE
             return
         if name in KEPT:
             self.keep(statement, scope)
@@ -370,7 +371,7 @@ class Interpreter:
         self._call(routine, arguments, scope, span)
 
     def call_function(self, routine: Routine, call: Call, scope: Scope) -> Value:
-        reader, self.evaluator.reader = self.evaluator.reader, -1
+        reader, self.evaluator.reader = self.evaluator.reader, ELSEWHERE
         value = self._call(routine, call.arguments, scope, call.span)
         self.evaluator.reader = reader
         if value is None:
@@ -413,7 +414,7 @@ class Interpreter:
                 self._hand_back(cell, target, caller)
         return None
 
-    def _hand_back(self, cell: Cell, target: Name, caller: Scope) -> None:
+    def _hand_back(self, cell: Variable, target: Name, caller: Scope) -> None:
         """What a routine made of an element or component that was passed by reference."""
         if cell.source is None and cell.value is not None:
             self.evaluator.assign(target, cell.value, caller)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from .scope import Cell
+from .scope import Variable
 
 
 class Snapshot:
@@ -14,7 +14,7 @@ class Snapshot:
         cells: which; those whose values have not been evaluated yet do not count.
     """
 
-    def __init__(self, cells: Iterable[Cell]) -> None:
+    def __init__(self, cells: Iterable[Variable]) -> None:
         self._held = [
             (cell, cell.value, dict(cell.elements)) for cell in cells if cell.value is not None
         ]

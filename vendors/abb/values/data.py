@@ -9,7 +9,7 @@ from ....core.errors import Note, SourceError, Span
 from ..syntax.tree import AliasDefinition, Declaration, Module, RecordDefinition, Routine
 from .library import Library
 from .predefined import CONSTANTS, RECORDS, USER_CLOCK, USER_NUMBERS
-from .scope import Cell, Home, Scope
+from .scope import Home, Scope, Variable
 from .types import BUILT_IN, NUM, Foreign, RecordType, Type, Unknown
 
 
@@ -51,7 +51,7 @@ class Globals:
             self.routines.get(name) if self._fetch(name, span) else None
         )
 
-    def fetched_cell(self, name: str, span: Span) -> Cell | None:
+    def fetched_cell(self, name: str, span: Span) -> Variable | None:
         """A datum of the library, for a name that no scope knows."""
         return self._shared.cells.get(name) if self._fetch(name, span) else None
 
@@ -86,13 +86,13 @@ class Globals:
 
     # ---------------------------------------------------------------------- loading
 
-    def declare(self, declaration: Declaration, scope: Scope) -> Cell:
+    def declare(self, declaration: Declaration, scope: Scope) -> Variable:
         """A new cell of a routine; its value is evaluated when it is first read."""
         cell = scope.cells[declaration.name] = self._cell(declaration, scope)
         return cell
 
-    def _cell(self, declaration: Declaration, scope: Scope) -> Cell:
-        return Cell(
+    def _cell(self, declaration: Declaration, scope: Scope) -> Variable:
+        return Variable(
             declaration.text,
             self.type(declaration.type, scope.home, declaration.span),
             constant=declaration.kind == "const",
@@ -184,13 +184,13 @@ def _controller() -> Scope:
     scope = Scope("")
     for type_name, records in RECORDS.items():
         for name, record in records.items():
-            scope.cells[name] = Cell(
+            scope.cells[name] = Variable(
                 name, BUILT_IN[type_name], value=record, constant=True, predefined=name
             )
     for name, (type_, value) in CONSTANTS.items():
-        scope.cells[name] = Cell(name, type_, value=value, constant=True, predefined=name)
+        scope.cells[name] = Variable(name, type_, value=value, constant=True, predefined=name)
     for name in USER_NUMBERS:
-        scope.cells[name] = Cell(name, NUM, value=0.0)
+        scope.cells[name] = Variable(name, NUM, value=0.0)
     clock = Unknown(f"'{USER_CLOCK}', a clock", Span("", 1, 1, 0, 0))
-    scope.cells[USER_CLOCK] = Cell(USER_CLOCK, Foreign("clock"), value=clock)
+    scope.cells[USER_CLOCK] = Variable(USER_CLOCK, Foreign("clock"), value=clock)
     return scope

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from ....core.errors import SourceError, Span
 from ..syntax.tree import Name
 from .located import Located
-from .scope import Cell
+from .scope import Variable
 from .types import Foreign, Scalar, Type, Unknown, Value, interpreted, mismatch
 
 ARRAY_LIMIT = 100_000
@@ -59,7 +59,7 @@ def component(step: str, type_: Type, dimensions: tuple[int, ...], name: Name) -
 
 
 def located_part(
-    cell: Cell, value: Value, path: Sequence[str | tuple[int, ...]], name: Name
+    cell: Variable, value: Value, path: Sequence[str | tuple[int, ...]], name: Name
 ) -> Located:
     """An element or component of a datum, with the place that it was read from.
 
@@ -93,7 +93,7 @@ def located_part(
 
 
 def replaced(
-    old: Value, cell: Cell, path: list[str | tuple[int, ...]], new: Value, name: Name
+    old: Value, cell: Variable, path: list[str | tuple[int, ...]], new: Value, name: Name
 ) -> Value:
     """``old`` with the part at ``path`` replaced.
 
@@ -123,7 +123,7 @@ def replaced(
     return _put(old, places, interpreted(new, type_, name.span))
 
 
-def element(cell: Cell, index: tuple[int, ...]) -> Value:
+def element(cell: Variable, index: tuple[int, ...]) -> Value:
     """An element of an array; the index has been checked."""
     if index in cell.elements:
         return cell.elements[index]

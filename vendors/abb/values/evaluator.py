@@ -41,7 +41,7 @@ from .function_calls import SPECIAL, Special, function_value
 from .located import Located
 from .operators import OperandError, apply, negate
 from .provenance import Literal, source_of_literal
-from .scope import Cell, Scope
+from .scope import Scope, Variable
 from .types import (
     BOOL,
     NUM,
@@ -214,7 +214,7 @@ class Evaluator:
 
     # -------------------------------------------------------------------- data
 
-    def settle(self, cell: Cell) -> Value:
+    def settle(self, cell: Variable) -> Value:
         """The value of a cell, evaluated now if it was not yet."""
         value = self._settled(cell)
         if cell.elements:
@@ -222,7 +222,7 @@ class Evaluator:
             cell.elements.clear()
         return value
 
-    def _settled(self, cell: Cell) -> Value:
+    def _settled(self, cell: Variable) -> Value:
         """`settle`, leaving out the elements that were written of late."""
         declaration, scope = cell.pending, cell.scope
         if declaration is None:
@@ -288,7 +288,7 @@ class Evaluator:
             return
         self._assign_part(cell, target, value, scope)
 
-    def _assign_part(self, cell: Cell, target: Name, value: Value, scope: Scope) -> None:
+    def _assign_part(self, cell: Variable, target: Name, value: Value, scope: Scope) -> None:
         """An element or component is written."""
         old = self._settled(cell)
         path = self._path(target, scope)
@@ -318,7 +318,7 @@ class Evaluator:
 
     # ------------------------------------------------------------------- names
 
-    def cell(self, name: Name, scope: Scope) -> Cell | None:
+    def cell(self, name: Name, scope: Scope) -> Variable | None:
         """The datum of a name, of a module beside the program if need be."""
         found = scope.find(name.name)
         return self.data.fetched_cell(name.name, name.span) if found is None else found

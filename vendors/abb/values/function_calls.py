@@ -21,7 +21,7 @@ from .located import Located
 from .operators import OperandError, is_vector
 from .outputs import READING
 from .provenance import constant, source_of_literal
-from .scope import Cell, Scope, unknown_name
+from .scope import Scope, Variable, unknown_name
 from .types import NUM, Type, Unknown, Value, find_unknown, mismatch
 
 
@@ -44,10 +44,10 @@ class Evaluates(Protocol):
     def as_index(self, value: Value, span: Span) -> int:
         """A known value as an index."""
 
-    def cell(self, name: Name, scope: Scope) -> Cell | None:
+    def cell(self, name: Name, scope: Scope) -> Variable | None:
         """The datum of a name."""
 
-    def settle(self, cell: Cell) -> Value:
+    def settle(self, cell: Variable) -> Value:
         """The value of a datum."""
 
     def assign(self, target: Name, value: Value, scope: Scope) -> None:
@@ -197,7 +197,7 @@ def _euler(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
         raise SourceError(f"EulerZYX: {error}", call.span) from None
 
 
-def _datum(evaluator: Evaluates, call: Call, scope: Scope) -> Cell:
+def _datum(evaluator: Evaluates, call: Call, scope: Scope) -> Variable:
     """The datum that is a function's only argument."""
     name = _only_name(call, 1)
     cell = evaluator.cell(name, scope)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .provenance import Literal
-from .scope import Cell
+from .scope import Variable
 from .types import Type, Value
 
 
@@ -21,6 +21,6 @@ class Located:
 
     value: Value
     source: Literal | None
-    cell: Cell | None
+    cell: Variable | None
     predefined: str | None = None
     type: Type | None = None

@@ -12,7 +12,7 @@ from .types import Type, Value
 
 
 @dataclass(eq=False, slots=True)
-class Cell:
+class Variable:
     """One datum.
 
     Args:
@@ -62,7 +62,7 @@ NOWHERE = Home("")
 
 
 @dataclass(eq=False, slots=True)
-class Scope(scopes.Scope[Cell]):
+class Scope(scopes.Scope[Variable]):
     """Names (lower case) and their cells.
 
     Args:

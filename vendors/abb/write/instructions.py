@@ -85,7 +85,7 @@ def _tail(move: Move, said: Said, operands: Operands) -> Line:
     )
 
 
-class Settings:
+class WrittenSettings:
     """What holds until it is changed, with the values that a program starts with."""
 
     def __init__(self) -> None:

@@ -15,7 +15,7 @@ from ....core.source.write.options import OpaqueStyle
 from .arc_limits import check_arc
 from .events import Events
 from .formatting import NAME_RULES
-from .instructions import Line, Settings, move_line
+from .instructions import Line, WrittenSettings, move_line
 from .numbers import number
 from .operands import Operands
 from .options import RapidOptions, ZoneStyle
@@ -112,7 +112,7 @@ def _header(options: RapidOptions) -> list[str]:
 
 def _body(program: Program, operands: Operands, options: RapidOptions) -> list[Line]:
     """The instructions of the entry routine."""
-    settings = Settings()
+    settings = WrittenSettings()
     events = Events(operands, options.opaque)
     lines: list[Line] = []
     moves: list[Move] = []
@@ -145,7 +145,7 @@ def _opaque(statement: Opaque, style: OpaqueStyle) -> list[Line]:
 
 
 def _move(
-    move: Move, before: list[Move], settings: Settings, events: Events, operands: Operands
+    move: Move, before: list[Move], settings: WrittenSettings, events: Events, operands: Operands
 ) -> list[Line]:
     """The move, with the settings that must change before it."""
     try:

@@ -14,7 +14,7 @@ from ....core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from ....core.spatial.pose import IDENTITY, Pose
 from ..values.frames import pose_of
 from ..values.placement import Placement
-from ..values.scope import Cell
+from ..values.scope import Variable
 from ..values.types import FRAME_FIELDS
 from ..values.values import Choice, Struct, Value, find_unknown, left_open
 
@@ -35,7 +35,7 @@ class Placements:
         note: takes notes, one of a kind.
     """
 
-    def __init__(self, system: Mapping[str, Cell], note: Note) -> None:
+    def __init__(self, system: Mapping[str, Variable], note: Note) -> None:
         self._system = system
         self._note = note
         self._made: Placement | None = None

@@ -16,24 +16,24 @@ from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import Load, Tool, WorkObject
 from ....core.program.zone import Zone
 from ....core.source.execution.limits import Meter
-from ....core.source.execution.provenance import Part
+from ....core.source.execution.provenance import ELSEWHERE, Part
 from ....core.source.execution.transcript import MoveParts, Transcript
 from ..syntax.expression_tree import Expression, Flat, Name
-from ..syntax.tree import Motion
+from ..syntax.tree import MotionInstruction
 from ..values.data import Data
 from ..values.evaluator import Evaluator
 from ..values.frames import frame_of, pose_of
 from ..values.placement import Placement
 from ..values.predefined import MOTION, POSITION
 from ..values.provenance import KrlSource, LeafSource, Sources
-from ..values.scope import Cell, Scope
+from ..values.scope import Scope, Variable
 from ..values.types import AXES, FRAME_FIELDS, POSES, KrlTypeError, convert
 from ..values.values import Pending, Struct, Unknown, Value, copied, shown
 from .arcs import beyond
 from .frames import Placements
 from .position import Position
 from .settings import Set, Settings
-from .targets import AXIS_NUMBERS, POSE_NUMBERS, Found, Targets, is_axes
+from .targets import AXIS_NUMBERS, POSE_NUMBERS, ReadTarget, Targets, is_axes
 from .triggers import Triggers
 
 
@@ -85,9 +85,9 @@ class MotionReader:
         self._meter = meter
         self._transcript = transcript
         self._changed = changed
-        self._literals: dict[tuple[int, bool, bool], Found] = {}
+        self._literals: dict[tuple[int, bool, bool], ReadTarget] = {}
 
-    def read(self, motion: Motion, scope: Scope) -> None:
+    def read(self, motion: MotionInstruction, scope: Scope) -> None:
         """Carry out one instruction, with what follows ``WITH`` set for it alone.
 
         Raises:
@@ -109,7 +109,7 @@ class MotionReader:
                 system[name].value = value
             self._changed()
 
-    def _drive(self, motion: Motion, scope: Scope) -> None:
+    def _drive(self, motion: MotionInstruction, scope: Scope) -> None:
         word = motion.word.removesuffix("_rel")
         joint, arc = word.endswith("ptp"), word.endswith("circ")
         if not arc and self._goes_nowhere(motion, scope):
@@ -134,7 +134,7 @@ class MotionReader:
 
     # --------------------------------------------------------------------- one kind each
 
-    def _goes_nowhere(self, motion: Motion, scope: Scope) -> bool:
+    def _goes_nowhere(self, motion: MotionInstruction, scope: Scope) -> bool:
         """Whether the target is where the robot is, known or not."""
         target = motion.targets[-1]
         if not isinstance(target, Name) or target.path or motion.word.endswith("_rel"):
@@ -150,7 +150,7 @@ class MotionReader:
             asked_in is None or asked_in == self._placements.current(motion.span)
         )
 
-    def _stay(self, motion: Motion, joint: bool) -> None:
+    def _stay(self, motion: MotionInstruction, joint: bool) -> None:
         """``PTP $AXIS_ACT``: no way, but an exact stop.
 
         It is kept so that it goes nowhere wherever it is written, whatever the datum holds there.
@@ -169,7 +169,11 @@ class MotionReader:
         )
 
     def _arc(
-        self, motion: Motion, scope: Scope, placement: Placement, start: Struct | Unknown | None
+        self,
+        motion: MotionInstruction,
+        scope: Scope,
+        placement: Placement,
+        start: Struct | Unknown | None,
     ) -> None:
         auxiliary = self._target(motion, motion.targets[0], scope, placement, False, via=True)
         found = self._target(motion, motion.targets[1], scope, placement, False)
@@ -200,7 +204,7 @@ class MotionReader:
 
     def _by_angle(
         self,
-        motion: Motion,
+        motion: MotionInstruction,
         angle: Expression,
         scope: Scope,
         start: Struct | Unknown | None,
@@ -218,13 +222,17 @@ class MotionReader:
             raise SourceError(str(error), motion.span) from None
         return replace(via, pose=middle), replace(target, pose=end)
 
-    def _arc_orientation(self, motion: Motion) -> ArcOrientation:
+    def _arc_orientation(self, motion: MotionInstruction) -> ArcOrientation:
         kind = self._settings.choice("$circ_type", motion.span)
         return ArcOrientation.FOLLOWS_ARC if kind == "path" else ArcOrientation.FIXED_FRAME
 
     def _constant_orientation(
-        self, found: Found, start: Struct | Unknown | None, placement: Placement, motion: Motion
-    ) -> Found:
+        self,
+        found: ReadTarget,
+        start: Struct | Unknown | None,
+        placement: Placement,
+        motion: MotionInstruction,
+    ) -> ReadTarget:
         """``$ORI_TYPE``: ``#CONSTANT`` keeps the orientation of the start point."""
         kind = self._settings.choice("$ori_type", motion.span)
         if kind == "joint":
@@ -249,7 +257,7 @@ class MotionReader:
         target = replace(found.target, pose=pose_of(complete.fields))
         return replace(found, target=target, complete=complete, sources=_only_position(found))
 
-    def _start(self, placement: Placement, motion: Motion) -> Struct | Unknown | None:
+    def _start(self, placement: Placement, motion: MotionInstruction) -> Struct | Unknown | None:
         """Where the motion begins, if that is needed to know where it goes."""
         constant = self._settings.choice("$ori_type", motion.span) == "constant"
         if constant or motion.angle is not None:
@@ -260,13 +268,13 @@ class MotionReader:
 
     def _target(
         self,
-        motion: Motion,
+        motion: MotionInstruction,
         expression: Expression,
         scope: Scope,
         placement: Placement,
         joint: bool,
         via: bool = False,
-    ) -> Found:
+    ) -> ReadTarget:
         key = (id(expression), joint, via)
         if key in self._literals:
             return self._literals[key]
@@ -284,11 +292,11 @@ class MotionReader:
             self._literals[key] = found  # loops come by often
         return found
 
-    def _value(self, motion: Motion, expression: Expression, scope: Scope) -> Struct:
+    def _value(self, motion: MotionInstruction, expression: Expression, scope: Scope) -> Struct:
         span = expression.span
         self._evaluator.reader = self._transcript.move_index
         value = self._evaluator.evaluate(expression, scope)
-        self._evaluator.reader = -1
+        self._evaluator.reader = ELSEWHERE
         what = f"the target of {motion.word.upper()}"
         if isinstance(value, Unknown):
             if isinstance(expression, Name) and self._data.find(expression.name, scope) is None:
@@ -316,13 +324,13 @@ class MotionReader:
         return typed
 
     def _relative(
-        self, motion: Motion, value: Struct, placement: Placement, via: bool, span: Span
-    ) -> Found:
+        self, motion: MotionInstruction, value: Struct, placement: Placement, via: bool, span: Span
+    ) -> ReadTarget:
         """The present target and a step."""
         self._evaluator.check_known(value, f"the target of {motion.word.upper()}", span)
         self._evaluator.reader = self._transcript.move_index
         self._evaluator.note_reads(value)
-        self._evaluator.reader = -1
+        self._evaluator.reader = ELSEWHERE
         self._depends_on_last()
         axes = is_axes(value)
         present = self._position.axes(span) if axes else self._position.pose(placement, span)
@@ -365,7 +373,7 @@ class MotionReader:
             if source is not None:
                 self._evaluator.reads.by_expression(source, self._transcript.move_index)  # type: ignore[arg-type]
 
-    def _common(self, motion: Motion, joint: bool, placement: Placement) -> _Common:
+    def _common(self, motion: MotionInstruction, joint: bool, placement: Placement) -> _Common:
         settings = self._settings
         span = motion.span
         speed = settings.joint_speed(span) if joint else settings.path_speed(span)
@@ -383,9 +391,9 @@ class MotionReader:
 
     def _emit(
         self,
-        motion: Motion,
+        motion: MotionInstruction,
         move: Move,
-        found: Found,
+        found: ReadTarget,
         common: _Common,
         via: Part | None = None,
     ) -> None:
@@ -403,7 +411,7 @@ class MotionReader:
         self._position.moved(move, motion.span, found.complete)
 
 
-def _held(cell: Cell) -> Value:
+def _held(cell: Variable) -> Value:
     value = cell.value
     assert value is not None and not isinstance(value, Pending)
     return value
@@ -416,7 +424,7 @@ def _fields(common: _Common) -> tuple[Speed, Zone, Tool, WorkObject, Load | None
     return speed, zone, at.tool, at.work_object, at.load
 
 
-def _only_position(found: Found) -> Sources:
+def _only_position(found: ReadTarget) -> Sources:
     """The sources of a target whose orientation does not count: its numbers one by one."""
     entries: list[KrlSource | None] = []
     for source in found.sources.entries:

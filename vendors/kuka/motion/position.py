@@ -39,7 +39,7 @@ class Position:
 
     def __init__(self, robot: Robot | None, start: JointTarget | None = None) -> None:
         self._robot = robot
-        self._commanded = position.Position(robot, start, _standing)
+        self._commanded = position.PresentPosition(robot, start, _standing)
         self._last: Struct | None = None
         self._place: Struct | None = None
         if robot is not None and start is not None:

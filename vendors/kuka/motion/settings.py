@@ -22,7 +22,7 @@ from ....core.program.speed import Speed
 from ....core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction, Zone
 from ..values.predefined import AXES
 from ..values.provenance import Sources
-from ..values.scope import Cell
+from ..values.scope import Variable
 from ..values.values import Array, Choice, Pending, Struct, Unknown, Value, find_unknown, left_open
 
 Note = Callable[[str, str, Span], None]
@@ -51,7 +51,7 @@ class Settings:
     """
 
     def __init__(
-        self, system: Mapping[str, Cell], defaults: Callable[[str], Value], note: Note
+        self, system: Mapping[str, Variable], defaults: Callable[[str], Value], note: Note
     ) -> None:
         self._system = system
         self._defaults = defaults

@@ -30,7 +30,7 @@ _EXTERNAL_NAMES = frozenset(EXTERNAL_FIELDS)
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class ReadTarget:
     """A target.
 
     Args:
@@ -61,7 +61,7 @@ class Targets:
 
     def pose(
         self, value: Struct, placement: Placement, status: bool, via: bool, span: Span
-    ) -> Found:
+    ) -> ReadTarget:
         """A position.
 
         Args:
@@ -92,9 +92,9 @@ class Targets:
         except InputError as error:
             raise SourceError(str(error), span) from None
         sources = Sources.of([value.fields.get(name) for name in POSE_NUMBERS])
-        return Found(target, complete, sources, filled or kept, _predefined(value))
+        return ReadTarget(target, complete, sources, filled or kept, _predefined(value))
 
-    def joints(self, value: Struct, span: Span) -> Found:
+    def joints(self, value: Struct, span: Span) -> ReadTarget:
         """Axis values.
 
         Raises:
@@ -119,7 +119,7 @@ class Targets:
             raise SourceError(str(error), span) from None
         sources = Sources.of([value.fields.get(name) for name in AXIS_NUMBERS])
         complete = Struct("e6axis", {**numbers, **outside})
-        return Found(target, complete, sources, filled or kept, _predefined(value))
+        return ReadTarget(target, complete, sources, filled or kept, _predefined(value))
 
     @staticmethod
     def _numbers(

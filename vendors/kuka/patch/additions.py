@@ -14,7 +14,7 @@ from .places import Places
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class PlacedMove:
     """A move where it stands.
 
     Args:
@@ -47,7 +47,7 @@ class Additions:
         motions: all moves in the order of execution.
     """
 
-    def __init__(self, places: Places, motions: Sequence[Motion]) -> None:
+    def __init__(self, places: Places, motions: Sequence[PlacedMove]) -> None:
         self._places = places
         self._motions = motions
         self._own: dict[int, dict[str, str]] = defaultdict(dict)
@@ -103,7 +103,7 @@ class Additions:
                 break
         return restored
 
-    def _relies(self, later: Motion, variable: str, index: int) -> bool:
+    def _relies(self, later: PlacedMove, variable: str, index: int) -> bool:
         """Whether a motion reads a variable as it was set before the motion ``index``."""
         literals = later.literals.get(variable)
         if not literals:

@@ -35,7 +35,7 @@ from ....core.source.reading import Files
 from ....core.source.write.options import PatchOptions
 from ..write.formatting import e6axis, e6pos
 from ..write.speeds import approximation, zone_settings
-from .additions import Additions, Motion, settings_of
+from .additions import Additions, PlacedMove, settings_of
 from .inline_forms import shown_approximation, shown_velocity, words_of
 from .inplace import KrlLiterals, literals_of
 from .places import Places
@@ -256,13 +256,14 @@ def _other_change(old: Move, new: Move) -> str | None:
     return None if type(old.target) is type(new.target) else "kind of target"
 
 
-def _motions(parts: Sequence[Use]) -> list[Motion]:
+def _motions(parts: Sequence[Use]) -> list[PlacedMove]:
     """All moves in the order of execution."""
     literals: defaultdict[int, dict[str, frozenset[Span]]] = defaultdict(dict)
     for use in parts:
         if use.kind in (Kind.SPEED, Kind.ZONE):
             literals[use.index].update(literals_of(use))
     found = {
-        use.index: Motion(use.index, use.move, use.statement, literals[use.index]) for use in parts
+        use.index: PlacedMove(use.index, use.move, use.statement, literals[use.index])
+        for use in parts
     }
     return [found[index] for index in sorted(found)]

@@ -18,7 +18,7 @@ from ..syntax.tree import (
     Invoke,
     Label,
     Loop,
-    Motion,
+    MotionInstruction,
     Repeat,
     Return,
     SplineBlock,
@@ -136,7 +136,7 @@ class KrlTree:
             return self._invoked(statement.call, home, functions, names, handed)
         writes, outputs = self._assigned(statement, home)
         return Step(
-            moves=isinstance(statement, Motion),
+            moves=isinstance(statement, MotionInstruction),
             writes=handed | writes,
             made_of=names,
             outputs=outputs,
@@ -226,7 +226,7 @@ def _evaluated(statement: Statement) -> Iterator[Expression]:
         yield from indices_in(statement.target)
     elif isinstance(statement, Invoke):
         yield from (argument for argument in statement.call.arguments if argument is not None)
-    elif isinstance(statement, Motion):
+    elif isinstance(statement, MotionInstruction):
         yield from statement.targets
     elif isinstance(statement, Return) and statement.value is not None:
         yield statement.value

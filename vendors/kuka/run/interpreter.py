@@ -44,7 +44,7 @@ from ..syntax.tree import (
     Keyword,
     Label,
     Loop,
-    Motion,
+    MotionInstruction,
     Repeat,
     Return,
     Routine,
@@ -140,7 +140,7 @@ class Interpreter:
         waits = Waits(evaluator, waited, writes, transcript, keeping)
         self._handlers: dict[type, Callable[..., None]] = {
             Assign: self._assign,
-            Motion: motions.read,
+            MotionInstruction: motions.read,
             Invoke: self._calls.invoke,
             If: flow.if_,
             For: flow.for_,

@@ -12,7 +12,7 @@ from ..syntax.tree import Block, Routine
 from ..values.data import Data
 from ..values.elements import Path
 from ..values.evaluator import Evaluator
-from ..values.scope import Cell, Module, Scope
+from ..values.scope import Module, Scope, Variable
 from ..values.types import KrlTypeError, convert
 from ..values.values import Pending, Value, copied
 from .exits import Jump, Left, Returned
@@ -85,7 +85,7 @@ class Routines:
 
     def _hand_over(
         self, routine: Routine, call: Call, caller: Scope, scope: Scope
-    ) -> list[tuple[Cell, Name, Path]]:
+    ) -> list[tuple[Variable, Name, Path]]:
         """Arguments become cells of the routine's scope.
 
         Returns:
@@ -97,10 +97,10 @@ class Routines:
                 f"{routine.text} {wrong_count(len(routine.parameters), len(call.arguments))}",
                 call.span,
             )
-        back: list[tuple[Cell, Name, Path]] = []
+        back: list[tuple[Variable, Name, Path]] = []
         for index, parameter in enumerate(routine.parameters):
             argument = call.arguments[index] if index < len(call.arguments) else None
-            cell = Cell(parameter.name)
+            cell = Variable(parameter.name)
             if argument is not None:
                 cell.value = copied(self._evaluator.evaluate(argument, caller))
             scope.cells[parameter.name] = cell
@@ -108,7 +108,9 @@ class Routines:
                 back.append((cell, argument, self._evaluator.names.path(argument, caller)))
         return back
 
-    def _hand_back(self, back: list[tuple[Cell, Name, Path]], call: Call, caller: Scope) -> None:
+    def _hand_back(
+        self, back: list[tuple[Variable, Name, Path]], call: Call, caller: Scope
+    ) -> None:
         """What a parameter by reference was given goes into the caller's datum."""
         for cell, datum, path in back:
             value = cell.value

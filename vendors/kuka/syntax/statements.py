@@ -25,7 +25,7 @@ from .tree import (
     Keyword,
     Label,
     Loop,
-    Motion,
+    MotionInstruction,
     Repeat,
     Return,
     SplineBlock,
@@ -289,7 +289,7 @@ def _trigger(cursor: Cursor) -> Trigger:
     return Trigger(span, path, on_start, place, delay, action)
 
 
-def _motion(cursor: Cursor) -> Motion:
+def _motion(cursor: Cursor) -> MotionInstruction:
     start, word = cursor.start, cursor.kind
     cursor.advance()
     if cursor.at_end_of_line or cursor.kind in ("?", "!"):
@@ -314,7 +314,7 @@ def _motion(cursor: Cursor) -> Motion:
         words.read(cursor)
     span = cursor.span_from(start)
     cursor.end_of_line("the motion", CLOSING)
-    return Motion(
+    return MotionInstruction(
         span,
         word,
         tuple(targets),

@@ -31,7 +31,7 @@ class Invoke:
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class MotionInstruction:
     """A motion instruction.
 
     Args:
@@ -272,7 +272,7 @@ class EnumDefinition:
 Statement = (
     Assign
     | Invoke
-    | Motion
+    | MotionInstruction
     | If
     | For
     | While

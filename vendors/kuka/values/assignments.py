@@ -9,7 +9,7 @@ from ..syntax.expression_tree import Name
 from .data import Data
 from .elements import Names, Path, spelled
 from .predefined import OUTPUTS
-from .scope import Cell, Scope
+from .scope import Scope, Variable
 from .values import Array, Pending, Struct, Unknown, Value, copied, shown
 
 
@@ -27,7 +27,7 @@ class Assignment:
 
     def assign(
         self, target: Name, value: Value, scope: Scope, span: Span, path: Path | None = None
-    ) -> Cell:
+    ) -> Variable:
         """Give a datum, or a part of it, a value.
 
         Args:
@@ -69,7 +69,7 @@ class Assignment:
                 part = bool(value >> k & 1)
             self._data.outputs.write(place, part)
 
-    def _assign_whole(self, cell: Cell, value: Value, label: str | None, span: Span) -> None:
+    def _assign_whole(self, cell: Variable, value: Value, label: str | None, span: Span) -> None:
         if isinstance(cell.value, Array):
             if not isinstance(value, Array | Unknown):
                 raise SourceError(
@@ -87,7 +87,7 @@ class Assignment:
         cell.value = made
 
     def _assign_part(
-        self, cell: Cell, path: Path, value: Value, label: str | None, target: Name, span: Span
+        self, cell: Variable, path: Path, value: Value, label: str | None, target: Name, span: Span
     ) -> None:
         holder = cell.value
         for step, following in pairwise(path):
@@ -140,7 +140,7 @@ class Assignment:
 
     @staticmethod
     def _put_character(
-        cell: Cell, text: str, step: str | tuple[int, ...], value: Value, target: Name
+        cell: Variable, text: str, step: str | tuple[int, ...], value: Value, target: Name
     ) -> None:
         if isinstance(step, str) or not isinstance(value, str) or len(step) != 1:
             raise SourceError(f"{target.text} takes characters", target.span)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from .scope import Cell
+from .scope import Variable
 from .values import Pending, Unknown, Value, copied
 
 Held = Value | Pending | None
@@ -17,7 +17,7 @@ class Snapshot:
         cells: which.
     """
 
-    def __init__(self, cells: Iterable[Cell]) -> None:
+    def __init__(self, cells: Iterable[Variable]) -> None:
         self._held = [(cell, _kept(cell.value)) for cell in cells]
 
     def changed(self) -> bool:

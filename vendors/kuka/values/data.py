@@ -17,7 +17,7 @@ from ..syntax.tree import (
 )
 from .library import SHIPPED, Library
 from .predefined import ALIASES, CONSTANTS, initial
-from .scope import Cell, Module, Scope
+from .scope import Module, Scope, Variable
 from .types import PREDEFINED, default
 from .values import Array, Pending, Struct, Value
 
@@ -39,14 +39,14 @@ class Data:
             self.system[name].constant = True
         self.notes: list[Note] = []
         self.outputs = Outputs()
-        self._implicit: dict[str, Cell] = {}
-        self._missing: dict[str, Cell | None] = {}
+        self._implicit: dict[str, Variable] = {}
+        self._missing: dict[str, Variable | None] = {}
         for module in (*library.config, library.main):
             self.declare_module(module)
 
     # ---------------------------------------------------------------------- look-ups
 
-    def find(self, name: str, scope: Scope) -> Cell | None:
+    def find(self, name: str, scope: Scope) -> Variable | None:
         """The cell that a name (lower case) means in a scope; None if nothing declares it."""
         cell = scope.cells.get(name) or scope.module.cells.get(name)
         if cell is not None:
@@ -54,7 +54,7 @@ class Data:
         name = ALIASES.get(name, name)
         return self.system.get(name) or self._implicit.get(name) or self._elsewhere(name)
 
-    def _elsewhere(self, name: str) -> Cell | None:
+    def _elsewhere(self, name: str) -> Variable | None:
         for module in self.library.config:
             cell = module.cells.get(name)
             if cell is not None:
@@ -63,7 +63,7 @@ class Data:
             self._missing[name] = self._shared(name)
         return self._missing[name]
 
-    def _shared(self, name: str) -> Cell | None:
+    def _shared(self, name: str) -> Variable | None:
         """A datum that another module declares GLOBAL."""
         if name.startswith("$"):
             return None
@@ -74,14 +74,14 @@ class Data:
                 return cell
         return None
 
-    def named(self, names: frozenset[str], scopes: Iterable[Scope]) -> list[Cell]:
+    def named(self, names: frozenset[str], scopes: Iterable[Scope]) -> list[Variable]:
         """The cells of these names (lower case) in scopes, in modules and among the system's."""
         groups = [*(scope.cells for scope in scopes), self.system, self._implicit]
         groups += [module.cells for module in self.library.modules()]
         found = (group[name] for name in sorted(names) for group in groups if name in group)
         return list({id(cell): cell for cell in found}.values())
 
-    def implicit(self, name: Name) -> Cell:
+    def implicit(self, name: Name) -> Variable:
         """A cell for a name that nothing declares and that is assigned to.
 
         System variables are declared nowhere; other names are noted.
@@ -93,7 +93,7 @@ class Data:
                 name.span,
             )
         key = ALIASES.get(name.name, name.name)
-        return self._implicit.setdefault(key, Cell(name.text))
+        return self._implicit.setdefault(key, Variable(name.text))
 
     def note(self, kind: str, message: str, span: Span) -> None:
         """A note on a name."""
@@ -149,7 +149,7 @@ class Data:
         if cell is None:
             if target.name.startswith("$"):
                 return
-            cell = module.cells[target.name] = Cell(target.text, shipped=shipped)
+            cell = module.cells[target.name] = Variable(target.text, shipped=shipped)
         pending = Pending(statement.value, module.stem)
         indices = [step for step in target.path if isinstance(step, tuple)]
         index = _constant_indices(indices[0]) if len(target.path) == 1 and indices else ()
@@ -161,7 +161,7 @@ class Data:
             cell.value = Array(cell.type, (None,) * len(index))
         cell.value.items[index] = pending
 
-    def define(self, statement: Statement, cells: dict[str, Cell]) -> None:
+    def define(self, statement: Statement, cells: dict[str, Variable]) -> None:
         """A structure, an enumeration (whose constants need none) or a signal."""
         if isinstance(statement, StrucDefinition):
             self.types[statement.name] = {
@@ -170,11 +170,11 @@ class Data:
             }
         elif isinstance(statement, SignalDeclaration):
             signal = (statement.first, statement.last)
-            cells[statement.name] = Cell(statement.text, signal=signal)
+            cells[statement.name] = Variable(statement.text, signal=signal)
         elif not isinstance(statement, EnumDefinition):
             return
 
-    def cell(self, declaration: Declaration, module: Module) -> Cell:
+    def cell(self, declaration: Declaration, module: Module) -> Variable:
         """The cell of a declaration, with nothing assigned to it yet.
 
         Raises:
@@ -189,7 +189,7 @@ class Data:
         elif not sizes and type_name != "char":
             made = default(type_name, self.types)
             value = made if isinstance(made, Struct) else None
-        return Cell(declaration.text, type_name, value, declaration.constant)
+        return Variable(declaration.text, type_name, value, declaration.constant)
 
     def _size(self, size: Expression | None, module: Module) -> int | None:
         if size is None:

@@ -15,7 +15,7 @@ from .advance_run import AdvanceRun
 from .data import Data
 from .frames import null_frame
 from .predefined import NEVER_KNOWN, OUTPUTS, POSITION, STOPS_WHEN_READ
-from .scope import Cell, Scope
+from .scope import Scope, Variable
 from .types import PREDEFINED, KrlTypeError, convert
 from .values import Array, Choice, Pending, Struct, Unknown, Value, copied, shown, unplaced
 
@@ -109,7 +109,7 @@ class Names:
         for step in path:
             if isinstance(value, Unknown):
                 return value
-            part = self.part(value, step, node, Cell(node.text))
+            part = self.part(value, step, node, Variable(node.text))
             if part is None:
                 return Unknown(f"the value of {spelled(node.text, path)}", node.span)
             value = part
@@ -123,7 +123,7 @@ class Names:
             held = self._data.outputs.value(spelled(OUTPUTS[node.name], path))
         return self._undeclared(node, path) if held is None else held
 
-    def _signal(self, node: Name, cell: Cell, scope: Scope) -> Value:
+    def _signal(self, node: Name, cell: Variable, scope: Scope) -> Value:
         """A ``SIGNAL``: an output that the program has set; answered by its own name, or by those
         of the inputs and outputs that it stands for."""
         assert cell.signal is not None
@@ -184,7 +184,7 @@ class Names:
         return self.places(*cell.signal, scope)
 
     def part(
-        self, value: Value, step: str | tuple[int, ...], node: Name, cell: Cell
+        self, value: Value, step: str | tuple[int, ...], node: Name, cell: Variable
     ) -> Value | None:
         """A component, an item, or a character; None if nothing is set there."""
         if isinstance(step, str):
@@ -211,7 +211,7 @@ class Names:
         self.check_index(value, step, node)
         return self.item(value, step, cell)
 
-    def item(self, array: Array, index: tuple[int, ...], cell: Cell) -> Value | None:
+    def item(self, array: Array, index: tuple[int, ...], cell: Variable) -> Value | None:
         """An item of an array; None if nothing is set there."""
         item = array.items.get(index)
         if isinstance(item, Pending):
@@ -253,7 +253,7 @@ class Names:
             raise SourceError(f"an index is a whole number, not {value:g}", expression.span)
         return int(value)
 
-    def settled(self, cell: Cell) -> Value | None:
+    def settled(self, cell: Variable) -> Value | None:
         if isinstance(cell.value, Pending):
             pending = cell.value
             cell.value = None

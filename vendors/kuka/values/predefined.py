@@ -10,7 +10,7 @@ import math
 
 from ....core.source.text.lexer import words
 from .frames import null_frame
-from .scope import Cell
+from .scope import Variable
 from .values import Array, Choice, Struct, Value
 
 AXES = 6
@@ -24,7 +24,7 @@ def _struct(type_name: str, **fields: float) -> Struct:
     return Struct(type_name, dict(fields))
 
 
-def initial() -> dict[str, Cell]:
+def initial() -> dict[str, Variable]:
     """The system variables that motion depends on, by lower-case name."""
     most = math.inf
     values: dict[str, tuple[str, Value]] = {
@@ -51,7 +51,7 @@ def initial() -> dict[str, Cell]:
         "$act_tool": ("int", 0),
         "$act_base": ("int", 0),
     }
-    return {name: Cell(name.upper(), type_, value) for name, (type_, value) in values.items()}
+    return {name: Variable(name.upper(), type_, value) for name, (type_, value) in values.items()}
 
 
 ALIASES = {

@@ -10,7 +10,7 @@ from .values import Pending, Value
 
 
 @dataclass(eq=False, slots=True)
-class Cell:
+class Variable:
     """One datum.
 
     Args:
@@ -47,7 +47,7 @@ class Module:
     stem: str
     routines: dict[str, Routine] = field(default_factory=dict)
     lists: list[DataList] = field(default_factory=list)
-    cells: dict[str, Cell] = field(default_factory=dict)
+    cells: dict[str, Variable] = field(default_factory=dict)
     shared: set[str] = field(default_factory=set)
     declared: bool = False
 
@@ -65,5 +65,5 @@ class Scope:
 
     where: str
     module: Module
-    cells: dict[str, Cell] = field(default_factory=dict)
+    cells: dict[str, Variable] = field(default_factory=dict)
     returns: str | None = None

@@ -19,7 +19,7 @@ from ..values.located import Located
 from ..values.poses import pose_of, value_of
 from ..values.scope import Scope
 from ..values.values import (
-    Solution,
+    PendingInverse,
     Unknown,
     UrPose,
     Value,
@@ -129,7 +129,7 @@ def _has_solution(run: KinematicsRun, call: Call, scope: Scope) -> Located:
     return Located(run.position.solve(found.pose, found.tcp, near, span) is not None)
 
 
-def solution(run: KinematicsRun, call: Call, scope: Scope) -> Solution | Unknown:
+def solution(run: KinematicsRun, call: Call, scope: Scope) -> PendingInverse | Unknown:
     """What ``get_inverse_kin(x, qnear, maxPositionError, maxOrientationError, tcp)`` finds."""
     arguments = bind(call, INVERSE_PARAMETERS, 1, run.texts)
     value = evaluate(run, arguments["x"].value, scope)
@@ -143,7 +143,7 @@ def solution(run: KinematicsRun, call: Call, scope: Scope) -> Solution | Unknown
     if isinstance(near, Unknown):
         return near
     pose = _checked_pose(run, value, arguments["x"].value)
-    return Solution(pose, tool.tcp, near, run.texts.span_of(call))
+    return PendingInverse(pose, tool.tcp, near, run.texts.span_of(call))
 
 
 def _near(
@@ -167,7 +167,7 @@ def to_near(run: KinematicsRun, value: Value, node: Expression) -> UrConfigurati
     Raises:
         SourceError: it is something else.
     """
-    if isinstance(value, Solution):
+    if isinstance(value, PendingInverse):
         value = joints_of(run.position, value)
     unknown = find_unknown(value)
     joints = numbers(value, _SIX)
@@ -177,7 +177,7 @@ def to_near(run: KinematicsRun, value: Value, node: Expression) -> UrConfigurati
     return UrConfiguration(tuple(joints))
 
 
-def joints_of(position: Position, found: Solution) -> Value:
+def joints_of(position: Position, found: PendingInverse) -> Value:
     """The joint values of a solution.
 
     Raises:

@@ -27,7 +27,7 @@ from ..values.poses import pose_of
 from ..values.provenance import Sources, covering
 from ..values.scope import Scope
 from ..values.values import (
-    Solution,
+    PendingInverse,
     Unknown,
     UrPose,
     ValueFault,
@@ -175,7 +175,7 @@ class _MoveReader:
         found = locate(self.run, expression, self.scope)
         value = found.value
         name = argument.name or "target"
-        if isinstance(value, Solution):
+        if isinstance(value, PendingInverse):
             return self._solution(value), Part(span)
         self._known(found, f"the {name} of {self.call.name}", span)
         part = Part(span, covering(found.sources, _SIX) if found.sources else ())
@@ -223,7 +223,7 @@ class _MoveReader:
         target = PoseTarget(pose, configuration, name=goal.name)
         return target, Part(span, sources if any(sources) else ())
 
-    def _solution(self, found: Solution) -> PoseTarget:
+    def _solution(self, found: PendingInverse) -> PoseTarget:
         """The pose that inverse kinematics was asked for, for the TCP in force."""
         pose = found.pose
         if found.tcp != self.tool.tcp:

@@ -36,7 +36,7 @@ class Position:
     """
 
     def __init__(self, robot: Robot | None, start: JointTarget | None = None) -> None:
-        self._commanded = position.Position(robot, start, _standing)
+        self._commanded = position.PresentPosition(robot, start, _standing)
         self.place: Target | None = start
         self.base = WORLD
         if robot is not None and robot.base != IDENTITY:

@@ -24,7 +24,7 @@ from ..values.instructions import ADD_ONS, MOVES, REFUSED, Kept, asks, kept, kno
 from ..values.lists import METHODS
 from ..values.located import NOTHING, Located
 from ..values.outputs import READING, WRITING, held, write
-from ..values.scope import Cell, Function, Scope, did_you_mean
+from ..values.scope import Function, Scope, Variable, did_you_mean
 from ..values.values import Struct, Unknown, Value, describe, is_number
 from .exits import Frame, Returned
 from .threads import Started
@@ -156,7 +156,7 @@ def _pass_arguments(
                 f"{node.name}({', '.join(names)})",
                 node,
             )
-        scope.cells[parameter.name] = Cell(found.value, found.sources)
+        scope.cells[parameter.name] = Variable(found.value, found.sources)
 
 
 # ------------------------------------------------------------ functions of the controller

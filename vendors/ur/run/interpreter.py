@@ -36,7 +36,7 @@ from ..syntax.tree import (
     Keyword,
     MethodCall,
     Return,
-    Run,
+    StartThread,
     Statement,
     ThreadEnd,
     While,
@@ -49,7 +49,7 @@ from ..values.instructions import Kept
 from ..values.located import NOTHING, Located
 from ..values.provenance import SourceReads
 from ..values.scope import Function, Scope
-from ..values.values import Solution, Unknown, Value
+from ..values.values import PendingInverse, Unknown, Value
 from . import calls, flow, threads
 from .analysis import ScriptTree
 from .exits import Break, Continue, Finished, Frame, Returned
@@ -164,13 +164,13 @@ class Interpreter:
         self.out.emit_move(move, parts)
         self.position.moved(move, parts.statement)
 
-    def keep(self, call: Call | MethodCall | Run, entry: Kept, name: str) -> Value:
+    def keep(self, call: Call | MethodCall | StartThread, entry: Kept, name: str) -> Value:
         """Keep a call, with all of its statement if that is nothing but the call.
 
         Returns:
             What the call returns: the user's answer, or unknown.
         """
-        node: Call | MethodCall | Run | Assign = call
+        node: Call | MethodCall | StartThread | Assign = call
         statement = self.statement
         if isinstance(statement, Assign) and statement.value is call:
             node = statement
@@ -178,7 +178,7 @@ class Interpreter:
         self.out.keep(span, name, "", entry.stops)
         if entry.kind:
             self.out.notes.group(entry.kind, name, span)
-        if isinstance(call, Run):
+        if isinstance(call, StartThread):
             return Unknown(f"what {name} returns", span)
         return answer(self, call, name)
 
@@ -204,11 +204,11 @@ class Interpreter:
         """The value of a method."""
         return calls.method(self, call, scope)
 
-    def start_thread(self, run: Run, scope: Scope) -> Value:
+    def start_thread(self, run: StartThread, scope: Scope) -> Value:
         """Start a thread; its handle."""
         return threads.start(self, run, scope)
 
-    def joints(self, solution: Solution) -> Value:
+    def joints(self, solution: PendingInverse) -> Value:
         """The numbers of an inverse-kinematics solution."""
         return joints_of(self.position, solution)
 

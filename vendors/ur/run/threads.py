@@ -16,10 +16,10 @@ from ....core.errors import SourceError, Span
 from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.transcript import Transcript
-from ..syntax.tree import Block, Call, Run, ThreadEnd
+from ..syntax.tree import Block, Call, StartThread, ThreadEnd
 from ..values.evaluator import Evaluation, evaluate
 from ..values.instructions import Kept
-from ..values.scope import Cell, Function, Scope
+from ..values.scope import Function, Scope, Variable
 from ..values.values import ThreadHandle, Unknown, Value
 from .analysis import ScriptTree
 from .exits import Finished
@@ -44,7 +44,7 @@ class Started:
     endless: bool = False
     waited: bool = False
     decided: int = 0
-    written: tuple[Cell, ...] = ()
+    written: tuple[Variable, ...] = ()
     outputs: frozenset[str] = frozenset()
 
 
@@ -80,9 +80,9 @@ class ThreadsRun(Evaluation, Protocol):
         """Names of the threads that are being carried out."""
 
     def enter(self, function: Function, call: Call, caller: Scope) -> object:
-        """Run one of the program's own functions."""
+        """StartThread one of the program's own functions."""
 
-    def keep(self, call: Run, entry: Kept, name: str) -> Value:
+    def keep(self, call: StartThread, entry: Kept, name: str) -> Value:
         """Keep the start of a thread as it stands."""
 
     def finish(self, message: str, span: Span) -> NoReturn:
@@ -104,7 +104,7 @@ def check_free(threads: Iterable[Started], span: Span) -> None:
             )
 
 
-def start(run: ThreadsRun, node: Run, scope: Scope) -> Value:
+def start(run: ThreadsRun, node: StartThread, scope: Scope) -> Value:
     """``run name()``
 
     Raises:
@@ -130,7 +130,7 @@ def start(run: ThreadsRun, node: Run, scope: Scope) -> Value:
 
 
 def _carry_out(
-    run: ThreadsRun, function: Function, node: Run, scope: Scope, thread: Started
+    run: ThreadsRun, function: Function, node: StartThread, scope: Scope, thread: Started
 ) -> None:
     name = thread.name
     if name in run.inside:
@@ -150,7 +150,7 @@ def _carry_out(
         run.inside.pop()
 
 
-def _mark(tree: ScriptTree, function: Function) -> tuple[Cell, ...]:
+def _mark(tree: ScriptTree, function: Function) -> tuple[Variable, ...]:
     """What a running thread writes has no known value."""
     name = function.definition.name
     for variable in tree.thread_makes(name):

@@ -24,7 +24,7 @@ from .tree import (
     Number,
     Numbers,
     Operation,
-    Run,
+    StartThread,
     Text,
     Unary,
 )
@@ -266,7 +266,7 @@ def _run(cursor: Cursor) -> Expression:
     begin = cursor.start
     name = cursor.name("the name of a thread")
     arguments = parse_arguments(cursor, name)
-    return Run(start, cursor.end, Call(begin, cursor.end, name, arguments))
+    return StartThread(start, cursor.end, Call(begin, cursor.end, name, arguments))
 
 
 _CLOSING = frozenset({",", ")", "]", LINE, ";"})

@@ -19,7 +19,7 @@ from .tree import (
     Name,
     Operation,
     Return,
-    Run,
+    StartThread,
     Statement,
     ThreadEnd,
     Unary,
@@ -139,7 +139,7 @@ def _parts(expression: Expression) -> list[Expression]:
         return [a.value for a in expression.arguments]
     if isinstance(expression, MethodCall):
         return [expression.base, *(a.value for a in expression.arguments)]
-    if isinstance(expression, Run):
+    if isinstance(expression, StartThread):
         return [expression.call]
     if isinstance(expression, Unary):
         return [expression.operand]

@@ -123,7 +123,7 @@ class MethodCall:
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class StartThread:
     """``run name(arguments)``: starts a thread."""
 
     start: int
@@ -165,7 +165,7 @@ Expression = (
     | Member
     | Call
     | MethodCall
-    | Run
+    | StartThread
     | Unary
     | Operation
 )

@@ -9,8 +9,8 @@ from .elements import replaced, whole
 from .evaluator import Evaluation, locate, no_member, plain
 from .located import Located
 from .provenance import Sources, elements
-from .scope import Cell, Scope
-from .values import Solution, Struct, Unknown, Value, ValueFault
+from .scope import Scope, Variable
+from .values import PendingInverse, Struct, Unknown, Value, ValueFault
 
 
 def store(run: Evaluation, target: Place, found: Located, scope: Scope, storage: str = "") -> None:
@@ -51,7 +51,7 @@ def _with_element(
     run: Evaluation, target: Index, holder: Located, found: Located, scope: Scope
 ) -> Located:
     value = holder.value
-    if isinstance(value, Solution):
+    if isinstance(value, PendingInverse):
         value = run.joints(value)
     indices = [plain(run, index, scope) for index in target.indices]
     unknown = next((v for v in (value, *indices) if isinstance(v, Unknown)), None)
@@ -80,7 +80,7 @@ def _with_member(run: Evaluation, target: Member, value: Value, part: Value) -> 
     return value.with_part(target.name, part)
 
 
-def _cell(name: str, scope: Scope, storage: str) -> Cell:
+def _cell(name: str, scope: Scope, storage: str) -> Variable:
     if storage == "global":
         return scope.root().own(name)
     if storage == "local":

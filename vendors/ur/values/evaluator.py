@@ -25,7 +25,7 @@ from ..syntax.tree import (
     Number,
     Numbers,
     Operation,
-    Run,
+    StartThread,
     Text,
     Unary,
 )
@@ -35,7 +35,7 @@ from .located import Located
 from .operators import apply, negate, truth
 from .provenance import Literal, SourceReads, element_source
 from .scope import Scope
-from .values import Solution, Struct, Unknown, UrPose, Value, ValueFault, checked, describe
+from .values import PendingInverse, Struct, Unknown, UrPose, Value, ValueFault, checked, describe
 
 _POSE = 6
 _WRITTEN = {"pi": math.pi, "true": True, "false": False}
@@ -63,10 +63,10 @@ class Evaluation(Protocol):
     def method(self, call: MethodCall, scope: Scope) -> Value:
         """The value of a method."""
 
-    def start_thread(self, run: Run, scope: Scope) -> Value:
+    def start_thread(self, run: StartThread, scope: Scope) -> Value:
         """Start a thread; its handle."""
 
-    def joints(self, solution: Solution) -> Value:
+    def joints(self, solution: PendingInverse) -> Value:
         """The numbers of an inverse-kinematics solution."""
 
     def work(self, amount: int, span: Span) -> None:
@@ -112,7 +112,7 @@ def condition(run: Evaluation, expression: Expression, scope: Scope) -> bool | U
 def plain(run: Evaluation, expression: Expression, scope: Scope) -> Value:
     """The value of an expression, in which inverse kinematics has its numbers."""
     value = evaluate(run, expression, scope)
-    return run.joints(value) if isinstance(value, Solution) else value
+    return run.joints(value) if isinstance(value, PendingInverse) else value
 
 
 def no_member(run: Evaluation, member: Member, value: Value) -> SourceError:
@@ -166,7 +166,7 @@ def _locate_index(run: Evaluation, index: Index, scope: Scope) -> Located:
     try:
         for expression in index.indices:
             place = plain(run, expression, scope)
-            if isinstance(value, Solution):
+            if isinstance(value, PendingInverse):
                 value = run.joints(value)
             if isinstance(place, Unknown) or isinstance(value, Unknown):
                 run.literals.consume(base.sources)
@@ -213,7 +213,9 @@ def _aggregate(run: Evaluation, aggregate: Aggregate, scope: Scope) -> Value:
 
 def _locate_aggregate(run: Evaluation, aggregate: Aggregate, scope: Scope) -> Located:
     found = [locate(run, item, scope) for item in aggregate.items]
-    values = [run.joints(f.value) if isinstance(f.value, Solution) else f.value for f in found]
+    values = [
+        run.joints(f.value) if isinstance(f.value, PendingInverse) else f.value for f in found
+    ]
     sources: list[Literal | None] = []
     for item in found:
         single = item.sources[0] if len(item.sources) == 1 else None
@@ -245,7 +247,7 @@ def _method(run: Evaluation, call: MethodCall, scope: Scope) -> Value:
     return run.method(call, scope)
 
 
-def _thread(run: Evaluation, start: Run, scope: Scope) -> Value:
+def _thread(run: Evaluation, start: StartThread, scope: Scope) -> Value:
     return run.start_thread(start, scope)
 
 
@@ -286,7 +288,7 @@ _EVALUATORS: dict[type, Callable[[Evaluation, Any, Scope], Value]] = {
     Member: _member,
     Call: _read,
     MethodCall: _method,
-    Run: _thread,
+    StartThread: _thread,
     Unary: _unary,
     Operation: _operation,
 }

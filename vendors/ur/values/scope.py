@@ -22,7 +22,7 @@ _OFFERED = 3
 
 
 @dataclass(eq=False, slots=True)
-class Cell:
+class Variable:
     """One variable.
 
     Args:
@@ -45,7 +45,7 @@ class Function:
 
 
 @dataclass(eq=False, slots=True)
-class Scope(scopes.Scope[Cell]):
+class Scope(scopes.Scope[Variable]):
     """Names of one running function; ``outer`` is the scope that the function's text stands in.
 
     Args:
@@ -68,9 +68,9 @@ class Scope(scopes.Scope[Cell]):
             if isinstance(statement, Define):
                 self.functions[statement.name] = statement
 
-    def own(self, name: str) -> Cell:
+    def own(self, name: str) -> Variable:
         """The variable of this very scope, made if there is none."""
-        return self.cells.setdefault(name, Cell())
+        return self.cells.setdefault(name, Variable())
 
     def root(self) -> Scope:
         """The scope of the whole program."""

@@ -69,7 +69,7 @@ class Struct:
 
 
 @dataclass(frozen=True, slots=True)
-class Solution:
+class PendingInverse:
     """What ``get_inverse_kin`` returns, before anybody asks for its numbers.
 
     Args:
@@ -108,7 +108,7 @@ Value = (
     | UrPose
     | Struct
     | Unknown
-    | Solution
+    | PendingInverse
     | ThreadHandle
 )
 

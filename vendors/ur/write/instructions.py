@@ -103,7 +103,7 @@ def _goal(move: MoveJ | MoveL, operands: Operands) -> Line:
     return ("get_inverse_kin(", pose, ", ", qnear(move.target.configuration), ")")
 
 
-class Settings:
+class WrittenSettings:
     """What holds until it is changed.
 
     A controller starts with the TCP and payload of its installation: the TCP is always set before

@@ -15,7 +15,7 @@ from ....core.source.write.options import AS_COMMENTS, OpaqueStyle
 from ..syntax.names import NAME_RULES
 from .declarations import Line
 from .formatting import comment, number
-from .instructions import Phrases, Settings
+from .instructions import Phrases, WrittenSettings
 from .options import ScriptOptions
 
 SUFFIX = ".script"
@@ -86,7 +86,7 @@ def body(program: Program, robot: Robot, options: ScriptOptions, *taken: str) ->
 
 
 def _lines(program: Program, phrases: Phrases, style: OpaqueStyle) -> list[Line]:
-    settings = Settings()
+    settings = WrittenSettings()
     lines: list[Line] = []
     index = 0
     for statement in program.statements:
@@ -107,7 +107,7 @@ def _opaque(statement: Opaque, style: OpaqueStyle) -> list[str]:
 
 
 def _move(
-    move: Move, index: int, settings: Settings, phrases: Phrases, style: OpaqueStyle
+    move: Move, index: int, settings: WrittenSettings, phrases: Phrases, style: OpaqueStyle
 ) -> list[Line]:
     """The move, with the settings that must change before it."""
     try:

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from .....core.arrays import FloatArray, IntArray
-from ..task.limits import Limits
+from ..task.limits import MotionLimits
 from ..task.sampled import Plant, State, TcpSpeed
-from ..task.task import Task
+from ..task.task import MotionTask
 from ..task.torque_bounds import BendBounds
 from .motion import Motion
 from .scheme import bernstein
@@ -61,7 +61,7 @@ class Audit:
 
 
 def audit(
-    task: Task, limits: Limits, plant: Plant | None, motion: Motion, tolerance: float
+    task: MotionTask, limits: MotionLimits, plant: Plant | None, motion: Motion, tolerance: float
 ) -> Audit:
     """Look at a whole motion.
 
@@ -93,7 +93,12 @@ class _Samples:
     """What is looked at densely."""
 
     def __init__(
-        self, task: Task, limits: Limits, plant: Plant | None, motion: Motion, tolerance: float
+        self,
+        task: MotionTask,
+        limits: MotionLimits,
+        plant: Plant | None,
+        motion: Motion,
+        tolerance: float,
     ) -> None:
         self._task, self._limits, self._plant, self._motion = task, limits, plant, motion
         self._tolerance = tolerance

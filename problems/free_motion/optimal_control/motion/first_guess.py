@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from .....core.arrays import FloatArray, IntArray
-from ..task.limits import Limits
+from ..task.limits import MotionLimits
 from ..task.sampled import Plant, State, TcpSpeed
-from ..task.task import Task
+from ..task.task import MotionTask
 from .grid import Grid
 from .layout import Layout
 from .motion import Motion
@@ -57,12 +57,12 @@ class Polyline:
     leg: IntArray
 
     @classmethod
-    def direct(cls, task: Task) -> Polyline:
+    def direct(cls, task: MotionTask) -> Polyline:
         """Straight from waypoint to waypoint."""
         return cls(task.stations[:, task.moving], np.arange(task.legs))
 
     @classmethod
-    def through(cls, task: Task, vias: list[FloatArray]) -> Polyline:
+    def through(cls, task: MotionTask, vias: list[FloatArray]) -> Polyline:
         """With further corners (c, N) on each leg."""
         stations, points, leg = task.stations, [], []
         for k in range(task.legs):
@@ -74,8 +74,8 @@ class Polyline:
 
 
 def first_guess(
-    task: Task,
-    limits: Limits,
+    task: MotionTask,
+    limits: MotionLimits,
     plant: Plant | None,
     line: Polyline,
     scheme: Scheme,
@@ -115,7 +115,7 @@ def first_guess(
     return Guess(layout, float(times.sum()), x)
 
 
-def breaks_of(task: Task, leg: IntArray) -> tuple[int, ...]:
+def breaks_of(task: MotionTask, leg: IntArray) -> tuple[int, ...]:
     """Nodes at which the acceleration may jump, for intervals on these legs."""
     ends = np.searchsorted(leg, np.arange(1, task.legs))
     return tuple(
@@ -162,8 +162,8 @@ def _put_line(
 
 
 def _line_time(
-    task: Task,
-    limits: Limits,
+    task: MotionTask,
+    limits: MotionLimits,
     plant: Plant | None,
     scheme: Scheme,
     begin: FloatArray,
@@ -202,6 +202,6 @@ def _line_time(
     return float(time)
 
 
-def _most_used(limits: Limits, torque: FloatArray, rate: FloatArray) -> float:
+def _most_used(limits: MotionLimits, torque: FloatArray, rate: FloatArray) -> float:
     """The largest share of a torque limit that is used."""
     return float(np.abs(limits.torques.shares(torque, rate)).max())

@@ -20,7 +20,7 @@ from .....core.collision.proof.verdict import CONTACT, MM, Certificate, Verdict,
 from .....core.collision.scene.scene import CollisionScene
 from .....core.motion.geometry.curves import POLYNOMIAL, Curves
 from .....core.motion.model.blend import BASIS
-from ..task.task import Task
+from ..task.task import MotionTask
 from .motion import Motion
 
 
@@ -40,7 +40,7 @@ class Proof:
 
 
 def prove(
-    task: Task,
+    task: MotionTask,
     motion: Motion,
     scene: CollisionScene,
     clearance: float,
@@ -73,7 +73,7 @@ def prove(
     return Proof(Certificate(Verdict.PROVEN, proven, message, measured=left.used))
 
 
-def enclosure_of(task: Task, motion: Motion) -> Enclosure:
+def enclosure_of(task: MotionTask, motion: Motion) -> Enclosure:
     """Enclosures of the configurations on intervals of time."""
     count, degrees = motion.coefficients.shape[:2]
     size = task.robot.size

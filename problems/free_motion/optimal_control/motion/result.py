@@ -16,9 +16,9 @@ from .....core.program.tool import WORLD, Tool
 from .....core.robot.kinematics.chain_kernels import poses
 from .....core.robot.work_chain import work_chain
 from .....core.spatial.rotation import quaternion_from_matrix
-from ..task.limits import Limits
+from ..task.limits import MotionLimits
 from ..task.sampled import Plant, State
-from ..task.task import Task
+from ..task.task import MotionTask
 from .audit import Audit
 from .motion import Motion
 
@@ -67,7 +67,7 @@ class Optimum:
         notes: what a user should know.
     """
 
-    task: Task
+    task: MotionTask
     motion: Motion
     first: Motion
     audit: Audit
@@ -87,9 +87,9 @@ class Optimum:
         return self.certificate is None or self.certificate.proven
 
     @cached_property
-    def limits(self) -> Limits:
+    def limits(self) -> MotionLimits:
         """That counted."""
-        return Limits.of(self.task)
+        return MotionLimits.of(self.task)
 
     def energy(self, consumption: Consumption = SQUARED_TORQUE) -> float:
         """What all axes consume together, without smoothing."""
@@ -110,21 +110,21 @@ class Optimum:
         return sampled_trajectory(self.task, self.motion, period)
 
 
-def energy_of(task: Task, motion: Motion, consumption: Consumption = SQUARED_TORQUE) -> float:
+def energy_of(task: MotionTask, motion: Motion, consumption: Consumption = SQUARED_TORQUE) -> float:
     """What all axes consume together, as `flyby.core.motion.timing.energy` has it of a program."""
     weights, torque, rate = _driven(task, motion)
     return float(weights @ consumption.total(consumption.powers(torque, rate)))
 
 
 def energy_by_joint(
-    task: Task, motion: Motion, consumption: Consumption = SQUARED_TORQUE
+    task: MotionTask, motion: Motion, consumption: Consumption = SQUARED_TORQUE
 ) -> FloatArray:
     """(N,), what each axis takes."""
     weights, torque, rate = _driven(task, motion)
     return np.asarray(weights @ consumption.powers(torque, rate))
 
 
-def _driven(task: Task, motion: Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _driven(task: MotionTask, motion: Motion) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Samples: weights (Z,) s of integrals over time, torques and velocities (Z, N)."""
     plant = Plant(task)
     shares = np.linspace(0.0, 1.0, _DENSE + 1)
@@ -137,7 +137,7 @@ def _driven(task: Task, motion: Motion) -> tuple[FloatArray, FloatArray, FloatAr
     return whole, plant.torques(state), plant.rates(state)
 
 
-def sampled_trajectory(task: Task, motion: Motion, period: float) -> Trajectory:
+def sampled_trajectory(task: MotionTask, motion: Motion, period: float) -> Trajectory:
     """See `Optimum.trajectory`."""
     t = sample_times(0.0, motion.duration, period)
     parts = [np.zeros((len(t), task.robot.size)) for _ in range(3)]

@@ -18,8 +18,8 @@ import numpy as np
 from .....core.arrays import FloatArray
 from ..motion.first_guess import Guess
 from ..motion.motion import Motion
-from ..task.task import Task
-from .surroundings import Places
+from ..task.task import MotionTask
+from .surroundings import Instants
 
 _FASTER, _FARTHEST = 1.5, 4.0
 """How far ahead, in steps of the last size."""
@@ -103,7 +103,7 @@ class Aim:
         self.exhausted = True
         self._beside = 0 if touching else self._trials
 
-    def configurations(self, task: Task, base: Guess, places: Places) -> FloatArray:
+    def configurations(self, task: MotionTask, base: Guess, places: Instants) -> FloatArray:
         """(M, N), where the distances at places are to be linearised."""
         motion = base.motion
         if self._ahead > 0.0 and self._before is not None:

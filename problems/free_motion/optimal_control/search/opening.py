@@ -12,7 +12,7 @@ from .....core.errors import InputError, MotionError
 from ...planning.free_space import FreeSpace
 from ...planning.search import quickest_path
 from ..motion.first_guess import Polyline
-from ..task.task import Task
+from ..task.task import MotionTask
 from .surroundings import Surroundings
 
 _ROOM = 1e-3
@@ -20,7 +20,9 @@ _ROOM = 1e-3
 _SEED, _TRIES, _SECONDS = 0, 3, 20.0
 
 
-def opening(task: Task, around: Surroundings | None, vias: Sequence[ArrayLike] | None) -> Polyline:
+def opening(
+    task: MotionTask, around: Surroundings | None, vias: Sequence[ArrayLike] | None
+) -> Polyline:
     """Straight joint lines to begin along, whose corners are stops.
 
     Args:
@@ -40,7 +42,7 @@ def opening(task: Task, around: Surroundings | None, vias: Sequence[ArrayLike] |
     return Polyline.through(task, _planned(task, around))
 
 
-def _checked(task: Task, vias: Sequence[ArrayLike]) -> list[FloatArray]:
+def _checked(task: MotionTask, vias: Sequence[ArrayLike]) -> list[FloatArray]:
     if len(vias) != task.legs:
         raise InputError(
             f"corners of {len(vias)} legs were given; there are {task.legs} between waypoints"
@@ -57,7 +59,7 @@ def _checked(task: Task, vias: Sequence[ArrayLike]) -> list[FloatArray]:
     return found
 
 
-def _planned(task: Task, around: Surroundings) -> list[FloatArray]:
+def _planned(task: MotionTask, around: Surroundings) -> list[FloatArray]:
     """Corners of a free path for each leg; none where the straight line is free."""
     size, robot = task.robot.arm_size, task.robot
     external = tuple(map(float, np.asarray(task.start)[size:]))
@@ -74,7 +76,7 @@ def _planned(task: Task, around: Surroundings) -> list[FloatArray]:
 
 
 def _path(
-    task: Task, around: Surroundings, ends: FloatArray, external: tuple[float, ...], leg: int
+    task: MotionTask, around: Surroundings, ends: FloatArray, external: tuple[float, ...], leg: int
 ) -> FloatArray:
     """(c, n), a free path of the arm between two configurations (2, n)."""
     still = sorted(set(range(task.robot.arm_size)) - set(task.moving.tolist()))

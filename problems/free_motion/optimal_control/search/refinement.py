@@ -12,7 +12,7 @@ from ..motion.audit import Audit
 from ..motion.first_guess import Guess, breaks_of
 from ..motion.layout import Layout
 from ..motion.motion import Motion
-from ..task.task import Task
+from ..task.task import MotionTask
 from ..transcription.transcription import Margins
 
 SPLIT = 5e-3
@@ -76,7 +76,7 @@ def too_coarse(audit: Audit) -> NDArray[np.bool_]:
     return np.asarray((torque > 1.0 + SPLIT) | (audit.tcp_speed > 1.0 + SPLIT))
 
 
-def refined(task: Task, guess: Guess, parts: IntArray) -> Guess:
+def refined(task: MotionTask, guess: Guess, parts: IntArray) -> Guess:
     """The same motion on a grid whose intervals are cut into ``parts`` (K,)."""
     layout = guess.layout
     x = guess.x

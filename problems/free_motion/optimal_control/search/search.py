@@ -22,9 +22,9 @@ from ..motion.layout import Layout
 from ..motion.motion import Motion
 from ..motion.proof import Proof, prove
 from ..motion.result import Step
-from ..task.limits import Limits
+from ..task.limits import MotionLimits
 from ..task.sampled import Plant, TorqueField
-from ..task.task import Task
+from ..task.task import MotionTask
 from ..transcription.rows import PlaceRows
 from ..transcription.sample_rows import EnergyTerm
 from ..transcription.transcription import Bounds, Transcription
@@ -32,7 +32,7 @@ from .aiming import Aim
 from .effort import Effort
 from .patience import Patience
 from .refinement import PieceMargins, refined, too_coarse
-from .surroundings import Breach, Linearised, Places, Surroundings, breaches, linearised, sags
+from .surroundings import Breach, Instants, Linearised, Surroundings, breaches, linearised, sags
 
 Report = Callable[[Step], bool | None]
 
@@ -72,8 +72,8 @@ class Search:
 
     def __init__(
         self,
-        task: Task,
-        limits: Limits,
+        task: MotionTask,
+        limits: MotionLimits,
         plant: Plant | None,
         around: Surroundings | None,
         effort: Effort,
@@ -262,7 +262,7 @@ class Search:
         lower, upper = self.limits.lower + position, self.limits.upper - position
         if self.around is None:
             return None, Bounds(lower, upper)
-        places = Places.even(len(layout.grid), self.effort.places)
+        places = Instants.even(len(layout.grid), self.effort.places)
         q = self.aim.configurations(self.task, self.base, places)
         cuts = linearised(self.task, self.around, q, places, self._box, self.effort.slots)
         q = self.base.x[layout.q]
@@ -272,7 +272,7 @@ class Search:
         """A proof that a motion is free; else where it is not."""
         assert self.around is not None
         clearance = self.around.clearance
-        places = Places.even(len(motion), _LOOKED)
+        places = Instants.even(len(motion), _LOOKED)
         near = breaches(self.task, self.around, motion, places, clearance)
         if near is not None:
             return near
@@ -282,7 +282,7 @@ class Search:
         piece = motion.pieces(np.array([proof.time]))
         share = (proof.time - motion.knots[piece]) / motion.durations[piece]
         within = max(self.around.wanted, (proof.certificate.distance or 0.0) + 1e-5)
-        near = breaches(self.task, self.around, motion, Places(piece, share), within)
+        near = breaches(self.task, self.around, motion, Instants(piece, share), within)
         return proof if near is None else near
 
     # What is kept

@@ -12,7 +12,7 @@ from .....core.collision.scene.scene import CollisionScene
 from .....core.errors import InputError
 from ..motion.layout import Layout
 from ..motion.motion import Motion
-from ..task.task import Task
+from ..task.task import MotionTask
 from ..transcription.rows import PlaceRows
 
 _CURVED = 1.5
@@ -63,19 +63,19 @@ class Surroundings:
 
 
 @dataclass(frozen=True)
-class Places:
-    """Places of a motion: (M,) pieces and shares of them."""
+class Instants:
+    """Instants of a motion: (M,) pieces and shares of them."""
 
     interval: IntArray
     share: FloatArray
 
     @classmethod
-    def even(cls, pieces: int, parts: int) -> Places:
+    def even(cls, pieces: int, parts: int) -> Instants:
         """``parts`` on every piece, its beginning included."""
         share = np.tile(np.arange(parts) / parts, pieces)
         return cls(np.repeat(np.arange(pieces), parts), share)
 
-    def of(self, task: Task, motion: Motion) -> FloatArray:
+    def of(self, task: MotionTask, motion: Motion) -> FloatArray:
         """(M, N), all joints there."""
         powers = self.share[:, None] ** np.arange(motion.coefficients.shape[1])
         moving = np.einsum("mc,mcn->mn", powers, motion.coefficients[self.interval])
@@ -103,7 +103,7 @@ class Linearised:
         q: (M, n), configurations there.
     """
 
-    places: Places
+    places: Instants
     pair: IntArray
     distance: FloatArray
     normal: FloatArray
@@ -145,10 +145,10 @@ class Linearised:
 
 
 def linearised(
-    task: Task,
+    task: MotionTask,
     around: Surroundings,
     q: FloatArray,
-    places: Places,
+    places: Instants,
     box: float,
     slots: int,
 ) -> Linearised:
@@ -183,7 +183,7 @@ def linearised(
 
 
 def sags(
-    task: Task, around: Surroundings, motion: Motion, cuts: Linearised, parts: int
+    task: MotionTask, around: Surroundings, motion: Motion, cuts: Linearised, parts: int
 ) -> FloatArray:
     """(M, S) m, how much nearer each pair comes between a place and its neighbours than there.
 
@@ -192,7 +192,7 @@ def sags(
         cuts: places, even ones on every piece, and pairs.
         parts: places looked at on every piece, a multiple of those of the cuts.
     """
-    dense = Places.even(len(motion), parts)
+    dense = Instants.even(len(motion), parts)
     distance = around.scene.distances(dense.of(task, motion), around.wanted + _SAGGING).distance
     count = len(cuts.places.share)
     step = len(dense.share) // count
@@ -216,7 +216,7 @@ class Breach:
         q: (B, n), configurations there.
     """
 
-    places: Places
+    places: Instants
     pair: IntArray
     distance: FloatArray
     normal: FloatArray
@@ -253,7 +253,7 @@ class Breach:
 
 
 def breaches(
-    task: Task, around: Surroundings, motion: Motion, places: Places, within: float
+    task: MotionTask, around: Surroundings, motion: Motion, places: Instants, within: float
 ) -> Breach | None:
     """Where a motion has pairs nearer than ``within`` m at places; None if nowhere."""
     q = places.of(task, motion)
@@ -263,7 +263,7 @@ def breaches(
         return None
     normal = around.scene.gradients(q, found, (sample, pair))[:, task.moving]
     return Breach(
-        Places(places.interval[sample], places.share[sample]),
+        Instants(places.interval[sample], places.share[sample]),
         pair,
         found.distance[sample, pair],
         normal,

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from .....core.arrays import FloatArray, IntArray
 from .....core.errors import InputError
-from .task import Task
+from .task import MotionTask
 
 
 class TorqueLimits(NamedTuple):
@@ -33,7 +33,7 @@ class TorqueLimits(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Limits:
+class MotionLimits:
     """Limits of the n joints that move, and of the torques of all N axes: those that stand still
     have to be held. Infinite where there is none.
 
@@ -59,7 +59,7 @@ class Limits:
         return len(self.torques.axis) > 0
 
     @classmethod
-    def of(cls, task: Task) -> Limits:
+    def of(cls, task: MotionTask) -> MotionLimits:
         """The limits of a task.
 
         Raises:
@@ -90,7 +90,7 @@ class Limits:
         )
 
 
-def _torques(task: Task, constant: FloatArray) -> TorqueLimits:
+def _torques(task: MotionTask, constant: FloatArray) -> TorqueLimits:
     """Limits of axes, from constant ones (N,) and the task's lines."""
     names, lines = task.robot.axis_names, task.limits.curves
     # External axes that stand still are held by their brakes.
@@ -110,7 +110,7 @@ def _torques(task: Task, constant: FloatArray) -> TorqueLimits:
     )
 
 
-def _chosen(task: Task, name: str, given: ArrayLike | None, own: FloatArray) -> FloatArray:
+def _chosen(task: MotionTask, name: str, given: ArrayLike | None, own: FloatArray) -> FloatArray:
     robot = task.robot
     try:
         values = own if given is None else np.asarray(given, dtype=float)

@@ -17,7 +17,7 @@ from .....core.program.tool import WORLD, Tool
 from .....core.robot.kinematics.chain_derivatives import hessians
 from .....core.robot.kinematics.chain_kernels import jacobians
 from .....core.robot.work_chain import work_chain
-from .task import Task
+from .task import MotionTask
 
 _STEP = 1e-6
 """rad or m, for difference quotients of derivatives."""
@@ -55,7 +55,7 @@ class Plant:
         InputError: inertias are not known.
     """
 
-    def __init__(self, task: Task) -> None:
+    def __init__(self, task: MotionTask) -> None:
         self._task = task
         self.moving, self.size = task.moving, task.robot.size
         self._rest = np.asarray(task.start, dtype=float)
@@ -221,7 +221,7 @@ class TcpSpeed:
         scale: T₀, s.
     """
 
-    def __init__(self, task: Task, scale: float) -> None:
+    def __init__(self, task: MotionTask, scale: float) -> None:
         self._chain = work_chain(task.robot, Tool("tcp", task.tcp), WORLD)
         self._moving = task.moving
         self._rest = np.asarray(task.start, dtype=float)

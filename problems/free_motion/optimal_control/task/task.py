@@ -116,7 +116,7 @@ class Waypoint:
 
 
 @dataclass(frozen=True)
-class Task:
+class MotionTask:
     """A motion that is wanted.
 
     Args:
@@ -148,12 +148,12 @@ class Task:
     joints: Sequence[int] | None = None
 
     def __post_init__(self) -> None:
-        of_kind("Task.robot", self.robot, Robot)
-        of_kind("Task.limits", self.limits, ControlLimits)
-        of_kind("Task.objective", self.objective, Objective)
-        of_kind("Task.tcp", self.tcp, Pose)
-        all_of_kind("Task.waypoints", self.waypoints, Waypoint)
-        all_of_kind("Task.loads", self.loads, Inertia | None)
+        of_kind("MotionTask.robot", self.robot, Robot)
+        of_kind("MotionTask.limits", self.limits, ControlLimits)
+        of_kind("MotionTask.objective", self.objective, Objective)
+        of_kind("MotionTask.tcp", self.tcp, Pose)
+        all_of_kind("MotionTask.waypoints", self.waypoints, Waypoint)
+        all_of_kind("MotionTask.loads", self.loads, Inertia | None)
         size = self.robot.size
         for name in ("start", "end", "start_velocity", "end_velocity"):
             value = getattr(self, name)
@@ -198,7 +198,8 @@ class Task:
         joints = tuple(self.joints) if isinstance(self.joints, Iterable) else ()
         if not joints or len(set(joints)) != len(joints) or not set(joints) <= set(range(size)):
             raise InputError(
-                f"Task.joints are different indices below {size}, one at least, not {self.joints!r}"
+                f"MotionTask.joints are different indices below {size}, one at least, "
+                f"not {self.joints!r}"
             )
         return joints
 
@@ -211,7 +212,7 @@ class Task:
             if len(wrong):
                 raise InputError(
                     f"joint {self.robot.axis_names[wrong[0]]} has to move, but is not among the "
-                    "joints that may: add it to Task.joints"
+                    "joints that may: add it to MotionTask.joints"
                 )
 
 

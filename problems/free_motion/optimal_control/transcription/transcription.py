@@ -17,9 +17,9 @@ from .....core.arrays import FloatArray
 from .....core.sqp import NLP
 from .....core.sqp.algebra.entries import Entries
 from ..motion.layout import Layout
-from ..task.limits import Limits
+from ..task.limits import MotionLimits
 from ..task.sampled import Plant, TcpSpeed, TorqueField
-from ..task.task import Task
+from ..task.task import MotionTask
 from .rows import (
     DurationRow,
     GivenVelocity,
@@ -79,8 +79,8 @@ class Transcription:
 
     def __init__(
         self,
-        task: Task,
-        limits: Limits,
+        task: MotionTask,
+        limits: MotionLimits,
         layout: Layout,
         scale: float,
         energy_unit: float | None,

@@ -12,7 +12,7 @@ from flyby.core.errors import SourceError, Span
 from flyby.core.source.execution.analysis import Analysis
 from flyby.core.source.execution.answers import Answers, Course
 from flyby.core.source.execution.flow import FOLLOWED, Flow, Loop, Undecided
-from flyby.core.source.execution.limits import Limits, Meter
+from flyby.core.source.execution.limits import ExecutionLimits, Meter
 from flyby.core.source.execution.outputs import Outputs
 from flyby.core.source.execution.steps import Exit, Step
 
@@ -147,7 +147,7 @@ class Run:
     def __init__(self, answers: Answers | None = None, **data: Value) -> None:
         self.data: Data = {"signal": UNKNOWN, "other": UNKNOWN, **data}
         self.course = Course(answers or Answers())
-        self.meter = Meter(Limits(statements=5000))
+        self.meter = Meter(ExecutionLimits(statements=5000))
         self.outputs = Outputs()
         self.position_asked = 0
         self.place: object = None

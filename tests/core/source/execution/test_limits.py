@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import SourceError, Span
-from flyby.core.source.execution.limits import Limits, Meter
+from flyby.core.source.execution.limits import ExecutionLimits, Meter
 
 SPAN = Span("a.mod", 7, 3, 60, 65)
 STEPS = st.lists(st.sampled_from(["statement", "move"]), max_size=60)
@@ -17,7 +17,7 @@ STEPS = st.lists(st.sampled_from(["statement", "move"]), max_size=60)
 def test_the_meter_stops_at_its_limits_and_not_before(
     steps: list[str], statements: int, moves: int
 ) -> None:
-    meter = Meter(Limits(statements, moves, calls=3))
+    meter = Meter(ExecutionLimits(statements, moves, calls=3))
     row = driven = 0
     for step in steps:
         row, driven = (0, driven + 1) if step == "move" else (row + 1, driven)
@@ -31,7 +31,7 @@ def test_the_meter_stops_at_its_limits_and_not_before(
 
 @given(st.lists(st.booleans(), max_size=60), st.integers(1, 5))
 def test_calls_that_come_back_do_not_count(enters: list[bool], calls: int) -> None:
-    meter = Meter(Limits(calls=calls))
+    meter = Meter(ExecutionLimits(calls=calls))
     depth = 0
     for enter in enters:
         if not enter:
@@ -49,7 +49,7 @@ def test_calls_that_come_back_do_not_count(enters: list[bool], calls: int) -> No
 
 @given(st.lists(st.integers(1, 3), max_size=40), st.integers(1, 5))
 def test_one_move_is_not_repeated_for_ever(lines: list[int], repeats: int) -> None:
-    meter = Meter(Limits(repeats=repeats))
+    meter = Meter(ExecutionLimits(repeats=repeats))
     for position, line in enumerate(lines):
         span = Span("a.mod", line, 3, 60, 65)
         if lines[: position + 1].count(line) > repeats:

@@ -14,7 +14,7 @@ from flyby.core.robot.inertia import Inertia
 from flyby.core.robot.joint import Joint, JointKind
 from flyby.core.robot.model import Robot
 from flyby.core.spatial.pose import IDENTITY
-from flyby.problems.free_motion.optimal_control import ControlLimits, Task, Waypoint
+from flyby.problems.free_motion.optimal_control import ControlLimits, MotionTask, Waypoint
 
 FREE = math.inf
 GRAVITY = 9.81
@@ -40,9 +40,9 @@ def pendulum(torque: float) -> Robot:
     )
 
 
-def swing_up(torque: float) -> Task:
+def swing_up(torque: float) -> MotionTask:
     """From hanging to standing."""
-    return Task(pendulum(torque), [0.0], [math.pi], limits=ControlLimits(acceleration=[FREE]))
+    return MotionTask(pendulum(torque), [0.0], [math.pi], limits=ControlLimits(acceleration=[FREE]))
 
 
 def strong_swing_up(torque: float) -> float:
@@ -100,10 +100,10 @@ def weak_swing_up(torque: float, switches: tuple[float, float], end: float) -> f
     return best
 
 
-def arm_task(**more: object) -> Task:
+def arm_task(**more: object) -> MotionTask:
     """A wide motion of a real arm under torque limits."""
     given: dict[str, object] = {"limits": ControlLimits(torque=TORQUE), **more}
-    return Task(ARM, START, END, **given)  # type: ignore[arg-type]
+    return MotionTask(ARM, START, END, **given)  # type: ignore[arg-type]
 
 
 def middle() -> Waypoint:

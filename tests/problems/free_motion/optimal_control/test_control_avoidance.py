@@ -22,11 +22,11 @@ from flyby.core.spatial.pose import IDENTITY, Pose
 from flyby.problems.free_motion.optimal_control import (
     ControlLimits,
     Effort,
+    MotionTask,
     Objective,
     SchemeKind,
     Step,
     Surroundings,
-    Task,
     TorqueLine,
     Waypoint,
     optimize,
@@ -62,9 +62,9 @@ def gantry(x: float = 0.0, top: float = 0.5) -> Surroundings:
     return Surroundings(CollisionScene(cell), 0.005)
 
 
-def across(around: Surroundings, **more: object) -> Task:
+def across(around: Surroundings, **more: object) -> MotionTask:
     robot = around.scene.robot
-    return Task(robot, [-1.0, 0.0], [1.0, 0.0], **more)  # type: ignore[arg-type]
+    return MotionTask(robot, [-1.0, 0.0], [1.0, 0.0], **more)  # type: ignore[arg-type]
 
 
 OVER = [np.array([[-1.0, 0.8], [1.0, 0.8]])]
@@ -101,7 +101,7 @@ def test_two_joints_round_a_box() -> None:
     targets = [program.start, *(move.target for move in program.moves)]
     q = [np.array(target.joints) for target in targets]  # type: ignore[union-attr]
     around = Surroundings(CollisionScene(scene.cell, scene.tool), scene.cell.clearance)
-    task = Task(scene.cell.robot, q[0], q[-1], joints=scene.free, tcp=scene.tool.tcp)
+    task = MotionTask(scene.cell.robot, q[0], q[-1], joints=scene.free, tcp=scene.tool.tcp)
     found = optimize(task, around, Effort(intervals=40), vias=[np.array(q[1:-1])])
     assert found.converged and found.proven
     assert found.time <= 1.130
@@ -119,7 +119,7 @@ def test_least_energy_does_not_keep_to_the_way_of_the_first_guess() -> None:
     q = [np.array(target.joints) for target in targets]  # type: ignore[union-attr]
     around = Surroundings(CollisionScene(scene.cell, scene.tool), scene.cell.clearance)
     load = carried_inertia(scene.tool)
-    task = Task(
+    task = MotionTask(
         scene.cell.robot,
         q[0],
         q[-1],
@@ -144,7 +144,9 @@ def test_two_joints_round_a_box_with_weak_drives() -> None:
     q = [np.array(target.joints) for target in targets]  # type: ignore[union-attr]
     around = Surroundings(CollisionScene(scene.cell, scene.tool), scene.cell.clearance)
     limits = ControlLimits(torque=WEAK)
-    task = Task(scene.cell.robot, q[0], q[-1], joints=scene.free, tcp=scene.tool.tcp, limits=limits)
+    task = MotionTask(
+        scene.cell.robot, q[0], q[-1], joints=scene.free, tcp=scene.tool.tcp, limits=limits
+    )
     found = optimize(task, around, Effort(intervals=20, trials=0), vias=[np.array(q[1:-1])])
     assert found.converged and found.proven and 1.14 < found.time < 0.5 * found.first.duration
     used = np.abs(found.torque(np.linspace(0.0, found.time, 4001))) / found.limits.torque
@@ -194,15 +196,15 @@ def test_torque_limits_that_cannot_hold_the_arm() -> None:
     with pytest.raises(InputError, match=r"the start: joint J3 needs .* against gravity"):
         optimize(arm_task(limits=ControlLimits(torque=weak)))
     with pytest.raises(InputError, match=r"the end: joint P needs 9.81 N m"):
-        optimize(Task(pendulum(5.0), [0.0], [np.pi / 2]))
+        optimize(MotionTask(pendulum(5.0), [0.0], [np.pi / 2]))
 
 
 def test_missing_inertias() -> None:
     bare = replace(ARM, links=())
     with pytest.raises(InputError, match=r"abb/irb6640-180-255 need the inertias of its links"):
-        optimize(Task(bare, START, END, objective=Objective(0.5)))
+        optimize(MotionTask(bare, START, END, objective=Objective(0.5)))
     # Nothing is needed where only speeds and accelerations count.
-    assert optimize(Task(bare, START, END), effort=Effort(intervals=8)).time > 0.0
+    assert optimize(MotionTask(bare, START, END), effort=Effort(intervals=8)).time > 0.0
 
 
 @pytest.mark.parametrize(
@@ -210,7 +212,7 @@ def test_missing_inertias() -> None:
     [
         ({"start": [0.0, 1.0]}, r"start has shape \(2,\)"),
         ({"end": [np.nan]}, "joint X is not finite"),
-        ({"joints": (0, 0)}, "Task.joints are different indices"),
+        ({"joints": (0, 0)}, "MotionTask.joints are different indices"),
         ({"loads": (None, None)}, "2 loads were given for 1 legs"),
         ({"start_velocity": [200.0]}, "joint X is to move at 200, faster than its limit of 100"),
         ({"limits": ControlLimits(acceleration=[np.inf])}, "joint X has neither"),
@@ -222,27 +224,30 @@ def test_missing_inertias() -> None:
             {"limits": ControlLimits(torque="abc")},
             r"need one number an axis \(X\), not 'abc'",
         ),
-        ({"waypoints": ([1.0],)}, r"Task.waypoints, number 1 is of type Waypoint, not \[1.0\]"),
-        ({"waypoints": Waypoint([1.0])}, "Task.waypoints is a tuple of Waypoint values, not"),
-        ({"loads": Inertia(1.0)}, "Task.loads is a tuple of Inertia or None values, not"),
-        ({"loads": (30.0,)}, "Task.loads, number 1 is of type Inertia or None, not 30.0"),
-        ({"tcp": None}, "Task.tcp is of type Pose, not None"),
-        ({"robot": "abb/irb6640"}, "Task.robot is of type Robot, not 'abb/irb6640'"),
-        ({"objective": 0.5}, "Task.objective is of type Objective, not 0.5"),
-        ({"limits": {"torque": [1.0]}}, "Task.limits is of type ControlLimits, not {"),
-        ({"joints": 0}, "Task.joints are different indices below 1, one at least, not 0"),
+        (
+            {"waypoints": ([1.0],)},
+            r"MotionTask.waypoints, number 1 is of type Waypoint, not \[1.0\]",
+        ),
+        ({"waypoints": Waypoint([1.0])}, "MotionTask.waypoints is a tuple of Waypoint values, not"),
+        ({"loads": Inertia(1.0)}, "MotionTask.loads is a tuple of Inertia or None values, not"),
+        ({"loads": (30.0,)}, "MotionTask.loads, number 1 is of type Inertia or None, not 30.0"),
+        ({"tcp": None}, "MotionTask.tcp is of type Pose, not None"),
+        ({"robot": "abb/irb6640"}, "MotionTask.robot is of type Robot, not 'abb/irb6640'"),
+        ({"objective": 0.5}, "MotionTask.objective is of type Objective, not 0.5"),
+        ({"limits": {"torque": [1.0]}}, "MotionTask.limits is of type ControlLimits, not {"),
+        ({"joints": 0}, "MotionTask.joints are different indices below 1, one at least, not 0"),
         ({"start": ["here"]}, r"start needs one number an axis \(X\), not"),
     ],
 )
 def test_bad_tasks(change: dict[str, object], message: str) -> None:
     given: dict[str, object] = {"robot": cart(), "start": [0.0], "end": [3.0], **change}
     with pytest.raises(InputError, match=message):
-        optimize(Task(**given))  # type: ignore[arg-type]
+        optimize(MotionTask(**given))  # type: ignore[arg-type]
 
 
 def test_a_time_that_is_too_short_is_refused() -> None:
     """At full acceleration it takes 2 √3 s."""
-    task = Task(cart(), [0.0], [3.0], objective=Objective(longest=3.4))
+    task = MotionTask(cart(), [0.0], [3.0], objective=Objective(longest=3.4))
     with pytest.raises(MotionError, match=r"takes 3.4 s at most was found"):
         optimize(task, effort=Effort(intervals=12))
 
@@ -283,7 +288,7 @@ def test_corners_out_of_range() -> None:
 
 def test_a_joint_that_may_not_move_cannot_be_asked_to() -> None:
     with pytest.raises(InputError, match="joint J1 has to move"):
-        Task(ARM, START, END, joints=(1, 2, 3, 4, 5))
+        MotionTask(ARM, START, END, joints=(1, 2, 3, 4, 5))
 
 
 def test_a_torque_line_of_an_axis_that_brakes_hold() -> None:
@@ -291,13 +296,13 @@ def test_a_torque_line_of_an_axis_that_brakes_hold() -> None:
     robot = ARM.with_external_axes([ExternalAxis(track, ExternalRole.TRACK)])
     for axis, message in (("J9", "given for 'J9'"), ("E1", "'E1'; the axes are J1, .*, J6$")):
         limits = ControlLimits(curves=(TorqueLine(axis, 100.0, 1.0),))
-        task = Task(robot, [*START, 0.0], [*END, 0.0], joints=range(6), limits=limits)
+        task = MotionTask(robot, [*START, 0.0], [*END, 0.0], joints=range(6), limits=limits)
         with pytest.raises(InputError, match=message):
             optimize(task)
 
 
 def test_a_jerk_limit_needs_a_scheme_with_jerk() -> None:
-    task = Task(cart(), [0.0], [1.0], limits=ControlLimits(jerk=[5.0]))
+    task = MotionTask(cart(), [0.0], [1.0], limits=ControlLimits(jerk=[5.0]))
     with pytest.raises(InputError, match="have no jerk to limit"):
         optimize(task, effort=Effort(scheme=SchemeKind.CONSTANT))
 
@@ -308,4 +313,4 @@ def test_joints_that_stand_still_have_to_be_held() -> None:
     weak = list(TORQUE)
     weak[4] = 1.0
     with pytest.raises(InputError, match=r"the start: joint J5 needs .* against gravity"):
-        optimize(Task(ARM, *ends, joints=(1, 2), limits=ControlLimits(torque=weak)))
+        optimize(MotionTask(ARM, *ends, joints=(1, 2), limits=ControlLimits(torque=weak)))

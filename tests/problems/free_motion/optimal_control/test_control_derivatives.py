@@ -17,9 +17,9 @@ from flyby.core.sqp import NLP
 from flyby.problems.free_motion.optimal_control import (
     ControlLimits,
     Motion,
+    MotionTask,
     Objective,
     SchemeKind,
-    Task,
     TorqueLine,
 )
 from flyby.problems.free_motion.optimal_control.motion.first_guess import (
@@ -29,7 +29,7 @@ from flyby.problems.free_motion.optimal_control.motion.first_guess import (
 )
 from flyby.problems.free_motion.optimal_control.motion.scheme import Scheme, bernstein
 from flyby.problems.free_motion.optimal_control.search.refinement import refined
-from flyby.problems.free_motion.optimal_control.task.limits import Limits
+from flyby.problems.free_motion.optimal_control.task.limits import MotionLimits
 from flyby.problems.free_motion.optimal_control.task.sampled import Plant, State, TcpSpeed
 from flyby.problems.free_motion.optimal_control.task.torque_bounds import BendBounds
 from flyby.problems.free_motion.optimal_control.transcription import sample_rows as rows_module
@@ -44,7 +44,7 @@ LOAD = Inertia(30.0, (0.0, 0.0, 0.2), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0
 STEP = 1e-6
 
 
-def everything(scheme: SchemeKind) -> Task:
+def everything(scheme: SchemeKind) -> MotionTask:
     jerk = None if scheme is SchemeKind.CONSTANT else [200.0] * 6
     limits = ControlLimits(
         torque=TORQUE, tcp_speed=2.0, jerk=jerk, curves=(TorqueLine("J2", 5000.0, 500.0),)
@@ -60,8 +60,8 @@ def everything(scheme: SchemeKind) -> Task:
     )
 
 
-def program(task: Task, scheme: SchemeKind, group: int | None) -> tuple[Guess, NLP]:
-    limits, plant = Limits.of(task), Plant(task)
+def program(task: MotionTask, scheme: SchemeKind, group: int | None) -> tuple[Guess, NLP]:
+    limits, plant = MotionLimits.of(task), Plant(task)
     line = Polyline.direct(task)
     guess = first_guess(task, limits, plant, line, Scheme(scheme), 8, group)
     made = Transcription(task, limits, guess.layout, guess.scale, 10.0, plant)
@@ -125,7 +125,7 @@ def test_bernstein_coefficients_bound_a_polynomial(values: list[float]) -> None:
 def test_a_finer_grid_holds_the_same_motion(seed: int, scheme: SchemeKind) -> None:
     task = arm_task(waypoints=(middle(),))
     guess = first_guess(
-        task, Limits.of(task), None, Polyline.direct(task), Scheme(scheme), 10, None
+        task, MotionLimits.of(task), None, Polyline.direct(task), Scheme(scheme), 10, None
     )
     rng = np.random.default_rng(seed)
     parts = rng.integers(1, 4, len(guess.layout.grid))
@@ -145,7 +145,7 @@ def test_bends_of_torques_and_of_the_tcp_are_bounded(seed: int) -> None:
     coefficients = rng.standard_normal((1, 4, 6)) * np.array([1.0, 0.5, 0.3, 0.2])[None, :, None]
     motion = Motion(np.array([0.0, 0.5]), coefficients, np.zeros(1, dtype=np.int64))
     tcp = Pose((0.1, 0.0, 0.3))
-    task = Task(ARM, START, END, loads=(LOAD,), tcp=tcp)
+    task = MotionTask(ARM, START, END, loads=(LOAD,), tcp=tcp)
     rates = np.zeros((1, 6, 5))
     for order in range(5):
         shares = bernstein(np.moveaxis(motion.differentiated(order), 1, 0))

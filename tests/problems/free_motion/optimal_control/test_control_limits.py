@@ -18,10 +18,10 @@ from flyby.core.spatial.rotation import matrix_from_quaternion
 from flyby.problems.free_motion.optimal_control import (
     ControlLimits,
     Effort,
+    MotionTask,
     Objective,
     Optimum,
     SchemeKind,
-    Task,
     TorqueLine,
     Waypoint,
     energy_of,
@@ -83,14 +83,14 @@ def test_positions_hold_between_nodes() -> None:
     """Full speed towards the end of the rail: the motion has to turn back within it."""
     robot = cart()
     joint = replace(robot.joints[0], upper=4.05)
-    task = Task(replace(robot, joints=(joint,)), [4.0], [3.0], start_velocity=[0.3])
+    task = MotionTask(replace(robot, joints=(joint,)), [4.0], [3.0], start_velocity=[0.3])
     found = optimize(task, effort=Effort(intervals=12))
     assert found.motion.at(times(found)).max() <= 4.05 + 1e-6
 
 
 def test_waypoints_are_passed_and_stops_are_made() -> None:
     stop = Waypoint(START + 0.6 * (END - START), stop=True)
-    task = Task(ARM, START, END, waypoints=(middle(), stop))
+    task = MotionTask(ARM, START, END, waypoints=(middle(), stop))
     found = optimize(task, effort=COARSE)
     leg = found.motion.leg
     at = found.motion.knots[[int(np.argmax(leg == 1)), int(np.argmax(leg == 2))]]
@@ -133,11 +133,11 @@ def test_motors_that_recuperate_take_less() -> None:
 # What must not matter
 
 
-def kinematic(seed: int) -> Task:
+def kinematic(seed: int) -> MotionTask:
     rng = np.random.default_rng(seed)
     lower, upper = ARM.limits.lower, ARM.limits.upper
     ends = lower + (upper - lower) * rng.uniform(0.2, 0.8, (2, 6))
-    return Task(ARM, ends[0], ends[1])
+    return MotionTask(ARM, ends[0], ends[1])
 
 
 @settings(max_examples=4, deadline=None)
@@ -181,15 +181,15 @@ def test_the_world_may_be_turned(about_z: float, about_x: float) -> None:
         (gravity[0], gravity[1], gravity[2])
     )
     limits = ControlLimits(torque=TORQUE)
-    plain = optimize(Task(ARM, START, END, limits=limits), effort=Effort(intervals=16))
-    found = optimize(Task(moved, START, END, limits=limits), effort=Effort(intervals=16))
+    plain = optimize(MotionTask(ARM, START, END, limits=limits), effort=Effort(intervals=16))
+    found = optimize(MotionTask(moved, START, END, limits=limits), effort=Effort(intervals=16))
     assert found.time == pytest.approx(plain.time, rel=1e-3)
 
 
 def test_still_joints_stay() -> None:
     ends = np.array([START, START])
     ends[1, [1, 2]] += 0.7
-    found = optimize(Task(ARM, ends[0], ends[1], joints=(1, 2)), effort=QUICK)
+    found = optimize(MotionTask(ARM, ends[0], ends[1], joints=(1, 2)), effort=QUICK)
     trajectory = found.trajectory(0.01)
     assert np.allclose(trajectory.q[:, [0, 3, 4, 5]], START[[0, 3, 4, 5]])
     assert np.allclose(trajectory.q[-1], ends[1], atol=1e-6)

@@ -20,9 +20,9 @@ from flyby.problems.free_motion.velocity_tuning import (
     FixedPath,
     Objective,
     Rigid,
-    Task,
     TorqueCurve,
     TuningError,
+    TuningTask,
     Way,
     drives_of,
     tune,
@@ -47,7 +47,7 @@ def limited(*torque: float) -> tuple[Drive, ...]:
 @settings(max_examples=8, deadline=None)
 def test_bang_bang(distance, inertia, torque):
     """2 √(d I / τ): all torque forth, all torque back."""
-    task = Task(slider(distance, 40, inertia), limited(torque))
+    task = TuningTask(slider(distance, 40, inertia), limited(torque))
     wanted = 2.0 * math.sqrt(distance * inertia / torque)
     assert tune(task).way is Way.SWEEPS
     for found in (tune_by_sweeps(task), tune_by_cones(task)):
@@ -60,14 +60,14 @@ def test_weight_helps_one_way(distance, torque, share):
     """With gravity torque c the arm has τ − c forth and τ + c back."""
     held = -share * 0.9 * torque
     up, down = torque - held, torque + held
-    task = Task(slider(distance, 40, held=held), limited(torque))
+    task = TuningTask(slider(distance, 40, held=held), limited(torque))
     top = math.sqrt(2.0 * distance / (1.0 / up + 1.0 / down))
     assert tune(task).duration == pytest.approx(top / up + top / down, rel=2e-2)
 
 
 def test_cubic_takes_least_squared_torque():
     """Rest to rest within T the least ∫ q̈² dt is 12 d² / T³, by a cubic in time."""
-    task = Task(slider(2.0, 150, 3.0), objective=Objective(0.0, duration=1.7))
+    task = TuningTask(slider(2.0, 150, 3.0), objective=Objective(0.0, duration=1.7))
     found = tune(task)
     assert found.way is Way.CONVEX
     assert found.duration == pytest.approx(1.7, rel=1e-5)
@@ -76,7 +76,7 @@ def test_cubic_takes_least_squared_torque():
 
 def test_jerk_alone():
     """Four quarters of full jerk: (32 d / J)^⅓."""
-    found = tune(Task(slider(2.0, 300), jerk=np.array([50.0])))
+    found = tune(TuningTask(slider(2.0, 300), jerk=np.array([50.0])))
     assert found.way is Way.SEQUENTIAL
     assert found.duration == pytest.approx((32.0 * 2.0 / 50.0) ** (1 / 3), rel=5e-3)
     assert np.abs(found.jerk).max() <= 50.0 * (1 + 1e-6)
@@ -85,7 +85,9 @@ def test_jerk_alone():
 def test_viscous_friction():
     """v' = (τ − f v) / I forth, −(τ + f v) / I back, integrated beside."""
     distance, torque, friction = 2.0, 5.0, 2.5
-    task = Task(slider(distance, 300), (Drive(TorqueCurve.constant(torque), viscous=friction),))
+    task = TuningTask(
+        slider(distance, 300), (Drive(TorqueCurve.constant(torque), viscous=friction),)
+    )
     found = tune(task)
     assert found.way is Way.SEQUENTIAL
     wanted = beside(lambda v: torque - friction * v, lambda v: torque + friction * v, distance)
@@ -96,7 +98,7 @@ def test_viscous_friction():
 def test_falling_torque():
     """v' = T(v) forth and −T(v) back, integrated beside."""
     curve = TorqueCurve((0.0, 0.5, 1.0, 2.0), (4.0, 4.0, 2.0, 1.0))
-    found = tune(Task(slider(2.0, 300), (Drive(curve),)))
+    found = tune(TuningTask(slider(2.0, 300), (Drive(curve),)))
 
     def most(v):
         return float(curve.at(np.array(v)))
@@ -136,7 +138,7 @@ def beside(forth, back, distance) -> float:
 def test_sweeps_and_cones_agree_on_an_arm(room):
     path = scene()[3]
     drives = limited(*(room * np.abs(path.rigid.c).max(axis=(0, 1)) + 1.0))
-    task = Task(path, drives)
+    task = TuningTask(path, drives)
     swept, solved = tune_by_sweeps(task), tune_by_cones(task)
     assert swept.duration == pytest.approx(solved.duration, rel=1e-3)
     assert max(swept.excess, solved.excess) < 1e-6
@@ -146,16 +148,18 @@ def test_a_sequence_ends_where_one_program_does():
     """With hardly any friction, or a jerk far off, the sequence is the convex program."""
     path = scene()[3]
     most = 1.3 * np.abs(path.rigid.c).max(axis=(0, 1)) + 10.0
-    plain = tune(Task(path, limited(*most)))
-    rubbed = tune(Task(path, tuple(Drive(TorqueCurve.constant(v), viscous=1e-7) for v in most)))
-    jerked = tune(Task(path, limited(*most), jerk=np.full(6, 1e7)))
+    plain = tune(TuningTask(path, limited(*most)))
+    rubbed = tune(
+        TuningTask(path, tuple(Drive(TorqueCurve.constant(v), viscous=1e-7) for v in most))
+    )
+    jerked = tune(TuningTask(path, limited(*most), jerk=np.full(6, 1e7)))
     for found in (rubbed, jerked):
         assert found.way is Way.SEQUENTIAL
         assert found.duration == pytest.approx(plain.duration, rel=1e-3)
     wanted = Objective(0.4)
-    convex = tune(Task(path, limited(*most), objective=wanted))
+    convex = tune(TuningTask(path, limited(*most), objective=wanted))
     sequence = tune_in_sequence(
-        Task(
+        TuningTask(
             path,
             tuple(Drive(TorqueCurve.constant(v), viscous=1e-7) for v in most),
             objective=wanted,
@@ -169,12 +173,12 @@ def test_all_ways_agree_where_all_apply():
     """Time alone by all three; energy on a DC link by the two that know it."""
     path = scene()[3]
     most = 1.3 * np.abs(path.rigid.c).max(axis=(0, 1)) + 10.0
-    plain = Task(path, limited(*most))
+    plain = TuningTask(path, limited(*most))
     times = [way(plain).duration for way in (tune_by_sweeps, tune_by_cones, tune_in_sequence)]
     assert times == pytest.approx([times[0]] * 3, rel=1e-3)
     for share in (0.0, 0.6, 1.0):
         motors = Objective(0.5, Motors((1e-5,) * 6, share))
-        task = Task(path, limited(*most), objective=motors)
+        task = TuningTask(path, limited(*most), objective=motors)
         one, many = tune_by_cones(task), tune_in_sequence(task)
         assert (one.way, many.way) == (Way.CONVEX, Way.SEQUENTIAL)
         assert many.duration == pytest.approx(one.duration, rel=5e-3)
@@ -210,7 +214,7 @@ def test_toppra_agrees():
     path = FixedPath(
         joint_limits(np.diff(knots), dq, ddq, velocity, -acceleration, acceleration), dq, ddq
     )
-    assert tune_by_cones(Task(path)).duration == pytest.approx(theirs, rel=1e-3)
+    assert tune_by_cones(TuningTask(path)).duration == pytest.approx(theirs, rel=1e-3)
 
 
 # ------------------------------------------------------------------ laws
@@ -221,9 +225,9 @@ def test_toppra_agrees():
 def test_torque_and_time_scale(factor, weight):
     """All torques times s², time divided by s: the same motion."""
     objective = Objective(weight, duration=4.0)
-    one = tune(Task(slider(1.0, 60), limited(2.0), objective=objective))
+    one = tune(TuningTask(slider(1.0, 60), limited(2.0), objective=objective))
     other = tune(
-        Task(
+        TuningTask(
             slider(1.0, 60),
             limited(2.0 * factor**2),
             objective=replace(objective, duration=4.0 / factor),
@@ -235,9 +239,9 @@ def test_torque_and_time_scale(factor, weight):
 
 def test_more_time_never_costs_more():
     path = scene()[3]
-    fastest = tune(Task(path))
+    fastest = tune(TuningTask(path))
     energies = [
-        tune(Task(path, objective=Objective(0.0, duration=share * fastest.duration))).energy
+        tune(TuningTask(path, objective=Objective(0.0, duration=share * fastest.duration))).energy
         for share in (1.0001, 1.02, 1.1, 1.3, 2.0, 4.0)
     ]
     assert all(b <= a * (1 + 1e-6) for a, b in pairwise(energies))
@@ -248,14 +252,14 @@ def test_more_time_never_costs_more():
 def test_no_time_to_lose():
     """Where only the fastest motion is short enough, it is the answer."""
     path = scene()[3]
-    fastest = tune(Task(path))
-    found = tune(Task(path, objective=Objective(0.0, duration=fastest.duration)))
+    fastest = tune(TuningTask(path))
+    found = tune(TuningTask(path, objective=Objective(0.0, duration=fastest.duration)))
     assert found.x == pytest.approx(fastest.x)
 
 
 def test_weights_order_the_motions():
     path = scene()[3]
-    found = [tune(Task(path, objective=Objective(w))) for w in (1.0, 0.5, 0.0)]
+    found = [tune(TuningTask(path, objective=Objective(w))) for w in (1.0, 0.5, 0.0)]
     assert found[0].duration < found[1].duration < found[2].duration
     assert found[0].energy > found[1].energy > found[2].energy
     assert all(motion.excess < 1e-6 for motion in found)
@@ -266,7 +270,7 @@ def test_recuperation_pays():
     """The more is given back, the less is taken, and the less slowly it pays to go."""
     path, copper = scene()[3], (1e-5,) * 6
     found = [
-        tune(Task(path, objective=Objective(0.0, Motors(copper, share))))
+        tune(TuningTask(path, objective=Objective(0.0, Motors(copper, share))))
         for share in (0.0, 0.3, 0.7, 1.0)
     ]
     for less, more in pairwise(found):
@@ -278,9 +282,10 @@ def test_an_energy_that_nearly_cancels_weighs_no_more_than_others():
     """What the fastest motion takes passes zero at η = 0.674; its share of the price does not."""
     path = scene()[3]
     found = [
-        tune(Task(path, objective=Objective(0.5, Motors((), share)))) for share in (0.5, 0.674, 1.0)
+        tune(TuningTask(path, objective=Objective(0.5, Motors((), share))))
+        for share in (0.5, 0.674, 1.0)
     ]
-    fastest = tune(Task(path, objective=Objective(1.0, Motors((), 0.674))))
+    fastest = tune(TuningTask(path, objective=Objective(1.0, Motors((), 0.674))))
     assert abs(fastest.energy) < 1e-2 * fastest.flow
     assert found[0].duration > found[1].duration > found[2].duration
 
@@ -290,9 +295,9 @@ def test_an_energy_that_nearly_cancels_weighs_no_more_than_others():
 def test_no_other_motion_takes_less(share, slower):
     """Neither the fastest motion slowed down nor a mean of it and the best one is better."""
     path, motors = scene()[3], Motors((1e-5,) * 6, share)
-    fastest = tune(Task(path, objective=Objective(1.0, motors)))
+    fastest = tune(TuningTask(path, objective=Objective(1.0, motors)))
     bound = slower * fastest.duration
-    best = tune(Task(path, objective=Objective(0.0, motors, bound)))
+    best = tune(TuningTask(path, objective=Objective(0.0, motors, bound)))
     room = 5e-3 * abs(fastest.energy)
     for other in (fastest.x / slower**2, 0.5 * (fastest.x + best.x)):
         assert best.energy <= replace(best, x=other).energy + room
@@ -301,7 +306,7 @@ def test_no_other_motion_takes_less(share, slower):
 def test_torque_limits_hold_between_knots():
     controller, program, timing, path = scene()
     most = 1.2 * np.abs(path.rigid.c).max(axis=(0, 1)) + 50.0
-    found = tune(Task(path, limited(*most)))
+    found = tune(TuningTask(path, limited(*most)))
     between = np.abs(found.torque_between(controller, program, timing)) / most
     assert between.max() < 1.001
 
@@ -309,7 +314,7 @@ def test_torque_limits_hold_between_knots():
 def test_tuned_timing_is_a_timing():
     """A tuned motion put in the place of the stamp has its duration and its energy."""
     controller, program, timing, path = scene()
-    found = tune(Task(path, objective=Objective(0.3)))
+    found = tune(TuningTask(path, objective=Objective(0.3)))
     own = found.timing(timing)
     assert own.duration == pytest.approx(found.duration)
     assert controller.energy(program, own).value == pytest.approx(found.energy, rel=1e-9)
@@ -318,14 +323,14 @@ def test_tuned_timing_is_a_timing():
 def test_kinematic_optimum_is_the_emulators():
     """What the emulator drives is what velocity tuning calls the fastest."""
     _, _, timing, path = scene()
-    assert tune(Task(path)).duration == pytest.approx(timing.stamp.duration, rel=1e-12)
+    assert tune(TuningTask(path)).duration == pytest.approx(timing.stamp.duration, rel=1e-12)
 
 
 def test_weighted_torques():
     path = scene()[3]
     only_second = SquaredTorque((0.0, 1.0, 0.0, 0.0, 0.0, 0.0))
-    found = tune(Task(path, objective=Objective(0.0, only_second)))
-    plain = tune(Task(path, objective=Objective(0.0)))
+    found = tune(TuningTask(path, objective=Objective(0.0, only_second)))
+    plain = tune(TuningTask(path, objective=Objective(0.0)))
     by_second = plain.energy_by_joint[1]
     assert found.energy <= by_second * (1 + 1e-6)
 
@@ -338,33 +343,33 @@ def test_standing_still_is_refused_by_name():
     most = np.full(6, 1e5)
     most[2] = 0.5 * np.abs(path.rigid.c[..., 2]).max()
     with pytest.raises(StandingStillError, match=r"joint J3 needs .* N m to hold the arm still"):
-        Task(path, limited(*most))
+        TuningTask(path, limited(*most))
 
 
 def test_too_short_a_time_is_refused():
     path = slider(1.0, 40, velocity=1.0)
     for weight in (1.0, 0.0):
         with pytest.raises(TuningError, match=r"s at least|within all limits"):
-            tune(Task(path, objective=Objective(weight, duration=0.5)))
+            tune(TuningTask(path, objective=Objective(weight, duration=0.5)))
 
 
 def test_ways_refuse_what_they_do_not_know():
     path = slider(1.0, 20)
     with pytest.raises(InputError, match="sweeps know neither"):
-        tune_by_sweeps(Task(path, objective=Objective(0.5)))
+        tune_by_sweeps(TuningTask(path, objective=Objective(0.5)))
     with pytest.raises(InputError, match="sequence"):
-        tune_by_cones(Task(path, jerk=np.ones(1)))
+        tune_by_cones(TuningTask(path, jerk=np.ones(1)))
 
 
 def test_unknown_inertias_are_refused():
     path = slider(1.0, 20)
     bare = FixedPath(path.limits, path.dq, path.ddq)
-    assert tune(Task(bare)).duration > 0.0
+    assert tune(TuningTask(bare)).duration > 0.0
     with pytest.raises(InputError, match="inertias"):
-        tune(Task(bare, objective=Objective(0.5)))
+        tune(TuningTask(bare, objective=Objective(0.5)))
     hollow = path.rigid._replace(c=np.full_like(path.rigid.c, np.nan))
     with pytest.raises(InputError, match="inertia of axis J1"):
-        tune(Task(FixedPath(path.limits, path.dq, path.ddq, hollow), limited(1.0)))
+        tune(TuningTask(FixedPath(path.limits, path.dq, path.ddq, hollow), limited(1.0)))
 
 
 @pytest.mark.parametrize(
@@ -406,7 +411,7 @@ def test_drives_of_a_robot_without_torques_limit_nothing():
     drives = drives_of(robot)
     assert len(drives) == robot.size
     path = scene()[3]
-    assert tune(Task(path, drives)).duration == pytest.approx(tune(Task(path)).duration)
+    assert tune(TuningTask(path, drives)).duration == pytest.approx(tune(TuningTask(path)).duration)
 
 
 def test_graded_knots_end_where_they_should():
@@ -417,7 +422,7 @@ def test_graded_knots_end_where_they_should():
 def test_rigid_torques_are_the_arms():
     """τ = a u + b x + c is inverse dynamics, at any x and u."""
     controller, program, timing, path = scene()
-    found = tune(Task(path))
+    found = tune(TuningTask(path))
     torque = controller.energy(program, found.timing(timing)).torque
     assert found.torque == pytest.approx(torque, abs=1e-6 * np.abs(torque).max())
     assert isinstance(path.rigid, Rigid)
@@ -428,20 +433,20 @@ def test_rigid_torques_are_the_arms():
 
 def test_active_limits_are_named():
     """A cruise between two ramps, by the limit that each is driven at."""
-    swift = tune(Task(slider(4.0, 60, velocity=1.0, acceleration=2.0)))
+    swift = tune(TuningTask(slider(4.0, 60, velocity=1.0, acceleration=2.0)))
     assert set(swift.active) == {"J1 acceleration", "speed"}
     assert swift.active[0] == swift.active[-1] == "J1 acceleration"
     assert swift.active[30] == "speed"
-    pushed = tune(Task(slider(4.0, 60, velocity=1.0), limited(2.0)))
+    pushed = tune(TuningTask(slider(4.0, 60, velocity=1.0), limited(2.0)))
     assert set(pushed.active) == {"J1 torque", "speed"}
-    smooth = tune(Task(slider(4.0, 60), jerk=np.array([5.0])))
+    smooth = tune(TuningTask(slider(4.0, 60), jerk=np.array([5.0])))
     assert set(smooth.active) == {"J1 jerk"}
 
 
 def test_every_limit_of_an_arm_is_reported():
     path = scene()[3]
     most = 1.2 * np.abs(path.rigid.c).max(axis=(0, 1)) + 50.0
-    found = tune(Task(path, limited(*most)))
+    found = tune(TuningTask(path, limited(*most)))
     used = found.usage
     assert {"speed", "J2 torque", "J2 acceleration"} <= set(used)
     # Nothing limits it, so that there is nothing to report.
@@ -458,14 +463,26 @@ def test_every_limit_of_an_arm_is_reported():
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: Task(None), "Task.path is of type FixedPath, not None"),
-        (lambda: Task(slider(1.0, 9), Drive()), "Task.drives is a tuple of Drive values"),
-        (lambda: Task(slider(1.0, 9), (Drive(), Drive())), r"one an axis \(J1\), not 2"),
-        (lambda: Task(slider(1.0, 9), jerk="x"), r"Task.jerk: one number above zero an axis"),
-        (lambda: Task(slider(1.0, 9), jerk=[math.nan]), r"Task.jerk: one number above zero"),
-        (lambda: Task(slider(1.0, 9), objective=0.5), "Task.objective is of type Objective"),
+        (lambda: TuningTask(None), "TuningTask.path is of type FixedPath, not None"),
         (
-            lambda: Task(slider(1.0, 9), objective=Objective(0.5, Motors((1.0, 1.0)))),
+            lambda: TuningTask(slider(1.0, 9), Drive()),
+            "TuningTask.drives is a tuple of Drive values",
+        ),
+        (lambda: TuningTask(slider(1.0, 9), (Drive(), Drive())), r"one an axis \(J1\), not 2"),
+        (
+            lambda: TuningTask(slider(1.0, 9), jerk="x"),
+            r"TuningTask.jerk: one number above zero an axis",
+        ),
+        (
+            lambda: TuningTask(slider(1.0, 9), jerk=[math.nan]),
+            r"TuningTask.jerk: one number above zero",
+        ),
+        (
+            lambda: TuningTask(slider(1.0, 9), objective=0.5),
+            "TuningTask.objective is of type Objective",
+        ),
+        (
+            lambda: TuningTask(slider(1.0, 9), objective=Objective(0.5, Motors((1.0, 1.0)))),
             "Motors.copper has figures of 2 joints; there are 1",
         ),
         (lambda: Objective("x"), "Objective.time_weight is a number from 0 to 1, not 'x'"),

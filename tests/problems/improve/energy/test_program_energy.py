@@ -22,13 +22,13 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_vendor
 from flyby.core.source.patch.edits import alike
-from flyby.problems.improve.energy import Front, Goal, Scope, Task, optimize_energy, pareto
-from flyby.problems.improve.energy.front import Point, without_dominated
+from flyby.problems.improve.energy import EnergyTask, Front, Goal, Scope, optimize_energy, pareto
+from flyby.problems.improve.energy.front import FrontPoint, without_dominated
 from flyby.problems.improve.energy.paced_problem import Fixed, PacedProblem
 from flyby.problems.improve.energy.paced_search import LATE
 from flyby.problems.improve.energy.pacing import make_pacing
 from flyby.problems.improve.waypoints import Effort
-from flyby.problems.improve.waypoints import Task as Wishes
+from flyby.problems.improve.waypoints import WaypointTask as Wishes
 from flyby.validation.scenes.scene import PARABOLAS, with_zone
 from flyby.validation.scenes.two_joints import two_joints
 
@@ -54,13 +54,13 @@ def written(program: Program) -> Program:
 
 @cache
 def speeds_front() -> Front:
-    task = Task(Scope.SPEEDS)
+    task = EnergyTask(Scope.SPEEDS)
     return pareto(controller(), zoned(), None, task, 3, QUICK, ABB.speaks, written)
 
 
 @cache
 def full_front() -> Front:
-    task = Task(wishes=Wishes(axes=SCENE.free, tilt=math.pi))
+    task = EnergyTask(wishes=Wishes(axes=SCENE.free, tilt=math.pi))
     return pareto(controller(), zoned(), SCENE.cell, task, 3, QUICK, ABB.speaks, written)
 
 
@@ -127,14 +127,14 @@ def test_every_point_is_proven():
 
 def test_speeds_alone_are_proven_in_a_cell():
     goal = Goal(0.0, 1e-7)
-    task, cell = Task(Scope.SPEEDS), SCENE.cell
+    task, cell = EnergyTask(Scope.SPEEDS), SCENE.cell
     found = optimize_energy(controller(), zoned(), goal, cell, task, QUICK, ABB.speaks, written)
     assert found.proven and found.points[0].certificate is not None
     assert found.points[0].energy < found.given.energy
 
 
 def test_the_same_again():
-    task = Task(Scope.SPEEDS)
+    task = EnergyTask(Scope.SPEEDS)
     again = pareto(controller(), zoned(), None, task, 3, QUICK, ABB.speaks, written)
     for one, other in zip(speeds_front().points, again.points, strict=True):
         assert one.program.moves == other.program.moves
@@ -147,7 +147,7 @@ def test_units_do_not_matter(factor):
     """Weights of all torques in common scale the energies, and change nothing else."""
 
     def found(weight):
-        task = Task(Scope.SPEEDS, SquaredTorque((weight,) * 6))
+        task = EnergyTask(Scope.SPEEDS, SquaredTorque((weight,) * 6))
         goal = Goal(0.0, 1e-7 / weight)
         return optimize_energy(controller(), zoned(), goal, None, task, QUICK).points[0]
 
@@ -160,7 +160,7 @@ def test_motors_with_recuperation_take_less():
     copper = (1e-5,) * 6
 
     def least(recuperation):
-        task = Task(Scope.SPEEDS, Motors(copper, recuperation))
+        task = EnergyTask(Scope.SPEEDS, Motors(copper, recuperation))
         goal = Goal(0.0, 1e-3)
         return optimize_energy(controller(), zoned(), goal, None, task, QUICK).points[0]
 
@@ -175,7 +175,7 @@ def test_motors_with_recuperation_take_less():
 def test_a_bound_is_kept(share):
     given_ = speeds_front().given
     goal = Goal(0.0, 1.0 / given_.energy, share * given_.duration)
-    task = Task(Scope.SPEEDS)
+    task = EnergyTask(Scope.SPEEDS)
     found = optimize_energy(controller(), zoned(), goal, None, task, QUICK, ABB.speaks, written)
     (point,) = found.points
     assert point.duration <= goal.latest * (1 + 1e-4)
@@ -185,7 +185,7 @@ def test_a_bound_is_kept(share):
 def test_a_bound_that_cannot_be_kept_is_told():
     given_ = speeds_front().given
     goal = Goal(0.0, 1.0 / given_.energy, 0.5 * given_.duration)
-    task = Task(Scope.SPEEDS)
+    task = EnergyTask(Scope.SPEEDS)
     effort = replace(QUICK, iterations=4, proofs=1)
     found = optimize_energy(controller(), zoned(), goal, None, task, effort, ABB.speaks, written)
     assert any("no program that takes" in note.message for note in found.notes)
@@ -193,7 +193,7 @@ def test_a_bound_that_cannot_be_kept_is_told():
 
 def test_weights_order_programs():
     given_ = speeds_front().given
-    task = Task(Scope.SPEEDS)
+    task = EnergyTask(Scope.SPEEDS)
     found = [
         optimize_energy(
             controller(),
@@ -225,7 +225,7 @@ def test_gradients_are_difference_quotients(shifts, hurry):
     base = pacing.applied(program, x)
     fixed = Fixed(base, controller().plan(base))
     goal = Goal(1.0, 0.0) if hurry else Goal(0.0, 1e-6)
-    problem = PacedProblem(controller(), fixed, pacing, goal, Task().consumption)
+    problem = PacedProblem(controller(), fixed, pacing, goal, EnergyTask().consumption)
     point = problem.point(x)
     assert point is not None
     slope, step = problem.gradient(point), 1e-6
@@ -302,7 +302,7 @@ def test_moves_of_the_process_keep_their_speed():
 @given(st.lists(st.tuples(st.floats(1.0, 9.0), st.floats(1.0, 9.0)), min_size=1, max_size=12))
 def test_no_point_of_a_front_is_dominated(pairs):
     program = zoned()
-    points = [Point(program, t, e, np.zeros(6)) for t, e in pairs]
+    points = [FrontPoint(program, t, e, np.zeros(6)) for t, e in pairs]
     kept = without_dominated(points)
     for point in points:
         assert any(k.duration <= point.duration and k.energy <= point.energy for k in kept)
@@ -314,7 +314,7 @@ def test_programs_that_take_equally_long_are_one():
     """To the share by which programs may end late; a chain of them does not run away."""
     program = zoned()
     pairs = [(1.0, 5.0), (1.000024, 4.0), (1.00009, 3.5), (1.00012, 3.0), (1.2, 2.0)]
-    points = [Point(program, t, e, np.zeros(6)) for t, e in pairs]
+    points = [FrontPoint(program, t, e, np.zeros(6)) for t, e in pairs]
     kept = without_dominated(points, 5e-4, LATE)
     assert [(p.duration, p.energy) for p in kept] == [(1.00009, 3.5), (1.00012, 3.0), (1.2, 2.0)]
     assert len(without_dominated(points)) == 5
@@ -331,7 +331,7 @@ def test_ended_early_there_is_still_a_front():
         return len(seen) == 3
 
     front = pareto(
-        controller(), zoned(), None, Task(Scope.SPEEDS), 4, QUICK, ABB.speaks, written, enough
+        controller(), zoned(), None, EnergyTask(Scope.SPEEDS), 4, QUICK, ABB.speaks, written, enough
     )
     assert 1 <= len(front.points) <= 4
 
@@ -347,7 +347,7 @@ def test_a_program_that_may_not_change_is_refused():
         MoveJ(m.target, Speed(tcp=1.0, duration=2.0), m.zone, m.tool) for m in program.moves
     )
     with pytest.raises(InputError, match="nothing of this program may change"):
-        pareto(controller(), program.with_moves(moves), task=Task(Scope.SPEEDS), effort=QUICK)
+        pareto(controller(), program.with_moves(moves), task=EnergyTask(Scope.SPEEDS), effort=QUICK)
 
 
 def test_unknown_inertias_are_refused():
@@ -372,7 +372,7 @@ def test_a_collision_is_refused():
         lambda: Goal.weighted(1.5, 1.0, 1.0),
         lambda: Goal.weighted(0.5, 0.0, 1.0),
         lambda: Goal.weighted(0.5, 1.0, -1.0),
-        lambda: Task(slowest=0.0),
+        lambda: EnergyTask(slowest=0.0),
     ],
 )
 def test_what_cannot_be_wanted(make):

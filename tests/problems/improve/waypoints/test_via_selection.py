@@ -31,8 +31,8 @@ from flyby.problems.improve.waypoints import (
     Effort,
     Fixed,
     Progress,
-    Task,
     ViaCount,
+    WaypointTask,
     optimize_waypoints,
 )
 from flyby.problems.improve.waypoints import optimize as optimizing
@@ -146,7 +146,7 @@ def test_one_more_pays_and_the_user_may_end_it() -> None:
         seen.append(state)
         return len(seen) > 18
 
-    plane = Task(axes=SCENE.free, tilt=math.pi)
+    plane = WaypointTask(axes=SCENE.free, tilt=math.pi)
     kept = optimize_waypoints(controller(), TWO, SCENE.cell, plane, QUICK)
     task = replace(plane, vias=ViaCount.CHANGE)
     more = optimize_waypoints(controller(), TWO, SCENE.cell, task, QUICK, report=report)
@@ -163,10 +163,10 @@ def test_other_stretches_and_limited_points_are_left_alone() -> None:
     program = replace(THREE, statements=(*moves, again, home))
     run = controller().run(program)
     proof = certify(controller(), run, scenes_of(SCENE.cell), 0.005)
-    task = Task(axes=SCENE.free, tilt=math.pi, limits={1: Box(joints=(0.1,) * ARM)})
-    asked: list[tuple[Program, Task]] = []
+    task = WaypointTask(axes=SCENE.free, tilt=math.pi, limits={1: Box(joints=(0.1,) * ARM)})
+    asked: list[tuple[Program, WaypointTask]] = []
 
-    def improved(changed: Program, own: Task, effort: Effort) -> None:
+    def improved(changed: Program, own: WaypointTask, effort: Effort) -> None:
         asked.append((changed, own))
 
     def selected(counted: Counted) -> Selection:
@@ -191,10 +191,10 @@ def test_a_point_where_something_is_switched_stays_one() -> None:
     program = replace(THREE, statements=statements)
     run = controller().run(program)
     proof = certify(controller(), run, scenes_of(SCENE.cell), 0.005)
-    task = Task(axes=SCENE.free, tilt=math.pi)
+    task = WaypointTask(axes=SCENE.free, tilt=math.pi)
     asked: list[Program] = []
 
-    def improved(changed: Program, own: Task, effort: Effort) -> None:
+    def improved(changed: Program, own: WaypointTask, effort: Effort) -> None:
         asked.append(changed)
 
     def selected(counted: Counted) -> Selection:
@@ -225,7 +225,7 @@ def test_ctrl_c_between_two_searches_keeps_what_is_proven(monkeypatch: pytest.Mo
         return certify(*arguments, **options)  # type: ignore[arg-type]
 
     monkeypatch.setattr(optimizing, "certify", interrupted)
-    task = Task(axes=SCENE.free, tilt=math.pi, vias=ViaCount.CHANGE)
+    task = WaypointTask(axes=SCENE.free, tilt=math.pi, vias=ViaCount.CHANGE)
     found = optimize_waypoints(controller(), TWO, SCENE.cell, task, QUICK)
     assert proofs == 4 and found.proven
     assert len(found.program.moves) == len(TWO.moves)

@@ -32,8 +32,8 @@ from flyby.problems.improve.waypoints import (
     Effort,
     Fixed,
     Progress,
-    Task,
     ViaCount,
+    WaypointTask,
     optimize_waypoints,
     optimize_zones,
 )
@@ -43,7 +43,7 @@ from flyby.validation.scenes.two_joints import two_joints
 SCENE = two_joints()
 PROGRAM = with_zone(SCENE.programs[0], Radius(0.1))
 QUICK = Effort(starts=1, generations=0, iterations=25, workers=1)
-PLANE = Task(axes=SCENE.free, tilt=math.pi)
+PLANE = WaypointTask(axes=SCENE.free, tilt=math.pi)
 
 
 def controller() -> Controller:
@@ -51,7 +51,10 @@ def controller() -> Controller:
 
 
 def optimized(
-    program: Program = PROGRAM, task: Task = PLANE, effort: Effort = QUICK, cell: Cell = SCENE.cell
+    program: Program = PROGRAM,
+    task: WaypointTask = PLANE,
+    effort: Effort = QUICK,
+    cell: Cell = SCENE.cell,
 ) -> Solution:
     return optimize_waypoints(controller(), program, cell, task, effort)
 
@@ -262,15 +265,15 @@ def test_a_program_without_via_points_comes_back() -> None:
     ("task", "word"),
     [(replace(PLANE, freed=[3]), "move 4"), (replace(PLANE, keep=[7]), "move 8")],
 )
-def test_moves_that_cannot_be_meant(task: Task, word: str) -> None:
+def test_moves_that_cannot_be_meant(task: WaypointTask, word: str) -> None:
     with pytest.raises(InputError, match=word):
         optimized(task=task)
 
 
 def test_numbers_out_of_range() -> None:
     for make in (
-        lambda: Task(time_weight=1.5),
-        lambda: Task(clearance=-1.0),
+        lambda: WaypointTask(time_weight=1.5),
+        lambda: WaypointTask(clearance=-1.0),
         lambda: Effort(starts=0),
         lambda: Effort(spread=0.0),
         lambda: Box(turn=-1.0),
@@ -350,7 +353,7 @@ def most_turned(solution: Solution) -> float:
 @pytest.mark.parametrize("degrees", [0.0, 8.0])
 def test_tools_are_tilted_no_further_than_allowed(degrees: float) -> None:
     """The same program goes up to a quarter of a turn where that is allowed."""
-    found = optimized(task=Task(tilt=math.radians(degrees)))
+    found = optimized(task=WaypointTask(tilt=math.radians(degrees)))
     assert found.changed and found.proven
     assert found.after.time < found.before.time
     assert most_turned(found) < math.radians(degrees + 1e-3)

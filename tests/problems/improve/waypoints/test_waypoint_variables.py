@@ -26,7 +26,7 @@ from flyby.core.robot.kinematics.chain_kernels import poses
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import quaternion_from_matrix, rotation_vector
 from flyby.problems.improve.rounding import Rounding
-from flyby.problems.improve.waypoints import Box, Fixed, Task
+from flyby.problems.improve.waypoints import Box, Fixed, WaypointTask
 from flyby.problems.improve.waypoints.block_emulation import Driver
 from flyby.problems.improve.waypoints.blocks import cut
 from flyby.problems.improve.waypoints.changeable import Selection, select
@@ -67,8 +67,10 @@ def four(*zones: Zone) -> Program:
     return Program(tuple(map(move, targets, zones)), start=START)
 
 
-def selected(program: Program, task: Task | None = None, freedom: Freedom = BOTH) -> Selection:
-    return select(program, CONTROLLER.plan(program), ROBOT, task or Task(), freedom)
+def selected(
+    program: Program, task: WaypointTask | None = None, freedom: Freedom = BOTH
+) -> Selection:
+    return select(program, CONTROLLER.plan(program), ROBOT, task or WaypointTask(), freedom)
 
 
 SMALL = Radius(0.05)
@@ -87,8 +89,8 @@ def test_a_wait_makes_a_point_a_task() -> None:
     assert selected(replace(program, statements=statements)).points == ((0,), (2,))
 
 
-@pytest.mark.parametrize("task", [Task(keep=[1]), Task(keep_speeds=["v50"])])
-def test_moves_of_the_process_keep_both_their_ends(task: Task) -> None:
+@pytest.mark.parametrize("task", [WaypointTask(keep=[1]), WaypointTask(keep_speeds=["v50"])])
+def test_moves_of_the_process_keep_both_their_ends(task: WaypointTask) -> None:
     program = four(SMALL, SMALL, SMALL, FINE)
     moves = list(program.moves)
     moves[1] = replace(moves[1], speed=Speed(tcp=0.05, name="v50"))
@@ -107,7 +109,7 @@ def test_what_is_switched_on_the_way_stays() -> None:
 
 
 def test_a_fixed_point_keeps_its_place_but_not_its_zone() -> None:
-    found = selected(four(SMALL, SMALL, SMALL, FINE), Task(limits={1: Fixed()}))
+    found = selected(four(SMALL, SMALL, SMALL, FINE), WaypointTask(limits={1: Fixed()}))
     assert found.points == ((0,), (2,))
     assert found.zones == ((0,), (1,), (2,))
 
@@ -147,7 +149,7 @@ def test_shared_data_are_one_variable() -> None:
     program = with_targets(program.with_moves(tuple(moves)), {0: shared(1), 2: shared(1)})
     found = selected(program)
     assert found.points == ((0, 2), (1,))
-    variables = make_variables(program, ROBOT, found, Task())
+    variables = make_variables(program, ROBOT, found, WaypointTask())
     x = variables.start.copy()
     x[0] += 0.1
     changed = variables.applied(x).moves
@@ -181,9 +183,9 @@ def test_what_the_program_computes_with_stays(source: Origin, word: str) -> None
 def test_names_and_numbers_that_there_are_not() -> None:
     program = four(SMALL, SMALL, SMALL, FINE)
     with pytest.raises(InputError, match="move 9"):
-        selected(program, Task(keep=[8]))
+        selected(program, WaypointTask(keep=[8]))
     with pytest.raises(InputError, match="vglue"):
-        selected(program, Task(keep_speeds=["vglue"]))
+        selected(program, WaypointTask(keep_speeds=["vglue"]))
 
 
 # ------------------------------------------------------------------------ the vector
@@ -204,8 +206,8 @@ def mixed() -> Program:
     )
 
 
-def variables_of(program: Program, task: Task | None = None) -> Variables:
-    return make_variables(program, ROBOT, selected(program, task), task or Task())
+def variables_of(program: Program, task: WaypointTask | None = None) -> Variables:
+    return make_variables(program, ROBOT, selected(program, task), task or WaypointTask())
 
 
 @pytest.mark.parametrize("make", [mixed, lambda: four(SMALL, SMALL, SMALL, FINE)])
@@ -284,7 +286,7 @@ def test_chosen_zones_are_predefined_ones_and_stay() -> None:
 
 
 def test_ranges_and_axes_bound_the_variables() -> None:
-    task = Task(limit=Box(joints=(0.1,) * 6), axes=[0, 1], tilt=math.pi)
+    task = WaypointTask(limit=Box(joints=(0.1,) * 6), axes=[0, 1], tilt=math.pi)
     variables = variables_of(four(SMALL, SMALL, SMALL, FINE), task)
     assert variables.size == 3 * (2 + 1)
     points = [k for k, part in enumerate(variables.parts) if part.size == 2]
@@ -340,10 +342,10 @@ def test_what_keeps_its_orientation_has_derivatives() -> None:
 
 def test_points_that_can_only_move_by_turning_the_tool_stay() -> None:
     program = four(SMALL, SMALL, SMALL, FINE)
-    one = selected(program, Task(axes=[1]))
+    one = selected(program, WaypointTask(axes=[1]))
     assert one.points == () and "allow a tilt" in one.reasons[0]
-    assert selected(program, Task(axes=[1], tilt=0.1)).points == ((0,), (1,), (2,))
-    parallel = variables_of(program, Task(axes=[1, 2]))
+    assert selected(program, WaypointTask(axes=[1], tilt=0.1)).points == ((0,), (1,), (2,))
+    parallel = variables_of(program, WaypointTask(axes=[1, 2]))
     assert [part.size for part in parallel.parts] == [1, 1, 1, 1, 1, 1]
 
 

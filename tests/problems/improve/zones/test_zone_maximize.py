@@ -399,7 +399,7 @@ def test_zones_that_the_controller_cuts_to_the_largest_stay_as_they_are():
 def test_zones_leave_room_for_what_their_own_smoothing_does(
     settling: float | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What the new program's joints stray is no more than what its zones were grown with."""
+    """What the new program's joints deviate is no more than what its zones were grown with."""
     model = replace(CONTROLLER.model, smoothing=(0.08, 0.05), settling=settling)
     controller = Controller(find_vendor("abb"), SCENE.cell.robot, model)
     grown: list[np.ndarray] = []

@@ -30,7 +30,7 @@ from flyby.problems.improve.zones.maximize import maximize_zones
 from flyby.problems.improve.zones.neighbourhood import CornerPath, Neighbourhoods
 from flyby.problems.improve.zones.predefined import choose
 from flyby.problems.improve.zones.rules import Rules
-from flyby.problems.improve.zones.search import TOLERANCE, Found, Search
+from flyby.problems.improve.zones.search import TOLERANCE, Search, SizeBracket
 from flyby.problems.improve.zones.side_by_side import drive
 from flyby.problems.improve.zones.sizes import GRADED, Growth
 from flyby.validation.scenes.solids import made
@@ -125,7 +125,9 @@ def _clearance(scene: CollisionScene, path: CornerPath, count: int = 120) -> flo
     return float(scene.clearance(path.at(np.linspace(-before, after, count)), 0.1).min())
 
 
-def _searched(trials: Neighbourhoods, scene: CollisionScene, corner: int, largest: float) -> Found:
+def _searched(
+    trials: Neighbourhoods, scene: CollisionScene, corner: int, largest: float
+) -> SizeBracket:
     clearing = Clearing(scene, WANTED)
     search = Search((clearing, clearing), largest).run()
     return drive(trials, {corner: search}, {corner: GROWTH.zone})[corner]
