@@ -36,7 +36,7 @@ class OptimizeOptions(WaypointOptions, CellOptions):
     vias: str = choice(
         "keep",
         "keep: the number of via points stays; change: idle ones go, and others come where they "
-        "pay.",
+        "save enough.",
         ("keep", CHANGE),
     )
     starts: int | None = number(

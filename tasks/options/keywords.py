@@ -67,5 +67,5 @@ def described(options: type[TaskOptions]) -> str:
         default = "" if usual is None or usual is False else f" Default: {usual!r}."
         text = f"{name}: {entry.help}{in_si}{default}"
         lines += textwrap.wrap(text, _WIDTH, initial_indent="    ", subsequent_indent=" " * 8)
-    lines.append("    report: Is told what is being done.")
+    lines.append("    report: Is called with what is being done.")
     return "\n".join(lines)

@@ -35,7 +35,7 @@ class ViaCount(StrEnum):
     KEEP = "keep"
     """It stays: the new program can be patched into the old one's files."""
     CHANGE = "change"
-    """Via points that serve nothing go, and others come where they pay."""
+    """Via points that serve nothing go, and others come where they save enough."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The number of via points: idle ones are left out, others come where they pay.
+"""The number of via points: idle ones are left out, others come where they save enough.
 
 It is done stretch by stretch, from stop to stop, while all others stay. A via point goes if a short
 search from there ends no higher without it. Then every one is cut in two (`doubling`) and searched

@@ -31,7 +31,7 @@ from .threads import Started
 
 _CALL = 200
 """Elements of a list that are copied in the time in which a function is entered and left."""
-SKIPPED = Kept("an answer tells to skip")
+SKIPPED = Kept("an answer says to skip")
 REMOTE = Kept("call remote procedures and add-ons")
 _UNKNOWN_TIME = Kept("wait for a time that is not known", stops=True)
 
