@@ -144,7 +144,7 @@ def _check(clearance: float, residual: float, resolution: float | None) -> None:
             raise InputError(f"the {name} must be zero or more metres and finite, not {value:g}")
     if resolution is not None and not _FINEST <= resolution < math.inf:
         raise InputError(
-            f"clearances can be measured to {_FINEST * MM:g} mm at best, not to {resolution * MM:g} mm"
+            f"clearances are found to {_FINEST * MM:g} mm at best, not to {resolution * MM:g} mm"
         )
 
 
