@@ -170,8 +170,14 @@ def with_setup(program: Program, options: RobotOptions) -> tuple[Program, Setup]
     """A program with its setup: what options name, else what it was read for.
 
     Raises:
-        InputError: nobody says which robot, or the program is for another one.
+        InputError: it is no program, nobody says which robot, or the program is for another one.
     """
+    from ..core.program.program import Program
+
+    if not isinstance(program, Program):
+        raise InputError(
+            f"expected a program, not {type(program).__name__}: flyby.read(path, robot=…) gives one"
+        )
     own = program.setup if isinstance(program.setup, Setup) else None
     if options.robot is None and options.cell is None:
         if own is None:

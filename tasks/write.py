@@ -79,6 +79,10 @@ def write_with(
     if isinstance(what, Translation):
         what = what.program
     if not isinstance(what, Program):
+        if not isinstance(what, WithFiles):
+            raise InputError(
+                f"expected a program or what a task has made of one, not {type(what).__name__}"
+            )
         if getattr(what, "proven", True) is False and not options.unproven:
             raise InputError(
                 f"it is not proven to keep its clearance: {switched('unproven')} writes it"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import inspect
 import textwrap
 from collections.abc import Callable
@@ -47,6 +48,10 @@ def by_keywords(task: Callable[..., Any], options: Callable[..., Any]) -> Callab
 
     @wraps(task)
     def call(*args: Any, **words: Any) -> Any:
+        for word in words.keys() - signature.parameters.keys():
+            near = difflib.get_close_matches(word, signature.parameters, 1)
+            hint = f"; did you mean {near[0]}?" if near else ""
+            raise TypeError(f"flyby.{call.__name__} has no option {word!r}{hint}")
         bound = signature.bind(*args, **words).arguments
         first = [bound.pop(parameter.name) for parameter in own]
         return task(*first, options(**bound))

@@ -139,7 +139,7 @@ def test_what_is_kept_and_freed_at_once_is_refused(flyby: Flyby, cell: Path, tmp
 def test_what_is_not_proven_is_not_written_unless_by_name(
     flyby: Flyby, cell: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    import flyby.problems.improve.zones.maximize as module
+    import flyby.problems.improve.solve_round_verify as module
 
     certify = module.certify
 

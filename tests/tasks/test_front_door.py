@@ -170,3 +170,20 @@ def test_tuning_a_path_is_no_slower_than_the_program() -> None:
     found = flyby.tune(flyby.read(SQUARE, robot=ROBOT))
     assert found.duration <= found.before * (1 + 1e-6)
     assert sum(share for _, share in found.limits()) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("task", [flyby.emulate, flyby.check, flyby.optimize, flyby.tune])
+def test_a_task_says_that_it_takes_programs(task: Callable[..., object]) -> None:
+    with pytest.raises(InputError, match=r"expected a program, not str: flyby\.read\(path"):
+        task("two_joints.mod")
+
+
+def test_only_what_has_files_is_written(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"expected a program or what .*, not Path|not PosixPath"):
+        flyby.write(tmp_path, tmp_path / "out")  # type: ignore[arg-type]
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_misspelt_option_is_named_with_what_was_meant() -> None:
+    with pytest.raises(TypeError, match=r"flyby\.read has no option 'robt'; did you mean robot\?"):
+        flyby.read("a.mod", robt="abb/irb6640-180-255")  # type: ignore[call-arg]

@@ -522,7 +522,7 @@ def test_senseless_numbers_are_refused(clearance, options) -> None:
     cell = cell_with()
     controller = controller_of(cell)
     run = controller.run(swing(turned(1, 0.1) - HOME))
-    with pytest.raises(InputError, match=r"metres|told to"):
+    with pytest.raises(InputError, match=r"metres|are found to"):
         certify(controller, run, scenes_of(cell), clearance, **options)
 
 
