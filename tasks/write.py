@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from ..core.errors import InputError
+from ..core.files.reading import read_bytes
+from ..core.source.text.files import LARGEST_FILE
 from .files.not_executed import not_executed_notes, refuse_not_executed
 from .files.outputs import check_outputs, write_all, write_in
 from .files.places import FilePlaces
@@ -239,7 +241,7 @@ def _changed(
     files = setup.vendor.patch(program, setup.robot, OWN if options.own else {})
     if options.in_place and not files:
         for name, file in reading.files.items():
-            if Path(name).is_file() and Path(name).read_bytes() != file.data:
+            if Path(name).is_file() and read_bytes(name, LARGEST_FILE) != file.data:
                 raise InputError(
                     f"{switched('in_place')}: {name} holds something else than what this program "
                     "was read from, such as a text that an optimisation has made: give its "

@@ -260,7 +260,10 @@ def test_the_label_is_the_new_vendors(pair) -> None:
     made = pair.translate(corner(pair, FINE))
     joint, line, _ = made.program.moves
     vendor = pair.new.split("/")[0]
-    assert type(joint.target.configuration).__module__ == f"flyby.vendors.{vendor}.configuration"
+    assert (
+        type(joint.target.configuration).__module__
+        == f"flyby.vendors.{vendor}.motion.configuration"
+    )
     assert (line.target.configuration is None) == (vendor == "ur")
 
 

@@ -26,6 +26,7 @@ from flyby.core.robot.kinematics.chain_kernels import poses
 from flyby.core.robot.work_chain import work_chain
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import quaternion_from_matrix
+from flyby.problems.improve.solve_round_verify import solve_round_verify
 from flyby.problems.improve.waypoints import (
     Box,
     Effort,
@@ -214,19 +215,19 @@ def test_a_point_where_something_is_switched_stays_one() -> None:
 
 
 def test_ctrl_c_between_two_searches_keeps_what_is_proven(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The input's proof is the first, that of what was found the second."""
-    proofs = 0
+    """What the first search made is put together and proven; the second one is interrupted."""
+    searches = 0
 
-    def interrupted(*arguments: object, **options: object) -> object:
-        nonlocal proofs
-        proofs += 1
-        if proofs == 3:
+    def interrupted(*arguments: object) -> object:
+        nonlocal searches
+        searches += 1
+        if searches == 2:
             raise KeyboardInterrupt
-        return certify(*arguments, **options)  # type: ignore[arg-type]
+        return solve_round_verify(*arguments)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(optimizing, "certify", interrupted)
+    monkeypatch.setattr(optimizing, "solve_round_verify", interrupted)
     task = WaypointTask(axes=SCENE.free, tilt=math.pi, vias=ViaCount.CHANGE)
     found = optimize_waypoints(controller(), TWO, SCENE.cell, task, QUICK)
-    assert proofs == 4 and found.proven
+    assert searches == 2 and found.proven
     assert len(found.program.moves) == len(TWO.moves)
     assert found.after.time < found.before.time
