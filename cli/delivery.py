@@ -105,8 +105,8 @@ class OtherVendor:
             FlybyError: the translation must refuse the program, or its files must not be written.
         """
         sources, _ = self._carried(program)
-        paths = {f"--vendor: {name}": self.folder / name for name in sources}
         if self.folder.is_dir():
+            paths = {"--vendor": [self.folder / name for name in sources]}
             check_outputs(paths, self.places.inputs, self.places.replace_existing)
 
     def written(self, delivery: Delivery) -> Delivery:

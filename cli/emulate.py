@@ -99,7 +99,7 @@ def _write_files(
         made[files.npz] = run.trajectory.npz()
     if files.write is not None:
         sources = _sources(files.write, run, opaque)
-        check_outputs({f"--write: {path.name}": path for path in sources}, inputs, replace_existing)
+        check_outputs({"--write": sources}, inputs, replace_existing)
         made |= sources
     if files.plot is not None:
         made[files.plot] = run.picture(picture_kind(files.plot, "--plot"))

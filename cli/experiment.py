@@ -33,8 +33,7 @@ def experiment(
         from ..tasks.results.experiments import PAGE, PICTURE
 
         # Said before the work, not after it: these two are always written.
-        there = {f"--out: {name}": out / name for name in (PAGE, PICTURE)}
-        check_outputs(there, inputs, force)
+        check_outputs({"--out": [out / PAGE, out / PICTURE]}, inputs, force)
     with progress("reading the robot") as say:
         made = experiment_with(replace(options, report=say))
         say("writing")

@@ -46,8 +46,8 @@ def paint(
     named = (part, footprint, options.cell, options.motion)
     inputs = [Path(file) for file in named if isinstance(file, str | Path)]
     check_folder("--out", out)
-    if out is not None:
-        check_outputs({f"--out: {n}": out / n for n in PICTURES if out.is_dir()}, inputs, force)
+    if out is not None and out.is_dir():
+        check_outputs({"--out": [out / name for name in PICTURES]}, inputs, force)
     with progress("reading the part") as say:
         found = paint_with(part, footprint, replace(options, report=say))
         written: list[Path] = []

@@ -8,18 +8,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.errors import FlybyError, InputError
-from .catalogue import registry
 from .options.door import spelt
 from .options.entries import TaskOptions, value
 from .options.keywords import by_keywords
 from .options.texts import joint_target
-from .setup import RobotOptions, Setup, setup_of
+from .setup import RobotOptions, Setup, check_language, setup_of
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
     from ..core.program.target import JointTarget
     from ..core.source.execution.answers import Answers
-    from ..core.vendor import Vendor
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,21 +99,6 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
 
 
 read = by_keywords(read_with, SourceOptions)
-
-
-def check_language(vendor: Vendor, program: Path) -> None:
-    """Refuse a program that another vendor's controller runs.
-
-    Raises:
-        InputError: the file is no program of the vendor, judged by its suffix.
-    """
-    if program.suffix.lower() in vendor.suffixes:
-        return
-    other = registry().reader_of(program)
-    raise InputError(
-        f"{program} is a program for {other.name}, the robot is driven by {vendor.name}; "
-        f"choose a robot of {other.name} ('flyby robots {other.name}')"
-    )
 
 
 def _answers(options: SourceOptions) -> Answers | None:

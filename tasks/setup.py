@@ -110,8 +110,11 @@ def _stated(options: RobotOptions) -> Setup:
         return Setup(vendor, registry().find_robot(name) if isinstance(robot, str) else robot)
     loaded = load(cell) if isinstance(cell, str | Path) else cell
     if name is not None and name != loaded.robot.name:
-        which = loaded.file if isinstance(cell, str | Path) else "given"
-        raise InputError(f"{given('robot', name)}: the cell {which} has a {loaded.robot.name}")
+        where = "" if loaded.file is None else f" {loaded.file}"
+        raise InputError(
+            f"{given('robot', name)}: the cell{where} is one of {loaded.robot.name}; leave the robot "
+            "out, or give a cell of this robot"
+        )
     return Setup(loaded.find_vendor(registry()), loaded.robot, loaded)
 
 
@@ -146,15 +149,33 @@ def writable_robot(name: str, option: str | None = None) -> Setup:
     return made
 
 
+def check_language(vendor: Vendor, program: Path) -> None:
+    """Refuse a program that another vendor's controller runs.
+
+    Raises:
+        InputError: the file is no program of the vendor, judged by its suffix.
+    """
+    if program.suffix.lower() in vendor.suffixes:
+        return
+    other = registry().reader_of(program)
+    raise InputError(
+        f"{program} is a program for {other.name}, the robot is driven by {vendor.name}; "
+        f"choose a robot of {other.name} ('flyby robots {other.name}')"
+    )
+
+
 def in_setup(program: Program, setup: Setup) -> Program:
     """A program that knows its setup, read again where it was read for a robot elsewhere.
 
     Raises:
-        InputError: it says something else there; it has to be read for that robot.
+        InputError: another vendor's controller runs it, or it says something else there: it has to
+            be read for that robot.
     """
     from ..core.source.reading import Reading
 
     reading = program.reading
+    if isinstance(reading, Reading) and (main := Path(reading.main)).suffix:
+        check_language(setup.vendor, main)
     if isinstance(reading, Reading) and reading.options.robot != setup.robot:
         placed = replace(reading, options=replace(reading.options, robot=setup.robot))
         if placed.again({}) != reading.again({}):

@@ -95,13 +95,9 @@ def write_with(
     folder = out.suffix.lower() not in setup.vendor.suffixes
     chosen = {} if options.opaque is None else {"opaque": options.opaque}
     files = sources_by_path(program, setup, out, chosen, folder=folder, option=spelt("out"))
-    check_outputs(
-        {f"{spelt('out')}: {path.name}": path for path in files},
-        inputs,
-        options.force,
-        out if folder else None,
-    )
-    write_all(spelt("out"), files, out if folder else None)
+    made = out if folder else None
+    check_outputs({spelt("out"): files}, inputs, options.force, made)
+    write_all(spelt("out"), files, made)
     return tuple(files)
 
 

@@ -17,7 +17,7 @@ _log = logging.getLogger("flyby")
 
 
 def check_outputs(
-    outputs: Mapping[str, Path | None],
+    outputs: Mapping[str, Path | Iterable[Path] | None],
     inputs: Iterable[Path],
     replace_existing: bool,
     made: Path | None = None,
@@ -25,7 +25,7 @@ def check_outputs(
     """Refuse output paths that cannot or must not be written.
 
     Args:
-        outputs: by the option that names each; None where the option was not given.
+        outputs: by the option that names them or their folder; None where it was not given.
         inputs: files that are read; they are never written to.
         replace_existing: whether files that exist may be replaced (``--force``).
         made: folder that is made, with those in it, if it is missing.
@@ -34,9 +34,7 @@ def check_outputs(
         InputError: naming option and path.
     """
     taken = {_real(path): str(path) for path in inputs}
-    for option, path in outputs.items():
-        if path is None:
-            continue
+    for option, path in _one_by_one(outputs):
         real = _real(path)
         if real in taken:
             raise InputError(f"{option} {path}: would overwrite {taken[real]}; choose another name")
@@ -49,6 +47,14 @@ def check_outputs(
                 raise InputError(f"{option} {path}: there is no folder {path.parent}")
         if there and not replace_existing:
             raise InputError(f"{option} {path}: exists already; {switched('force')} replaces it")
+
+
+def _one_by_one(
+    outputs: Mapping[str, Path | Iterable[Path] | None],
+) -> Iterator[tuple[str, Path]]:
+    for option, paths in outputs.items():
+        for path in (paths,) if isinstance(paths, Path) else paths or ():
+            yield option, path
 
 
 def picture_kind(file: str | Path, option: str) -> str:
@@ -101,8 +107,7 @@ def write_in(
     """
     check_folder(option, folder)
     planned = {folder / name: data for name, data in files.items()}
-    named = {f"{option}: {name}": folder / name for name in files}
-    check_outputs(named, inputs, replace_existing, folder)
+    check_outputs({option: planned}, inputs, replace_existing, folder)
     write_all(option, planned, folder)
     return list(planned)
 

@@ -52,8 +52,7 @@ class FilePlaces:
             )
         if self.out.is_dir() and self.inputs:
             path = self.out / self.inputs[0].name
-            label = f"{spelt('out')}: {path.name}"
-            check_outputs({label: path}, self.inputs, self.replace_existing)
+            check_outputs({spelt("out"): path}, self.inputs, self.replace_existing)
 
     def write(self, files: Files, original: Program) -> list[Path]:
         """Write changed files; into a folder with all that they run with, changed or not.
@@ -74,8 +73,7 @@ class FilePlaces:
         from ...core.source.patch.runnable import runnable_files
 
         paths = {self.out / name: data for name, data in runnable_files(original, files).items()}
-        named = {f"{spelt('out')}: {path.name}": path for path in paths}
-        check_outputs(named, self.inputs, self.replace_existing, self.out)
+        check_outputs({spelt("out"): paths}, self.inputs, self.replace_existing, self.out)
         write_all(spelt("out"), paths, self.out)
         return list(paths)
 

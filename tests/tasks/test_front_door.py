@@ -77,8 +77,9 @@ def test_what_is_written_is_read_back_as_the_same_program(tmp_path: Path) -> Non
     (file,) = flyby.write(program, tmp_path / "new")
     again = flyby.read(file, robot=ROBOT)
     assert flyby.emulate(again).duration == pytest.approx(flyby.emulate(program).duration)
-    with pytest.raises(InputError, match="force=True replaces it"):
+    with pytest.raises(InputError, match="force=True replaces it") as refused:
         flyby.write(program, tmp_path / "new")
+    assert str(refused.value).startswith(f"out {file}: exists already")
 
 
 def test_a_patch_changes_the_numbers_alone(tmp_path: Path) -> None:
@@ -151,8 +152,24 @@ def test_numbers_are_checked_when_options_are_made(name: str, wrong: object) -> 
 
 def test_options_name_no_robot_twice() -> None:
     assert RobotOptions(robot=ROBOT).robot == ROBOT
-    with pytest.raises(InputError, match="has a"):
-        flyby.read(SQUARE, robot=ROBOT.replace("180", "235"), cell=two_joints())
+    other, cell = ROBOT.replace("180", "235"), two_joints()
+    with pytest.raises(InputError) as refused:
+        flyby.read(SQUARE, robot=other, cell=cell)
+    message = str(refused.value)
+    assert message.startswith(f"robot={other}: the cell {cell} is one of {ROBOT}; leave the robot")
+
+
+def test_no_task_drives_another_vendors_robot_with_a_program() -> None:
+    with pytest.raises(InputError) as of_reading:
+        flyby.read(SQUARE, robot="ur/ur10e")
+    program = flyby.read(SQUARE, robot=ROBOT)
+    for task in (flyby.emulate, flyby.check):
+        with pytest.raises(InputError) as refused:
+            task(program, robot="ur/ur10e")
+        assert str(refused.value) == str(of_reading.value)
+        assert "is a program for abb, the robot is driven by ur" in str(refused.value)
+    built = replace(program, reading=None, setup=None)
+    assert flyby.emulate(built, robot=ROBOT).duration > 0
 
 
 def two_joints() -> str:
