@@ -112,8 +112,8 @@ def _stated(options: RobotOptions) -> Setup:
     if name is not None and name != loaded.robot.name:
         where = "" if loaded.file is None else f" {loaded.file}"
         raise InputError(
-            f"{given('robot', name)}: the cell{where} is one of {loaded.robot.name}; leave the robot "
-            "out, or give a cell of this robot"
+            f"{given('robot', name)}: the cell{where} is one of {loaded.robot.name}; leave the "
+            "robot out, or give a cell of this robot"
         )
     return Setup(loaded.find_vendor(registry()), loaded.robot, loaded)
 

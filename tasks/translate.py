@@ -77,13 +77,13 @@ def carried(
     Raises:
         MotionError: the translation must refuse; the message names move and line.
     """
-    from ..core.translation.translate import TranslationOptions, translate
+    from ..core.translation.translate import translate
 
     place = before.robot.base if base is None else pose(base, "base")
     made = translate(
         program,
         (before.vendor, before.robot),
         (after.vendor, after.robot),
-        TranslationOptions(place),
+        place,
     )
     return replace(made, program=replace(made.program, setup=after))

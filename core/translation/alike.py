@@ -28,11 +28,7 @@ _EDGE = 1e-3
 
 
 class Likeness:
-    """Compares the stances of two robots.
-
-    Args:
-        first, second: the robots.
-    """
+    """Compares the stances of two robots."""
 
     def __init__(self, first: Robot, second: Robot) -> None:
         families = [_family(robot) for robot in (first, second)]

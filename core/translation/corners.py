@@ -53,7 +53,6 @@ class Corner:
         cut: m from the waypoint to the path.
         reach: m of the TCP from the waypoint to the nearer edge of the zone.
         turn: rad of the tool's turn inside the zone before the waypoint.
-        zone: as programmed.
     """
 
     passed: bool
@@ -123,8 +122,6 @@ def fit_zones(
     proportional to sizes. Zones that reach as far as the controller lets them stay there.
 
     Args:
-        party: the controller.
-        dialect: what its language says.
         program, route: what it drives; the route's zones are replaced.
         wanted: one for each corner of the route.
 

@@ -24,12 +24,7 @@ from ..vendor import Vendor
 
 @dataclass(frozen=True)
 class Party:
-    """One of the two sides of a translation.
-
-    Args:
-        vendor: whose language and rules.
-        robot: whose kinematics and limits.
-    """
+    """One of the two sides of a translation."""
 
     vendor: Vendor
     robot: Robot

@@ -73,11 +73,8 @@ class Frames:
         return None
 
     def _joined(self, move: Move) -> bool:
-        return (
-            self.dialect is not None
-            and not self.dialect.user_frames
-            and (move.work_object != WORLD)
-        )
+        dialect = self.dialect
+        return dialect is not None and not dialect.user_frames and move.work_object != WORLD
 
     def _folded(self, move: Move) -> bool:
         """Whether targets are given in the base instead of the work object."""

@@ -32,7 +32,6 @@ def decided(program: Program, route: Route, losses: LossesOfPart) -> Program:
 
     Args:
         program, route: on the old robot.
-        losses: where such lines are told.
     """
     turns = _turns(make_segments(route.ends))
     moves, changed = list(program.moves), False

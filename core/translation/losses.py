@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from ..errors import Note, Span
 from ..program.program import Program
@@ -18,34 +17,31 @@ class Losses:
 
     def __init__(self, program: Program) -> None:
         self._program = program
-        self._told: dict[tuple[object, ...], _Loss] = {}
+        self._told: dict[tuple[object, ...], tuple[Note, float]] = {}
 
     def at(self, move: int, message: str, kind: str | None = None, size: float = 0.0) -> None:
         """Something that move ``move`` of the source loses.
 
         Args:
-            move: its index.
-            message: what is lost.
             kind: of losses that a line in a loop has every time, in another size: the largest is
                 told. None for the message itself.
-            size: of the loss.
         """
         origin = self._program.moves[move].origin
         span = None if origin is None else origin.statement
         key = (kind or message, span or move)
-        self._add(key, _Loss(Note(message, move, span), size))
+        self._add(key, Note(message, move, span), size)
 
     def statement(self, span: Span | None, message: str) -> None:
         """Something that a statement that is no move loses."""
-        self._add((message, span), _Loss(Note(message, None, span), 0.0))
+        self._add((message, span), Note(message, None, span), 0.0)
 
     def sorted(self) -> tuple[Note, ...]:
         """In the order of the program's text; what a line loses every time is told once."""
-        return tuple(sorted((loss.note for loss in self._told.values()), key=_place))
+        return tuple(sorted((note for note, _ in self._told.values()), key=_place))
 
-    def _add(self, key: tuple[object, ...], loss: _Loss) -> None:
-        if key not in self._told or loss.size > self._told[key].size:
-            self._told[key] = loss
+    def _add(self, key: tuple[object, ...], note: Note, size: float) -> None:
+        if key not in self._told or size > self._told[key][1]:
+            self._told[key] = note, size
 
     def through(self, moves: Sequence[int]) -> LossesOfPart:
         """The same losses for a program that keeps only some of the moves.
@@ -54,12 +50,6 @@ class Losses:
             moves: the source's index of each move that is kept.
         """
         return LossesOfPart(self, moves)
-
-
-@dataclass(frozen=True, slots=True)
-class _Loss:
-    note: Note
-    size: float
 
 
 class LossesOfPart:

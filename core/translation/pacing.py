@@ -55,8 +55,6 @@ class EmulatedProgram:
     """A program on the old robot.
 
     Args:
-        party: whose.
-        moves: its moves.
         segment: index of the segment of each move that is driven.
         peaks: what the segments take and reach.
         change: (M, N), how far each segment turns the joints.
@@ -89,9 +87,6 @@ class Pacer:
 
     Args:
         old: the program on the old robot.
-        target: the new side.
-        dialect: of its language.
-        losses: what cannot be carried over goes here.
     """
 
     def __init__(

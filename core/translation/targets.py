@@ -38,19 +38,6 @@ _DIGITS = 10
 
 
 @dataclass(frozen=True)
-class PlacedProgram:
-    """A program whose targets are the new robot's.
-
-    Args:
-        program: with the moves of the source, one for one.
-        start: where the new robot stands at first.
-    """
-
-    program: Program
-    start: JointTarget
-
-
-@dataclass(frozen=True)
 class _Anchor:
     """A target that a joint move goes to, or the start, and the lines and arcs that follow it.
 
@@ -75,9 +62,7 @@ class Placer:
     """Places programs.
 
     Args:
-        source, target: the two sides.
         dialect: of the target; None if its language says everything.
-        frames: how frames are carried over.
     """
 
     def __init__(
@@ -94,13 +79,10 @@ class Placer:
             dialect is None or dialect.external_axes
         )
 
-    def place(self, program: Program, route: Route, losses: LossesOfPart) -> PlacedProgram:
-        """The program on the target robot.
-
-        Args:
-            program: of the source.
-            route: the source robot's way through it.
-            losses: what cannot be carried over goes here.
+    def place(
+        self, program: Program, route: Route, losses: LossesOfPart
+    ) -> tuple[Program, JointTarget]:
+        """The program on the target robot, and where this stands at first.
 
         Raises:
             MotionError: the new robot cannot reach a target or follow a line.
@@ -121,9 +103,10 @@ class Placer:
             start = stand if start is None else start
             before = ends[-1] if len(ends) else stand
         assert start is not None
-        named = [self._named(old, new, q[i]) for i, (old, new) in _pairs(program.moves, moves)]
+        pairs = zip(program.moves, moves, q, strict=True)
+        named = [self._named(*pair) for pair in pairs]
         placed = replace(program.with_moves(tuple(named)), start=None, notes=(), reading=None)
-        return PlacedProgram(placed, _joint_target(self._target.robot, start))
+        return placed, _joint_target(self._target.robot, start)
 
     # ---------------------------------------------------------------- poses and frames
 
@@ -340,10 +323,6 @@ class Placer:
         except MotionError:
             return None
         return self._target.vendor.label(self._target.robot, at)
-
-
-def _pairs(old: Sequence[Move], new: Sequence[Move]) -> Iterator[tuple[int, tuple[Move, Move]]]:
-    return enumerate(zip(old, new, strict=True))
 
 
 def _same(one: FloatArray, other: FloatArray) -> bool:

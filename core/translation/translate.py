@@ -41,17 +41,6 @@ _RIGID_TOLD = 1e-3
 """rad, likewise, from which on the difference is told."""
 
 
-@dataclass(frozen=True, slots=True)
-class TranslationOptions:
-    """How a program is translated.
-
-    Args:
-        base: the new robot's world (for a robot of the catalogue: its base) in the old robot's.
-    """
-
-    base: Pose = IDENTITY
-
-
 @dataclass(frozen=True)
 class Translation:
     """A program in another robot's terms.
@@ -74,22 +63,20 @@ def translate(
     program: Program,
     source: tuple[Vendor, Robot],
     target: tuple[Vendor, Robot],
-    options: TranslationOptions | None = None,
+    base: Pose = IDENTITY,
 ) -> Translation:
     """A program for another robot, by the rules of ``docs/guides/translation.md``.
 
     Args:
         program: for the source robot.
         source, target: vendor and robot of either side.
-        options: how.
+        base: the new robot's world (for a robot of the catalogue: its base) in the old robot's.
 
     Raises:
         MotionError: the old robot cannot drive the program, the new one cannot reach a target or
             follow a line, or the new language has no such frames; the message names move and line.
     """
-    return _Translator(
-        program, Party(*source), Party(*target), options or TranslationOptions()
-    ).run()
+    return _Translator(program, Party(*source), Party(*target), base).run()
 
 
 @dataclass
@@ -97,7 +84,7 @@ class _Translator:
     source_program: Program
     source: Party
     target: Party
-    options: TranslationOptions
+    base: Pose
     losses: Losses = field(init=False)
 
     def __post_init__(self) -> None:
@@ -117,29 +104,28 @@ class _Translator:
             route = self.source.route(program)
         path = self.source.path(route, program)
         driven = EmulatedProgram.of(self.source, program, path)
-        frames = Frames(self.options.base, self.dialect)
-        placed = Placer(self.source, self.target, self.dialect, frames).place(
-            program, route, losses
-        )
-        new_route = self.target.route(placed.program, placed.start)
-        said = self._with_said_arcs(placed.program, new_route, losses)
-        if said is not placed.program:
-            new_route = self.target.route(said, placed.start)
+        frames = Frames(self.base, self.dialect)
+        placer = Placer(self.source, self.target, self.dialect, frames)
+        placed, start = placer.place(program, route, losses)
+        new_route = self.target.route(placed, start)
+        said = self._with_said_arcs(placed, new_route, losses)
+        if said is not placed:
+            new_route = self.target.route(said, start)
         wanted = self._wanted(new_route, path)
         made, new_path = self._zoned(said, new_route, wanted)
         if self.dialect is not None:
             made = Pacer(driven, self.target, self.dialect, losses).pace(made, new_path)
             if self.target.model.centripetal is not None:  # how corners are cut depends on speeds
-                made, new_path = self._zoned(made, self.target.route(made, placed.start), wanted)
+                made, new_path = self._zoned(made, self.target.route(made, start), wanted)
         self._tell_zones(new_path, wanted, losses)
         return Translation(
             replace(
                 made,
                 statements=tuple(self._worded(made)),
-                start=None if self.source_program.start is None else placed.start,
+                start=None if self.source_program.start is None else start,
             ),
             self.losses.sorted(),
-            placed.start,
+            start,
             self.source_program,
         )
 

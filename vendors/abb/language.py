@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from ...core.program.program import Program
     from ...core.robot.model import Robot
     from ...core.source.reading import Files, ReadOptions
-    from .write.options import RapidOptions
 
 SUFFIXES = (".mod", ".modx", ".prg", ".sys", ".sysx", ".pgf")
 
@@ -37,9 +36,14 @@ class Rapid:
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `flyby.core.language.Writer.write`."""
-        from .write.writer import RapidWriter
+        from ...core.source.write.options import chosen
+        from .motion.targets import axis_kinds
+        from .write.options import RapidOptions
+        from .write.writer import SUFFIX, module_name, write
 
-        return RapidWriter(_options(robot, options)).write(program)
+        axes = axis_kinds(robot) or ()
+        how = chosen(RapidOptions, options, "RAPID writer", external_axes=axes)
+        return {module_name(program) + SUFFIX: write(program, how)}
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         """See `flyby.core.language.Patcher.patch`."""
@@ -59,16 +63,3 @@ class Rapid:
         from .write.options import RapidOptions
 
         return record(program, RapidOptions(external_axes=axis_kinds(robot) or ()), period)
-
-
-def _options(robot: Robot, options: Mapping[str, str]) -> RapidOptions:
-    from ...core.source.write.options import OpaqueStyle, check_names, choice
-    from .motion.targets import axis_kinds
-    from .write.options import RapidOptions, ZoneStyle
-
-    check_names(options, ("zones", "opaque"), "RAPID writer")
-    return RapidOptions(
-        zones=choice(options, "zones", ZoneStyle.OWN),
-        opaque=choice(options, "opaque", OpaqueStyle.KEEP),
-        external_axes=axis_kinds(robot) or (),
-    )

@@ -53,8 +53,6 @@ def record(program: Program, options: RapidOptions, period: float) -> Mapping[st
     the recording is made. Where the robot comes to rest for them, it still does.
 
     Args:
-        program: to be driven.
-        options: how it is written.
         period: s between samples.
 
     Raises:

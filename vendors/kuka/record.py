@@ -38,7 +38,6 @@ def record(program: Program, robot: Robot, period: float) -> dict[str, str]:
     the recording is made.
 
     Args:
-        program: to be driven.
         robot: whose axes are logged.
         period: s between samples; the submit interpreter may be late, which the times show.
 

@@ -84,8 +84,6 @@ def record(program: Program, robot: Robot, period: float) -> Sources:
     script.
 
     Args:
-        program: to be driven.
-        robot: that it drives.
         period: s between samples.
 
     Raises:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 
 from ...errors import InputError, Span
 from ...program.move import Move
-from ...program.origin import Ownership
 from ...program.program import Program
-from ..patch.edits import Edit, patched, reading_of
-from ..patch.plan import Plan, Wish, first_possible
-from ..patch.uses import Kind, MovePart, Use, uses
+from ..patch.edits import Edit, reading_of
+from ..patch.plan import Plan, Wish, patch_program
+from ..patch.uses import Kind, MovePart, Use
 from ..reading import Files
 from ..write.options import PatchOptions
 
@@ -40,19 +39,16 @@ def patch_lines(
         FlybyError: a change has no place in the text, or the text is not read as ``program``.
     """
     reading = reading_of(program)
-    parts = uses(reading.again({}), program, lambda old, new: None)
 
     def text_at(span: Span) -> str:
         return reading.files[span.file].text[span.start : span.end]
 
     literals = _Literals(text_at, numbers, number)
 
-    def attempt(in_place: Collection[Ownership]) -> Files:
-        plan = Plan(parts, literals, options, in_place)
-        edits = [edit for use in plan.changes for edit in _edits(plan, use, literals)]
-        return patched(program, reading, edits)
+    def edits(plan: Plan) -> list[Edit]:
+        return [edit for use in plan.changes for edit in _edits(plan, use, literals)]
 
-    return first_possible(options, attempt)
+    return patch_program(program, options, literals, edits)
 
 
 class _Literals:

@@ -101,7 +101,6 @@ def patched(after: Program, reading: Reading, edits: Iterable[Edit]) -> Files:
 
     Args:
         after: the program that is to come out.
-        reading: of the files.
         edits: at most one text for a stretch.
 
     Returns:

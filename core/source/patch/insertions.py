@@ -19,9 +19,7 @@ class Inserted:
     """A line that has been put in.
 
     Args:
-        file: where.
         at: offset in the text as it was.
-        text: the line.
     """
 
     file: str

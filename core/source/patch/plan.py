@@ -8,17 +8,18 @@ literal at the move, or in settings before it, as the language has it.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Protocol
 
 from ...errors import FlybyError, InputError, Span
 from ...program.origin import Ownership
+from ...program.program import Program
 from ..reading import Files
 from ..write.options import PatchOptions, Sharing
-from .edits import alike, listed
-from .uses import Kind, Use
+from .edits import Edit, alike, listed, patched, reading_of
+from .uses import Kind, OtherChange, Use, uses
 
 Texts = Mapping[Span, str]
 """What shall stand at a span."""
@@ -47,7 +48,6 @@ class Literals(Protocol):
 
     def text(self, span: Span) -> str:
         """What stands at a place."""
-        ...
 
     def wish(self, use: Use) -> Wish:
         """What the literals of a part must say.
@@ -55,16 +55,12 @@ class Literals(Protocol):
         Raises:
             InputError: the language has no words for its value.
         """
-        ...
 
 
 class Plan:
     """Finds what changes in place.
 
     Args:
-        parts: all parts of all moves.
-        literals: what they must say.
-        options: what may get numbers of its own.
         in_place: whose literals may be changed where they stand.
     """
 
@@ -75,6 +71,7 @@ class Plan:
         options: PatchOptions,
         in_place: Collection[Ownership],
     ) -> None:
+        self.parts = parts
         self.changes = [use for use in parts if use.changes]
         self._literals = literals
         self._options = options
@@ -124,7 +121,6 @@ class Plan:
         """Moves of the same instruction that are to have another value.
 
         Args:
-            use: of the instruction.
             said: what of a part stands at the instruction.
         """
         return [
@@ -168,7 +164,6 @@ class Plan:
         """What stands at the move holds for all executions of the instruction.
 
         Args:
-            use: of the instruction.
             said: what of a part stands at the instruction.
 
         Raises:
@@ -203,17 +198,33 @@ _IN_PLACE: dict[Sharing, list[tuple[Ownership, ...]]] = {
 """Whose literals are changed where they stand: what is tried, in turn."""
 
 
-def first_possible(
-    options: PatchOptions, attempt: Callable[[Collection[Ownership]], Files]
+def patch_program(
+    program: Program,
+    options: PatchOptions,
+    literals: Literals,
+    edits: Callable[[Plan], Iterable[Edit]],
+    other_change: OtherChange = lambda old, new: None,
 ) -> Files:
-    """The files of the first attempt that is read again as the changed program.
+    """The files of a program with its targets, speeds and zones, every other byte kept.
 
     Args:
-        attempt: given whose literals may be changed where they stand.
+        program: read from files, then changed.
+        edits: what a plan comes to in the language.
+        other_change: what the language cannot change at a move, beside what none can.
+
+    Returns:
+        The files that changed, by name.
 
     Raises:
-        FlybyError: of the first attempt, if none succeeds.
+        FlybyError: a change has no place in the text, or the patched text is not read as
+            ``program``: of the first attempt, if none succeeds.
     """
+    reading = reading_of(program)
+    parts = uses(reading.again({}), program, other_change)
+
+    def attempt(in_place: Collection[Ownership]) -> Files:
+        return patched(program, reading, edits(Plan(parts, literals, options, in_place)))
+
     first, *others = _IN_PLACE[options.shared]
     try:
         return attempt(first)

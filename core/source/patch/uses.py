@@ -35,10 +35,7 @@ class Use:
     """A part of a move.
 
     Args:
-        index: of the move.
-        kind: which part.
         statement: span of the motion instruction.
-        origin: of the part.
         old: its value in the text.
         new: the value that it shall have.
         move: as it shall become.

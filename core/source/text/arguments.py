@@ -9,8 +9,6 @@ def wrong_count(wanted: int, given: int, names: Sequence[str] = ()) -> str:
     """``takes 1 argument (ToPoint), not 2``.
 
     Args:
-        wanted: how many the call takes.
-        given: how many it has.
         names: what they are called, if that is known.
     """
     listed = f" ({', '.join(names)})" if names else ""

@@ -93,10 +93,6 @@ def decode(source: str | bytes, file: str) -> tuple[str, str]:
 class SourceText:
     """A text that knows the line and column of every offset, as editors count them: ends of line
     are LF, CR LF or CR.
-
-    Args:
-        text: the whole file.
-        file: its name, for messages.
     """
 
     def __init__(self, text: str, file: str) -> None:

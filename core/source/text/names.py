@@ -31,12 +31,7 @@ class NameRules:
 
 
 class Names:
-    """The names that a program has given out.
-
-    Args:
-        rules: of the language.
-        taken: names that are in use already.
-    """
+    """The names that a program has given out."""
 
     def __init__(self, rules: NameRules, taken: Iterable[str] = ()) -> None:
         self._rules = rules

@@ -58,7 +58,6 @@ def references(name: str, text: str, wording: Wording) -> Iterator[Reference]:
     Args:
         name: see `Reference`.
         text: without comments and strings (`Wording.quiet`).
-        wording: how the language is searched.
     """
     flags = re.IGNORECASE if wording.same_case else 0
     pattern = re.compile(_BEFORE + re.escape(name) + _BEHIND, flags)

@@ -50,7 +50,6 @@ def with_approach(program: Program, dialect: Dialect | None, robot: Robot) -> Pr
     """The program with a first move to its start, unless it has one, or no start is known.
 
     Args:
-        program: to be written.
         dialect, robot: see `approach_speed`.
     """
     start = program.start

@@ -27,7 +27,6 @@ def check_kept(program: Program, sources: Mapping[str, str], wording: Wording) -
     Args:
         program: whose kept statements have been written.
         sources: its new texts.
-        wording: how the language is searched.
 
     Raises:
         SourceError: naming the statement and the name.

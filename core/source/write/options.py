@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import StrEnum
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from ...errors import InputError, UnknownNameError
 
-Choice = TypeVar("Choice", bound=StrEnum)
+Options = TypeVar("Options", bound=Any)
 
 
 class Sharing(StrEnum):
@@ -51,46 +51,27 @@ class PatchOptions:
 
     @classmethod
     def of(cls, options: Mapping[str, str], patcher: str) -> PatchOptions:
-        """From options by name.
-
-        Args:
-            options: ``shared`` and ``derived``, each ``refuse`` or ``own``.
-            patcher: whose they are, for messages: "RAPID patcher".
-
-        Raises:
-            InputError: an unknown option or value.
-        """
-        check_names(options, ("shared", "derived"), patcher)
-        return cls(
-            choice(options, "shared", Sharing.REFUSE), choice(options, "derived", Sharing.REFUSE)
-        )
+        """From options by name; see `chosen`."""
+        return chosen(cls, options, patcher)
 
 
-def check_names(options: Mapping[str, str], known: tuple[str, ...], part: str) -> None:
-    """Refuse options that there are not.
+def chosen(kind: type[Options], options: Mapping[str, str], part: str, **others: object) -> Options:
+    """The options of a writer or patcher, from those of its fields that are choices.
 
     Args:
-        options: by name.
-        known: the names that there are.
+        kind: a dataclass; a field whose default is of a StrEnum may be chosen by its name.
         part: whose they are, for messages: "RAPID writer".
 
     Raises:
-        UnknownNameError: naming the option.
+        InputError: an option is unknown, or has a value that it does not take.
     """
-    for name in options:
+    known = {f.name: f.default for f in fields(kind) if isinstance(f.default, StrEnum)}
+    for name, value in options.items():
         if name not in known:
-            raise UnknownNameError(f"option of the {part}", name, known)
-
-
-def choice(options: Mapping[str, str], name: str, default: Choice) -> Choice:
-    """The value of an option, or ``default``.
-
-    Raises:
-        InputError: it is none of those that there are.
-    """
-    kind = type(default)
-    value = options.get(name, default)
-    try:
-        return kind(value)
-    except ValueError:
-        raise InputError(f"option {name}: one of {', '.join(kind)}, not {value!r}") from None
+            raise UnknownNameError(f"option of the {part}", name, tuple(known))
+        choices = type(known[name])
+        if value not in list(choices):
+            raise InputError(f"option {name}: one of {', '.join(choices)}, not {value!r}")
+        known[name] = choices(value)
+    made: Options = kind(**known, **others)
+    return made

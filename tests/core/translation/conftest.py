@@ -18,10 +18,10 @@ from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.model import Robot
-from flyby.core.spatial.pose import Pose
+from flyby.core.spatial.pose import IDENTITY, Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
 from flyby.core.translation.corners import Corner, corners_of
-from flyby.core.translation.translate import Translation, TranslationOptions, translate
+from flyby.core.translation.translate import Translation, translate
 from flyby.core.vendor import Vendor
 
 ABB, KUKA, UR = "abb/irb1600-6-145", "kuka/kr30-3", "ur/ur10e"
@@ -80,8 +80,7 @@ class Pair:
         return dict(zip(made.path.route.moves, corners_of(made.path), strict=False))
 
     def translate(self, program: Program, base: Pose | None = None) -> Translation:
-        options = TranslationOptions() if base is None else TranslationOptions(base)
-        return translate(program, side(self.old), side(self.new), options)
+        return translate(program, side(self.old), side(self.new), base or IDENTITY)
 
     def down(self, offset: Sequence[float] = (0.0, 0.0, 0.0), turn=(0.0, 0.0, 0.0)) -> Pose:
         """The flange down, moved by ``offset`` m and turned by ``turn`` rad."""

@@ -17,7 +17,7 @@ from flyby.core.program.program import Program
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.execution.answers import load_answers
 from flyby.core.spatial.pose import Pose
-from flyby.core.translation.translate import TranslationOptions, translate
+from flyby.core.translation.translate import translate
 
 CORPUS = Path(__file__).parents[2] / "corpus"
 ROBOTS = {
@@ -84,7 +84,7 @@ def test_a_program_is_translated_or_refused_with_its_line(
     refusals = []
     for place, name in ((place, name) for place in PLACES[new] for name in ROBOTS[new]):
         try:
-            made = translate(program, side(old), side(name), TranslationOptions(Pose(place)))
+            made = translate(program, side(old), side(name), Pose(place))
         except MotionError as error:
             refusals.append(error)
             continue

@@ -16,10 +16,12 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Load, Tool, WorkObject
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction, Zone
+from flyby.core.registry import find_robot
 from flyby.core.source.text.names import Names
 from flyby.core.source.write.options import OpaqueStyle
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import arc_angle
+from flyby.vendors.abb.language import Rapid
 from flyby.vendors.abb.motion.configuration import AbbConfiguration
 from flyby.vendors.abb.run.reader import read
 from flyby.vendors.abb.values import predefined
@@ -28,7 +30,7 @@ from flyby.vendors.abb.write.formatting import MAX_NAME, NAME_RULES
 from flyby.vendors.abb.write.numbers import number
 from flyby.vendors.abb.write.operands import predefined_within
 from flyby.vendors.abb.write.options import RapidOptions, ZoneStyle
-from flyby.vendors.abb.write.writer import RapidWriter, write
+from flyby.vendors.abb.write.writer import write
 
 OPTIONS = RapidOptions()
 DOWN = (0.0, 0.0, 1.0, 0.0)
@@ -187,7 +189,8 @@ def test_exact_text_in_both_directions(written: Program, options: RapidOptions, 
 
 def test_the_writer_names_the_file_after_the_module() -> None:
     written = program(MoveJ(at(0, 0, 0), V500), name="Job-1")
-    (item,) = RapidWriter().write(written).items()
+    robot = find_robot("abb/irb6640-180-255")
+    (item,) = Rapid().write(written, robot, {}).items()
     assert item == ("Job_1.mod", write(written, OPTIONS))
 
 

@@ -7,6 +7,7 @@ ORobT, MirPos, CSpeedOverride. Positions are those of the last commanded target 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -37,19 +38,13 @@ from .targets import Converter
 FULL_OVERRIDE = 100.0
 
 
+@dataclass(frozen=True, slots=True)
 class RobotFunctions:
-    """The functions, by lower-case name.
+    """The functions, by lower-case name."""
 
-    Args:
-        position: of the robot.
-        convert: makes tools, frames and targets.
-        settings: that hold now.
-    """
-
-    def __init__(self, position: Position, convert: Converter, settings: SettingsInForce) -> None:
-        self._position = position
-        self._convert = convert
-        self._settings = settings
+    position: Position
+    convert: Converter
+    settings: SettingsInForce
 
     def table(self) -> dict[str, Special]:
         """name → function."""
@@ -57,8 +52,8 @@ class RobotFunctions:
             "crobt": self._robtarget,
             "cpos": self._cpos,
             "cjointt": self._jointtarget,
-            "ctool": lambda evaluator, call, scope: tool_record(self._position.tool),
-            "cwobj": lambda evaluator, call, scope: work_object_record(self._position.work_object),
+            "ctool": lambda evaluator, call, scope: tool_record(self.position.tool),
+            "cwobj": lambda evaluator, call, scope: work_object_record(self.position.work_object),
             "calcrobt": self._forward,
             "calcjointt": self._backward,
             "orobt": self._undisplaced,
@@ -75,10 +70,8 @@ class RobotFunctions:
         frame = self._frame(evaluator, self._option(call, "wobj"), scope)
         if tool is None or frame is None:
             return self._unknown(evaluator, call, "in a tool or frame that is not known")
-        where = self._position
-        displacement = self._settings.now.displacement
-        record = self._asked(call, lambda: where.robtarget(tool, frame, displacement))
-        return self._unknown(evaluator, call, None) if record is None else record
+        where, displacement = self.position, self.settings.now.displacement
+        return self._told(evaluator, call, lambda: where.robtarget(tool, frame, displacement))
 
     def present_robtarget(
         self,
@@ -96,7 +89,7 @@ class RobotFunctions:
         a = self._tool(evaluator, tool, scope)
         b = self._frame(evaluator, frame, scope, None if tool is None else WORLD)
         if a is not None and b is not None:
-            where = self._position
+            where = self.position
             record = self._asked(invoke, lambda: where.robtarget(a, b, None))
             if record is not None:
                 return record
@@ -111,35 +104,43 @@ class RobotFunctions:
         return value if isinstance(value, Unknown) else self._tuple(value)[0]
 
     def _jointtarget(self, evaluator: Evaluates, call: Call, scope: Scope) -> Value:
-        record = self._asked(call, self._position.jointtarget)
-        return self._unknown(evaluator, call, None) if record is None else record
+        return self._told(evaluator, call, self.position.jointtarget)
 
     def _forward(self, evaluator: Evaluates, call: Call, scope: Scope) -> Value:
         """``CalcRobT(jointtarget, Tool [\\WObj])``"""
-        joints, tool_given = self._required(call, 2)
-        value = evaluator.evaluate(joints, scope)
-        tool = self._tool(evaluator, tool_given, scope)
-        frame = self._frame(evaluator, self._option(call, "wobj"), scope, WORLD)
-        if tool is None or frame is None or find_unknown(value) is not None:
-            return self._unknown(evaluator, call, "of values that are not known")
-        self._check(evaluator, value, JOINTTARGET, call)
-        target = self._convert.joint_target(value, None, False, call.span)
-        where = self._position
-        record = self._asked(call, lambda: where.forward(target, tool, frame))
-        return self._unknown(evaluator, call, None) if record is None else record
+
+        def ask(value: Value, tool: Tool, frame: WorkObject) -> Record | None:
+            target = self.convert.joint_target(value, None, False, call.span)
+            return self._asked(call, lambda: self.position.forward(target, tool, frame))
+
+        return self._converted(evaluator, call, scope, JOINTTARGET, ask)
 
     def _backward(self, evaluator: Evaluates, call: Call, scope: Scope) -> Value:
         """``CalcJointT(robtarget, Tool [\\WObj])``"""
-        pose, tool_given = self._required(call, 2)
-        value = evaluator.evaluate(pose, scope)
+
+        def ask(value: Value, tool: Tool, frame: WorkObject) -> Record | None:
+            target = self.convert.pose_target(value, None, True, call.span)
+            return self._asked(call, lambda: self.position.backward(target, tool, frame))
+
+        return self._converted(evaluator, call, scope, ROBTARGET, ask)
+
+    def _converted(
+        self,
+        evaluator: Evaluates,
+        call: Call,
+        scope: Scope,
+        type_: Type,
+        ask: Callable[[Value, Tool, WorkObject], Record | None],
+    ) -> Value:
+        """A position of one kind as one of the other."""
+        given, tool_given = self._required(call, 2)
+        value = evaluator.evaluate(given, scope)
         tool = self._tool(evaluator, tool_given, scope)
         frame = self._frame(evaluator, self._option(call, "wobj"), scope, WORLD)
         if tool is None or frame is None or find_unknown(value) is not None:
             return self._unknown(evaluator, call, "of values that are not known")
-        self._check(evaluator, value, ROBTARGET, call)
-        target = self._convert.pose_target(value, None, True, call.span)
-        where = self._position
-        record = self._asked(call, lambda: where.backward(target, tool, frame))
+        self._check(evaluator, value, type_, call)
+        record = ask(value, tool, frame)
         return self._unknown(evaluator, call, None) if record is None else record
 
     # ------------------------------------------------------------------- geometry
@@ -148,12 +149,12 @@ class RobotFunctions:
         """``ORobT(point)``: as it is without program displacement."""
         (point,) = self._required(call, 1)
         value = evaluator.evaluate(point, scope)
-        displacement = self._settings.now.displacement
+        displacement = self.settings.now.displacement
         if displacement is None or find_unknown(value) is not None:
             return value
         self._check(evaluator, value, ROBTARGET, call)
         trans, rot, *rest = self._tuple(value)
-        moved = displacement @ self._convert.pose((trans, rot), call.span)
+        moved = displacement @ self.convert.pose((trans, rot), call.span)
         return (*pose_record(moved), *rest)
 
     def _mirrored(self, evaluator: Evaluates, call: Call, scope: Scope) -> Value:
@@ -166,7 +167,7 @@ class RobotFunctions:
         self._check(evaluator, values[0], ROBTARGET, call)
         mirror = self._plane(evaluator, values[1], call)
         trans, rot, *rest = self._tuple(values[0])
-        pose = self._convert.pose((trans, rot), call.span)
+        pose = self.convert.pose((trans, rot), call.span)
         seen = mirror.inverse() @ frame.pose @ pose
         keeps_y = not any(a.option == "miry" for a in call.arguments)
         back = frame.pose.inverse() @ mirror @ _mirror(seen, keeps_y)
@@ -176,12 +177,16 @@ class RobotFunctions:
         if isinstance(value, tuple) and len(value) == len(WOBJDATA.components):
             self._check(evaluator, value, WOBJDATA, call)
             _, _, _, user, frame = value
-            convert = self._convert
+            convert = self.convert
             return convert.pose(user, call.span) @ convert.pose(frame, call.span)
         self._check(evaluator, value, POSE, call)
-        return self._convert.pose(value, call.span)
+        return self.convert.pose(value, call.span)
 
     # -------------------------------------------------------------------- helpers
+
+    def _told(self, evaluator: Evaluates, call: Call, ask: Callable[[], Record | None]) -> Value:
+        record = self._asked(call, ask)
+        return self._unknown(evaluator, call, None) if record is None else record
 
     @staticmethod
     def _asked(call: Call | Invoke, ask: Callable[[], Record | None]) -> Record | None:
@@ -203,7 +208,7 @@ class RobotFunctions:
     def _unknown(self, evaluator: Evaluates, call: Call, why: str | None) -> Unknown:
         if why is None:
             unmoved = "the robot has not moved yet: give a start"
-            why = "name the robot" if self._position.robot is None else unmoved
+            why = "name the robot" if self.position.robot is None else unmoved
         key = evaluator.answers.key(call.span)
         return Unknown(f"the value of {call.text}() ({why})", call.span, key)
 
@@ -219,12 +224,12 @@ class RobotFunctions:
 
     def _tool(self, evaluator: Evaluates, given: Expression | None, scope: Scope) -> Tool | None:
         if given is None:
-            return self._position.tool
+            return self.position.tool
         found = evaluator.locate(given, scope)
         if find_unknown(found.value) is not None:
             return None
         evaluator.check(found.value, TOOLDATA, "the tool", given.span)
-        return self._convert.tool(found, given)
+        return self.convert.tool(found, given)
 
     def _frame(
         self,
@@ -234,12 +239,12 @@ class RobotFunctions:
         default: WorkObject | None = None,
     ) -> WorkObject | None:
         if given is None:
-            return self._position.work_object if default is None else default
+            return self.position.work_object if default is None else default
         found = evaluator.locate(given, scope)
         if find_unknown(found.value) is not None:
             return None
         evaluator.check(found.value, WOBJDATA, "the work object", given.span)
-        return self._convert.work_object(found, given)
+        return self.convert.work_object(found, given)
 
     @staticmethod
     def _check(evaluator: Evaluates, value: Value, type_: Type, call: Call) -> None:

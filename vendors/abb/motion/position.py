@@ -7,17 +7,16 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ....core.errors import Span
+from ....core.motion.path.present_position import PresentPosition
 from ....core.program.move import Move
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import Tool, WorkObject
-from ....core.source.execution import position
 from ....core.spatial.pose import Pose
 from ..values.records import EXTERNAL_AXES, MM, UNUSED_AXIS, Record, pose_record
-from .configuration import AbbConfiguration
+from .configuration import AbbConfiguration, label
 
 if TYPE_CHECKING:
     from ....core.arrays import FloatArray
-    from ....core.motion.path.commanded_position import Standing
     from ....core.robot.model import Robot
 
 ARM_AXES = 6
@@ -41,7 +40,7 @@ class Position:
         self.asked = 0
         self._axes = axes or ()
         self._record: Record = ()
-        self._commanded = position.PresentPosition(robot, start, _standing)
+        self._commanded = PresentPosition(robot, start, label)
 
     @property
     def robot(self) -> Robot | None:
@@ -62,7 +61,6 @@ class Position:
         """The robot has driven to the target of a move.
 
         Args:
-            statement: of the move.
             record: the target as it stood in the program.
         """
         self._commanded.moved(move, statement)
@@ -103,9 +101,9 @@ class Position:
 
     def forward(self, target: JointTarget, tool: Tool, frame: WorkObject) -> Record | None:
         """The robtarget of joint values; None without a robot."""
-        if self.robot is None:
+        standing = self._commanded.at(target)
+        if standing is None:
             return None
-        standing = _standing(self.robot, target)
         trans, rot = pose_record(standing.pose(tool, frame))
         return (trans, rot, self._label(standing.joints()), self._external(target.external))
 
@@ -131,8 +129,6 @@ class Position:
         return (0.0, 0.0, 0.0, 0.0) if q is None else self._label(q)
 
     def _label(self, q: FloatArray) -> Record:
-        from .configuration import label
-
         found = None if self.robot is None else label(self.robot, q)
         if found is None:
             return (0.0, 0.0, 0.0, 0.0)
@@ -150,10 +146,3 @@ class Position:
         joints = [math.degrees(v) for v in q[:arm]][:ARM_AXES]
         robax = tuple(joints + [0.0] * (ARM_AXES - len(joints)))
         return (robax, self._external([float(v) for v in q[arm:]]))
-
-
-def _standing(robot: Robot, start: JointTarget | None) -> Standing:
-    from ....core.motion.path.commanded_position import Standing
-    from .configuration import label
-
-    return Standing(robot, label, start)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Protocol
+from typing import Any, Protocol
 
 from ....core.errors import SourceError
 from ....core.program.move import ArcOrientation
@@ -50,14 +50,26 @@ def _one_switch(bound: Bound, default: str) -> str:
     return next(iter(bound.options), default)
 
 
-def _conf_joint(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
-    switch = _one_switch(bind(invoke, (), ("on", "off")), "on")
-    run.settings.now = replace(run.settings.now, check_joint=switch == "on")
+def _conf(setting: str) -> SettingsHandler:
+    """``ConfJ``, ``ConfL``"""
+
+    def change(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+        switch = _one_switch(bind(invoke, (), ("on", "off")), "on")
+        changed: dict[str, Any] = {setting: switch == "on"}
+        run.settings.now = replace(run.settings.now, **changed)
+
+    return change
 
 
-def _conf_linear(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
-    switch = _one_switch(bind(invoke, (), ("on", "off")), "on")
-    run.settings.now = replace(run.settings.now, check_linear=switch == "on")
+def _none(setting: str) -> SettingsHandler:
+    """``PDispOff``, ``EOffsOff``"""
+
+    def change(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+        bind(invoke, (), ())
+        changed: dict[str, Any] = {setting: None}
+        run.settings.now = replace(run.settings.now, **changed)
+
+    return change
 
 
 def _sing_area(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
@@ -150,11 +162,6 @@ def _pdisp_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     run.settings.now = replace(run.settings.now, displacement=run.convert.pose(frame, bound.span))
 
 
-def _pdisp_off(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
-    bind(invoke, (), ())
-    run.settings.now = replace(run.settings.now, displacement=None)
-
-
 def _pdisp_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     r"""``PDispOn [\Rot] [\ExeP,] ProgPoint, Tool [\WObj]``
 
@@ -204,11 +211,6 @@ def _eoffs_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     run.settings.now = replace(run.settings.now, offsets=offsets)
 
 
-def _eoffs_off(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
-    bind(invoke, (), ())
-    run.settings.now = replace(run.settings.now, offsets=None)
-
-
 def _only_off(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     """Settings that may be switched off, which they are at the start."""
     if [a.option for a in invoke.arguments] != ["off"]:
@@ -229,8 +231,8 @@ def _speed_refresh(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
 
 
 SETTINGS: dict[str, SettingsHandler] = {
-    "confj": _conf_joint,
-    "confl": _conf_linear,
+    "confj": _conf("check_joint"),
+    "confl": _conf("check_linear"),
     "singarea": _sing_area,
     "accset": _acc_set,
     "velset": _vel_set,
@@ -238,11 +240,11 @@ SETTINGS: dict[str, SettingsHandler] = {
     "cirpathmode": _cir_path_mode,
     "gripload": _grip_load,
     "pdispset": _pdisp_set,
-    "pdispoff": _pdisp_off,
+    "pdispoff": _none("displacement"),
     "pdispon": _pdisp_on,
     "eoffsset": _eoffs_set,
     "eoffson": _eoffs_on,
-    "eoffsoff": _eoffs_off,
+    "eoffsoff": _none("offsets"),
     "worldacclim": _only_off,
     "speedrefresh": _speed_refresh,
 }

@@ -53,8 +53,6 @@ class Converter:
     """Makes targets, speeds, zones, tools and frames of RAPID values.
 
     Args:
-        settings: that hold for them.
-        notes: takes what is to be said.
         external_axes: ``"linear"`` or ``"rotating"`` for eax_a, eax_b, … of the robot; None if
             the robot is not known.
     """

@@ -16,11 +16,7 @@ _FALLBACK = {"robtarget": "pFb", "jointtarget": "jFb", "zonedata": "zFb", "speed
 
 @dataclass
 class Additions:
-    """Data to be declared; names are unique in all modules of the program.
-
-    Args:
-        places: the program's files.
-    """
+    """Data to be declared; names are unique in all modules of the program."""
 
     places: Places
     _given: dict[tuple[str, int, str, str, str], str] = field(default_factory=dict)
@@ -35,8 +31,6 @@ class Additions:
         """The name of a new datum in the module that ``user`` lies in.
 
         Args:
-            type_: of the datum.
-            literal: its value.
             wanted: a name to be near to.
             user: where it will be used.
             move: index of the move that needs it.

@@ -19,12 +19,7 @@ from .places import Operand, Places
 
 
 class RapidLiterals:
-    """What the literals of a program would have to say.
-
-    Args:
-        places: the program's files.
-        axis_kinds: of the external axes.
-    """
+    """What the literals of a program would have to say."""
 
     def __init__(self, places: Places, axis_kinds: Sequence[str]) -> None:
         self._places = places

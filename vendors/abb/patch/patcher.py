@@ -16,16 +16,16 @@ New data are ``LOCAL CONST`` beside those of the same type in the module of the 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 from ....core.errors import InputError
 from ....core.program.move import Move
 from ....core.program.origin import Ownership
 from ....core.program.program import Program
 from ....core.program.zone import Fine
-from ....core.source.patch.edits import Edit, alike, patched, reading_of
-from ....core.source.patch.plan import Plan, first_possible
-from ....core.source.patch.uses import Use, uses
+from ....core.source.patch.edits import Edit, alike, reading_of
+from ....core.source.patch.plan import Plan, patch_program
+from ....core.source.patch.uses import Use
 from ....core.source.reading import Files
 from ....core.source.write.options import PatchOptions
 from ..syntax.tree import Aggregate, Name
@@ -40,7 +40,6 @@ def patch(program: Program, options: PatchOptions, axis_kinds: Sequence[str] = (
 
     Args:
         program: read from files, then changed.
-        options: how.
         axis_kinds: ``"linear"`` or ``"rotating"`` for eax_a, eax_b, …, as for the reader.
 
     Returns:
@@ -50,26 +49,17 @@ def patch(program: Program, options: PatchOptions, axis_kinds: Sequence[str] = (
         FlybyError: a change has no place in the text, or the patched text is not read as
             ``program``.
     """
-    reading = reading_of(program)
-    before = reading.again({})
-    parts = uses(before, program, _other_change)
-    places = Places(reading.files)
+    places = Places(reading_of(program).files)
+    literals = RapidLiterals(places, axis_kinds)
 
-    def attempt(in_place: Collection[Ownership]) -> Files:
-        plan = Plan(parts, RapidLiterals(places, axis_kinds), options, in_place)
-        return patched(program, reading, _Edits(plan, places, axis_kinds).all())
+    def edits(plan: Plan) -> list[Edit]:
+        return _Edits(plan, places, axis_kinds).all()
 
-    return first_possible(options, attempt)
+    return patch_program(program, options, literals, edits, _other_change)
 
 
 class _Edits:
-    """Finds the edits.
-
-    Args:
-        plan: what changes in place.
-        places: the program's files.
-        axis_kinds: of the external axes.
-    """
+    """Finds the edits."""
 
     def __init__(self, plan: Plan, places: Places, axis_kinds: Sequence[str]) -> None:
         self._plan = plan

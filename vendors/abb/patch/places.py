@@ -48,11 +48,7 @@ class Operand:
 
 
 class FilePlaces:
-    """One source file.
-
-    Args:
-        file: with its text.
-    """
+    """One source file."""
 
     def __init__(self, file: SourceFile) -> None:
         self.source = SourceText(file.text, file.name)
@@ -92,11 +88,7 @@ class FilePlaces:
 
 
 class Places:
-    """The files of a program.
-
-    Args:
-        files: by name.
-    """
+    """The files of a program."""
 
     def __init__(self, files: Files) -> None:
         self._files = files

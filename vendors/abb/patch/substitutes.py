@@ -29,13 +29,7 @@ TYPES = {
 
 
 class Substitutes:
-    """Writes operands anew, with new data where nothing shorter says the value.
-
-    Args:
-        places: the program's files.
-        additions: takes new data.
-        axis_kinds: of the external axes.
-    """
+    """Writes operands anew, with new data where nothing shorter says the value."""
 
     def __init__(self, places: Places, additions: Additions, axis_kinds: Sequence[str]) -> None:
         self._places = places

@@ -11,12 +11,7 @@ from .types import Foreign, RecordType, Scalar, Type, Value
 
 
 class Answers:
-    """The user's answers to expressions of a program.
-
-    Args:
-        course: has them.
-        text_of: the text that stands at a place.
-    """
+    """The user's answers to expressions of a program."""
 
     def __init__(self, course: Course, text_of: Callable[[Span], str]) -> None:
         self._course = course

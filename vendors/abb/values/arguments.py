@@ -68,9 +68,6 @@ def check_count(text: str, wanted: int, given: int, span: Span, names: Sequence[
 
     Args:
         text: name of the function, routine or instruction.
-        wanted: how many it takes.
-        given: how many the call has.
-        span: of the call.
         names: what they are called, if that is known.
 
     Raises:

@@ -64,10 +64,7 @@ def located_part(
     """An element or component of a datum, with the place that it was read from.
 
     Args:
-        cell: the datum.
         value: of all of it, but for the elements that were written of late.
-        path: components and indices.
-        name: of the part, for messages.
 
     Raises:
         SourceError: there is no such part.
@@ -99,10 +96,6 @@ def replaced(
 
     Args:
         old: the value of ``cell``, or of the element that ``path`` begins with.
-        cell: the datum.
-        path: components and indices.
-        new: value of the part.
-        name: of the part, for messages.
 
     Raises:
         SourceError: there is no such part, or ``new`` is of another type.

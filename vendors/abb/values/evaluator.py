@@ -69,10 +69,6 @@ class Evaluator:
     """Evaluates expressions in a scope.
 
     Args:
-        data: the program's types, routines and data.
-        course: the user's answers.
-        text_of: the text that stands at a place.
-        host: runs what expressions call.
         special: functions that ask the emulated robot, by lower-case name.
     """
 

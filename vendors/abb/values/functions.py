@@ -163,14 +163,6 @@ def _truncated(value: float, decimals: float = 0.0) -> float:
     return math.trunc(finite(value * scale)) / scale
 
 
-def _magnitude(vector: Vector) -> float:
-    return math.hypot(*vector)
-
-
-def _distance(a: Vector, b: Vector) -> float:
-    return math.dist(a, b)
-
-
 def _dot(a: Vector, b: Vector) -> float:
     return sum(u * v for u, v in zip(a, b, strict=True))
 
@@ -185,9 +177,9 @@ COMPUTED: dict[str, Computed] = {
     "norient": (unit, (ORIENT,), ()),
     "defframe": (def_frame, (ROBTARGET,) * 3, ("origin",)),
     "defdframe": (displacement_frame, (ROBTARGET,) * 6, ("origin",)),
-    "distance": (_distance, (POS, POS), ()),
+    "distance": (math.dist, (POS, POS), ()),
     "dotprod": (_dot, (POS, POS), ()),
-    "vectmagn": (_magnitude, (POS,), ()),
+    "vectmagn": (lambda v: math.hypot(*v), (POS,), ()),
     "abs": (abs, (NUM,), ()),
     "sqrt": (math.sqrt, (NUM,), ()),
     "pow": (math.pow, (NUM, NUM), ()),

@@ -43,11 +43,7 @@ class _Shelved:
 
 
 class Library:
-    """Files that are parsed only if they may declare a name that is missed.
-
-    Args:
-        files: by name.
-    """
+    """Files that are parsed only if they may declare a name that is missed."""
 
     def __init__(self, files: Mapping[str, SourceFile]) -> None:
         self._shelf = {name: _Shelved(file) for name, file in files.items()}

@@ -40,7 +40,6 @@ class Scalar:
     """``num``, ``dnum``, ``bool`` or ``string``.
 
     Args:
-        name: of the type.
         python: the class of its values.
         default: of a variable without an initial value.
     """

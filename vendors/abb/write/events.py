@@ -57,12 +57,7 @@ class Said:
 
 
 class Events:
-    """Says the events of a program's moves; each trigger is defined once.
-
-    Args:
-        operands: of the module; it takes the triggers' data.
-        style: what becomes of events.
-    """
+    """Says the events of a program's moves; each trigger is defined once."""
 
     def __init__(self, operands: Operands, style: OpaqueStyle) -> None:
         self._operands = operands

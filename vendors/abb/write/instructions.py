@@ -28,9 +28,7 @@ def move_line(move: Move, said: Said, operands: Operands) -> Line:
     """The move instruction.
 
     Args:
-        move: to be said.
         said: the instruction's name, and what its events add to it.
-        operands: of the module.
 
     Raises:
         InputError: RAPID cannot say it.

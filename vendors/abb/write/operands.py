@@ -43,11 +43,7 @@ _ZONE_NAMES = {literal(record): name for name, record in ZONES.items()}
 
 
 class Operands:
-    """The operands of one module's instructions.
-
-    Args:
-        options: how the module is written.
-    """
+    """The operands of one module's instructions."""
 
     def __init__(self, options: RapidOptions) -> None:
         self._options = options

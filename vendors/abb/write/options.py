@@ -26,8 +26,6 @@ class RapidOptions:
     """How a module is written.
 
     Args:
-        zones: see `ZoneStyle`.
-        opaque: see `core.source.options.OpaqueStyle`.
         external_axes: ``"linear"`` or ``"rotating"`` for eax_a, eax_b, …, as for the reader.
 
     Raises:

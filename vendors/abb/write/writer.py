@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass
 
-from ....core.errors import InputError, MotionError
 from ....core.program.move import Move, MoveC, Opaque, Wait
 from ....core.program.program import Program
 from ....core.source.text.files import lines_of
 from ....core.source.text.names import Names
 from ....core.source.write.options import OpaqueStyle
+from ....core.source.write.statements import lines_of_statements
 from .arc_limits import check_arc
 from .events import Events
 from .formatting import NAME_RULES
@@ -30,10 +30,7 @@ class Surroundings:
     """What stands in a module beside the program itself; lines without their indentation.
 
     Args:
-        header: comments at the head.
-        data: declarations.
         before, after: instructions of the entry routine, before and after the program's.
-        routines: further routines.
         names: that these lines declare, and the program's data must not have.
     """
 
@@ -45,21 +42,6 @@ class Surroundings:
     names: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class RapidWriter:
-    """Writes a program as the one file of its module.
-
-    Args:
-        options: how.
-    """
-
-    options: RapidOptions = field(default_factory=RapidOptions)
-
-    def write(self, program: Program) -> Mapping[str, str]:
-        """The module's text by its file name; see `write`."""
-        return {module_name(program) + SUFFIX: write(program, self.options)}
-
-
 def write(program: Program, options: RapidOptions, around: Surroundings = Surroundings()) -> str:
     """The text of a complete module; lines end with LF.
 
@@ -67,11 +49,6 @@ def write(program: Program, options: RapidOptions, around: Surroundings = Surrou
     controller's single precision holds: reading the text gives the program but for that rounding,
     and writing what was read gives the same text. ``Program.start`` has no place in RAPID: the
     robot starts from where it stands.
-
-    Args:
-        program: what to say.
-        options: how.
-        around: what else the module holds.
 
     Raises:
         MotionError: RAPID cannot say a move; it is named by number.
@@ -112,24 +89,21 @@ def _header(options: RapidOptions) -> list[str]:
 
 def _body(program: Program, operands: Operands, options: RapidOptions) -> list[Line]:
     """The instructions of the entry routine."""
-    settings = WrittenSettings()
-    events = Events(operands, options.opaque)
-    lines: list[Line] = []
-    moves: list[Move] = []
-    for statement in program.statements:
-        if isinstance(statement, Wait):
-            lines.append(_wait(statement))
-        elif isinstance(statement, Opaque):
-            lines += _opaque(statement, options.opaque)
-        else:
-            lines += _move(statement, moves, settings, events, operands)
-            moves.append(statement)
-    return lines
+    settings, events = WrittenSettings(), Events(operands, options.opaque)
+    moves = program.moves
 
+    def wait(statement: Wait) -> list[Line]:
+        """``WaitTime Time`` in s (WaitTime)."""
+        return [(f"WaitTime {number(statement.duration)};",)]
 
-def _wait(wait: Wait) -> Line:
-    """``WaitTime Time`` in s (WaitTime)."""
-    return (f"WaitTime {number(wait.duration)};",)
+    def move(statement: Move, index: int) -> list[Line]:
+        if isinstance(statement, MoveC):
+            check_arc(moves[index - 1] if index else None, statement)
+        said = events.of(statement)
+        changes = settings.changes(statement, operands)
+        return [*changes, *said.before, move_line(statement, said, operands)]
+
+    return lines_of_statements(program, wait, lambda o: _opaque(o, options.opaque), move)
 
 
 def _opaque(statement: Opaque, style: OpaqueStyle) -> list[Line]:
@@ -142,21 +116,6 @@ def _opaque(statement: Opaque, style: OpaqueStyle) -> list[Line]:
         return [(text,)]
     comment = textwrap.indent(text, "! ", lambda line: True)
     return [(comment,), *([("WaitRob \\InPos;",)] if statement.stops else [])]
-
-
-def _move(
-    move: Move, before: list[Move], settings: WrittenSettings, events: Events, operands: Operands
-) -> list[Line]:
-    """The move, with the settings that must change before it."""
-    try:
-        if isinstance(move, MoveC):
-            check_arc(before[-1] if before else None, move)
-        said = events.of(move)
-        changes = settings.changes(move, operands)
-        return [*changes, *said.before, move_line(move, said, operands)]
-    except InputError as error:
-        span = move.origin.statement if move.origin is not None else None
-        raise MotionError(str(error), len(before), span) from None
 
 
 def _indented(lines: Iterable[str]) -> list[str]:

@@ -8,6 +8,7 @@ which the controllers have switched on, a percentage of a PTP is ``$ACC_AXIS`` i
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from ....core.errors import SourceError, Span
 from ....core.source.execution.transcript import Notes
@@ -24,30 +25,19 @@ AXES = 6
 Command = Callable[["Basis", Value | None, Span], None]
 
 
+@dataclass(frozen=True, slots=True)
 class Basis:
     """The commands of ``BAS``.
 
     Args:
-        data: the system variables.
-        evaluator: for arguments.
-        config: the data of ``$CONFIG.DAT``.
-        notes: takes notes.
         changed: is told that system variables have other values now.
     """
 
-    def __init__(
-        self,
-        data: Data,
-        evaluator: Evaluator,
-        config: ConfigData,
-        notes: Notes,
-        changed: Callable[[], None],
-    ) -> None:
-        self._data = data
-        self._evaluator = evaluator
-        self._config = config
-        self._notes = notes
-        self._changed = changed
+    data: Data
+    evaluator: Evaluator
+    config: ConfigData
+    notes: Notes
+    changed: Callable[[], None]
 
     def invoke(self, call: Call, scope: Scope) -> None:
         """``BAS(#COMMAND, value)``
@@ -62,7 +52,7 @@ class Basis:
             raise SourceError(f"{call.text} begins with a command, as #INITMOV", call.span)
         handler = _COMMANDS.get(command)
         if handler is None:
-            self._notes.once(
+            self.notes.once(
                 f"bas {command}",
                 f"{call.text}(#{command.upper()}) is stepped over: it sets nothing that is "
                 "emulated",
@@ -70,21 +60,21 @@ class Basis:
             )
             return
         second = arguments[1] if len(arguments) > 1 else None
-        value = None if second is None else self._evaluator.evaluate(second, scope)
+        value = None if second is None else self.evaluator.evaluate(second, scope)
         handler(self, value, call.span)
-        self._changed()
+        self.changed()
 
     def _command(self, first: Expression, scope: Scope) -> str | None:
         if isinstance(first, Constant):
             return first.name
-        value = self._evaluator.known(first, scope, "the command of BAS")
+        value = self.evaluator.known(first, scope, "the command of BAS")
         return value.name if isinstance(value, Choice) else None
 
     # --------------------------------------------------------------------- variables
 
     def default(self, name: str) -> Value:
         """A datum of ``$CONFIG.DAT``."""
-        return self._config.value(name)
+        return self.config.value(name)
 
     def datum(self, name: str, span: Span) -> Struct:
         """``PDAT_ACT``, ``LDAT_ACT`` or ``FDAT_ACT``.
@@ -92,7 +82,7 @@ class Basis:
         Raises:
             SourceError: it is not known.
         """
-        value = self._config.value(name)
+        value = self.config.value(name)
         if isinstance(value, Unknown):
             raise left_open(name, value, span)
         if not isinstance(value, Struct):
@@ -101,13 +91,13 @@ class Basis:
 
     def set(self, name: str, value: Value) -> None:
         """A system variable."""
-        cell = self._data.system[name]
+        cell = self.data.system[name]
         cell.assigned = True
         cell.value = value
 
     def component(self, name: str, component: str, value: Value) -> None:
         """A component of a system variable."""
-        cell = self._data.system[name]
+        cell = self.data.system[name]
         if not isinstance(cell.value, Struct):
             cell.value = Struct(cell.type)
         cell.value.fields[component] = value
@@ -128,7 +118,7 @@ class Basis:
         """A speed of the TCP, cut to ``DEF_VEL_CP``."""
         most = self.default("DEF_VEL_CP")
         if isinstance(value, int | float) and isinstance(most, int | float) and value > most:
-            self._notes.once(
+            self.notes.once(
                 "DEF_VEL_CP",
                 f"a path speed of {value:g} m/s is cut to DEF_VEL_CP={most:g} m/s",
                 span,
@@ -169,14 +159,14 @@ class Basis:
         """
         if index <= 0:
             return null_frame()
-        value = self._config.item(table, index, span)
+        value = self.config.item(table, index, span)
         if value is None:
             return null_frame(f"{table.upper()}[{index}]", shipped=True)
         return value.copy() if isinstance(value, Struct) else value
 
     def load(self, index: int) -> Value:
         """An item of ``LOAD_DATA``."""
-        value = self._config.item("load_data", index, None) if index > 0 else None
+        value = self.config.item("load_data", index, None) if index > 0 else None
         return value.copy() if isinstance(value, Struct) else Struct("load")
 
     @staticmethod
@@ -295,9 +285,6 @@ class Basis:
             return convert(value, "real", {})
         return value
 
-    def nothing(self, value: Value | None, span: Span) -> None:
-        """A command that motion does not depend on."""
-
 
 _COMMANDS: dict[str, Command] = {
     "initmov": Basis.initialise,
@@ -312,10 +299,8 @@ _COMMANDS: dict[str, Command] = {
     "frames": Basis.use_frames,
     "tool": Basis.use_tool,
     "base": Basis.use_base,
-    "out_sync": Basis.nothing,
-    "out_async": Basis.nothing,
-    "group": Basis.nothing,
-    "ex_bas": Basis.nothing,
+    # Motion does not depend on them.
+    **dict.fromkeys(("out_sync", "out_async", "group", "ex_bas"), lambda basis, value, span: None),
 }
 
 

@@ -28,12 +28,7 @@ _UNSET = {
 
 
 class Placements:
-    """Makes them of the system variables in force.
-
-    Args:
-        system: the variables.
-        note: takes notes, one of a kind.
-    """
+    """Makes them of the system variables in force."""
 
     def __init__(self, system: Mapping[str, Variable], note: Note) -> None:
         self._system = system

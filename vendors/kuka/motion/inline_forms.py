@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from ....core.errors import SourceError
+from ....core.errors import SourceError, Span
 from ..syntax.expression_tree import Call
 from ..values.data import Data
 from ..values.scope import Scope
@@ -20,12 +20,7 @@ Function = Callable[[Call, list[Value | None], Scope], Value]
 
 
 class InlineForms:
-    """The functions.
-
-    Args:
-        basis: sets what they set.
-        data: of the program.
-    """
+    """The functions."""
 
     def __init__(self, basis: Basis, data: Data) -> None:
         self._basis = basis
@@ -34,47 +29,44 @@ class InlineForms:
     def functions(self) -> Mapping[str, Function]:
         """By lower-case name."""
         return {
-            "svel_joint": self.velocity_joint,
-            "sacc_joint": self.acceleration_joint,
-            "svel_cp": self.velocity_path,
-            "sacc_cp": self.acceleration_path,
-            "sapo": self.zone_path,
-            "sapo_ptp": self.zone_joint,
-            "stool": self.tool,
-            "stool2": self.tool,
-            "sbase": self.base,
-            "sload": self.load,
-            "sipo_mode": self.mode,
-            "sori_typ": self.orientation,
-            "scirc_typ": self.circle,
-            "sjerk": self.jerk,
-            "sgear_jerk": self.jerk,
-            "k_offs": self.base_offset,
-            "varstate": self.state,
-            **dict.fromkeys(_NOTHING, self.nothing),
+            "svel_joint": self._velocity_joint,
+            "sacc_joint": self._acceleration_joint,
+            "svel_cp": self._velocity_path,
+            "sacc_cp": self._acceleration_path,
+            "sapo": self._zone_path,
+            "sapo_ptp": self._zone_joint,
+            "sload": self._numbered("tool_no", "load", lambda n, span: self._basis.load(n)),
+            "sipo_mode": self._mode,
+            "sori_typ": self._chosen("ori_typ", "var"),
+            "scirc_typ": self._chosen("circ_typ", "base"),
+            "varstate": self._state,
+            **dict.fromkeys(("stool", "stool2"), self._item("tool")),
+            **dict.fromkeys(("sbase", "k_offs"), self._item("base")),
+            **dict.fromkeys(("sjerk", "sgear_jerk"), lambda call, arguments, scope: 100.0),
+            **dict.fromkeys(_NOTHING, lambda call, arguments, scope: 0),
         }
 
     # ------------------------------------------------------------------ spline forms
 
-    def velocity_joint(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
+    def _velocity_joint(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SVEL_JOINT(percent)``: for all axes, though it stands at axis 1."""
         value = self._first(call, arguments)
         self._basis.all_axes("$vel_axis", value)
         return value
 
-    def acceleration_joint(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
+    def _acceleration_joint(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SACC_JOINT(PDAT)``"""
         value = self._fields(call, arguments).get("acc", 100.0)
         self._basis.all_axes("$acc_axis", value)
         return value
 
-    def velocity_path(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
+    def _velocity_path(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SVEL_CP(v, , LDAT)``: turning goes at the splines' own default."""
         speed = self._basis.path_limit(self._first(call, arguments), call.span)
         turning = plain(self._basis.default("DEF_VEL_ORIS"))
         return Struct("", {"cp": speed, "ori1": turning, "ori2": turning})
 
-    def acceleration_path(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
+    def _acceleration_path(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SACC_CP(LDAT)``: its AXIS_ACC counts, for the path too."""
         fields = self._fields(call, arguments)
         percent = fields.get("axis_acc", fields.get("acc"))
@@ -82,12 +74,12 @@ class InlineForms:
         path = self._basis.share(percent, "DEF_ACC_CP")
         return Struct("", {"cp": path, "ori1": turning, "ori2": turning})
 
-    def zone_path(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
+    def _zone_path(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SAPO(LDAT)``"""
         distance = self._fields(call, arguments).get("apo_dist")
         return Struct("", {} if distance is None else {"cdis": distance})
 
-    def zone_joint(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
+    def _zone_joint(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SAPO_PTP(PDAT)``: mm, or with ``APO_MODE #CPTP`` percent."""
         fields = self._fields(call, arguments)
         distance, mode = fields.get("apo_dist"), fields.get("apo_mode")
@@ -97,47 +89,37 @@ class InlineForms:
             made["cptp" if share else "cdis"] = distance
         return Struct("", made)
 
-    def tool(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
-        """``STOOL2(FDAT)``, ``STOOL(number)``"""
-        value = self._number(call, arguments, "tool_no")
-        index = self._basis.index(value, "the number of a tool", call.span)
-        return self._basis.frame("tool_data", index, call.span)
+    def _item(self, kind: str) -> Function:
+        """``STOOL2(FDAT)``, ``STOOL(number)``, ``SBASE(number)``, ``K_OFFS(number)``"""
+        return self._numbered(
+            f"{kind}_no", kind, lambda number, span: self._basis.frame(f"{kind}_data", number, span)
+        )
 
-    def base(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
-        """``SBASE(number)``"""
-        value = self._number(call, arguments, "base_no")
-        index = self._basis.index(value, "the number of a base", call.span)
-        return self._basis.frame("base_data", index, call.span)
+    def _numbered(self, component: str, kind: str, made: Callable[[int, Span], Value]) -> Function:
+        """What has a number in ``$CONFIG.DAT``; the number may stand in an FDAT."""
 
-    def load(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
-        """``SLOAD(number)``"""
-        value = self._number(call, arguments, "tool_no")
-        return self._basis.load(self._basis.index(value, "the number of a load", call.span))
+        def value(call: Call, arguments: list[Value | None], scope: Scope) -> Value:
+            given = arguments[0] if arguments else None
+            number = given.fields.get(component) if isinstance(given, Struct) else given
+            return made(self._basis.index(number, f"the number of a {kind}", call.span), call.span)
 
-    def mode(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
+        return value
+
+    def _chosen(self, component: str, otherwise: str) -> Function:
+        """``SORI_TYP(LDAT)``, ``SCIRC_TYP(LDAT)``"""
+
+        def value(call: Call, arguments: list[Value | None], scope: Scope) -> Value:
+            found = self._fields(call, arguments).get(component)
+            return found if isinstance(found, Choice) else Choice(otherwise)
+
+        return value
+
+    def _mode(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SIPO_MODE(#BASE)``"""
         value = arguments[0] if arguments else None
         return value if isinstance(value, Choice) else Choice("base")
 
-    def orientation(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
-        """``SORI_TYP(LDAT)``"""
-        value = self._fields(call, arguments).get("ori_typ")
-        return value if isinstance(value, Choice) else Choice("var")
-
-    def circle(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
-        """``SCIRC_TYP(LDAT)``"""
-        value = self._fields(call, arguments).get("circ_typ")
-        return value if isinstance(value, Choice) else Choice("base")
-
-    def jerk(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
-        """``SJERK(LDAT)``, ``SGEAR_JERK(PDAT)``: not emulated."""
-        return 100.0
-
-    def base_offset(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
-        """``K_OFFS(number)``"""
-        return self.base(call, arguments, scope)
-
-    def state(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
+    def _state(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``VARSTATE("name")``: whether a datum has a value; not known of one that no file at
         hand declares."""
         name = arguments[0] if arguments else None
@@ -145,10 +127,6 @@ class InlineForms:
         if cell is None:
             return Unknown(f"{call.text} of what is declared in no file at hand", call.span)
         return Choice("declared" if cell.value is None else "initialized")
-
-    def nothing(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
-        """A value that motion does not depend on."""
-        return 0
 
     # --------------------------------------------------------------------- arguments
 
@@ -170,11 +148,6 @@ class InlineForms:
             "that declares them",
             call.span,
         )
-
-    @staticmethod
-    def _number(call: Call, arguments: list[Value | None], component: str) -> Value | None:
-        value = arguments[0] if arguments else None
-        return value.fields.get(component) if isinstance(value, Struct) else value
 
 
 _NOTHING = (

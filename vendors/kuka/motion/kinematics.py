@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from ....core.errors import SourceError
 from ....core.program.target import JointTarget, PoseTarget
@@ -20,33 +21,20 @@ from .position import Position
 from .targets import Targets
 
 
+@dataclass(frozen=True, slots=True)
 class Kinematics:
     """The functions.
 
     Args:
         robot: None if none is named.
-        evaluator: gives the argument that takes an error its value.
-        placements: tool and base in force.
-        targets: makes targets of positions and axis values.
-        position: follows the robot.
-        notes: takes notes.
     """
 
-    def __init__(
-        self,
-        robot: Robot | None,
-        evaluator: Evaluator,
-        placements: Placements,
-        targets: Targets,
-        position: Position,
-        notes: Notes,
-    ) -> None:
-        self._robot = robot
-        self._evaluator = evaluator
-        self._placements = placements
-        self._targets = targets
-        self._position = position
-        self._notes = notes
+    robot: Robot | None
+    evaluator: Evaluator
+    placements: Placements
+    targets: Targets
+    position: Position
+    notes: Notes
 
     def functions(self) -> Mapping[str, Function]:
         """By lower-case name."""
@@ -63,15 +51,14 @@ class Kinematics:
         Raises:
             SourceError: the robot has no table, or several that this may mean.
         """
-        robot = self._robot
-        tables = (
-            []
-            if robot is None
-            else [axis.name for axis in robot.external_axes if axis.role is ExternalRole.TABLE]
-        )
-        if robot is not None:
-            carriers = {axis.carried_by for axis in robot.external_axes}
-            tables = [name for name in tables if name not in carriers]
+        robot = self.robot
+        axes = () if robot is None else robot.external_axes
+        carriers = {axis.carried_by for axis in axes}
+        tables = [
+            axis.name
+            for axis in axes
+            if axis.role is ExternalRole.TABLE and axis.name not in carriers
+        ]
         if len(tables) != 1:
             have = "no robot is named" if robot is None else f"the robot has {len(tables)} tables"
             raise SourceError(
@@ -82,7 +69,7 @@ class Kinematics:
         offset = arguments[2] if len(arguments) > 2 else None
         made = offset.copy() if isinstance(offset, Struct) else Struct("frame")
         made.moved_by = tables[0]
-        self._notes.once(
+        self.notes.once(
             "EK",
             f"{call.text}: the base is on {tables[0]}, at its place in the robot's cell",
             call.span,
@@ -93,11 +80,11 @@ class Kinematics:
         """``FORWARD(axes, error)``: the pose of ``$TOOL`` in ``$BASE``."""
         axes = arguments[0] if arguments else None
         pose = None
-        if self._robot is not None and isinstance(axes, Struct):
-            placement = self._placements.current(call.span)
-            target = self._targets.joints(axes, call.span).target
+        if self.robot is not None and isinstance(axes, Struct):
+            placement = self.placements.current(call.span)
+            target = self.targets.joints(axes, call.span).target
             assert isinstance(target, JointTarget)
-            pose = self._position.forward(target, placement)
+            pose = self.position.forward(target, placement)
         if pose is None:
             return Unknown(f"the value of {call.text} (name the robot)", call.span)
         self._no_error(call, scope)
@@ -107,17 +94,17 @@ class Kinematics:
         """``INVERSE(position, near, error)``"""
         position = arguments[0] if arguments else None
         found = None
-        if self._robot is not None and isinstance(position, Struct):
-            placement = self._placements.current(call.span)
-            target = self._targets.pose(position, placement, True, False, call.span).target
+        if self.robot is not None and isinstance(position, Struct):
+            placement = self.placements.current(call.span)
+            target = self.targets.pose(position, placement, True, False, call.span).target
             assert isinstance(target, PoseTarget)
             near = arguments[1] if len(arguments) > 1 else None
             start = None
             if isinstance(near, Struct) and find_unknown(near) is None:
-                joints = self._targets.joints(near, call.span).target
+                joints = self.targets.joints(near, call.span).target
                 assert isinstance(joints, JointTarget)
                 start = joints
-            found = self._position.backward(target, placement, start, call.span)
+            found = self.position.backward(target, placement, start, call.span)
         if found is None:
             return Unknown(f"the value of {call.text} (name the robot)", call.span)
         self._no_error(call, scope)
@@ -127,4 +114,4 @@ class Kinematics:
         """The last argument takes the number of an error: none."""
         last = call.arguments[-1] if call.arguments else None
         if isinstance(last, Name) and len(call.arguments) > 1:
-            self._evaluator.assign(last, 0, scope, call.span)
+            self.evaluator.assign(last, 0, scope, call.span)

@@ -7,7 +7,7 @@ sets system variables for one motion. A motion to ``$POS_ACT`` or ``$AXIS_ACT`` 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from ....core.errors import InputError, SourceError, Span
 from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Opaque
@@ -46,46 +46,25 @@ class _Common:
     zone: Set
 
 
+@dataclass(frozen=True, slots=True)
 class MotionReader:
     """Reads motion instructions.
 
     Args:
-        data: of the program.
-        evaluator: for targets.
-        placements: tool and base in force.
-        settings: speeds and zones in force.
-        targets: makes targets of positions and axis values.
-        position: follows the robot.
-        triggers: what happens on the way.
-        meter: counts moves.
-        transcript: takes the moves.
         changed: is told that system variables have other values now.
     """
 
-    def __init__(
-        self,
-        data: Data,
-        evaluator: Evaluator,
-        placements: Placements,
-        settings: Settings,
-        targets: Targets,
-        position: Position,
-        triggers: Triggers,
-        meter: Meter,
-        transcript: Transcript,
-        changed: Callable[[], None],
-    ) -> None:
-        self._data = data
-        self._evaluator = evaluator
-        self._placements = placements
-        self._settings = settings
-        self._targets = targets
-        self._position = position
-        self._triggers = triggers
-        self._meter = meter
-        self._transcript = transcript
-        self._changed = changed
-        self._literals: dict[tuple[int, bool, bool], ReadTarget] = {}
+    data: Data
+    evaluator: Evaluator
+    placements: Placements
+    settings: Settings
+    targets: Targets
+    position: Position
+    triggers: Triggers
+    meter: Meter
+    transcript: Transcript
+    changed: Callable[[], None]
+    _literals: dict[tuple[int, bool, bool], ReadTarget] = field(default_factory=dict)
 
     def read(self, motion: MotionInstruction, scope: Scope) -> None:
         """Carry out one instruction, with what follows ``WITH`` set for it alone.
@@ -96,18 +75,18 @@ class MotionReader:
         if not motion.settings:
             self._drive(motion, scope)
             return
-        system = self._data.system
+        system = self.data.system
         saved = {name: copied(_held(system[name])) for name in MOTION}
         try:
             for setting in motion.settings:
-                value = self._evaluator.evaluate(setting.value, scope)
-                self._evaluator.assign(setting.target, value, scope, setting.span)
-            self._changed()
+                value = self.evaluator.evaluate(setting.value, scope)
+                self.evaluator.assign(setting.target, value, scope, setting.span)
+            self.changed()
             self._drive(motion, scope)
         finally:
             for name, value in saved.items():
                 system[name].value = value
-            self._changed()
+            self.changed()
 
     def _drive(self, motion: MotionInstruction, scope: Scope) -> None:
         word = motion.word.removesuffix("_rel")
@@ -115,7 +94,7 @@ class MotionReader:
         if not arc and self._goes_nowhere(motion, scope):
             self._stay(motion, joint)
             return
-        placement = self._placements.current(motion.span)
+        placement = self.placements.current(motion.span)
         start = None if joint else self._start(placement, motion)
         if arc:
             self._arc(motion, scope, placement, start)
@@ -129,7 +108,7 @@ class MotionReader:
             found = self._constant_orientation(found, start, placement, motion)
         common = self._common(motion, joint, placement)
         kind = MoveJ if joint else MoveL
-        move: Move = kind(found.target, *_fields(common), events=self._triggers.taken())
+        move: Move = kind(found.target, *_fields(common), events=self.triggers.taken())
         self._emit(motion, move, found, common)
 
     # --------------------------------------------------------------------- one kind each
@@ -141,13 +120,13 @@ class MotionReader:
             return False
         if target.name in POSITION:
             return True
-        cell = self._data.find(target.name, scope)
+        cell = self.data.find(target.name, scope)
         value = None if cell is None else cell.value
         if not isinstance(value, Unknown) or value.here is None:
             return False
         moves, asked_in = value.here
-        return moves == self._transcript.move_index and (
-            asked_in is None or asked_in == self._placements.current(motion.span)
+        return moves == self.transcript.move_index and (
+            asked_in is None or asked_in == self.placements.current(motion.span)
         )
 
     def _stay(self, motion: MotionInstruction, joint: bool) -> None:
@@ -156,13 +135,13 @@ class MotionReader:
         It is kept so that it goes nowhere wherever it is written, whatever the datum holds there.
         """
         at = motion.targets[-1].span
-        text, target = self._transcript.text_of(motion.span), self._transcript.text_of(at)
+        text, target = self.transcript.text_of(motion.span), self.transcript.text_of(at)
         if target.lower() not in POSITION:
             place = "$AXIS_ACT" if joint else "$POS_ACT"
             begin = at.start - motion.span.start
             text = text[:begin] + place + text[begin + len(target) :]
-        self._transcript.emit(Opaque(text, not motion.approximation, motion.span))
-        self._transcript.notes.once(
+        self.transcript.emit(Opaque(text, not motion.approximation, motion.span))
+        self.transcript.notes.once(
             "stays",
             f"{motion.word.upper()} {target} goes to where the robot is: kept, no move",
             motion.span,
@@ -198,7 +177,7 @@ class MotionReader:
             *_fields(common),
             via=via,
             orientation=self._arc_orientation(motion),
-            events=self._triggers.taken(),
+            events=self.triggers.taken(),
         )
         self._emit(motion, move, found, common, via_part)
 
@@ -212,18 +191,16 @@ class MotionReader:
         target: PoseTarget,
     ) -> tuple[PoseTarget, PoseTarget]:
         """``CA``: the auxiliary and the end point of the arc that is really driven."""
-        degrees = self._evaluator.number(angle, scope, "CA")
-        if not isinstance(start, Struct):
-            reason = start.reason if isinstance(start, Unknown) else "where the robot stands"
-            raise SourceError(f"an arc of angle CA depends on {reason}", motion.span)
+        degrees = self.evaluator.number(angle, scope, "CA")
+        begin = _known_start(start, "an arc of angle CA", motion.span)
         try:
-            middle, end = beyond(pose_of(start.fields), via.pose, target.pose, degrees)
+            middle, end = beyond(pose_of(begin.fields), via.pose, target.pose, degrees)
         except InputError as error:
             raise SourceError(str(error), motion.span) from None
         return replace(via, pose=middle), replace(target, pose=end)
 
     def _arc_orientation(self, motion: MotionInstruction) -> ArcOrientation:
-        kind = self._settings.choice("$circ_type", motion.span)
+        kind = self.settings.choice("$circ_type", motion.span)
         return ArcOrientation.FOLLOWS_ARC if kind == "path" else ArcOrientation.FIXED_FRAME
 
     def _constant_orientation(
@@ -234,9 +211,9 @@ class MotionReader:
         motion: MotionInstruction,
     ) -> ReadTarget:
         """``$ORI_TYPE``: ``#CONSTANT`` keeps the orientation of the start point."""
-        kind = self._settings.choice("$ori_type", motion.span)
+        kind = self.settings.choice("$ori_type", motion.span)
         if kind == "joint":
-            self._transcript.notes.once(
+            self.transcript.notes.once(
                 "#JOINT",
                 "$ORI_TYPE=#JOINT turns the wrist's axes evenly, which is not emulated: the "
                 "orientation goes the shortest way (#VAR)",
@@ -244,14 +221,9 @@ class MotionReader:
             )
         if kind != "constant":
             return found
-        if not isinstance(start, Struct):
-            reason = start.reason if isinstance(start, Unknown) else "where the robot stands"
-            raise SourceError(
-                f"$ORI_TYPE=#CONSTANT keeps the orientation of the start point, which depends on "
-                f"{reason}",
-                motion.span,
-            )
-        kept = {name: start.fields[name] for name in "abc"}
+        what = "$ORI_TYPE=#CONSTANT keeps the orientation of the start point, which"
+        begin = _known_start(start, what, motion.span)
+        kept = {name: begin.fields[name] for name in "abc"}
         complete = Struct("e6pos", {**found.complete.fields, **kept})
         assert isinstance(found.target, PoseTarget)
         target = replace(found.target, pose=pose_of(complete.fields))
@@ -259,9 +231,9 @@ class MotionReader:
 
     def _start(self, placement: Placement, motion: MotionInstruction) -> Struct | Unknown | None:
         """Where the motion begins, if that is needed to know where it goes."""
-        constant = self._settings.choice("$ori_type", motion.span) == "constant"
+        constant = self.settings.choice("$ori_type", motion.span) == "constant"
         if constant or motion.angle is not None:
-            return self._position.pose(placement, motion.span)
+            return self.position.pose(placement, motion.span)
         return None
 
     # -------------------------------------------------------------------------- parts
@@ -283,9 +255,9 @@ class MotionReader:
         if motion.word.endswith("_rel"):
             return self._relative(motion, value, placement, via, span)
         if is_axes(value):
-            found = self._targets.joints(value, span)
+            found = self.targets.joints(value, span)
         else:
-            found = self._targets.pose(value, placement, joint, via, span)
+            found = self.targets.pose(value, placement, joint, via, span)
         if found.filled:
             self._depends_on_last()
         elif isinstance(expression, Flat):
@@ -294,14 +266,14 @@ class MotionReader:
 
     def _value(self, motion: MotionInstruction, expression: Expression, scope: Scope) -> Struct:
         span = expression.span
-        self._evaluator.reader = self._transcript.move_index
-        value = self._evaluator.evaluate(expression, scope)
-        self._evaluator.reader = ELSEWHERE
+        self.evaluator.reader = self.transcript.move_index
+        value = self.evaluator.evaluate(expression, scope)
+        self.evaluator.reader = ELSEWHERE
         what = f"the target of {motion.word.upper()}"
         if isinstance(value, Unknown):
-            if isinstance(expression, Name) and self._data.find(expression.name, scope) is None:
-                raise self._evaluator.undeclared(expression, scope, "point")
-            self._evaluator.check_known(value, what, span)
+            if isinstance(expression, Name) and self.data.find(expression.name, scope) is None:
+                raise self.evaluator.undeclared(expression, scope, "point")
+            self.evaluator.check_known(value, what, span)
         if not isinstance(value, Struct):
             raise SourceError(f"{what} is a position or axis values, not {shown(value)}", span)
         if value.type == "":
@@ -312,7 +284,7 @@ class MotionReader:
 
     def _typed(self, value: Struct, kind: str, span: Span) -> Struct:
         """An aggregate without a type as what its components make it."""
-        types = self._data.types
+        types = self.data.types
         if value.fields.keys() <= types[kind].keys():
             # `Targets` wants numbers, and says so.
             return Struct(kind, value.fields, value.label, value.shipped, value.moved_by)
@@ -327,13 +299,13 @@ class MotionReader:
         self, motion: MotionInstruction, value: Struct, placement: Placement, via: bool, span: Span
     ) -> ReadTarget:
         """The present target and a step."""
-        self._evaluator.check_known(value, f"the target of {motion.word.upper()}", span)
-        self._evaluator.reader = self._transcript.move_index
-        self._evaluator.note_reads(value)
-        self._evaluator.reader = ELSEWHERE
+        self.evaluator.check_known(value, f"the target of {motion.word.upper()}", span)
+        self.evaluator.reader = self.transcript.move_index
+        self.evaluator.note_reads(value)
+        self.evaluator.reader = ELSEWHERE
         self._depends_on_last()
         axes = is_axes(value)
-        present = self._position.axes(span) if axes else self._position.pose(placement, span)
+        present = self.position.axes(span) if axes else self.position.pose(placement, span)
         if isinstance(present, Unknown):
             raise SourceError(f"{motion.word.upper()} goes on from {present.reason}", span)
         summed = dict(present.fields)
@@ -343,38 +315,33 @@ class MotionReader:
             if step is not None:
                 summed[name] = _sum(summed.get(name, 0.0), step)
         if axes:
-            return self._targets.joints(Struct("e6axis", summed), span)
+            return self.targets.joints(Struct("e6axis", summed), span)
         if motion.frame == "tool":
             summed.update(frame_of(pose_of(present.fields) @ pose_of(value.fields)).fields)
         elif any(value.fields.get(name, 0) != 0 for name in "abc"):
-            turned = pose_of({n: v for n, v in value.fields.items() if n in "abc"})
-            summed.update(
-                {
-                    n: v
-                    for n, v in frame_of(turned @ pose_of(present.fields)).fields.items()
-                    if n in "abc"
-                }
-            )
+            turn = pose_of({n: v for n, v in value.fields.items() if n in "abc"})
+            turned = frame_of(turn @ pose_of(present.fields)).fields
+            summed.update({name: turned[name] for name in "abc"})
         for name in "st":
             summed.pop(name, None)
             if name in value.fields:
                 summed[name] = value.fields[name]
         joint = "ptp" in motion.word
-        found = self._targets.pose(Struct("e6pos", summed), placement, joint, via, span)
+        found = self.targets.pose(Struct("e6pos", summed), placement, joint, via, span)
         return replace(found, sources=Sources(()))
 
     def _depends_on_last(self) -> None:
         """The last target's numbers are read by the move that comes now as well."""
-        if self._transcript.parts:
-            self._read_by_expression(self._transcript.parts[-1].target.sources)
+        if self.transcript.parts:
+            self._read_by_expression(self.transcript.parts[-1].target.sources)
 
     def _read_by_expression(self, sources: Iterable[object]) -> None:
         for source in sources:
             if source is not None:
-                self._evaluator.reads.by_expression(source, self._transcript.move_index)  # type: ignore[arg-type]
+                self.evaluator.reads.by_expression(source, self.transcript.move_index)  # type: ignore[arg-type]
 
     def _common(self, motion: MotionInstruction, joint: bool, placement: Placement) -> _Common:
-        settings = self._settings
+        settings = self.settings
         span = motion.span
         speed = settings.joint_speed(span) if joint else settings.path_speed(span)
         spline = motion.word.startswith("s")
@@ -382,7 +349,7 @@ class MotionReader:
         return _Common(placement, speed, zone)
 
     def _part(self, span: Span, sources: Sources, predefined: str | None = None) -> Part:
-        reads, index = self._evaluator.reads, self._transcript.move_index
+        reads, index = self.evaluator.reads, self.transcript.move_index
         for source in sources.distinct():
             reads.by_move(source, index)
             # A number may be read alone here and with its aggregate by another move.
@@ -405,10 +372,17 @@ class MotionReader:
             via,
         )
         if isinstance(found.target, PoseTarget):
-            self._placements.remark_unset(motion.span)
-        self._meter.move(motion.span)
-        self._transcript.emit_move(move, parts)
-        self._position.moved(move, motion.span, found.complete)
+            self.placements.remark_unset(motion.span)
+        self.meter.move(motion.span)
+        self.transcript.emit_move(move, parts)
+        self.position.moved(move, motion.span, found.complete)
+
+
+def _known_start(start: Struct | Unknown | None, what: str, span: Span) -> Struct:
+    if isinstance(start, Struct):
+        return start
+    reason = start.reason if isinstance(start, Unknown) else "where the robot stands"
+    raise SourceError(f"{what} depends on {reason}", span)
 
 
 def _held(cell: Variable) -> Value:

@@ -1,7 +1,7 @@
 """Where the robot stands: what ``$POS_ACT``, ``_REL`` and targets that leave components out need.
 
 A pose is as the last target stated it if that was a pose of the same tool in the same base; see
-`core.source.execution.position` for others.
+`core.motion.path.present_position` for others.
 """
 
 from __future__ import annotations
@@ -11,19 +11,19 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ....core.errors import FlybyError, SourceError, Span
+from ....core.motion.path.present_position import PresentPosition, last_seen_alike
 from ....core.program.move import Move
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.joint import JointKind
-from ....core.source.execution import position
 from ....core.spatial.pose import Pose
 from ..values.frames import frame_of
 from ..values.placement import Placement
 from ..values.types import AXIS_FIELDS, EXTERNAL_FIELDS
 from ..values.values import Struct, Unknown, Value
+from .configuration import label
 
 if TYPE_CHECKING:
     from ....core.arrays import FloatArray
-    from ....core.motion.path.commanded_position import Standing
     from ....core.robot.model import Robot
 
 WHERE = "where the robot stands"
@@ -39,7 +39,7 @@ class Position:
 
     def __init__(self, robot: Robot | None, start: JointTarget | None = None) -> None:
         self._robot = robot
-        self._commanded = position.PresentPosition(robot, start, _standing)
+        self._commanded = PresentPosition(robot, start, label)
         self._last: Struct | None = None
         self._place: Struct | None = None
         if robot is not None and start is not None:
@@ -69,7 +69,7 @@ class Position:
         if (
             last is not None
             and isinstance(last.target, PoseTarget)
-            and position.last_seen_alike(last, tool, base)
+            and last_seen_alike(last, tool, base)
         ):
             assert self._last is not None
             return self._last.copy()
@@ -154,10 +154,3 @@ class Position:
             return {}
         q = self._commanded.joints()
         return {} if q is None else self._external_fields(q)
-
-
-def _standing(robot: Robot, start: JointTarget | None) -> Standing:
-    from ....core.motion.path.commanded_position import Standing
-    from .configuration import label
-
-    return Standing(robot, label, start)

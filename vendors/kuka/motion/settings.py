@@ -45,9 +45,7 @@ class Settings:
     """The system variables that speeds and zones are made of.
 
     Args:
-        system: their cells.
         defaults: a datum of ``$CONFIG.DAT``, for what a program never sets.
-        note: takes notes, one of a kind.
     """
 
     def __init__(

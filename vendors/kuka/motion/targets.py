@@ -7,8 +7,9 @@ E1, E2, … are the robot's, in its order; without a robot they must be 0.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 from ....core.errors import InputError, SourceError, Span
 from ....core.program.target import JointTarget, PoseTarget
@@ -52,7 +53,6 @@ class Targets:
 
     Args:
         robot: for its external axes; None if none is named.
-        position: where the robot stands.
     """
 
     def __init__(self, robot: Robot | None, position: Position) -> None:
@@ -71,17 +71,8 @@ class Targets:
         Raises:
             SourceError: a component is not known, or no number.
         """
-        fields, filled = value.fields, False
-        missing = [name for name in FRAME_FIELDS if name not in fields]
-        if missing:
-            present = self._position.pose(placement, span)
-            if isinstance(present, Unknown):
-                left_out = ", ".join(name.upper() for name in missing)
-                raise SourceError(
-                    f"the target leaves out {left_out}: it keeps {present.reason}", span
-                )
-            fields, filled = {**{n: present.fields[n] for n in missing}, **fields}, True
-        numbers = self._numbers(fields, FRAME_FIELDS, span)
+        present = partial(self._position.pose, placement, span)
+        numbers, filled = _numbers(value.fields, FRAME_FIELDS, present, span)
         external, outside, kept = ((), {}, False) if via else self._external(value.fields, span)
         complete = Struct("e6pos", {**numbers, **outside})
         configuration = None
@@ -100,38 +91,16 @@ class Targets:
         Raises:
             SourceError: as `pose`.
         """
-        fields, filled = value.fields, False
-        missing = [name for name in AXIS_FIELDS if name not in fields]
-        if missing:
-            present = self._position.axes(span)
-            if isinstance(present, Unknown):
-                left_out = ", ".join(name.upper() for name in missing)
-                raise SourceError(
-                    f"the target leaves out {left_out}: it keeps {present.reason}", span
-                )
-            fields, filled = {**{n: present.fields[n] for n in missing}, **fields}, True
-        numbers = self._numbers(fields, AXIS_FIELDS, span)
+        present = partial(self._position.axes, span)
+        numbers, filled = _numbers(value.fields, AXIS_FIELDS, present, span)
         external, outside, kept = self._external(value.fields, span)
-        degrees = [float(numbers[name]) for name in AXIS_FIELDS]  # type: ignore[arg-type]
         try:
-            target = JointTarget(tuple(map(math.radians, degrees)), external, value.label)
+            target = JointTarget(tuple(map(math.radians, numbers.values())), external, value.label)
         except InputError as error:
             raise SourceError(str(error), span) from None
         sources = Sources.of([value.fields.get(name) for name in AXIS_NUMBERS])
         complete = Struct("e6axis", {**numbers, **outside})
         return ReadTarget(target, complete, sources, filled or kept, _predefined(value))
-
-    @staticmethod
-    def _numbers(
-        fields: Mapping[str, Value], names: tuple[str, ...], span: Span
-    ) -> dict[str, Value]:
-        numbers: dict[str, Value] = {}
-        for name in names:
-            number = fields[name]
-            if isinstance(number, bool) or not isinstance(number, int | float):
-                raise _no_number(name, number, span)
-            numbers[name] = float(number)
-        return numbers
 
     def _configuration(
         self, fields: Mapping[str, Value], complete: Struct, span: Span
@@ -141,11 +110,10 @@ class Targets:
             value = fields.get(name)
             if value is None:
                 continue
-            if isinstance(value, bool) or not isinstance(value, int | float):
-                raise _no_number(name, value, span)
-            if value != int(value):
-                raise SourceError(f"{name.upper()} is a whole number, not {value:g}", span)
-            found[name] = complete.fields[name] = int(value)
+            number = _number(name, value, span)
+            if number != int(number):
+                raise SourceError(f"{name.upper()} is a whole number, not {number:g}", span)
+            found[name] = complete.fields[name] = int(number)
         if found["s"] is None and found["t"] is None:
             return None
         try:
@@ -163,11 +131,8 @@ class Targets:
         given: dict[int, float] = {}
         for k, name in enumerate(EXTERNAL_FIELDS):
             value = fields.get(name)
-            if value is None:
-                continue
-            if isinstance(value, bool) or not isinstance(value, int | float):
-                raise _no_number(name, value, span)
-            given[k] = float(value)
+            if value is not None:
+                given[k] = _number(name, value, span)
         count = 0 if self._axes is None else len(self._axes)
         for k, number in given.items():
             if k >= count and number != 0:
@@ -204,11 +169,30 @@ class Targets:
         )
 
 
-def _no_number(name: str, value: Value, span: Span) -> SourceError:
+def _numbers(
+    fields: Mapping[str, Value],
+    names: tuple[str, ...],
+    present: Callable[[], Struct | Unknown],
+    span: Span,
+) -> tuple[dict[str, float], bool]:
+    """The components of a target, and whether some of them are the robot's present ones."""
+    missing = [name for name in names if name not in fields]
+    if missing:
+        standing = present()
+        if isinstance(standing, Unknown):
+            left_out = ", ".join(name.upper() for name in missing)
+            raise SourceError(f"the target leaves out {left_out}: it keeps {standing.reason}", span)
+        fields = {**{name: standing.fields[name] for name in missing}, **fields}
+    return {name: _number(name, fields[name], span) for name in names}, bool(missing)
+
+
+def _number(name: str, value: Value, span: Span) -> float:
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return float(value)
     unknown = find_unknown(value)
     if unknown is not None:
-        return left_open(f"{name.upper()} of the target", unknown, span)
-    return SourceError(f"{name.upper()} of the target is a number, not {shown(value)}", span)
+        raise left_open(f"{name.upper()} of the target", unknown, span)
+    raise SourceError(f"{name.upper()} of the target is a number, not {shown(value)}", span)
 
 
 def _predefined(value: Struct) -> str | None:

@@ -22,21 +22,13 @@ class Writes(Protocol):
 
     def triggered(self, action: str, scope: Scope) -> None:
         """An action will be carried out on the way of the next motion."""
-        ...
 
     def driven(self) -> None:
         """That motion has been read."""
-        ...
 
 
 class Triggers:
-    """Lays actions on the motion that comes next.
-
-    Args:
-        evaluator: for places and times.
-        transcript: takes notes, and the actions that no motion follows.
-        writes: what the actions write.
-    """
+    """Lays actions on the motion that comes next."""
 
     def __init__(self, evaluator: Evaluator, transcript: Transcript, writes: Writes) -> None:
         self._evaluator = evaluator

@@ -18,7 +18,6 @@ class PlacedMove:
     """A move where it stands.
 
     Args:
-        index: of the move.
         move: as it shall become.
         statement: span of the motion instruction.
         literals: where the numbers of a variable stand that it reads.
@@ -43,7 +42,6 @@ class Additions:
     """Collects what is put in.
 
     Args:
-        places: the program's files.
         motions: all moves in the order of execution.
     """
 
@@ -56,7 +54,6 @@ class Additions:
         """The motion of a move gets settings of its own.
 
         Args:
-            index: of the move.
             settings: statements by the variable that they set.
 
         Raises:

@@ -40,12 +40,7 @@ class Component:
 
 
 class KrlLiterals:
-    """What the literals of a program would have to say.
-
-    Args:
-        places: the program's files.
-        robot: for the kinds of its external axes.
-    """
+    """What the literals of a program would have to say."""
 
     def __init__(self, places: Places, robot: Robot) -> None:
         self._places = places

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from ....core.errors import InputError, Span
@@ -28,9 +28,9 @@ from ....core.program.program import Program
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.zone import Fine, Zone
 from ....core.robot.model import Robot
-from ....core.source.patch.edits import Edit, listed, patched, reading_of, with_one_distance
-from ....core.source.patch.plan import Plan, Texts, first_possible
-from ....core.source.patch.uses import Kind, Use, uses
+from ....core.source.patch.edits import Edit, listed, reading_of, with_one_distance
+from ....core.source.patch.plan import Plan, Texts, patch_program
+from ....core.source.patch.uses import Kind, Use
 from ....core.source.reading import Files
 from ....core.source.write.options import PatchOptions
 from ..write.formatting import e6axis, e6pos
@@ -48,7 +48,6 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
 
     Args:
         program: read from files, then changed.
-        robot: for the kinds of its external axes.
         options: ``shared`` and ``derived``, each ``refuse`` or ``own``; see `PatchOptions`.
 
     Returns:
@@ -58,46 +57,26 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         FlybyError: a change has no place in the text, or the patched text is not read as
             ``program``.
     """
-    chosen = PatchOptions.of(options, "KRL patcher")
     reading = reading_of(program)
-    program = with_one_distance(program)
-    parts = uses(reading.again({}), program, _other_change)
     places = Places(reading.files)
+    literals = KrlLiterals(places, reading.options.robot or robot)
 
-    robot = reading.options.robot or robot
+    def edits(plan: Plan) -> list[Edit]:
+        return _Edits(plan, literals, places, reading.options.robot or robot).all()
 
-    def attempt(in_place: Collection[Ownership]) -> Files:
-        literals = KrlLiterals(places, robot)
-        plan = Plan(parts, literals, chosen, in_place)
-        return patched(program, reading, _Edits(plan, literals, parts, places, robot).all())
-
-    return first_possible(chosen, attempt)
+    chosen = PatchOptions.of(options, "KRL patcher")
+    return patch_program(with_one_distance(program), chosen, literals, edits, _other_change)
 
 
 class _Edits:
-    """Finds the edits.
+    """Finds the edits."""
 
-    Args:
-        plan: what changes in place.
-        literals: of the program.
-        parts: all parts of all moves.
-        places: the program's files.
-        robot: for the kinds of its external axes.
-    """
-
-    def __init__(
-        self,
-        plan: Plan,
-        literals: KrlLiterals,
-        parts: Sequence[Use],
-        places: Places,
-        robot: Robot,
-    ) -> None:
+    def __init__(self, plan: Plan, literals: KrlLiterals, places: Places, robot: Robot) -> None:
         self._plan = plan
         self._literals = literals
         self._places = places
         self._robot = robot
-        self._additions = Additions(places, _motions(parts))
+        self._additions = Additions(places, _motions(plan.parts))
 
     def all(self) -> list[Edit]:
         """All edits.

@@ -33,11 +33,7 @@ class Form:
 
 
 class Places:
-    """The texts of a program's files.
-
-    Args:
-        files: by name.
-    """
+    """The texts of a program's files."""
 
     def __init__(self, files: Files) -> None:
         self._texts = {name: SourceText(file.text, name) for name, file in files.items()}

@@ -14,12 +14,7 @@ from .values import Array, Pending, Struct, Unknown, Value, copied, shown
 
 
 class Assignment:
-    """Assigns.
-
-    Args:
-        data: where names are found.
-        names: reads what is assigned to in part.
-    """
+    """Assigns."""
 
     def __init__(self, data: Data, names: Names) -> None:
         self._data = data

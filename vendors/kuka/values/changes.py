@@ -11,11 +11,7 @@ Held = Value | Pending | None
 
 
 class Snapshot:
-    """Data as they are now.
-
-    Args:
-        cells: which.
-    """
+    """Data as they are now."""
 
     def __init__(self, cells: Iterable[Variable]) -> None:
         self._held = [(cell, _kept(cell.value)) for cell in cells]

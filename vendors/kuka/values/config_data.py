@@ -16,8 +16,6 @@ class ConfigData:
     """Finds them, or the program's data of the same names.
 
     Args:
-        data: all data.
-        names: reads them.
         scopes: of the routines under way, the innermost last.
     """
 

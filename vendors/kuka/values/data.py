@@ -25,11 +25,7 @@ _LARGEST = 100_000
 
 
 class Data:
-    """All data within reach, by name.
-
-    Args:
-        library: the files.
-    """
+    """All data within reach, by name."""
 
     def __init__(self, library: Library) -> None:
         self.library = library

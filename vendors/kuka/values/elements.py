@@ -6,6 +6,7 @@ What nothing sets is answered by the user, or is an `Unknown`.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Protocol
 
 from ....core.errors import SourceError, Span
@@ -31,37 +32,25 @@ class Expressions(Protocol):
 
     def evaluate(self, expression: Expression, scope: Scope, datum: str | None = None) -> Value:
         """The value; ``datum`` is what a literal becomes the value of."""
-        ...
 
     def number(self, expression: Expression, scope: Scope, use: str) -> float:
         """A known number; ``use`` says in messages what needs it."""
-        ...
 
 
+@dataclass(frozen=True, slots=True)
 class Names:
     """Reads data.
 
     Args:
-        expressions: for indices and initial values.
-        data: where names are found.
-        course: answers what only the controller knows.
         position: where the robot is: ``pose`` or ``axes``.
         advance: is stopped by reading some system variables.
     """
 
-    def __init__(
-        self,
-        expressions: Expressions,
-        data: Data,
-        course: Course,
-        position: Position,
-        advance: AdvanceRun,
-    ) -> None:
-        self._expressions = expressions
-        self._data = data
-        self._course = course
-        self._position = position
-        self._advance = advance
+    expressions: Expressions
+    data: Data
+    course: Course
+    position: Position
+    advance: AdvanceRun
 
     def value(self, node: Name, scope: Scope) -> Value:
         """The value of a datum or of a part of it.
@@ -71,12 +60,12 @@ class Names:
         """
         position = POSITION.get(node.name)
         if node.name in STOPS_WHEN_READ:
-            self._advance.stopped = True
+            self.advance.stopped = True
         if node.name in OUTPUTS:
             return self._output(node, scope)
         if node.name in NEVER_KNOWN:
             return self._undeclared(node, self.path(node, scope))
-        cell = self._data.find(node.name, scope)
+        cell = self.data.find(node.name, scope)
         if cell is None and position is not None:
             return self._of_position(node, scope, position)
         if cell is None:
@@ -105,7 +94,7 @@ class Names:
         answer = self._answer(node, path)
         if answer is not None:
             return answer
-        value = self._position(kind, node.span)
+        value = self.position(kind, node.span)
         for step in path:
             if isinstance(value, Unknown):
                 return value
@@ -119,8 +108,8 @@ class Names:
         """What the program has set it to; a user's answers in turn come first."""
         path = self.path(node, scope)
         held = None
-        if not self._course.changing(spelled(node.text, path)):
-            held = self._data.outputs.value(spelled(OUTPUTS[node.name], path))
+        if not self.course.changing(spelled(node.text, path)):
+            held = self.data.outputs.value(spelled(OUTPUTS[node.name], path))
         return self._undeclared(node, path) if held is None else held
 
     def _signal(self, node: Name, cell: Variable, scope: Scope) -> Value:
@@ -129,10 +118,10 @@ class Names:
         assert cell.signal is not None
         first, last = cell.signal
         if first.name in STOPS_WHEN_READ:
-            self._advance.stopped = True
+            self.advance.stopped = True
         value: Value | None = None
-        if first.name in OUTPUTS and not self._course.changing(node.text):
-            value = self._whole(first, last, scope, self._data.outputs.value)
+        if first.name in OUTPUTS and not self.course.changing(node.text):
+            value = self._whole(first, last, scope, self.data.outputs.value)
         if value is None:
             value = self._answer(node, ())
         if value is None:
@@ -178,7 +167,7 @@ class Names:
         """
         if node.name in OUTPUTS:
             return [spelled(OUTPUTS[node.name], self.path(node, scope))]
-        cell = self._data.find(node.name, scope)
+        cell = self.data.find(node.name, scope)
         if cell is None or cell.signal is None or cell.signal[0].name not in OUTPUTS:
             return []
         return self.places(*cell.signal, scope)
@@ -193,7 +182,7 @@ class Names:
                     f"{node.text} is {shown(value)} and has no component {step.upper()}", node.span
                 )
             found = value.fields.get(step)
-            fields = self._data.types.get(value.type)
+            fields = self.data.types.get(value.type)
             if found is None and fields is not None and step not in fields:
                 known = ", ".join(name.upper() for name in fields)
                 raise SourceError(
@@ -248,7 +237,7 @@ class Names:
         Raises:
             SourceError: it is none.
         """
-        value = self._expressions.number(expression, scope, "an index")
+        value = self.expressions.number(expression, scope, "an index")
         if value != int(value):
             raise SourceError(f"an index is a whole number, not {value:g}", expression.span)
         return int(value)
@@ -261,8 +250,8 @@ class Names:
         return cell.value
 
     def _initial(self, pending: Pending, type_name: str, label: str, shipped: bool) -> Value:
-        scope = Scope("a data list", self._data.library.home(pending.home))
-        value = self._expressions.evaluate(pending.expression, scope, label)
+        scope = Scope("a data list", self.data.library.home(pending.home))
+        value = self.expressions.evaluate(pending.expression, scope, label)
         if shipped:
             value = unplaced(value)
         return self.converted(value, type_name, label, shipped, pending.expression.span)
@@ -271,7 +260,7 @@ class Names:
         self, value: Value, type_name: str, label: str | None, shipped: bool, span: Span
     ) -> Value:
         try:
-            made = convert(value, type_name, self._data.types)
+            made = convert(value, type_name, self.data.types)
         except KrlTypeError as error:
             raise SourceError(f"{label}: {error}" if label else str(error), span) from None
         if made is value:
@@ -282,10 +271,10 @@ class Names:
         return made
 
     def _answer(self, node: Name, path: Path) -> Value | None:
-        answers = self._course.answers
+        answers = self.course.answers
         if not answers.values and not answers.sequences:
             return None
-        answer = self._course.value(spelled(node.text, path))
+        answer = self.course.value(spelled(node.text, path))
         return None if answer is None else self.answered(answer)
 
     def answered(self, answer: Answer) -> Value:
@@ -304,7 +293,7 @@ class Names:
         answer = self._answer(node, path)
         if answer is not None:
             return answer
-        why = "" if self._data.is_system(node.name) else " (declared in no file at hand)"
+        why = "" if self.data.is_system(node.name) else " (declared in no file at hand)"
         return Unknown(f"the value of {spelled(node.text, path)}{why}", node.span)
 
 

@@ -53,8 +53,6 @@ class Evaluator:
     """Evaluates expressions in a scope.
 
     Args:
-        data: where names are found.
-        course: answers what only the controller knows.
         call: the value of a function of the program or of the inline forms; None if there is none
             of that name.
         position: where the robot is: ``pose`` or ``axes``.

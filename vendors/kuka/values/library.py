@@ -39,7 +39,6 @@ class Library:
     """All modules within reach.
 
     Args:
-        files: source files by name.
         main: name of the file with the entry.
 
     Raises:

@@ -51,7 +51,6 @@ class RecordSource:
 
     Args:
         leaves: one for each component that is wanted, None where the literal has none.
-        root: the literal.
     """
 
     __slots__ = ("_leaves", "_places", "datum", "key", "root", "span")

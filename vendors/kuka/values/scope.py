@@ -59,7 +59,6 @@ class Scope:
     Args:
         where: for messages: ``DEF pick``.
         module: the file that it stands in.
-        cells: its own data.
         returns: the type of its value, None for a ``DEF``.
     """
 

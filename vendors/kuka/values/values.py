@@ -22,7 +22,6 @@ class Root:
     """A literal at its place in the text: a `Source` of `core.source.provenance`.
 
     Args:
-        source: the text.
         start, end: offsets of the literal.
         datum: the datum that it is, or belongs to; None for a literal at the place of use.
         leaves: where its numbers stand, by lower-case component (``cm.x``); "" for a number alone.
@@ -171,7 +170,6 @@ class Pending:
     """An initial value that is evaluated when it is asked for.
 
     Args:
-        expression: gives the value.
         home: stem of the module whose names it uses.
     """
 

@@ -35,8 +35,6 @@ class Phrases:
     """The statements of one program.
 
     Args:
-        robot: for the kinds of its external axes.
-        data: takes what is declared.
         stated: positions that name S and T somewhere, see `stated_positions`.
     """
 

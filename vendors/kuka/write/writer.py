@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ....core.errors import InputError, MotionError
+from ....core.errors import InputError
 from ....core.program.event import Event
-from ....core.program.move import Move, MoveJ, Opaque, Wait
+from ....core.program.move import Move, MoveJ
 from ....core.program.program import Program
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.model import Robot
 from ....core.source.text.files import lines_of
 from ....core.source.text.names import Names
 from ....core.source.write.declarations import Datum
-from ....core.source.write.options import OpaqueStyle
+from ....core.source.write.options import OpaqueStyle, chosen
+from ....core.source.write.statements import lines_of_statements
 from ..motion.configuration import KukaConfiguration, label
 from ..syntax.names import NAME_RULES
 from .declarations import DataList
@@ -75,7 +76,6 @@ def write(program: Program, robot: Robot, options: Mapping[str, str]) -> dict[st
     that would be undefined, and the S and T are written that the emulator drives to.
 
     Args:
-        program: what to say.
         robot: whose external axes and configurations they are.
         options: ``opaque`` (``keep``, ``comment``); see `KrlOptions`.
 
@@ -83,7 +83,7 @@ def write(program: Program, robot: Robot, options: Mapping[str, str]) -> dict[st
         InputError: an option is unknown, or the robot is no six-axis arm.
         MotionError: KRL cannot say a move; it is named by number.
     """
-    return compose(program, robot, KrlOptions.of(options), Surroundings())
+    return compose(program, robot, chosen(KrlOptions, options, "KRL writer"), Surroundings())
 
 
 def compose(
@@ -122,64 +122,46 @@ def _data(module: str, data: DataList, names: dict[Datum, str]) -> str:
 
 
 class _Body:
-    """The statements of a program, from the first to the last.
-
-    Args:
-        program: what to say.
-        phrases: how.
-        options: what becomes of opaque statements.
-    """
+    """The statements of a program, from the first to the last."""
 
     def __init__(self, program: Program, phrases: Phrases, options: KrlOptions) -> None:
         self._program = program
         self._phrases = phrases
         self._options = options
         self._held: dict[str, Line] = {}
-        self._index = 0
         self._defined = False
 
     def lines(self) -> list[Line]:
         """All of them, each with what must be set before it."""
-        lines: list[Line] = []
-        for statement in self._program.statements:
-            if isinstance(statement, Wait):
-                lines.append((f"WAIT SEC {number(statement.duration)}",))
-            elif isinstance(statement, Opaque):
-                lines += self._opaque(statement.text)
-            else:
-                lines += self._move(statement)
-        return lines
+        return lines_of_statements(
+            self._program,
+            lambda wait: [(f"WAIT SEC {number(wait.duration)}",)],
+            lambda opaque: self._opaque(opaque.text),
+            self._move,
+        )
 
     def _opaque(self, text: str) -> list[Line]:
         keep = self._options.opaque is OpaqueStyle.KEEP
         return [(line if keep else f"; {line}",) for line in lines_of(text)]
 
-    def _move(self, move: Move) -> list[Line]:
-        try:
-            check_external(move.speed, self._phrases.robot)
-            move = self._with_status(move)
-            lines: list[Line] = []
-            for variable, line in self._phrases.settings(move):
-                if self._held.get(variable) != line:
-                    self._held[variable] = line
-                    lines.append(line)
-            for event in move.events:
-                lines += self._event(event, move)
-            lines.append(self._phrases.motion(move))
-        except MotionError:
-            raise
-        except InputError as error:
-            span = move.origin.statement if move.origin is not None else None
-            raise MotionError(str(error), self._index, span) from None
-        self._index += 1
-        return lines
+    def _move(self, move: Move, index: int) -> list[Line]:
+        check_external(move.speed, self._phrases.robot)
+        move = self._with_status(move, index)
+        lines: list[Line] = []
+        for variable, line in self._phrases.settings(move):
+            if self._held.get(variable) != line:
+                self._held[variable] = line
+                lines.append(line)
+        for event in move.events:
+            lines += self._event(event, move)
+        return [*lines, self._phrases.motion(move)]
 
     def _event(self, event: Event, move: Move) -> list[Line]:
         if self._options.opaque is OpaqueStyle.COMMENT:
             return self._opaque(event.text)
         return [(trigger(event, move),)]
 
-    def _with_status(self, move: Move) -> Move:
+    def _with_status(self, move: Move, index: int) -> Move:
         """The move; S and T that the first one must state are found if it does not."""
         target = move.target
         if self._defined or not isinstance(move, MoveJ):
@@ -187,15 +169,14 @@ class _Body:
         self._defined = True
         if isinstance(target, JointTarget) or _defines(target):
             return move
-        found = self._found(move)
-        return replace(move, target=replace(target, configuration=found))
+        return replace(move, target=replace(target, configuration=self._found(move, index)))
 
-    def _found(self, move: Move) -> KukaConfiguration | None:
+    def _found(self, move: Move, index: int) -> KukaConfiguration | None:
         from ....core.motion.path.commanded_position import Standing
 
         robot = self._phrases.robot
         standing = Standing(robot, label, self._program.start)
-        for earlier in self._program.moves[: self._index]:
+        for earlier in self._program.moves[:index]:
             standing.moved(earlier)
         return label(robot, standing.solve(move))
 

@@ -5,17 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ....core.errors import InputError, MotionError, SourceError, Span
+from ....core.motion.path.present_position import PresentPosition
 from ....core.program.move import Move
 from ....core.program.target import JointTarget, PoseTarget, Target
 from ....core.program.tool import WORLD, Tool, WorkObject
-from ....core.source.execution import position
 from ....core.spatial.pose import IDENTITY, Pose
 from ..values.values import AtStart, Unknown, Value
 from .configuration import UrConfiguration, label
 
 if TYPE_CHECKING:
     from ....core.arrays import FloatArray
-    from ....core.motion.path.commanded_position import Standing
     from ....core.robot.model import Robot
 
 Joints = tuple[float, ...]
@@ -36,7 +35,7 @@ class Position:
     """
 
     def __init__(self, robot: Robot | None, start: JointTarget | None = None) -> None:
-        self._commanded = position.PresentPosition(robot, start, _standing)
+        self._commanded = PresentPosition(robot, start, label)
         self.place: Target | None = start
         self.base = WORLD
         if robot is not None and robot.base != IDENTITY:
@@ -72,7 +71,6 @@ class Position:
 
         Args:
             what: is asked, for the reason why it is not known.
-            span: of the question.
         """
         commanded = self._commanded
         last = commanded.start if commanded.last is None else commanded.last.target
@@ -123,12 +121,6 @@ class Position:
         robot = self._commanded.robot
         assert robot is not None
         return tuple(float(value) for value in q[: robot.arm_size])
-
-
-def _standing(robot: Robot, start: JointTarget | None) -> Standing:
-    from ....core.motion.path.commanded_position import Standing
-
-    return Standing(robot, label, start)
 
 
 def _before(what: str) -> str:

@@ -82,11 +82,7 @@ class Argument:
 
 
 class ScriptLiterals:
-    """What the literals of a program would have to say.
-
-    Args:
-        calls: the moves in the program's files.
-    """
+    """What the literals of a program would have to say."""
 
     def __init__(self, calls: MoveCalls) -> None:
         self._calls = calls

@@ -11,16 +11,15 @@ What is changed where:
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 from ....core.errors import InputError, Span
-from ....core.program.move import Move
 from ....core.program.origin import Ownership
 from ....core.program.program import Program
 from ....core.robot.model import Robot
-from ....core.source.patch.edits import Edit, patched, reading_of, with_one_distance
-from ....core.source.patch.plan import Plan, first_possible
-from ....core.source.patch.uses import Use, uses
+from ....core.source.patch.edits import Edit, reading_of, with_one_distance
+from ....core.source.patch.plan import Plan, patch_program
+from ....core.source.patch.uses import Use
 from ....core.source.reading import Files
 from ....core.source.write.options import PatchOptions
 from .inplace import Argument, ScriptLiterals, arguments
@@ -32,7 +31,6 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
 
     Args:
         program: read from files, then changed.
-        robot: that drives it.
         options: ``shared`` and ``derived``, each ``refuse`` or ``own``; see `PatchOptions`.
 
     Returns:
@@ -44,29 +42,15 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         MotionError: the same of one move.
     """
     chosen = PatchOptions.of(options, "URScript patcher")
-    reading = reading_of(program)
-    program = with_one_distance(program)
-    parts = uses(reading.again({}), program, _other_change)
-    calls = MoveCalls(reading.files)
-
-    def attempt(in_place: Collection[Ownership]) -> Files:
-        plan = Plan(parts, ScriptLiterals(calls), chosen, in_place)
-        return patched(program, reading, _Edits(plan, calls).all())
-
-    return first_possible(chosen, attempt)
-
-
-def _other_change(old: Move, new: Move) -> str | None:
-    return None
+    calls = MoveCalls(reading_of(program).files)
+    literals = ScriptLiterals(calls)
+    return patch_program(
+        with_one_distance(program), chosen, literals, lambda plan: _Edits(plan, calls).all()
+    )
 
 
 class _Edits:
-    """Finds the edits.
-
-    Args:
-        plan: what changes in place.
-        calls: the moves in the program's files.
-    """
+    """Finds the edits."""
 
     def __init__(self, plan: Plan, calls: MoveCalls) -> None:
         self._plan = plan

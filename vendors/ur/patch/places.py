@@ -24,12 +24,7 @@ PUT_IN = ("a", "v", "t", "r")
 
 @dataclass(frozen=True, slots=True)
 class MoveCall:
-    """A call that drives the robot.
-
-    Args:
-        call: as parsed.
-        texts: of its file.
-    """
+    """A call that drives the robot."""
 
     call: Call
     texts: Texts
@@ -76,11 +71,7 @@ class MoveCall:
 
 
 class MoveCalls:
-    """The moves in a program's files.
-
-    Args:
-        files: by name.
-    """
+    """The moves in a program's files."""
 
     def __init__(self, files: Files) -> None:
         self._texts = {name: file.text for name, file in files.items()}

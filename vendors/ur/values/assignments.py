@@ -17,10 +17,6 @@ def store(run: Evaluation, target: Place, found: Located, scope: Scope, storage:
     """Give a variable, or a part of it, another value.
 
     Args:
-        run: that the assignment belongs to.
-        target: what is assigned.
-        found: the value.
-        scope: where names are looked up.
         storage: ``global``, ``local`` or empty.
 
     Raises:

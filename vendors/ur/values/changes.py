@@ -13,7 +13,6 @@ class Snapshot:
 
     Args:
         names: of the variables; those that are not there yet count, too.
-        scope: where they are looked up.
     """
 
     def __init__(self, names: Iterable[str], scope: Scope) -> None:

@@ -17,7 +17,6 @@ class Kept:
 
     Args:
         kind: for the note: what they do.
-        names: of the functions.
         families: beginnings of further names of the kind.
         stops: whether the robot comes to rest before them.
     """

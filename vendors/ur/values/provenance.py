@@ -45,9 +45,6 @@ stand in literals, one or None for each element; empty if it is computed."""
 class SourceReads:
     """Who reads which literals while a program runs.
 
-    Args:
-        texts: that the literals stand in.
-
     Attributes:
         reads: all of them.
         reader: index of the move whose arguments are evaluated, or `ELSEWHERE`.

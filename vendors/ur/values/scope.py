@@ -26,7 +26,6 @@ class Variable:
     """One variable.
 
     Args:
-        value: what it holds.
         sources: where in the text the value stands.
         writer: name of a running thread that writes it, so that nobody knows its value.
     """

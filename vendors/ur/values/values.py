@@ -76,7 +76,6 @@ class PendingInverse:
         pose: of the TCP that was asked for.
         tcp: that TCP in the flange's frame.
         near: ``qnear``, or where the robot stood; None if neither is known.
-        span: of the call.
     """
 
     pose: Pose
@@ -90,7 +89,6 @@ class ThreadHandle:
     """What ``run`` returns.
 
     Args:
-        name: of the thread.
         number: of the run, from 1; 0 is False, as scripts test it.
     """
 

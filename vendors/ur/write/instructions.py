@@ -26,13 +26,7 @@ _NO_INERTIA = listing([0.0] * 6)
 
 
 class Phrases:
-    """Writes the moves of one script.
-
-    Args:
-        robot: that drives.
-        program: that is written.
-        shares: see `ShareStyle`.
-    """
+    """Writes the moves of one script."""
 
     def __init__(self, robot: Robot, program: Program, shares: ShareStyle) -> None:
         self._robot = robot

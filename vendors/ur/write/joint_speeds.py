@@ -21,9 +21,7 @@ def with_leading_speed(move: MoveJ, robot: Robot, standpoint: Standpoint) -> Mov
     """The move with ``joint`` and ``joint_acceleration`` in the place of shares.
 
     Args:
-        move: a joint move.
         robot: whose speeds and accelerations are shared out.
-        standpoint: where the move begins.
 
     Raises:
         InputError: where it begins is not known, or its target is out of reach.

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from ....core.source.write.options import OpaqueStyle, check_names, choice
+from ....core.source.write.options import OpaqueStyle
 
 
 class ShareStyle(StrEnum):
@@ -25,21 +24,7 @@ class ScriptOptions:
     Args:
         opaque: see `core.source.options.OpaqueStyle`; actions along a move are refused where they
             are to be kept, since URScript has none.
-        shares: see `ShareStyle`.
     """
 
     opaque: OpaqueStyle = OpaqueStyle.KEEP
     shares: ShareStyle = ShareStyle.MOVEJ
-
-    @classmethod
-    def of(cls, options: Mapping[str, str]) -> ScriptOptions:
-        """The options by name.
-
-        Raises:
-            InputError: an unknown name or value.
-        """
-        check_names(options, ("opaque", "shares"), "URScript writer")
-        return cls(
-            choice(options, "opaque", OpaqueStyle.KEEP),
-            choice(options, "shares", ShareStyle.MOVEJ),
-        )

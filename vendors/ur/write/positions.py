@@ -23,7 +23,6 @@ class Standpoint:
     """Follows a robot through a program; kinematics are solved only when they are asked for.
 
     Args:
-        robot: that drives.
         program: says where it starts.
     """
 

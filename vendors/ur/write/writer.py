@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
-from ....core.errors import InputError, MotionError
+from ....core.errors import InputError
 from ....core.language import Sources
 from ....core.program.move import Move, Opaque, Wait
 from ....core.program.program import Program
 from ....core.robot.model import Robot
 from ....core.source.text.files import lines_of
 from ....core.source.text.names import Names
-from ....core.source.write.options import AS_COMMENTS, OpaqueStyle
+from ....core.source.write.options import AS_COMMENTS, OpaqueStyle, chosen
+from ....core.source.write.statements import lines_of_statements
 from ..syntax.names import NAME_RULES
 from .declarations import Line
 from .formatting import comment, number
@@ -34,10 +36,11 @@ def write(program: Program, robot: Robot, options: Mapping[str, str]) -> Sources
         InputError: URScript does not drive the robot, or an option is unknown.
         MotionError: URScript cannot say a move; it is named by number.
     """
-    script = body(program, robot, ScriptOptions.of(options))
+    script = body(program, robot, chosen(ScriptOptions, options, "URScript writer"))
     return {script.name + SUFFIX: script.text()}
 
 
+@dataclass(frozen=True, slots=True)
 class Script:
     """The parts of a script before they become one text.
 
@@ -47,10 +50,9 @@ class Script:
         statements: the lines of the function's body.
     """
 
-    def __init__(self, name: str, declarations: list[str], statements: list[str]) -> None:
-        self.name = name
-        self.declarations = declarations
-        self.statements = statements
+    name: str
+    declarations: list[str]
+    statements: list[str]
 
     def text(self) -> str:
         """The whole text."""
@@ -68,9 +70,7 @@ def body(program: Program, robot: Robot, options: ScriptOptions, *taken: str) ->
     """The script of a program.
 
     Args:
-        program: what to say.
         robot: in whose base poses are given.
-        options: how.
         taken: names that the program's data may not have.
 
     Raises:
@@ -87,35 +87,21 @@ def body(program: Program, robot: Robot, options: ScriptOptions, *taken: str) ->
 
 def _lines(program: Program, phrases: Phrases, style: OpaqueStyle) -> list[Line]:
     settings = WrittenSettings()
-    lines: list[Line] = []
-    index = 0
-    for statement in program.statements:
-        if isinstance(statement, Wait):
-            lines.append((f"sleep({number(statement.duration)})",))
-        elif isinstance(statement, Opaque):
-            lines += [(line,) for line in _opaque(statement, style)]
-        else:
-            lines += _move(statement, index, settings, phrases, style)
-            index += 1
-    return lines
+
+    def wait(statement: Wait) -> list[Line]:
+        return [(f"sleep({number(statement.duration)})",)]
+
+    def move(statement: Move, index: int) -> list[Line]:
+        before = [*_events(statement, style), *settings.changes(statement)]
+        return [*((line,) for line in before), phrases.move(statement)]
+
+    return lines_of_statements(program, wait, lambda o: _opaque(o, style), move)
 
 
-def _opaque(statement: Opaque, style: OpaqueStyle) -> list[str]:
+def _opaque(statement: Opaque, style: OpaqueStyle) -> list[Line]:
     if style is OpaqueStyle.COMMENT:
-        return comment(statement.text)
-    return ["\n".join(lines_of(statement.text))]
-
-
-def _move(
-    move: Move, index: int, settings: WrittenSettings, phrases: Phrases, style: OpaqueStyle
-) -> list[Line]:
-    """The move, with the settings that must change before it."""
-    try:
-        before = [*_events(move, style), *settings.changes(move)]
-        return [*((line,) for line in before), phrases.move(move)]
-    except InputError as error:
-        span = move.origin.statement if move.origin is not None else None
-        raise MotionError(str(error), index, span) from None
+        return [(line,) for line in comment(statement.text)]
+    return [("\n".join(lines_of(statement.text)),)]
 
 
 def _events(move: Move, style: OpaqueStyle) -> list[str]:

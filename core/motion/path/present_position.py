@@ -7,8 +7,7 @@ values, the robot's kinematics are asked.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING
 
 from ...errors import Span
 from ...program.move import Move, MoveJ
@@ -20,35 +19,10 @@ from ...spatial.pose import Pose
 
 if TYPE_CHECKING:
     from ...arrays import FloatArray
+    from .commanded_position import Standing
+    from .configurations import Label
 
 
-class Follower(Protocol):
-    """Kinematics of a robot that goes from target to target."""
-
-    @property
-    def known(self) -> bool:
-        """Whether it is known where the robot stands."""
-        ...
-
-    def moved(self, move: Move, statement: Span | None = None) -> Any:
-        """The robot has driven a move."""
-        ...
-
-    def joints(self) -> FloatArray:
-        """The configuration (N,)."""
-        ...
-
-    def pose(self, tool: Tool, frame: WorkObject) -> Pose:
-        """The pose of a tool in a frame."""
-        ...
-
-    def solve(self, move: MoveJ) -> FloatArray:
-        """The configuration (N,) in which a move would end."""
-        ...
-
-
-Follow = Callable[[Robot, JointTarget | None], Follower]
-"""Begins to follow a robot that stands somewhere, or nobody knows where."""
 NO_ROBOT = "name the robot: its kinematics tell"
 NO_START = "the robot has not moved yet: give a start"
 
@@ -59,20 +33,20 @@ class PresentPosition:
     Args:
         robot: None if none is named.
         start: where it stands at first; None if nobody knows.
-        follow: begins to follow a robot.
+        label: the vendor's label of a configuration.
 
     Attributes:
         asked: how often the program has asked where the robot stands.
         last: the last move; None before the first.
     """
 
-    def __init__(self, robot: Robot | None, start: JointTarget | None, follow: Follow) -> None:
+    def __init__(self, robot: Robot | None, start: JointTarget | None, label: Label) -> None:
         self.robot = robot
         self.start = start
         self.asked = 0
         self.last: Move | None = None
-        self._begin = follow
-        self._follower: Follower | None = None
+        self._label = label
+        self._standing: Standing | None = None
         self._ahead: list[tuple[Move, Span]] = []
 
     @property
@@ -111,8 +85,8 @@ class PresentPosition:
                 if last.work_object.pose != frame.pose:
                     flange = frame.pose.inverse() @ (last.work_object.pose @ flange)
                 return flange @ tool.tcp
-        follower = self._follow()
-        return None if follower is None or not follower.known else follower.pose(tool, frame)
+        standing = self._followed()
+        return None if standing is None or not standing.known else standing.pose(tool, frame)
 
     def joints(self) -> FloatArray | None:
         """The configuration (N,), the arm's joints first; None if it is not known.
@@ -121,12 +95,19 @@ class PresentPosition:
             FlybyError: a target on the way cannot be reached.
         """
         self.asked += 1
-        follower = self._follow()
-        return None if follower is None or not follower.known else follower.joints()
+        standing = self._followed()
+        return None if standing is None or not standing.known else standing.joints()
+
+    def at(self, start: JointTarget | None) -> Standing | None:
+        """A robot that stands somewhere, or nobody knows where; None without one."""
+        from .commanded_position import Standing  # late: it takes time
+
+        return None if self.robot is None else Standing(self.robot, self._label, start)
 
     def forward(self, target: JointTarget, tool: Tool, frame: WorkObject) -> Pose | None:
         """The pose of a tool at joint values; None without a robot."""
-        return None if self.robot is None else self._begin(self.robot, target).pose(tool, frame)
+        standing = self.at(target)
+        return None if standing is None else standing.pose(tool, frame)
 
     def solve(
         self, target: PoseTarget, tool: Tool, frame: WorkObject, near: JointTarget | None = None
@@ -139,23 +120,22 @@ class PresentPosition:
         Raises:
             FlybyError: the pose, or a target before it, cannot be reached.
         """
-        follower = self._follow()
-        if follower is None or self.robot is None:
+        standing = self._followed()
+        if standing is not None and near is not None:
+            standing = self.at(near)
+        if standing is None:
             return None
-        if near is not None:
-            follower = self._begin(self.robot, near)
-        return follower.solve(MoveJ(target, Speed(tcp=1.0), tool=tool, work_object=frame))
+        return standing.solve(MoveJ(target, Speed(tcp=1.0), tool=tool, work_object=frame))
 
-    def _follow(self) -> Follower | None:
-        """The follower, when all moves have been driven; None without a robot."""
-        if self.robot is None:
-            return None
-        if self._follower is None:
-            self._follower = self._begin(self.robot, self.start)
-        for move, statement in self._ahead:
-            self._follower.moved(move, statement)
-        self._ahead.clear()
-        return self._follower
+    def _followed(self) -> Standing | None:
+        """The robot, when all moves have been driven; None without one."""
+        if self._standing is None:
+            self._standing = self.at(self.start)
+        if self._standing is not None:
+            for move, statement in self._ahead:
+                self._standing.moved(move, statement)
+            self._ahead.clear()
+        return self._standing
 
 
 def last_seen_alike(last: Move, tool: Tool, frame: WorkObject) -> bool:
