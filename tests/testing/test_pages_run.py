@@ -6,7 +6,8 @@ import contextlib
 import io
 import re
 import shutil
-from collections.abc import Callable
+import tomllib
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -14,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from markdown_it import MarkdownIt
 
 import flyby
 
@@ -27,6 +29,8 @@ BLOCKS = {
     for name, text in DOCUMENTS.items()
     if (blocks := re.findall(r"^```python\n(.*?)^```$", text, re.DOTALL | re.MULTILINE))
 }
+LANGUAGES = {"python", "sh", "toml", "text"}
+"""Of code in pages. `sh` without placeholders is run by tests/cli/test_readme.py."""
 BESIDE = {"docs/guides/plugins.md": "examples/fourth_vendor/page.py"}
 """Where the code of a page would stand that reads files beside itself."""
 PARTS = (
@@ -80,16 +84,53 @@ def test_a_page_runs(page: str, ran: Callable[[str], Ran]) -> None:
     assert bool(ran(page).lines) == shows
 
 
-def test_no_block_of_python_is_written_another_way() -> None:
-    for page, text in DOCUMENTS.items():
-        assert len(re.findall(r"(?m)^\s*(?:```|~~~) ?py", text)) == len(BLOCKS.get(page, [])), page
-        assert ">>> " not in text, page
+@pytest.mark.parametrize("page", DOCUMENTS)
+def test_code_is_fenced_and_names_its_language(page: str) -> None:
+    """Indented code would be run by no test."""
+    assert not list(code_outside_of_tests(DOCUMENTS[page]))
 
 
-def test_guides_use_the_front_door() -> None:
-    for page, blocks in BLOCKS.items():
-        if page != "docs/guides/plugins.md":
-            assert "import flyby" in blocks[0].splitlines(), page
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Indented:\n\n    import flyby\n",
+        "- in a list:\n\n      import flyby\n",
+        "```\nimport flyby\n```\n",
+        "~~~ python\nimport flyby\n~~~\n",
+        "```py\nimport flyby\n```\n",
+        "- in a list:\n\n  ```python\n  import flyby\n  ```\n",
+        "```text\n>>> import flyby\n```\n",
+    ],
+)
+def test_code_that_would_not_run_is_found(text: str) -> None:
+    assert list(code_outside_of_tests(text))
+
+
+def code_outside_of_tests(text: str) -> Iterator[str]:
+    """Code of a page that is indented, of no known language, or Python that `BLOCKS` misses."""
+    for token in MarkdownIt().parse(text):
+        if token.type == "code_block":
+            yield f"line {token.map[0] + 1} is indented code: fence it"
+        elif token.type == "fence":
+            missed = token.info == "python" and (token.markup != "```" or token.level > 0)
+            if missed or token.info not in LANGUAGES or ">>> " in token.content:
+                yield f"line {token.map[0] + 1} is code that no test runs"
+
+
+@pytest.mark.parametrize("page", DOCUMENTS)
+def test_toml_that_is_shown_can_be_read(page: str) -> None:
+    for token in MarkdownIt().parse(DOCUMENTS[page]):
+        if token.info == "toml":
+            tomllib.loads(token.content)
+
+
+@pytest.mark.parametrize("page", BLOCKS)
+def test_guides_use_the_front_door(page: str) -> None:
+    """Other pages say it where they use inner parts; how to write a plugin is all about them."""
+    inner = re.search(r"(?m)^(?:from|import) flyby\.", "\n".join(BLOCKS[page]))
+    if page != "docs/guides/plugins.md" and inner:
+        assert not page.startswith("docs/guides/") and page != "README.md"
+        assert "inner parts of flyby" in re.sub(r"\s+", " ", DOCUMENTS[page])
 
 
 def test_the_readme_reads_emulates_optimises_and_writes_in_ten_lines(
