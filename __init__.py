@@ -1,7 +1,7 @@
 """Emulates how industrial robot controllers drive a program, checks, improves and translates it.
 
 Everything is SI (m, rad, s, kg), quaternions are w, x, y, z. ``help(flyby.emulate)`` and its like
-list what a task can be told; the parts behind are in `flyby.core` and its neighbours.
+list the options of a task; the parts behind are in `flyby.core` and its neighbours.
 """
 
 # By their full names: pytest imports this file by its place, where no package is around it.

@@ -1,4 +1,4 @@
-"""``flyby emulate``: drive a program and tell what came of it."""
+"""``flyby emulate``: drive a program and report its motion."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .console import print_json, print_rich, progress
 from .parameters import AsJson, Force, ProgramFile, with_options
 
 if TYPE_CHECKING:
-    from ..tasks.results.runs import EmulatedRun
+    from ..tasks.results.runs import Run
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def emulate(
 
 def _write_files(
     files: _Files,
-    run: EmulatedRun,
+    run: Run,
     inputs: Sequence[Path],
     opaque: OpaqueStyle | None,
     replace_existing: bool,
@@ -107,7 +107,7 @@ def _write_files(
     return list(made)
 
 
-def _sources(path: Path, run: EmulatedRun, opaque: OpaqueStyle | None) -> dict[Path, bytes]:
+def _sources(path: Path, run: Run, opaque: OpaqueStyle | None) -> dict[Path, bytes]:
     from ..tasks.setup import RobotOptions, with_setup
     from ..tasks.write import sources_by_path
 
@@ -116,7 +116,7 @@ def _sources(path: Path, run: EmulatedRun, opaque: OpaqueStyle | None) -> dict[P
     return sources_by_path(program, setup, path, chosen, folder=path.is_dir(), option="--write")
 
 
-def _tell(run: EmulatedRun, *, as_json: bool) -> None:
+def _tell(run: Run, *, as_json: bool) -> None:
     from .report_text import print_notes, print_report, report_json
 
     if not as_json:

@@ -1,4 +1,4 @@
-"""``flyby experiment``: test motions that tell how a controller drives, as programs that log."""
+"""``flyby experiment``: test motions that show how a controller drives, as programs that log."""
 
 from __future__ import annotations
 

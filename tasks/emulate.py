@@ -11,7 +11,7 @@ from .setup import RobotOptions, start_of, with_setup
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
-    from .results.runs import EmulatedRun
+    from .results.runs import Run
 
 LEAST_PERIOD = 1e-5
 """s. A cycle of a minute then makes six million samples."""
@@ -29,7 +29,7 @@ class EmulateOptions(RobotOptions):
     )
 
 
-def emulate_with(program: Program, options: EmulateOptions) -> EmulatedRun:
+def emulate_with(program: Program, options: EmulateOptions) -> Run:
     """Drive a program as the robot's controller would: cycle time, path, what limits each move.
 
     Args:
@@ -40,12 +40,12 @@ def emulate_with(program: Program, options: EmulateOptions) -> EmulatedRun:
         InputError: nobody says which robot.
     """
     from ..core.motion.emulator.controller import Controller
-    from .results.runs import EmulatedRun
+    from .results.runs import Run
 
     program, setup = with_setup(program, options)
     options.say(f"emulating {len(program.moves)} moves")
     run = Controller(setup.vendor, setup.robot).run(program, start_of(program), options.period)
-    return EmulatedRun.of(run, setup.robot)
+    return Run.of(run, setup.robot)
 
 
 emulate = by_keywords(emulate_with, EmulateOptions)

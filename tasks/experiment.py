@@ -1,4 +1,4 @@
-"""Test motions that tell how a controller drives, as programs that log themselves."""
+"""Test motions that show how a controller drives, as programs that log themselves."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class ExperimentOptions(CellOptions):
 
     tool: str | None = value(None, "Tool of the cell that is mounted; the flange if unset.")
     minutes: float = number(
-        60.0, "Time at the robot; the most telling runs that fit are chosen.", NUMBER
+        60.0, "Time at the robot; the most informative runs that fit are chosen.", NUMBER
     )
     overhead: float = number(60.0, "Seconds that a run takes beside its motion.", TIME)
     postures: int = number(3, "How many postures to look for.", COUNT)
@@ -66,7 +66,7 @@ def experiment_with(options: ExperimentOptions) -> DesignedExperiment:
     """Design test motions for a robot in its cell: programs that log themselves.
 
     Returns:
-        The runs, the most telling first, with what each gains; `flyby.write` puts programs,
+        The runs, the most informative first, with what each gains; `flyby.write` puts programs,
         records and a page of instructions into a folder.
 
     Raises:

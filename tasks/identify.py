@@ -43,14 +43,14 @@ class IdentifyOptions(RobotOptions):
     )
     select: str | None = value(
         None,
-        "Also tell which figures earn their place, by leaving out runs of the same zone, speed, "
+        "Also list which figures earn their place, by leaving out runs of the same zone, speed, "
         "moves, posture, or each run.",
     )
     workers: int = number(os.cpu_count() or 1, "Processes.", COUNT, Extent(1), ranged=True)
     found: Callable[[tuple[Path, ...]], object] | None = field(
         default=None, repr=False, compare=False
     )
-    """Is told of the files of all runs before they are fitted, and may refuse."""
+    """Called with the files of all runs before they are fitted; it may refuse."""
 
     def inputs(self) -> list[Path]:
         """Files that are named here."""

@@ -78,7 +78,7 @@ paint = by_keywords(paint_with, PaintOptions)
 
 
 def _sized(file: Path, options: PaintOptions, finest: float) -> Part:
-    """The part, fine enough; coarse first, so that wrong units are told before it is cut up."""
+    """The part, fine enough; coarse first, so that wrong units are reported before it is cut up."""
     from ..problems.paint.surface.loading import PLAUSIBLE_SIZE, load_part
 
     view = None

@@ -15,7 +15,11 @@ REPLACED = {
     r"workshops?|crews?": "worker pool; solve, round, verify",
     r"class bench": "worker pool",
     r"strays|strayed": "deviation, deviation bounds",
-    r"stays if it pays": "is kept if it saves more than",
+    r"pays?": "saves; is kept if it saves more than",
+    r"(?:is|are|was|were|be|been|being) told(?! (?:apart|from))|told of|can be told": (
+        "called with; is reported; options of"
+    ),
+    r"most telling": "most informative",
 }
 """Pattern of words that are not used any more, and what stands in their place."""
 

@@ -1,4 +1,4 @@
-"""The cell of a robot of whose surroundings nothing is told: the plane that its base stands on.
+"""The cell of a robot whose surroundings are not known: the plane that its base stands on.
 
 A base stands on something: a floor, a table, a wall, a ceiling. Nothing of the robot, and no TCP,
 may go beyond that plane, unless the user knows that there is room.

@@ -18,7 +18,7 @@ from .finding import Hit, Rule, RunSubject, Severity
 from .program_rules import has_no_size
 
 _CUT = 0.01
-"""Share by which a zone is smaller than programmed before that is told."""
+"""Share by which a zone is smaller than programmed before that is reported."""
 _STILL = 1e-6
 """m below which the TCP stays where it is."""
 _FLIP = np.radians(120.0)

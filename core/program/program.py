@@ -42,7 +42,7 @@ class Program:
         start: joint values before the first move, if the source states them.
         notes: what the reader has to say about the source; not part of the value.
         reading: the source files, for the patcher; None if it was not read; not part of the value.
-        setup: the robot that it was read for, for tasks that are not told of another one; not part
+        setup: the robot that it was read for, for tasks that name no other; not part
             of the value.
     """
 

@@ -34,7 +34,7 @@ class ReadOptions:
         others: further files of the program: modules, subprograms, data lists, configuration.
             Files that stand beside the program and belong to it by their vendor's rules are found
             without being named.
-        executed: is told of every statement that is executed.
+        executed: called with every statement that is executed.
         start: where the robot stands before the first move; None if nobody knows. What the program
             asks of its own position begins there.
     """

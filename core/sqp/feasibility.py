@@ -43,7 +43,7 @@ class Feasibility:
         model, search, filter_: of the main iteration.
         restoration: lowers the violation.
         limits: x (n,) → lower and upper limits (n,) of a step, the user's box included.
-        moved: is told of every move that is no step of a model; see `Restoration`.
+        moved: called after every move that is no step of a model; see `Restoration`.
         tolerance: violation that counts as none.
     """
 

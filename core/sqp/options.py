@@ -1,4 +1,4 @@
-"""What `solve` is told besides the problem, checked once."""
+"""Options of `solve`, checked once."""
 
 from __future__ import annotations
 

@@ -93,7 +93,7 @@ class Restoration:
         elastic: solves the models.
         identity: pattern (n, n).
         limits: x (n,) → lower and upper limits (n,) of a step, the user's box included.
-        moved: is told of every iteration: the point that it led to, and the share of the model's
+        moved: called after every iteration: the point that it led to, and the share of the model's
             step that was taken. It may end the solution by an exception.
         tolerance: violation that counts as none.
     """

@@ -70,7 +70,7 @@ def solve(
         qp: back end for the subproblems: see `BackendKind`.
         fallback: whether another back end takes over where this one fails.
         hessian_kind: where the Hessian comes from; None for what suits the problem.
-        callback: is told of the start and of the point after each iteration; True ends the
+        callback: called with the start and the point after each iteration; True ends the
             solution (`Status.INTERRUPTED`), as the keyboard's interrupt does.
         warm_start: a result of this problem or one near to it, whose multipliers and workspace
             are taken over.

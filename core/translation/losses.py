@@ -36,7 +36,7 @@ class Losses:
         self._add((message, span), Note(message, None, span), 0.0)
 
     def sorted(self) -> tuple[Note, ...]:
-        """In the order of the program's text; what a line loses every time is told once."""
+        """In the order of the program's text; what a line loses every time is listed once."""
         return tuple(sorted((note for note, _ in self._told.values()), key=_place))
 
     def _add(self, key: tuple[object, ...], note: Note, size: float) -> None:

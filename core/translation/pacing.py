@@ -30,7 +30,7 @@ _GROWTHS = 4
 _MET = 2e-3
 """Share of a move's time by which it may miss what is wanted before another round is made."""
 _TOLD = 0.05
-"""Share by which a move may be slower before that is told."""
+"""Share by which a move may be slower before that is reported."""
 _SHORT = 0.02
 """s: a difference of times that is not told."""
 _STILL = 1e-6

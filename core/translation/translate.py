@@ -30,7 +30,7 @@ from .pacing import EmulatedProgram, Pacer
 from .targets import Placer
 
 _CUT_TOLD = 0.05
-"""Share of a corner's cut from which on a difference is told."""
+"""Share of a corner's cut from which on a difference is reported."""
 _CUT_SMALL = 5e-5
 """m of difference between cuts that is not told."""
 _TURN_TOLD = 1e-2
@@ -38,7 +38,7 @@ _TURN_TOLD = 1e-2
 _RIGID = 1e-6
 """rad by which a tool that follows an arc rigidly may miss the orientation of its end."""
 _RIGID_TOLD = 1e-3
-"""rad, likewise, from which on the difference is told."""
+"""rad, likewise, from which on the difference is reported."""
 
 
 @dataclass(frozen=True)

@@ -1,1 +1,1 @@
-"""Designs test motions that tell how a controller drives, and writes them as programs that log."""
+"""Designs test motions that show how a controller drives, and writes them as programs that log."""

@@ -52,7 +52,7 @@ def design(
         cell: robot, tools, obstacles, clearance.
         plan: what was asked for.
         bare: whether nothing is known of what stands around the robot.
-        say: is told what is going on.
+        say: called with what is being done.
 
     Raises:
         InputError: the vendor's language cannot say or log such motions, the robot has external

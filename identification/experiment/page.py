@@ -52,7 +52,7 @@ Cell: {{ cell }}.
 it. What is proven begins at the start of the run; the first move of a program goes there from \
 where the robot stands.
 2. Mount {{ tool }} as it is declared in the programs; set the speed override to 100 %.
-3. For each run, in the order of the table (the most telling come first, so stop whenever time is \
+3. For each run, in the order of the table (the most informative come first, so stop when time is \
 up): load the files in its folder as their first lines say, start, fetch the log.
 4. Put the log beside the run's record: `NAME{{ log_suffix }}` beside `NAME.json`. **The \
 controller writes every log under one name: fetch it before the next run.** Logs of another form \

@@ -252,9 +252,9 @@ class Experiment:
         plan: what was asked for.
         period: s between the samples of the logs.
         sites: the postures, with the planes that the corners lie in.
-        runs: most telling first.
+        runs: the most informative first.
         skipped: what is not possible, with the reasons.
-        unused: runs that there was no time for, most telling first.
+        unused: runs that there was no time for, the most informative first.
         precision: of each figure of the motion model.
         notes: what a user should know.
     """

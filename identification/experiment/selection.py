@@ -90,7 +90,7 @@ class Choice:
         return sorted((self._wanted & still) - self._had)
 
     def left_over(self) -> list[Skipped]:
-        """The runs that there was no time for, most telling first."""
+        """The runs that there was no time for, the most informative first."""
         rest = sorted(self._open, key=lambda option: -self._gain(option) / self._cost(option))
         return [
             Skipped(

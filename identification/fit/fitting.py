@@ -91,7 +91,7 @@ def fit(
         parameters: to be fitted.
         runs: of one robot.
         workers: processes.
-        watch: is told of each iteration; True ends the fit.
+        watch: called after each iteration; True ends the fit.
 
     Raises:
         InputError: there is nothing to fit or to fit to, or a program cannot be driven at the

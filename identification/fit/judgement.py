@@ -92,7 +92,7 @@ def judge(
     Args:
         fitted: the fit.
         workers: processes.
-        tell: is told how far the work is.
+        tell: called with how far the work is.
 
     Raises:
         InputError: a program cannot be driven.

@@ -203,7 +203,7 @@ def leave_out(
         parameters: to be fitted, likewise.
         groups: indices of runs to leave out together.
         workers: processes.
-        tell: is told how far the work is.
+        tell: called with how far the work is.
 
     Raises:
         InputError: a group holds all runs, or a program cannot be driven.

@@ -60,7 +60,7 @@ _JOINT_MOVES = {"MoveJ", "MoveAbsJ", "PTP"}
 _LINEAR_MOVES = {"MoveL", "LIN"}
 _ARC_MOVES = {"MoveC", "CIRC"}
 _FOLLOWING = "abb/"
-"""Whose arcs turn the tool with them unless they are told otherwise; those of others do not."""
+"""Whose arcs turn the tool with them unless programmed otherwise; those of others do not."""
 
 
 def load_run(path: Path, robots: Callable[[str], Robot]) -> LoggedRun:

@@ -16,7 +16,7 @@ class LoggedRun:
         name: of the file.
         robot: name in the catalogues.
         real: whether a robot moved, not a virtual controller; None if nobody said.
-        program: what it was told.
+        program: that it drove.
         t: (T,) s, increasing.
         q: (T, N), joints in rad, linear axes in m.
         notes: what the record says of its own uncertainties, and what the reader left out.

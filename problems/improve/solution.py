@@ -216,7 +216,7 @@ def moved_points(robot: Robot, before: Run, after: Run) -> tuple[Moved, ...]:
 
     Args:
         robot: that drives both.
-        before, after: the programs, driven; with other numbers of moves nothing is told.
+        before, after: the programs, driven; with other numbers of moves nothing is reported.
     """
     if len(before.program.moves) != len(after.program.moves):
         return ()

@@ -15,7 +15,7 @@ from ...core.motion.emulator.controller import Controller
 from ...core.motion.emulator.run import Run
 
 _TOLD = 1e-4
-"""m to which the clearance that there is is told."""
+"""m to which the clearance that the program has is reported."""
 _CHUNK = 256
 
 

@@ -140,7 +140,7 @@ def paint(
         part: at the resolution at which it is judged.
         footprint: of the gun.
         wishes: what is wanted.
-        say: is told what is being done.
+        say: called with what is being done.
         progress: see `optimize`.
 
     Raises:

@@ -1,1 +1,1 @@
-"""What tasks can be told: every option stated once, for the command line and for Python."""
+"""The options of tasks: each stated once, for the command line and for Python."""

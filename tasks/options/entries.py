@@ -162,10 +162,10 @@ ENTRY = "option"
 
 @dataclass(frozen=True, kw_only=True)
 class TaskOptions:
-    """What all tasks can be told.
+    """Options of all tasks.
 
     Args:
-        report: is told what is being done; None for nobody.
+        report: called with what is being done; None for no reports.
     """
 
     report: Callable[[str], object] | None = field(default=None, repr=False, compare=False)

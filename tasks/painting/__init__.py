@@ -1,1 +1,1 @@
-"""What painting can be told, and what it makes of that."""
+"""The options of painting, and what it makes of them."""

@@ -1,4 +1,4 @@
-"""What painting can be told: the surface, the sweeps, the robot's program."""
+"""The options of painting: the surface, the sweeps, the robot's program."""
 
 from __future__ import annotations
 

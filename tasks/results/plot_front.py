@@ -22,7 +22,7 @@ _LEAST = 0.005
 
 
 _FAR = 0.5
-"""Spans of the front beyond which the given program is told instead of drawn."""
+"""Spans of the front beyond which the given program is named instead of drawn."""
 
 
 def draw_front(front: Front, names: Sequence[str], kind: str) -> bytes:

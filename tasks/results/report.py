@@ -1,4 +1,4 @@
-"""What there is to tell about a run, move by move, as plain data in SI units."""
+"""The figures of a run, move by move, as plain data in SI units."""
 
 from __future__ import annotations
 

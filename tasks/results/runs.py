@@ -1,19 +1,19 @@
-"""Runs that tell of themselves."""
+"""What `flyby.emulate` returns."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from ...core.motion.emulator.run import Run
+from ...core.motion.emulator import run as core_run
 from ...core.notebook import Curve, page, picture
 from ...core.robot.model import Robot
 from .report import MoveTable, Report, located, make_report
 
 
 @dataclass(frozen=True, repr=False)
-class EmulatedRun(Run):
-    """A run that knows its robot: its moves as a table, and how it shows itself.
+class Run(core_run.Run):
+    """The core's run with its robot: moves as a table, pictures, how it shows itself in notebooks.
 
     Args:
         robot: that was driven.
@@ -22,13 +22,13 @@ class EmulatedRun(Run):
     robot: Robot = field(kw_only=True)
 
     @classmethod
-    def of(cls, run: Run, robot: Robot) -> EmulatedRun:
+    def of(cls, run: core_run.Run, robot: Robot) -> Run:
         """A run with its robot, its notes with their places in the source."""
         return cls(run.program, run.path, run.timing, run.trajectory, located(run), robot=robot)
 
     @cached_property
     def report(self) -> Report:
-        """All that there is to tell, move by move."""
+        """All figures of the run, move by move."""
         return make_report(self, self.robot)
 
     @property

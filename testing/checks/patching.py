@@ -70,7 +70,7 @@ class PatchingChecks(Subject):
     @PROGRAM_EXAMPLES
     @given(data=st.data())
     def test_no_use_of_a_changed_datum_escapes(self, data: st.DataObject) -> None:
-        """Code beside the program that uses it, here its own statement once more, is told of.
+        """Code beside the program that uses it, here its own statement once more, is reported.
 
         So is code that drives under a setting that stands before the motion.
         """
@@ -95,7 +95,7 @@ class PatchingChecks(Subject):
             )
             wanted = [one for one in told if one.datum == change.origin.datum or not named]
             assert any(place.file == _BESIDE for one in wanted for place in one.places), (
-                f"{change.origin.datum or 'a setting'} is used in {text!r}, and nobody is told"
+                f"{change.origin.datum or 'a setting'} is used in {text!r}, and is not reported"
             )
 
     def _change(self, data: st.DataObject, program: Program) -> _Change:

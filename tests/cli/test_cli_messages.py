@@ -1,4 +1,4 @@
-"""What users are told when names and files do not fit."""
+"""Messages when names and files do not fit."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from flyby.problems.improve.solution import Row
         (2.0, 2.5, "25.0"),
         (2.0, 1.99999, "0.0"),
         (0.0, 1.0, ""),
-        (3e-21, 4e-4, ""),  # no figure of percent is told of what is shown as zero
+        (3e-21, 4e-4, ""),  # no percentage of what is shown as zero
         (None, 1.0, ""),
         (1.0, None, ""),
     ],

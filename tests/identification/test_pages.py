@@ -1,4 +1,4 @@
-"""What pages are told stays text, whatever it looks like."""
+"""Text that comes into pages stays text, whatever it looks like."""
 
 from __future__ import annotations
 

@@ -79,7 +79,7 @@ def test_all_laws_of_the_table_pass_the_same_apex() -> None:
 
 
 def test_the_figure_can_be_drawn(tmp_path: Path) -> None:
-    script = ROOT / "examples" / "plot_blends.py"
+    script = ROOT / "docs" / "pictures" / "plot_blends.py"
     subprocess.run([sys.executable, str(script), str(tmp_path / "blends.png")], check=True)
     assert (tmp_path / "blends.png").read_bytes()[:4] == b"\x89PNG"
     assert "blends.png" in PAGE and (ROOT / "docs" / "pictures" / "blends.png").exists()

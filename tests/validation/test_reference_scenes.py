@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import runpy
 from itertools import pairwise
 from pathlib import Path
 
@@ -20,7 +19,7 @@ from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.zone import Fine, Radius
 from flyby.core.registry import find_vendor, installed
 from flyby.core.robot.shape import Box
-from flyby.validation.scenes import clutter_layout
+from flyby.validation.scenes import clutter_layout, files
 from flyby.validation.scenes import stud_welding as station
 from flyby.validation.scenes.clutter import clutter, clutter_100, swept_arm
 from flyby.validation.scenes.clutter_layout import NEAREST, arrange, thing
@@ -31,7 +30,6 @@ from flyby.validation.scenes.solids import plate
 from flyby.validation.scenes.stud_welding import stud_welding, stud_welding_with_panel
 from flyby.validation.scenes.two_joints import two_joints
 
-ROOT = Path(__file__).parents[2]
 FINE_SAMPLES = Sampling(joint=0.01)
 
 
@@ -207,13 +205,12 @@ def test_arranging_puts_a_thing_into_room(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_scenes_are_written_as_files_that_say_the_same(tmp_path: Path) -> None:
-    example = runpy.run_path(str(ROOT / "examples" / "make_scenes.py"))
     scene = stud_welding_with_panel()
     (tmp_path / "meshes").mkdir()
-    example["write_meshes"](scene, tmp_path / "meshes")
-    example["write_module"](scene, tmp_path)
+    files.write_meshes(scene, tmp_path / "meshes")
+    files.write_module(scene, tmp_path)
     file = tmp_path / "station.toml"
-    file.write_text(example["cell_text"](scene, "meshes"), "utf-8")
+    file.write_text(files.cell_text(scene, "meshes"), "utf-8")
     cell = load_cell(file, installed())
     assert cell.clearance == scene.cell.clearance
     assert cell.allowed == scene.cell.allowed
@@ -230,7 +227,7 @@ def test_scenes_are_written_as_files_that_say_the_same(tmp_path: Path) -> None:
     vendor = find_vendor("abb")
     text = (tmp_path / f"{scene.name}.mod").read_text("utf-8")
     program = vendor.read(text, f"{scene.name}.mod", robot=cell.robot)
-    whole = example["whole_program"](scene)
+    whole = files.whole_program(scene)
     assert len(program.moves) == len(whole.moves) == 33
     assert [isinstance(m.zone, Fine) for m in program.moves] == [
         isinstance(m.zone, Fine) for m in whole.moves
@@ -243,13 +240,12 @@ def test_the_written_station_is_proven(tmp_path: Path, model: MotionModel | None
 
     What is proven is no more than the links keep, and hardly less.
     """
-    example = runpy.run_path(str(ROOT / "examples" / "make_scenes.py"))
     scene = stud_welding()
     file = tmp_path / "station.toml"
-    file.write_text(example["cell_text"](scene, "meshes"), "utf-8")
+    file.write_text(files.cell_text(scene, "meshes"), "utf-8")
     cell = load_cell(file, installed())
     controller = Controller(find_vendor("abb"), cell.robot, model)
-    run = controller.run(example["whole_program"](scene))
+    run = controller.run(files.whole_program(scene))
     proof = certify(controller, run, scenes_of(cell), cell.clearance, resolution=1e-4)
     kept = scenes_of(cell)(scene.tool).clearance(run.trajectory.q, 0.05).min()
     assert proof.proven and kept - 0.0002 < proof.clearance <= kept

@@ -11,7 +11,7 @@ import pytest
 from flyby.core.errors import InputError
 from flyby.validation.textbook import MAZE, DoubleIntegrator, PointMass, barrier_path, minimum_time
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+PICTURES = Path(__file__).parents[2] / "docs" / "pictures"
 
 
 @pytest.mark.parametrize("nodes", [1, 0, 2.5, True, "9"])
@@ -45,7 +45,7 @@ def test_other_wrong_arguments_are_refused() -> None:
 
 @pytest.mark.parametrize("name", ["cubic", "double_integrator", "point_mass"])
 def test_examples_tell_how_they_are_run(name: str) -> None:
-    script = EXAMPLES / f"plot_{name}.py"
+    script = PICTURES / f"plot_{name}.py"
     found = subprocess.run([sys.executable, script], capture_output=True, text=True, check=False)
     assert found.returncode != 0
-    assert f"usage: python examples/plot_{name}.py" in found.stderr
+    assert f"usage: python docs/pictures/plot_{name}.py" in found.stderr

@@ -17,7 +17,7 @@ ARGUMENTS = {"cubic": {}, "double_integrator": {}, "point_mass": {"counts": (12,
 @pytest.mark.parametrize("name", ARGUMENTS)
 def test_the_picture_can_be_drawn(name: str, tmp_path: Path) -> None:
     picture = tmp_path / f"{name}.png"
-    example = runpy.run_path(str(ROOT / "examples" / f"plot_{name}.py"))
+    example = runpy.run_path(str(ROOT / "docs" / "pictures" / f"plot_{name}.py"))
     example["main"](str(picture), **ARGUMENTS[name])
     assert picture.read_bytes()[:4] == b"\x89PNG"
     assert f"pictures/{name}.png)" in (ROOT / "docs" / "measurements" / "solver.md").read_text(

@@ -1,4 +1,4 @@
-"""Where the robot stands before the first move, as the user says it, is what programs are told."""
+"""Where the robot stands before the first move, as the user says it, is what programs read."""
 
 from __future__ import annotations
 

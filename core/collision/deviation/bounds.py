@@ -209,7 +209,7 @@ def _within(known: Deviation, band: _Band, first: int, last: int) -> DeviationBo
         late_ones = late != 0.0
         rest[:, late_ones] += np.abs(late[late_ones]) * rates.veer[:, late_ones]
     most = rest + np.einsum("cwn,cw->cn", np.abs(ways), np.abs(share).max(axis=2))
-    # What cannot be told is not small.
+    # What is not known is not small.
     unknown = ~np.isfinite(most).all(axis=1)
     ways[unknown], share[unknown], rest[unknown], most[unknown] = 0.0, 0.0, np.inf, np.inf
     moves = course.moves

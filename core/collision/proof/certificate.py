@@ -69,7 +69,7 @@ def certify(
 
     Raises:
         InputError: a number is negative or not finite, or the resolution finer than distances
-            can be told.
+            are known.
     """
     whole = [(0.0, float(run.path.sigma[-1]))]
     return certify_stretch(

@@ -3,7 +3,7 @@
 As far as can be, `branch_proof` proves of a stretch of the path that the joints, followed from
 where the walk stands, cannot leave a tube; samples on that stretch count only if they are found in
 it. Stretches that cannot be proven are halved. So no other branch is taken for the same one, and
-where that cannot be told, at a singular configuration or next to it, the walk ends.
+where that cannot be decided, at a singular configuration or next to it, the walk ends.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ...errors import SourceError, Span
 
 Executed = Callable[[Span], None]
-"""Told of a statement that is executed."""
+"""Called with a statement that is executed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Meter:
 
     Args:
         limits: what must not be passed.
-        executed: is told of every statement; None for nobody.
+        executed: called with every statement; None for no calls.
     """
 
     def __init__(self, limits: ExecutionLimits, executed: Executed | None = None) -> None:
@@ -72,7 +72,7 @@ class Meter:
             raise _endless(f"this move is executed {self._limits.repeats} times", span)
 
     def call(self, name: str, span: Span) -> None:
-        """A routine is entered; `back` is told when it is left.
+        """A routine is entered; `back` is called when it is left.
 
         Raises:
             SourceError: too many have called each other.

@@ -13,7 +13,7 @@ class Outputs:
     where something beside the program's course may write it (an interrupt, a thread).
 
     Attributes:
-        asked: outputs of which somebody was told the value, one entry each time.
+        asked: outputs of which the value was read, one entry each time.
     """
 
     def __init__(self) -> None:
@@ -63,5 +63,5 @@ class Outputs:
         return len(self.asked)
 
     def asked_since(self, mark: int) -> frozenset[str]:
-        """The outputs of which somebody was told the value since then."""
+        """The outputs of which the value was read since then."""
         return frozenset(self.asked[mark:])

@@ -66,7 +66,7 @@ class Drive:
 
     Args:
         build: the move from the numbers of its target, speed, zone and auxiliary point; of what it
-            raises (`InputError`, `ValueError`) the line is told.
+            raises (`InputError`, `ValueError`) the line is named.
         via: the auxiliary point of an arc.
     """
 

@@ -215,7 +215,7 @@ class Evaluation:
 
         Raises:
             CallableError: it raised an error of arithmetic or, having given values before, one that
-                tells of a value without meaning. Others pass, as those of a first call do: they
+                says that a value has no meaning. Others pass, as those of a first call do: they
                 are rather mistakes than points outside of a function's domain.
         """
         self.counts[name] = self.counts.get(name, 0) + 1

@@ -41,7 +41,7 @@ def optimize(
         vias: corners (c, N) of a path of joint lines that is free, for each leg between
             waypoints; None for straight lines where they are free, and planned ones elsewhere
             (OMPL, the extra ``planning``).
-        report: is told of every outer iteration; True ends the search, as Ctrl-C does, with the
+        report: called after every outer iteration; True ends the search, as Ctrl-C does, with the
             best motion so far.
 
     Raises:

@@ -34,7 +34,7 @@ _SLOWER, _SLOWEST = 0.7, 1e-12
 """Factor on x while a first motion is sought, and where that is given up."""
 
 Report = Callable[[Tuned], object]
-"""Is told of every motion of a sequence; a true answer ends it with the best so far."""
+"""Called with every motion of a sequence; a true answer ends it with the best so far."""
 
 
 def tune(task: TuningTask, report: Report | None = None) -> Tuned:

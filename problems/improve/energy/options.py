@@ -108,4 +108,4 @@ class Progress:
 
 
 Report = Callable[[Progress], bool | None]
-"""Told of progress; True ends the work with what has been found."""
+"""Called with progress; True ends the work with what has been found."""

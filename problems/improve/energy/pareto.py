@@ -63,8 +63,8 @@ def pareto(
         effort: how hard to search.
         dialect: what the program's language has words for; None for everything.
         read_back: makes of a program what a controller would read. It is this program whose
-            figures are told and which is proven.
-        report: is told of progress; True, or the keyboard's interrupt, ends the search with the
+            figures are reported and which is proven.
+        report: called with progress; True, or the keyboard's interrupt, ends the search with the
             points found so far.
 
     Raises:
@@ -192,7 +192,7 @@ class _Work:
         self._back(search, found, count)
 
     def _back(self, search: PacedSearch, found: list[tuple[Goal, PacedPoint]], count: int) -> None:
-        """Each once more, from the slower one's values: other routes pay where time is short."""
+        """Each once more, from the slower one's values: where time is short routes differ."""
         for k in range(len(found) - 2, 0, -1):
             goal, known = found[k]
             other = search.search_near(goal, found[k + 1][1].x)

@@ -96,7 +96,7 @@ class _Shifted:
 def drivable(
     controller: Controller, path: Path, blocks: Sequence[Block], notes: list[Note]
 ) -> tuple[Block, ...]:
-    """The blocks that are driven alone as they are in their program; notes tell of the others.
+    """The blocks that are driven alone as they are in their program; notes name the others.
 
     Args:
         controller: that drives them.

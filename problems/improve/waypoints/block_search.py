@@ -174,7 +174,7 @@ def _searched(
 class _Refined:
     """Refined values on their way to a proof.
 
-    Where it fails, the search is told to look there more closely, and aims wider.
+    Where it fails, the search looks there more closely, and aims wider.
 
     Args:
         shared, job: see `work`.

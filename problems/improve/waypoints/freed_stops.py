@@ -24,7 +24,7 @@ def with_freed_stops(
         controller: drives it.
         program: the program.
         task: names the stops.
-        notes: stops at which no zone can be driven are told here, and stay.
+        notes: stops at which no zone can be driven are listed here, and stay.
 
     Raises:
         InputError: a move is named that is no stop, or one for a reason.

@@ -48,7 +48,7 @@ class Progress:
 
 
 Report = Callable[[Progress], bool | None]
-"""Told of progress; True ends the work."""
+"""Called with progress; True ends the work."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def improve(shared: Shared, report: Report | None = None) -> Improved:
 
     Args:
         shared: the problem.
-        report: is told of progress. When it, or the keyboard, ends the work, what has been found
+        report: called with progress. When it, or the keyboard, ends the work, what has been found
             until then is proven, and nothing more is searched.
     """
     jobs = _first(shared)

@@ -53,7 +53,7 @@ def optimize_zones(
         effort: how hard to search.
         read_back: makes of a program what a controller would read: written and read again. It is
             this program that is proven and returned.
-        report: is told of progress; True, or the keyboard's interrupt, ends the search with the
+        report: called with progress; True, or the keyboard's interrupt, ends the search with the
             best proven result so far.
 
     Returns:
@@ -213,7 +213,7 @@ class _Optimization:
         return Counted(run, proof, self._cost(run), task)
 
     def _counted(self, found: Counted) -> Counted:
-        """With via points left out that serve nothing, and new ones that pay."""
+        """With via points left out that serve nothing, and new ones that save time."""
 
         def improved(program: Program, task: WaypointTask, effort: Effort) -> Counted | None:
             if self.ended:

@@ -110,7 +110,7 @@ class _Turn:
         return best
 
     def with_more(self, best: Counted) -> Counted:
-        """With those that pay."""
+        """With those that save time."""
         for _ in range(_MOST):
             more = self._with_one(best)
             if more is None:

@@ -34,7 +34,7 @@ _CALM = 1e-3
 """Weight of differences between neighbouring factors beside relative errors of the thickness."""
 
 Progress = Callable[[int, Coat], bool]
-"""Is told the round and the coat as emulated; True ends it."""
+"""Called with the round and the coat as emulated; True ends it."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,7 @@
 
 Equal points become one, triangles without area and repeated ones go, and all triangles of a
 connected piece are turned alike: outward where the piece is closed, else towards the gun, or as
-the file says. What was done is told in notes; doing it again changes nothing.
+the file says. What was done stands in notes; doing it again changes nothing.
 """
 
 from __future__ import annotations

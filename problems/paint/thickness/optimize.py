@@ -77,7 +77,7 @@ def optimize(
         errors: that the coat shall stand.
         sight: which points each segment of a trajectory sees, (V, S); asked before each outer
             iteration, in which it stays. None where nothing stands in the way.
-        progress: is told the number of the outer iteration and the solver's; True ends it.
+        progress: called with the numbers of the outer and the solver's iteration; True ends it.
         qp: back end of the SQP solver.
 
     Raises:

@@ -1,4 +1,4 @@
-"""What an optimisation of a painting trajectory is told."""
+"""Options of the optimisation of a painting trajectory."""
 
 from __future__ import annotations
 

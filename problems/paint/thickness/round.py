@@ -82,7 +82,7 @@ class Round:
 
         Args:
             qp: back end.
-            progress: is told this round's number and the solver's iteration; True ends it.
+            progress: called with this round's number and the solver's iteration; True ends it.
             before: result of the round before.
         """
         seen: list[JudgedTrajectory] = []

@@ -131,7 +131,7 @@ def test_the_nearest_rotation_vector_is_nearest(
 def test_targets_of_a_work_object_stand_where_they_did(
     frame: Pose, point: tuple[float, float, float]
 ) -> None:
-    """In the base of a robot that stands elsewhere, whom the reader is told of."""
+    """In the base of a robot that stands elsewhere, which the reader knows."""
     robot = UR5E.with_base(Pose((0.5, -0.25, 1.0), (math.cos(0.3), 0.0, 0.0, math.sin(0.3))))
     table = WorkObject("table", frame)
     speed = Speed(joint=1.0, joint_acceleration=2.0)

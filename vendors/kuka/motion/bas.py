@@ -30,7 +30,7 @@ class Basis:
     """The commands of ``BAS``.
 
     Args:
-        changed: is told that system variables have other values now.
+        changed: called when system variables have other values.
     """
 
     data: Data

@@ -51,7 +51,7 @@ class MotionReader:
     """Reads motion instructions.
 
     Args:
-        changed: is told that system variables have other values now.
+        changed: called when system variables have other values.
     """
 
     data: Data

@@ -1,4 +1,4 @@
-"""What the flange carries, as a controller is told it: one body."""
+"""What the flange carries, as a controller takes it: one body."""
 
 from __future__ import annotations
 

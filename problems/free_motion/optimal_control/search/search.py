@@ -59,7 +59,7 @@ class Search:
     Args:
         task, limits, plant, around, effort: what is asked.
         guess: a motion whose time and energy are the units of the objective.
-        report: is told of every outer iteration; True ends the search.
+        report: called after every outer iteration; True ends the search.
         begin: a free motion to begin with; None for the guess.
 
     Attributes:

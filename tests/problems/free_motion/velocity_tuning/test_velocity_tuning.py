@@ -267,7 +267,7 @@ def test_weights_order_the_motions():
 
 
 def test_recuperation_pays():
-    """The more is given back, the less is taken, and the less slowly it pays to go."""
+    """The more is given back, the less is taken, and the faster the best motion is."""
     path, copper = scene()[3], (1e-5,) * 6
     found = [
         tune(TuningTask(path, objective=Objective(0.0, Motors(copper, share))))

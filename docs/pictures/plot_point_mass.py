@@ -6,7 +6,7 @@ wall is passed between two of them. Below: the thesis's remedy, a guess along a 
 (dotted); and rows that hold all along each interval. "Proven free" is to a depth of 1e-4. A
 cross marks where the proof found the motion deeper in a circle.
 
-Run it as ``python examples/plot_point_mass.py docs/pictures/point_mass.png``.
+Run it as ``python docs/pictures/plot_point_mass.py docs/pictures/point_mass.png``.
 """
 
 from __future__ import annotations
@@ -76,5 +76,5 @@ def draw_scene(axes: Axes, scene: Scene) -> None:
 
 if __name__ == "__main__":
     if len(sys.argv) != 2:
-        sys.exit("usage: python examples/plot_point_mass.py FILE.png")
+        sys.exit("usage: python docs/pictures/plot_point_mass.py FILE.png")
     main(sys.argv[1])

@@ -1,6 +1,6 @@
 """Writes the reference scenes as a user would have them: cell files, meshes, RAPID modules.
 
-    python examples/make_scenes.py FOLDER
+    python -m flyby.validation.scenes.files FOLDER
 
 Then, say, ``flyby optimize FOLDER/two_joints.mod --cell FOLDER/two_joints.toml``. A cell file names
 a robot of the catalogue, with the catalogue's limits and shapes; the two scenes on the arm of
@@ -18,19 +18,19 @@ from pathlib import Path
 
 import trimesh
 
-from flyby.core.cell.geometry import Geometry, Mesh
-from flyby.core.program.move import Move, MoveJ
-from flyby.core.program.program import Program
-from flyby.core.program.target import PoseTarget
-from flyby.core.program.tool import Load, Tool
-from flyby.core.program.zone import Radius
-from flyby.core.registry import find_vendor
-from flyby.core.robot.shape import Box, Capsule, Cylinder, Sphere
-from flyby.core.spatial.pose import Pose
-from flyby.validation.scenes.clutter import clutter, clutter_100
-from flyby.validation.scenes.scene import Scene, with_zone
-from flyby.validation.scenes.stud_welding import stud_welding, stud_welding_with_panel
-from flyby.validation.scenes.two_joints import two_joints
+from ...core.cell.geometry import Geometry, Mesh
+from ...core.program.move import Move, MoveJ
+from ...core.program.program import Program
+from ...core.program.target import Configuration, PoseTarget
+from ...core.program.tool import Load, Tool
+from ...core.program.zone import Radius
+from ...core.registry import find_vendor
+from ...core.robot.shape import Box, Capsule, Cylinder, Sphere
+from ...core.spatial.pose import Pose
+from .clutter import clutter, clutter_100
+from .scene import Scene, with_zone
+from .stud_welding import stud_welding, stud_welding_with_panel
+from .two_joints import two_joints
 
 SCENES: tuple[Callable[[], Scene], ...] = (
     two_joints,
@@ -79,7 +79,7 @@ def write_module(scene: Scene, folder: Path) -> None:
         (folder / name).write_text(text, "utf-8")
 
 
-def _labelled(move: Move, label: object) -> Move:
+def _labelled(move: Move, label: Configuration | None) -> Move:
     if not isinstance(move.target, PoseTarget):
         return move
     return replace(move, target=replace(move.target, configuration=label))
@@ -98,7 +98,7 @@ def cell_text(scene: Scene, meshes: str) -> str:
     """The cell file; see ``docs/reference/cell.md``."""
     cell = scene.cell
     lines = [
-        "# Written by examples/make_scenes.py.",
+        "# Written by `python -m flyby.validation.scenes.files`.",
         f'robot = "{cell.robot.name}"',
         f"clearance_mm = {_mm([cell.clearance])[1:-1]}",
         "",
@@ -151,5 +151,5 @@ def _mm(lengths: Iterable[float]) -> str:
 
 if __name__ == "__main__":
     if len(sys.argv) != 2:
-        sys.exit("usage: python examples/make_scenes.py FOLDER")
+        sys.exit("usage: python -m flyby.validation.scenes.files FOLDER")
     main(Path(sys.argv[1]))

@@ -1,6 +1,6 @@
 """Draws docs/pictures/blends.png: one corner in each blend, and how fast.
 
-Run it as ``python examples/plot_blends.py docs/pictures/blends.png``.
+Run it as ``python docs/pictures/plot_blends.py docs/pictures/blends.png``.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ thesis's discretisation over the exact solution. Middle: the same in the plane o
 with the curve on which the force changes its sign. Right: how both discretisations' times approach
 the exact one.
 
-Run it as ``python examples/plot_double_integrator.py docs/pictures/double_integrator.png``.
+Run it as ``python docs/pictures/plot_double_integrator.py docs/pictures/double_integrator.png``.
 """
 
 from __future__ import annotations
@@ -82,5 +82,5 @@ def draw_error(axes: Axes, exact: float) -> None:
 
 if __name__ == "__main__":
     if len(sys.argv) != 2:
-        sys.exit("usage: python examples/plot_double_integrator.py FILE.png")
+        sys.exit("usage: python docs/pictures/plot_double_integrator.py FILE.png")
     main(sys.argv[1])

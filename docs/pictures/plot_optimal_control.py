@@ -1,7 +1,7 @@
 """Draws the pictures of docs/guides/free_motion.md: joints, speeds and torques against limits,
 and the TCP's trace in the cell.
 
-    python examples/plot_optimal_control.py [FOLDER]
+    python docs/pictures/plot_optimal_control.py [FOLDER]
 """
 
 from __future__ import annotations

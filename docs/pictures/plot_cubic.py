@@ -4,7 +4,7 @@ After figures 2.3 and 2.4 of the thesis that `flyby.validation.textbook` names. 
 iterations, each with the constraints' linearisations there (dotted) and the step that follows.
 Below: level curves of the barrier function for falling weights, with the minimisers so far.
 
-Run it as ``python examples/plot_cubic.py docs/pictures/cubic.png``.
+Run it as ``python docs/pictures/plot_cubic.py docs/pictures/cubic.png``.
 """
 
 from __future__ import annotations
@@ -99,5 +99,5 @@ def levels(axes: Axes, function, values: FloatArray) -> None:  # type: ignore[no
 
 if __name__ == "__main__":
     if len(sys.argv) != 2:
-        sys.exit("usage: python examples/plot_cubic.py FILE.png")
+        sys.exit("usage: python docs/pictures/plot_cubic.py FILE.png")
     main(sys.argv[1])
