@@ -58,7 +58,7 @@ class Observed:
         inner = np.nextafter(timing.end, -np.inf)
         t = np.minimum(timing.begin[:, None] + _SHARES * step[:, None], inner[:, None]).ravel()
         interval = np.repeat(np.arange(len(step)), len(_SHARES))
-        q, dq, ddq, _ = timing.states_at(t)
+        q, dq, ddq = timing.states_at(t)
         rotation, position = robot.forward(q)
         segment = timing.interval_segments[interval]
         return cls(robot, run, t, interval, segment, q, dq, ddq, rotation, position)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
-from ...motion.command.commanded_motion import way_slopes
+from ...motion.command.ramp import way_slopes
 from ...motion.timing.timing import Timing
 from .speed_bounds import Allowed
 
@@ -137,16 +137,9 @@ def _ways(timing: Timing, part: slice) -> tuple[FloatArray, FloatArray]:
     left, spacing = timing.path.pieces.interval_samples[part], timing.along.spacing[part]
     if timing.ramp == 0.0:
         return np.ones((len(left), 2)), np.zeros(len(left))
-    slope, rate = way_slopes(timing), timing.along.rate
-    rise = timing.path.sigma[left + 1] - timing.path.sigma[left]
-    first, last = 1.0 / rate[left], 1.0 / rate[left + 1]
-    # Bernstein coefficients of dσ/dℓ, the derivative of a cubic.
-    by_place = np.stack([first, 3.0 * rise / spacing - first - last, last])
-    ends = np.stack([slope[left], slope[left + 1]])
-    flattest, steepest = np.maximum(by_place.min(axis=0), 0.0), by_place.max(axis=0)
-    bent = np.abs(ends[1] - ends[0]) / rise * steepest**2
-    bent += ends.max(axis=0) * 2.0 * np.abs(np.diff(by_place, axis=0)).max(axis=0) / spacing
-    return np.stack([ends.min(axis=0) * flattest, ends.max(axis=0) * steepest], -1), bent
+    slope = way_slopes(timing.along.states)
+    ends = np.stack([slope[left], slope[left + 1]], -1)
+    return np.sort(ends, axis=1), np.abs(ends[:, 1] - ends[:, 0]) / spacing
 
 
 def _rests(

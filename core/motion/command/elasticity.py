@@ -27,18 +27,26 @@ that they drive.
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Sequence
 
-from ...arrays import FloatArray
+import numpy as np
+from numba import njit
+
+from ...arrays import BoolArray, FloatArray
 from ...errors import InputError
-from ...robot.kinematics.chain_kernels import jacobians, motions
 from ...robot.model import Robot
 from ..model.elasticity import Elasticity
-from ..model.point_masses import chain_to_axis, filled
-from .smoothing import States
+from ..model.point_masses import filled, mass_loads
+from .smoothing import JointMotion, States
 
-LEAD_STEP = 1e-3
-"""s between the times at which leads are worked out; between them they are cubic."""
+_FINEST, _COARSEST = 1e-3, 4e-3
+"""s between the times at which leads are worked out, between which they are cubic: a 16th of what
+a command is averaged over, within these."""
+
+
+def lead_step(window: float) -> float:
+    """s between the times at which leads are worked out where commands are averaged over a time."""
+    return float(np.clip(window / 16, _FINEST, _COARSEST))
 
 
 def leads(
@@ -49,19 +57,69 @@ def leads(
     What gears give way by, and the servos' lags, at configurations, velocities and
     accelerations (T, N).
     """
-    out = filled(elasticity.own, q.shape[1]) * ddq
-    q, dq, ddq = (np.ascontiguousarray(array) for array in (q, dq, ddq))
-    for mass in elasticity.carried:
-        chain = chain_to_axis(robot, mass.joint, "elasticity.carried")
-        J = jacobians(chain, q)[:, :3]
-        pull = motions(chain, q, dq, ddq)[1][:, :3]
-        out += filled(mass.lead, q.shape[1]) * np.einsum("tij,ti->tj", J, pull)
-    lead = out @ mixture(elasticity, robot, q.shape[1]).T
-    slack = filled(elasticity.slack, q.shape[1])
-    if slack.any():
-        used, span = held_at_rest(elasticity, robot, q), np.where(slack > 0.0, slack, 1.0)
-        lead += slack * (np.tanh((out + used) / span) - np.tanh(used / span))
-    return np.asarray(lead + filled(elasticity.lag, q.shape[1]) * dq)
+    size = q.shape[1]
+    given, used = _gears(elasticity, robot, q, dq, ddq)
+    lead = given @ mixture(elasticity, robot, size).T
+    loose, slack = _slack(elasticity, size)
+    used, taken = used[:, loose] / slack, given[:, loose] / slack
+    lead[:, loose] += slack * (np.tanh(taken + used) - np.tanh(used))
+    return np.asarray(lead + filled(elasticity.lag, size) * dq)
+
+
+def lead_states(
+    elasticity: Elasticity, robot: Robot, t: FloatArray, states: States, at: FloatArray
+) -> States:
+    """What gears give way by, (T, N), with two derivatives in time; without the servos' lags.
+
+    What stiffness alone gives changes with the motion's accelerations, and is cubic between even
+    times. What slack adds may change much faster, and follows from that.
+
+    Args:
+        elasticity: of the gears.
+        robot: the robot.
+        t: (S,) s, even.
+        states: (S, N) each, of the smoothed motion then.
+        at: (T,) s, not decreasing.
+    """
+    given, used = _gears(elasticity, robot, *states)
+    size = given.shape[1]
+    stiff = derivatives_of(t, given, at)
+    lead = [part @ mixture(elasticity, robot, size).T for part in stiff]
+    loose, slack = _slack(elasticity, size)
+    if loose.any():
+        before = derivatives_of(t, used[:, loose], at)
+        after = [low + high[:, loose] for low, high in zip(before, stiff, strict=True)]
+        for k, most in enumerate(_slack_states(slack, after)):
+            lead[k][:, loose] += most
+        for k, least in enumerate(_slack_states(slack, before)):
+            lead[k][:, loose] -= least
+    return lead[0], lead[1], lead[2]
+
+
+def _slack_states(slack: FloatArray, states: Sequence[FloatArray]) -> States:
+    """s tanh(l / s) and two derivatives in time, of l with two derivatives (T, L)."""
+    lead, change, bend = states
+    bent = np.tanh(lead / slack)
+    slope = 1.0 - bent**2
+    return slack * bent, slope * change, slope * bend - 2.0 * bent * slope / slack * change**2
+
+
+def _slack(elasticity: Elasticity, size: int) -> tuple[BoolArray, FloatArray]:
+    """(N,), which joints have slack, and that of those."""
+    slack = filled(elasticity.slack, size)
+    return slack > 0.0, slack[slack > 0.0]
+
+
+def _gears(
+    elasticity: Elasticity, robot: Robot, q: FloatArray, dq: FloatArray, ddq: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """(T, N) rad or m, what stiffness alone gives way by, and at rest."""
+    masses = [(mass.joint, mass.lead) for mass in elasticity.carried]
+    loads = mass_loads(robot, masses, "elasticity.carried", q, dq, ddq)
+    size = q.shape[1]
+    given = filled(elasticity.own, size) * ddq + loads.across
+    sprung = filled(elasticity.spring, size) * np.sin(q)
+    return given, sprung - filled(elasticity.weight, size) * loads.held
 
 
 def links_of(elasticity: Elasticity, states: States, jerk: FloatArray) -> States:
@@ -90,24 +148,39 @@ def mixture(elasticity: Elasticity, robot: Robot, size: int) -> FloatArray:
 
 def held_at_rest(elasticity: Elasticity, robot: Robot, q: FloatArray) -> FloatArray:
     """What gears hold at rest (T, N), in rad (m) of lead, at configurations (T, N)."""
-    out = filled(elasticity.spring, q.shape[1]) * np.sin(q)
-    weight, gravity = filled(elasticity.weight, q.shape[1]), np.array(robot.gravity)
-    for mass in elasticity.carried if weight.any() else ():
-        J = jacobians(chain_to_axis(robot, mass.joint, "elasticity.carried"), q)[:, :3]
-        out -= weight * filled(mass.lead, q.shape[1]) * np.einsum("tij,i->tj", J, gravity)
-    return np.asarray(out)
+    still = np.zeros_like(q)
+    return _gears(elasticity, robot, q, still, still)[1]
 
 
 def derivatives_of(
     t: FloatArray, values: FloatArray, at: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Values (T, N) and two derivatives, at rest outside, of the cubic spline through samples."""
-    # Imported here: it takes longer than all else that a start of the command line needs.
-    from scipy.interpolate import CubicSpline
+    """Values (T, N) and two derivatives, at rest outside, of the cubic spline through even samples.
 
-    if len(t) < 2:
-        zero = np.zeros((len(at), values.shape[1]))
-        return zero, zero, zero
-    spline = CubicSpline(t, values, bc_type="clamped")
-    inside = np.clip(at, t[0], t[-1])
-    return np.asarray(spline(inside)), np.asarray(spline(inside, 1)), np.asarray(spline(inside, 2))
+    Args:
+        t: (S,) s, even.
+        values: (S, N).
+        at: (T,) s, not decreasing.
+    """
+    slopes = np.zeros_like(values)
+    if len(t) > 2:
+        _fill_slopes(values, float(t[1] - t[0]), slopes)
+    return JointMotion(t, values, slopes).at(at)
+
+
+@njit(cache=True, error_model="numpy")
+def _fill_slopes(values: FloatArray, step: float, slopes: FloatArray) -> None:
+    """Slopes (T, N) of the cubic spline through values a step apart, at rest at its ends.
+
+    Its second derivative is continuous where m₋ + 4 m + m₊ = 3 (v₊ − v₋) / step.
+    """
+    last = values.shape[0] - 1
+    pivot = np.zeros(last + 1)
+    for i in range(1, last):
+        pivot[i] = 1.0 / (4.0 - pivot[i - 1])
+        for j in range(values.shape[1]):
+            rise = 3.0 * (values[i + 1, j] - values[i - 1, j]) / step
+            slopes[i, j] = (rise - slopes[i - 1, j]) * pivot[i]
+    for i in range(last - 1, 0, -1):
+        for j in range(values.shape[1]):
+            slopes[i, j] -= pivot[i] * slopes[i + 1, j]

@@ -22,9 +22,13 @@ from ..model.motion_model import MotionModel
 
 States = tuple[FloatArray, FloatArray, FloatArray]
 
-_FINEST, _COARSEST = 2.5e-4, 1e-3
-"""s between the knots that stand for a motion averaged once: a 32nd of the shortest average,
-within these."""
+STEP = 2e-3
+"""s between the knots that stand for a motion, where averages are not so short that they need
+more: a 16th of the shortest."""
+_FINEST = 2.5e-4
+_KNOTS = 16
+_SLACK = 1e-6
+"""Share of a step by which times may be off through rounding."""
 
 
 def smoothing_at(model: MotionModel, jerk_fraction: float) -> Smoothing:
@@ -50,11 +54,13 @@ class JointMotion:
     Args:
         t: (S,) s, increasing.
         q, dq: (S, N), positions and velocities.
+        step: s, between knots that are even; zero where they are not.
     """
 
     t: FloatArray
     q: FloatArray
     dq: FloatArray
+    step: float = 0.0
 
     def at(self, t: FloatArray) -> States:
         """Positions, velocities and accelerations (T, N) at times (T,) that do not decrease."""
@@ -106,7 +112,7 @@ class Smoothing:
         """
         if not self.widths:
             return motion.at(t)
-        step = float(np.clip(min(self.widths) / 32, _FINEST, _COARSEST))
+        step = float(np.clip(min(self.widths) / _KNOTS, _FINEST, STEP))
         # The longest last: what the others leave is then resolved best.
         *first, last = sorted(self.widths)
         for width in first:
@@ -129,11 +135,21 @@ class Smoothing:
 
 
 def averaged(motion: JointMotion, window: float, step: float) -> JointMotion:
-    """The mean over the last ``window`` seconds of a motion, by knots about ``step`` apart."""
-    begin, end = motion.t[0], motion.t[-1] + window
-    t = np.linspace(begin, end, int(np.ceil((end - begin) / step)) + 1)
-    q, dq, _ = motion.averaged(window, t)
-    return JointMotion(t, q, dq)
+    """The mean over the last ``window`` seconds of a motion, by knots ``step`` apart."""
+    if motion.step != step:
+        t = even_times(motion.t[0], motion.t[-1] + window, step)
+        q, dq, _ = motion.averaged(window, t)
+        return JointMotion(t, q, dq, step)
+    count = len(motion.t) + int(np.ceil(window / step))
+    q, dq = np.empty((count, motion.q.shape[1])), np.empty((count, motion.q.shape[1]))
+    _average_evenly(motion.q, motion.dq, _areas(motion.t, motion.q, motion.dq), window, step, q, dq)
+    return JointMotion(motion.t[0] + step * np.arange(count), q, dq, step)
+
+
+def even_times(begin: float, end: float, step: float) -> FloatArray:
+    """Multiples (T,) of a step, the first not after ``begin`` and the last not before ``end``."""
+    first = int(np.floor(begin / step + _SLACK))
+    return step * np.arange(first, max(int(np.ceil(end / step - _SLACK)), first + 1) + 1)
 
 
 def _empty(count: int, size: int) -> States:
@@ -178,6 +194,43 @@ def _cubic(
     area = tau * (rest + z * (v0 / 2 + z * (c2 / 3 + z * c3 / 4)))
     position = q[k, j] + z * (v0 + z * (c2 + z * c3))
     return area, position, (v0 + z * (2 * c2 + z * 3 * c3)) / h, (2 * c2 + 6 * z * c3) / h**2
+
+
+@njit(cache=True, error_model="numpy")
+def _average_evenly(
+    q: FloatArray,
+    dq: FloatArray,
+    area: FloatArray,
+    window: float,
+    step: float,
+    position: FloatArray,
+    velocity: FloatArray,
+) -> None:
+    """`_average` at the knots and on, a step apart: cubics are weighed alike at all of them."""
+    count, size = q.shape
+    behind = window / step
+    back = int(np.ceil(behind))
+    z = back - behind
+    # Values and slopes to either side of the place a window ago, and their integrals up to it.
+    w0, w1 = 1 - z * z * (3 - 2 * z), z * z * (3 - 2 * z)
+    v0, v1 = step * z * (1 - z) ** 2, -step * z * z * (1 - z)
+    a0, a1 = step * z * (1 - z * z * (1 - z / 2)), step * z**3 * (1 - z / 2)
+    b0 = step**2 * z * z * (0.5 - z * (2 / 3 - z / 4))
+    b1 = -(step**2) * z**3 * (1 / 3 - z / 4)
+    for i in range(position.shape[0]):
+        now, over = min(i, count - 1), step * max(i - count + 1, 0)
+        s = i - back
+        for j in range(size):
+            rest = q[0, j]
+            whole = area[now, j] + over * (q[now, j] - rest)
+            before = rest
+            if s >= 0:
+                n = min(s + 1, count - 1)
+                before = w0 * q[s, j] + w1 * q[n, j] + v0 * dq[s, j] + v1 * dq[n, j]
+                whole -= area[s, j] + a0 * (q[s, j] - rest) + a1 * (q[n, j] - rest)
+                whole -= b0 * dq[s, j] + b1 * dq[n, j]
+            position[i, j] = rest + whole / window
+            velocity[i, j] = (q[now, j] - before) / window
 
 
 @njit(cache=True, error_model="numpy")

@@ -302,7 +302,7 @@ class Controller:
         for part in stretches(trajectory.t):
             states = trajectory.q[part], trajectory.dq[part], trajectory.ddq[part]
             if stamped:
-                states = timing.states_at(trajectory.t[part])[:3]
+                states = timing.states_at(trajectory.t[part])
             np.maximum.at(taken, trajectory.move[part], shares_taken(torque, self.robot, *states))
         return taken
 

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import FloatArray
+from ...robot.kinematics.lean import lean
 
 
 @dataclass(frozen=True)
@@ -60,3 +61,12 @@ class StartRamp:
 
 
 SUDDEN = StartRamp()
+
+
+@lean
+def stamped_time(t: float, begin: float, length: float) -> float:
+    """The stamped time at a time, of a start of a length that begins at some time; all in s."""
+    since = t - begin
+    if since <= 0.0:
+        return t
+    return begin + (since * since / (2.0 * length) if since < length else since - 0.5 * length)

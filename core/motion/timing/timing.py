@@ -13,6 +13,7 @@ from ..model.rules import Pace
 from ..path.path import Path
 from ..path.tcp_samples import States
 from .arc_length import ArcLength
+from .interval import joint_at, progress, sigma_at
 from .limits import PathLimits, SegmentLimits, path_limits
 from .rests import InPosition, Rests
 from .stamping import Stamp, StampingError, stamp
@@ -157,41 +158,39 @@ class Timing:
         left = np.append(self.begins(), self.duration)
         return np.diff(left) - self.path.route.dwell[1:]
 
-    def states_at(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Configuration, velocity and acceleration (T, N) and σ (T,) at times t (T,) in s.
+    def states_at(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Configuration, velocity and acceleration (T, N) at times t (T,) in s.
 
         Between samples the path is the quintic in ℓ that meets both samples' derivatives.
         """
-        size = self.path.q.shape[1]
-        q, dq, ddq = (np.empty((len(t), size)) for _ in range(3))
-        sigma = np.empty(len(t))
-        interval = np.clip(np.searchsorted(self.begin, t, side="right") - 1, 0, None)
-        _drive(
-            np.ascontiguousarray(t),
-            interval,
-            self.begin,
-            self.end,
-            self.path.pieces.interval_samples,
-            self.path.sigma,
-            self.along.rate,
-            self.along.spacing,
-            self.stamp.x,
-            self.along.states,
-            q,
-            dq,
-            ddq,
-            sigma,
-        )
-        return q, dq, ddq, sigma
+        q, dq, ddq = (np.empty((len(t), self.path.q.shape[1])) for _ in range(3))
+        left = self.path.pieces.interval_samples
+        timed = self.begin, self.end, left, self.along.spacing, self.stamp.x
+        t = np.ascontiguousarray(t)
+        _drive(t, self._interval(t), *timed, self.along.states, q, dq, ddq)
+        return q, dq, ddq
 
-    def driven_at(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    def driven_at(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """`states_at`, with time that comes up to speed when the motion begins."""
         if self.start == SUDDEN:
             return self.states_at(t)
         stamped, rate, growth = self.start.stamped(t)
-        q, dq, ddq, sigma = self.states_at(stamped)
+        q, dq, ddq = self.states_at(stamped)
         rate, growth = rate[:, None], growth[:, None]
-        return q, rate * dq, rate**2 * ddq + growth * dq, sigma
+        return q, rate * dq, rate**2 * ddq + growth * dq
+
+    def place_at(self, t: FloatArray) -> FloatArray:
+        """σ (T,) on the path at times t (T,) in s, with time that comes up to speed."""
+        t = np.ascontiguousarray(self.start.stamped(t)[0])
+        at = np.empty(len(t))
+        left = self.path.pieces.interval_samples
+        timed = self.begin, self.end, left, self.along.spacing, self.stamp.x
+        _places(t, self._interval(t), *timed, self.path.sigma, self.along.rate, at)
+        return at
+
+    def _interval(self, t: FloatArray) -> IntArray:
+        """(T,), the interval that is entered last."""
+        return np.clip(np.searchsorted(self.begin, t, side="right") - 1, 0, None)
 
 
 @njit(cache=True, error_model="numpy")
@@ -201,49 +200,43 @@ def _drive(
     begin: FloatArray,
     end: FloatArray,
     left: IntArray,
-    sigma: FloatArray,
-    ratio: FloatArray,
     spacing: FloatArray,
     x: FloatArray,
     states: States,
     q: FloatArray,
     dq: FloatArray,
     ddq: FloatArray,
+) -> None:
+    for i in range(t.size):
+        k = interval[i]
+        length = spacing[k]
+        z, rate = progress(begin[k], end[k], length, x[k], x[k + 1], t[i])
+        change = (x[k + 1] - x[k]) / (2 * length)
+        if not begin[k] <= t[i] <= end[k]:
+            rate = change = 0.0
+        for j in range(q.shape[1]):
+            q[i, j], slope, bend = joint_at(states, left[k], j, length, z)
+            dq[i, j] = slope * rate
+            ddq[i, j] = bend * rate * rate + slope * change
+
+
+@njit(cache=True, error_model="numpy")
+def _places(
+    t: FloatArray,
+    interval: IntArray,
+    begin: FloatArray,
+    end: FloatArray,
+    left: IntArray,
+    spacing: FloatArray,
+    x: FloatArray,
+    sigma: FloatArray,
+    ratio: FloatArray,
     at: FloatArray,
 ) -> None:
     for i in range(t.size):
         k = interval[i]
-        s = left[k]
-        length = spacing[k]
-        u = (x[k + 1] - x[k]) / (2 * length)
-        tau = min(max(t[i] - begin[k], 0.0), end[k] - begin[k])
-        rate = np.sqrt(x[k]) + u * tau
-        # From the nearer end, so that arrival at a stop is exact.
-        if 2 * tau <= end[k] - begin[k]:
-            step = tau * (np.sqrt(x[k]) + 0.5 * u * tau)
-        else:
-            left_over = end[k] - begin[k] - tau
-            step = length - left_over * (np.sqrt(x[k + 1]) - 0.5 * u * left_over)
-        z = min(max(step / length, 0.0), 1.0)
-        moving = begin[k] <= t[i] <= end[k]
-        # σ over z is the cubic with the slopes of dσ/dℓ = 1 / ratio at both samples.
-        rise = sigma[s + 1] - sigma[s]
-        lead, tail = length / ratio[s] - rise, rise - length / ratio[s + 1]
-        at[i] = sigma[s] + z * (rise + (1 - z) * ((1 - z) * lead + z * tail))
-        for j in range(q.shape[1]):
-            p0, v0, a0 = states.q[s, j], length * states.dq[s, j], length**2 * states.ddq[s, j]
-            p1, v1 = states.q[s + 1, j], length * states.dq[s + 1, j]
-            a1 = length**2 * states.ddq[s + 1, j]
-            d = p1 - p0
-            c3 = 10 * d - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1
-            c4 = -15 * d + 8 * v0 + 7 * v1 + 1.5 * a0 - a1
-            c5 = 6 * d - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1
-            q[i, j] = p0 + z * (v0 + z * (0.5 * a0 + z * (c3 + z * (c4 + z * c5))))
-            slope = v0 + z * (a0 + z * (3 * c3 + z * (4 * c4 + z * 5 * c5)))
-            bend = a0 + z * (6 * c3 + z * (12 * c4 + z * 20 * c5))
-            slope, bend = slope / length, bend / length**2
-            dq[i, j] = slope * rate if moving else 0.0
-            ddq[i, j] = bend * rate * rate + slope * u if moving else 0.0
+        z, _ = progress(begin[k], end[k], spacing[k], x[k], x[k + 1], t[i])
+        at[i] = sigma_at(sigma, ratio, left[k], spacing[k], z)
 
 
 def along_path(path: Path, acceleration: FloatArray) -> ArcLength:

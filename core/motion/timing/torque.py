@@ -16,8 +16,6 @@ Research 4(3), 1985).
 
 from __future__ import annotations
 
-from itertools import product
-
 import numpy as np
 from numba import njit
 
@@ -31,12 +29,9 @@ from ...robot.kinematics.chain_kernels import (
     velocity_gradient,
 )
 from ...robot.model import Robot
-from ..model.point_masses import chain_to_axis, filled
+from ..model.point_masses import chain_to_axis, filled, mass_loads
 from ..model.torque import Borne, Torque
 from .torque_rows import Shares
-
-_TOGETHER = 20_000
-"""Samples whose Jacobians are made in one go."""
 
 
 def torque_shares(
@@ -47,21 +42,17 @@ def torque_shares(
     Raises:
         InputError: the arm has fewer joints.
     """
-    q, dq, ddq = (np.ascontiguousarray(array) for array in (q, dq, ddq))
     count = len(torque.own)
     if count > robot.arm_size:
         raise InputError(f"torque.own_s2: {robot.name} has {robot.arm_size} joints, not {count}")
+    masses = [(mass.joint, mass.share) for mass in torque.carried]
+    loads = mass_loads(robot, masses, "torque.carried", q, dq, ddq)
     own, weight = np.array(torque.own), filled(torque.weight, count)
-    a, b, h = own * dq[:, :count], own * ddq[:, :count], np.zeros((len(q), count))
-    gravity = np.array(robot.gravity)
-    parts = [slice(first, first + _TOGETHER) for first in range(0, len(q), _TOGETHER)]
-    for mass, part in product(torque.carried, parts):
-        chain, share = _at(torque, robot, mass)
-        J = jacobians(chain, q[part])[:, :3, :count]
-        v, pull = motions(chain, q[part], dq[part], ddq[part])
-        a[part] += share * np.einsum("sij,si->sj", J, v[:, :3])
-        b[part] += share * np.einsum("sij,si->sj", J, pull[:, :3])
-        h[part] -= share * weight * np.einsum("sij,i->sj", J, gravity)
+    a, b = (
+        own * dq[:, :count] + loads.along[:, :count],
+        own * ddq[:, :count] + loads.across[:, :count],
+    )
+    h = -weight * loads.held[:, :count]
     fade = filled(torque.fade, count) * dq[:, :count] ** 2
     return Shares(a, b, h, fade)
 

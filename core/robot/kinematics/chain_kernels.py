@@ -39,7 +39,7 @@ from .vectors import (
 
 
 @lean
-def _place(chain: Chain, k: int, turned: Rotation) -> tuple[Rotation, Vector, Vector]:
+def place(chain: Chain, k: int, turned: Rotation) -> tuple[Rotation, Vector, Vector]:
     """The frame before joint k: rotation, step to its origin, and the joint's signed axis."""
     step = turn(turned, load_row(chain.translation, k))
     placed = compose(turned, load_rotation(chain.rotation, k))
@@ -48,7 +48,7 @@ def _place(chain: Chain, k: int, turned: Rotation) -> tuple[Rotation, Vector, Ve
 
 
 @lean
-def _move(chain: Chain, k: int, value: float, placed: Rotation) -> Rotation:
+def turned_by(chain: Chain, k: int, value: float, placed: Rotation) -> Rotation:
     """The rotation behind a revolute joint k."""
     moved: Rotation = compose(
         placed, rotation_about(load_row(chain.axis, k), chain.sign[k] * value)
@@ -82,12 +82,12 @@ def pose(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray) -> None:
     turned, at = UNTURNED, ZERO
     for k in range(chain.joint.size):
         value = q[chain.joint[k]]
-        turned, step, axis = _place(chain, k, turned)
+        turned, step, axis = place(chain, k, turned)
         at = add(at, step)
         if chain.prismatic[k]:
             at = add(at, scale(value, axis))
         else:
-            turned = _move(chain, k, value, turned)
+            turned = turned_by(chain, k, value, turned)
     _finish(chain, turned, at, R, p)
 
 
@@ -106,13 +106,13 @@ def jacobian(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray, J: Float
     turned, at = UNTURNED, ZERO
     for k in range(chain.joint.size):
         j = chain.joint[k]
-        turned, step, axis = _place(chain, k, turned)
+        turned, step, axis = place(chain, k, turned)
         at = add(at, step)
         if chain.prismatic[k]:
             at = add(at, scale(q[j], axis))
             linear = axis
         else:
-            turned = _move(chain, k, q[j], turned)
+            turned = turned_by(chain, k, q[j], turned)
             # axis × (p - at), of which axis × p joins below once p is known.
             linear = cross(at, axis)
             J[3, j] += axis[0]
@@ -130,7 +130,7 @@ def jacobian(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray, J: Float
 
 
 @lean
-def _carry(omega: Vector, alpha: Vector, step: Vector) -> tuple[Vector, Vector]:
+def carry(omega: Vector, alpha: Vector, step: Vector) -> tuple[Vector, Vector]:
     """What a step fixed in a turning frame adds to velocity and acceleration."""
     velocity = cross(omega, step)
     return velocity, add(cross(alpha, step), cross(omega, velocity))
@@ -152,21 +152,21 @@ def motion(
     omega, alpha, speed, rise = ZERO, ZERO, ZERO, ZERO
     for k in range(chain.joint.size):
         j = chain.joint[k]
-        turned, step, axis = _place(chain, k, turned)
+        turned, step, axis = place(chain, k, turned)
         rate = scale(dq[j], axis)
         if chain.prismatic[k]:
             step = add(step, scale(q[j], axis))
-        velocity, acceleration = _carry(omega, alpha, step)
+        velocity, acceleration = carry(omega, alpha, step)
         speed = add(speed, velocity)
         rise = add(rise, acceleration)
         if chain.prismatic[k]:
             speed = add(speed, rate)
             rise = add(rise, add(scale(ddq[j], axis), scale(2.0, cross(omega, rate))))
         else:
-            turned = _move(chain, k, q[j], turned)
+            turned = turned_by(chain, k, q[j], turned)
             alpha = add(alpha, add(scale(ddq[j], axis), cross(omega, rate)))
             omega = add(omega, rate)
-    velocity, acceleration = _carry(omega, alpha, turn(turned, load(chain.end_translation)))
+    velocity, acceleration = carry(omega, alpha, turn(turned, load(chain.end_translation)))
     v[0], v[1], v[2] = add(speed, velocity)
     a[0], a[1], a[2] = add(rise, acceleration)
     v[3], v[4], v[5] = omega
@@ -194,8 +194,8 @@ def _walk(chain: Chain, q: FloatArray, dq: FloatArray, ddq: FloatArray, walk: Fl
     omega, alpha, speed, rise = ZERO, ZERO, ZERO, ZERO
     for k in range(chain.joint.size):
         j = chain.joint[k]
-        turned, step, axis = _place(chain, k, turned)
-        velocity, acceleration = _carry(omega, alpha, step)
+        turned, step, axis = place(chain, k, turned)
+        velocity, acceleration = carry(omega, alpha, step)
         at, speed, rise = add(at, step), add(speed, velocity), add(rise, acceleration)
         _store(walk, k, _AXIS, axis)
         _store(walk, k, _ORIGIN, at)
@@ -206,17 +206,17 @@ def _walk(chain: Chain, q: FloatArray, dq: FloatArray, ddq: FloatArray, walk: Fl
         rate = scale(dq[j], axis)
         if chain.prismatic[k]:
             slide = scale(q[j], axis)
-            velocity, acceleration = _carry(omega, alpha, slide)
+            velocity, acceleration = carry(omega, alpha, slide)
             at, speed = add(at, slide), add(speed, add(velocity, rate))
             rise = add(rise, add(acceleration, scale(2.0, cross(omega, rate))))
             rise = add(rise, scale(ddq[j], axis))
         else:
-            turned = _move(chain, k, q[j], turned)
+            turned = turned_by(chain, k, q[j], turned)
             alpha = add(alpha, add(scale(ddq[j], axis), cross(omega, rate)))
             omega = add(omega, rate)
     last = chain.joint.size
     step = turn(turned, load(chain.end_translation))
-    velocity, acceleration = _carry(omega, alpha, step)
+    velocity, acceleration = carry(omega, alpha, step)
     _store(walk, last, _ORIGIN, add(at, step))
     _store(walk, last, _OMEGA, omega)
     _store(walk, last, _ALPHA, alpha)
@@ -275,13 +275,13 @@ def _acceleration_change(chain: Chain, k: int, walk: FloatArray) -> tuple[Vector
     axis, omega = _recall(walk, k, _AXIS), _recall(walk, k, _OMEGA)
     alpha = _recall(walk, k, _ALPHA)
     if chain.prismatic[k]:
-        return _carry(omega, alpha, axis)[1], ZERO
+        return carry(omega, alpha, axis)[1], ZERO
     last = walk.shape[0] - 1
     r, velocity, spin = _relative(walk, k)
     relative = subtract(_recall(walk, last, _RISE), _recall(walk, k, _RISE))
-    relative = subtract(relative, _carry(omega, alpha, r)[1])
+    relative = subtract(relative, carry(omega, alpha, r)[1])
     relative = subtract(relative, scale(2.0, cross(omega, velocity)))
-    linear = add(_carry(omega, alpha, cross(axis, r))[1], cross(axis, relative))
+    linear = add(carry(omega, alpha, cross(axis, r))[1], cross(axis, relative))
     linear = add(linear, scale(2.0, cross(omega, cross(axis, velocity))))
     spun = subtract(_recall(walk, last, _ALPHA), alpha)
     spun = subtract(spun, cross(omega, spin))

@@ -136,7 +136,7 @@ class Tuned:
         """
         own = self.timing(timing)
         t = np.arange(0.5 * period, own.duration, period)
-        q, dq, ddq, _ = own.states_at(t)
+        q, dq, ddq = own.states_at(t)
         interval = np.clip(np.searchsorted(own.begin, t, "right") - 1, 0, None)
         segment = own.interval_segments[interval]
         torque = np.empty_like(q)

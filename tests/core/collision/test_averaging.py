@@ -12,8 +12,8 @@ from flyby.core.collision.deviation.averaging import Averages
 from flyby.core.collision.deviation.averaging_kernels import tail
 from flyby.core.collision.deviation.earliest_times import EarliestTimes
 from flyby.core.collision.deviation.speed_bounds import Allowed, greatest
-from flyby.core.motion.command.commanded_motion import ramped
-from flyby.core.motion.command.smoothing import Smoothing
+from flyby.core.motion.command.ramp import ramped
+from flyby.core.motion.command.smoothing import Smoothing, even_times
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.timing.timing import Timing
 from flyby.core.program.move import MoveJ
@@ -99,7 +99,7 @@ def test_means_over_a_ramp_are_as_near_the_mean_place_as_bounded(abb, ramp, zone
     timing = timing_of(abb, zone, model, tcp)
     course, averages = course_of(timing, model)
     off = averages.over_ramp()
-    motion = ramped(timing)
+    motion = ramped(timing, even_times(0.0, timing.duration, 1e-3))
     made = means(timing, ramp, motion.t) - motion.q
     cell = cells_at(timing, course, motion.q)
     nearby = int(averages.reach / np.diff(motion.t).max())
@@ -123,8 +123,9 @@ def means(timing: Timing, window: float, t: np.ndarray) -> np.ndarray:
 
 def cells_at(timing: Timing, course: EarliestTimes, q: np.ndarray) -> np.ndarray:
     """(T,), cells of a course in which configurations (T, N) on its path are."""
-    path_q, _, _, sigma = timing.driven_at(np.linspace(0.0, timing.duration, 4_000))
-    _, nearest = cKDTree(path_q).query(q)
+    t = np.linspace(0.0, timing.duration, 4_000)
+    sigma = timing.place_at(t)
+    _, nearest = cKDTree(timing.driven_at(t)[0]).query(q)
     return np.clip(
         np.searchsorted(course.sigma, sigma[nearest], "right") - 1, 0, len(course.moves) - 1
     )

@@ -118,7 +118,7 @@ def in_slow_time(controller: Controller, run: Run, rate: float) -> Run:
 def places(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Configurations and σ all along a path; stops count once."""
     t = np.linspace(0.0, run.timing.end[-1], PLACES)
-    q, _, _, sigma = run.timing.states_at(t)
+    q, sigma = run.timing.states_at(t)[0], run.timing.place_at(run.timing.start.driven(t))
     moving = np.concatenate([[True], np.diff(sigma) > 0.0])
     return q[moving], sigma[moving]
 

@@ -66,7 +66,7 @@ def test_coefficients_hold_slopes_and_bends(arm, turn) -> None:
     allowed, x = of_whole(timing), timing.stamp.x
     for z in (0.05, 0.5, 0.9):
         t = timing.begin + z * (timing.end - timing.begin)
-        _, dq, ddq, _ = timing.states_at(t)
+        _, dq, ddq = timing.states_at(t)
         pace, push = np.sqrt(x[:-1]) + z * np.diff(np.sqrt(x)), timing.stamp.u
         slope = dq / pace[:, None]
         low, high = allowed.slope.min(axis=0), allowed.slope.max(axis=0)

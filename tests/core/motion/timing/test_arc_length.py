@@ -86,11 +86,11 @@ def test_the_parabola_keeps_its_parameter(arm) -> None:
 def test_sigma_passes_every_sample_at_its_time(arm, kind) -> None:
     run = arm.controller(model(SECOND)).run(PROGRAMS[kind](arm, 0.3 * arm.leg))
     left = run.path.pieces.interval_samples
-    q, _, _, sigma = run.timing.states_at(run.timing.begin)
+    q, sigma = run.timing.states_at(run.timing.begin)[0], run.timing.place_at(run.timing.begin)
     np.testing.assert_allclose(sigma, run.path.sigma[left], atol=1e-9)
     np.testing.assert_allclose(q, run.path.q[left], atol=1e-9)
     times = np.linspace(0.0, run.duration, 2000)
-    assert (np.diff(run.timing.states_at(times)[3]) >= -1e-12).all()
+    assert (np.diff(run.timing.place_at(times)) >= -1e-12).all()
 
 
 @settings(max_examples=20, deadline=None)

@@ -46,7 +46,7 @@ def excess(arm, run, speed) -> tuple[float, float, float]:
     timing, limits = run.timing, arm.robot.limits
     share = (np.arange(POINTS) + 0.5) / POINTS
     t = (timing.begin + np.outer(share, timing.end - timing.begin)).T.ravel()
-    _, dq, ddq, _ = timing.states_at(t)
+    _, dq, ddq = timing.states_at(t)
     q = timing.states_at(t)[0]
     owner = np.repeat(timing.interval_segments, POINTS)
     J = arm.robot.jacobian(q)

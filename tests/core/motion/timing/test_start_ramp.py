@@ -65,7 +65,7 @@ def test_all_is_later_by_half_the_ramp_on_the_same_path(arm, length, wait) -> No
     assert ramped.duration == pytest.approx(sudden.duration + 0.5 * length, abs=1e-9)
     made = ramped.trajectory
     stamped = ramped.timing.start.stamped(made.t)[0]
-    q, _, _, sigma = sudden.timing.states_at(stamped)
+    q, sigma = sudden.timing.states_at(stamped)[0], sudden.timing.place_at(stamped)
     np.testing.assert_allclose(made.q, q, atol=1e-9)
     np.testing.assert_allclose(made.sigma, sigma, atol=1e-9)
     assert not made.dq[made.t <= wait].any()
@@ -78,7 +78,7 @@ def test_velocities_and_accelerations_are_those_of_the_joints(arm, length) -> No
     driven = program(arm)
     timing = controller.stamp(driven, controller.plan(driven))
     t = np.linspace(1e-3, timing.duration - 1e-3, 400)
-    q, dq, ddq, _ = timing.driven_at(t)
+    q, dq, ddq = timing.driven_at(t)
     h = 1e-5
     after, before = timing.driven_at(t + h), timing.driven_at(t - h)
     np.testing.assert_allclose((after[0] - before[0]) / (2 * h), dq, atol=1e-3)

@@ -96,7 +96,7 @@ def program(arm, **numbers: float) -> Program:
 def test_a_stamped_motion_takes_all_of_some_torque_and_no_more(abb, share) -> None:
     controller = abb.controller(MotionModel(torque=MOTORS))
     run = controller.run(program(abb, joint_acceleration_fraction=share), period=5e-4)
-    q, dq, ddq, _ = run.timing.states_at(run.trajectory.t)
+    q, dq, ddq = run.timing.states_at(run.trajectory.t)
     _, inertial, weight, fade = torque_shares(MOTORS, abb.robot, q, dq, ddq)
     upper = share * (1 - weight - fade)
     lower = -share * (1 + weight - fade)
