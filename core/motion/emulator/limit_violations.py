@@ -12,6 +12,7 @@ from ...arrays import FloatArray, IntArray
 from ...errors import Note
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import motion
+from ...robot.kinematics.lean import lean
 from ..geometry.quintic import basis, bends, slopes
 from ..path.tcp_samples import States
 from ..timing.limits import SegmentLimits
@@ -23,9 +24,11 @@ _CLOSE = 0.8
 """Share below which peaks between the places looked at are none that pass a limit."""
 _NEAR_SINGULAR = 0.01
 """Conditioning below which a singular configuration is what makes joints turn so unevenly."""
-_PLACES = np.linspace(0.05, 0.95, 10)
-"""Where intervals are looked at: at their ends the limits hold."""
-_VALUE, _SLOPE, _BEND = basis(_PLACES), slopes(_PLACES), bends(_PLACES)
+_FEW, _MANY = np.linspace(0.0, 1.0, 5), np.linspace(0.05, 0.95, 10)
+"""Where all intervals are looked at, and those that may pass a limit; at the ends limits hold."""
+_AT_FEW, _AT_MANY = (
+    np.stack([basis(places), slopes(places), bends(places)], axis=1) for places in (_FEW, _MANY)
+)
 
 
 def excesses(timing: Timing, limits: SegmentLimits, axis_names: Sequence[str]) -> list[Note]:
@@ -120,42 +123,88 @@ def _shares(
     """Write the greatest share of a limit that is taken within each of some intervals, and whose:
     N velocities of joints, of the TCP, of the tool's turn, N accelerations of joints."""
     axes = states.q.shape[1]
-    q, dq, ddq = np.empty(axes), np.empty(axes), np.empty(axes)
-    twist, change = np.empty(6), np.empty(6)
-    share = np.zeros((2 * axes + 2, _PLACES.size))
+    state, twist = np.empty((3, axes)), np.empty((2, 6))
+    few, many = np.zeros((2 * axes + 2, _FEW.size)), np.zeros((2 * axes + 2, _MANY.size))
     for k in intervals:
-        s, h, g = left[k], spacing[k], owner[k]
-        u = (x[k + 1] - x[k]) / (2 * h)
-        bounded = velocity[g, axes] < np.inf or velocity[g, axes + 1] < np.inf
-        share[axes : axes + 2] = 0.0
-        for m in range(_PLACES.size):
-            square = x[k] + _PLACES[m] * (x[k + 1] - x[k])
-            pace = np.sqrt(square)
-            for j in range(axes):
-                q[j] = slope = bend = 0.0
-                for n in range(2):
-                    p = states.q[s + n, j]
-                    v, a = h * states.dq[s + n, j], h * h * states.ddq[s + n, j]
-                    c = 3 * n
-                    q[j] += _VALUE[m, c] * p + _VALUE[m, c + 1] * v + _VALUE[m, c + 2] * a
-                    slope += _SLOPE[m, c] * p + _SLOPE[m, c + 1] * v + _SLOPE[m, c + 2] * a
-                    bend += _BEND[m, c] * p + _BEND[m, c + 1] * v + _BEND[m, c + 2] * a
-                slope, bend = slope / h, bend / (h * h)
-                dq[j] = slope * pace
-                share[j, m] = abs(dq[j]) / velocity[g, j]
-                share[axes + 2 + j, m] = abs(slope * u + bend * square) / acceleration[g, j]
-            if not bounded:
-                continue
-            motion(chain, q, dq, ddq, twist, change)
-            for part in range(2):
-                rate = 0.0
-                for i in range(3 * part, 3 * part + 3):
-                    rate += twist[i] * twist[i]
-                share[axes + part, m] = np.sqrt(rate) / velocity[g, axes + part]
+        s, own = left[k], (spacing[k], x[k], x[k + 1])
+        limits = velocity[owner[k]], acceleration[owner[k]]
+        for m in range(_FEW.size):
+            _look(chain, states, s, *own, _FEW[m], _AT_FEW[m], *limits, state, twist, few[:, m])
+        if not _may_pass(few):
+            continue
+        for m in range(_MANY.size):
+            _look(chain, states, s, *own, _MANY[m], _AT_MANY[m], *limits, state, twist, many[:, m])
         for j in range(2 * axes + 2):
-            peak = _peak(share, j)
+            peak = _peak(many, j)
             if peak > most[k]:
                 most[k], row[k] = peak, j
+
+
+@lean
+def _look(
+    chain: Chain,
+    states: States,
+    s: int,
+    h: float,
+    x0: float,
+    x1: float,
+    z: float,
+    weight: FloatArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    state: FloatArray,
+    twist: FloatArray,
+    share: FloatArray,
+) -> None:
+    """Write the shares of limits at a place z in an interval; what weighs the samples' states for
+    it is (3, 6)."""
+    axes = states.q.shape[1]
+    square, u = x0 + z * (x1 - x0), (x1 - x0) / (2 * h)
+    pace = square**0.5
+    for j in range(axes):
+        value = slope = bend = 0.0
+        for n in range(2):
+            p, c = states.q[s + n, j], 3 * n
+            v, a = h * states.dq[s + n, j], h * h * states.ddq[s + n, j]
+            value += weight[0, c] * p + weight[0, c + 1] * v + weight[0, c + 2] * a
+            slope += weight[1, c] * p + weight[1, c + 1] * v + weight[1, c + 2] * a
+            bend += weight[2, c] * p + weight[2, c + 1] * v + weight[2, c + 2] * a
+        slope, bend = slope / h, bend / (h * h)
+        state[0, j], state[1, j] = value, slope * pace
+        share[j] = abs(slope * pace) / velocity[j]
+        share[axes + 2 + j] = abs(slope * u + bend * square) / acceleration[j]
+    share[axes] = share[axes + 1] = 0.0
+    if velocity[axes] == np.inf and velocity[axes + 1] == np.inf:
+        return
+    if z == 0.0 or z == 1.0:
+        for i in range(6):
+            twist[0, i] = pace * states.v[s + int(z), i]
+    else:
+        state[2] = 0.0
+        motion(chain, state[0], state[1], state[2], twist[0], twist[1])
+    for part in range(2):
+        rate = 0.0
+        for i in range(3 * part, 3 * part + 3):
+            rate += twist[0, i] * twist[0, i]
+        share[axes + part] = rate**0.5 / velocity[axes + part]
+
+
+@lean
+def _may_pass(share: FloatArray) -> bool:
+    """Whether any row of values at a few even places may pass its limit anywhere between them.
+
+    Accelerations of joints are quartics, which five places tell; between two of them a value is
+    no more than a quarter of the greatest second difference above the greater.
+    """
+    for j in range(share.shape[0]):
+        peak = bent = 0.0
+        for m in range(share.shape[1]):
+            peak = max(peak, share[j, m])
+            if 0 < m < share.shape[1] - 1:
+                bent = max(bent, abs(share[j, m - 1] - 2.0 * share[j, m] + share[j, m + 1]))
+        if peak + 0.25 * bent > _EXCESS:
+            return True
+    return False
 
 
 @njit(cache=True, error_model="numpy")
