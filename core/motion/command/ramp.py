@@ -112,15 +112,30 @@ def _at(n: _Intervals, starts: float, length: float, k: int, t: float) -> tuple[
     way, area = n.way[k], n.area[k]
     if t <= n.since[k]:
         return way, area + way * (t - n.since[k])
-    until = min(t, n.until[k])
-    middle, reach = 0.5 * (n.since[k] + until), _GAUSS * (until - n.since[k])
-    mean = 5.0 * _covered(n, starts, length, k, middle - reach)
-    mean += 8.0 * _covered(n, starts, length, k, middle)
-    mean += 5.0 * _covered(n, starts, length, k, middle + reach)
-    area += (until - n.since[k]) * (way + mean / 18.0)
+    since, until = n.since[k], min(t, n.until[k])
+    # Where time has come up to speed its rate has a kink.
+    kink = min(max(starts + length, since), until)
+    area += (until - since) * way
+    area += _integral(n, starts, length, k, since, kink)
+    area += _integral(n, starts, length, k, kink, until)
     if t < n.until[k]:
         return way + _covered(n, starts, length, k, t), area
     return n.way[k + 1], area + (t - until) * n.way[k + 1]
+
+
+@lean
+def _integral(
+    n: _Intervals, starts: float, length: float, k: int, first: float, last: float
+) -> float:
+    """Of λ covered in interval k, over driven times, by Gauss's three places."""
+    if last <= first:
+        return 0.0
+    middle, reach = 0.5 * (first + last), _GAUSS * (last - first)
+    mean = 5.0 * _covered(n, starts, length, k, middle - reach)
+    mean += 8.0 * _covered(n, starts, length, k, middle)
+    mean += 5.0 * _covered(n, starts, length, k, middle + reach)
+    integral: float = (last - first) * mean / 18.0
+    return integral
 
 
 @lean

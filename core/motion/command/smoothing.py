@@ -149,7 +149,9 @@ def averaged(motion: JointMotion, window: float, step: float) -> JointMotion:
 def even_times(begin: float, end: float, step: float) -> FloatArray:
     """Multiples (T,) of a step, the first not after ``begin`` and the last not before ``end``."""
     first = int(np.floor(begin / step + _SLACK))
-    return step * np.arange(first, max(int(np.ceil(end / step - _SLACK)), first + 1) + 1)
+    return np.asarray(
+        step * np.arange(first, max(int(np.ceil(end / step - _SLACK)), first + 1) + 1)
+    )
 
 
 def _empty(count: int, size: int) -> States:

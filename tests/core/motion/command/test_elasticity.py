@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.motion.command.elasticity import held_at_rest, leads
+from flyby.core.motion.command.elasticity import held_at_rest, lead_states, leads
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.model.elasticity import RIGID, Carried, Coupled, Elasticity
 from flyby.core.motion.model.motion_file import load_motion_model
@@ -296,3 +296,31 @@ def test_a_lag_is_read_with_its_key(tmp_path) -> None:
     file.write_text("[elasticity]\nlag_s = [nan]\n")
     with pytest.raises(InputError, match=r"elasticity\.lag_s"):
         load_motion_model(file)
+
+
+@settings(max_examples=10, deadline=None)
+@given(seed=st.integers(0, 1000), slack=st.floats(1e-5, 1e-3))
+def test_what_gears_give_way_by_has_its_own_derivatives(seed, slack) -> None:
+    """Between and at the even times, those of slack included, which changes fast."""
+    arm = find_robot(ROBOT)
+    gears = replace(GEARS, slack=(slack, slack), weight=(0.0, 2.0), coupled=(Coupled(1, 2, 0.1),))
+    rng = np.random.default_rng(seed)
+    middle, size = rng.uniform(-1, 1, (2, arm.size))
+    pace, phase = rng.uniform(4.0, 8.0, arm.size), rng.uniform(0, 6, arm.size)
+
+    def motion(t):
+        angle = pace * t[:, None] + phase
+        swing = 0.2 * size
+        return (
+            middle + swing * np.sin(angle),
+            swing * pace * np.cos(angle),
+            -swing * pace**2 * np.sin(angle),
+        )
+
+    t, at, h = np.arange(0.0, 1.0, 4e-3), np.linspace(0.3, 0.7, 77), 1e-5
+    place, speed, push = lead_states(gears, arm, t, motion(t), at)
+    before, here, behind = (leads(gears, arm, *motion(at + step)) for step in (-h, 0.0, h))
+    np.testing.assert_allclose(place, here, rtol=0, atol=1e-4 * np.abs(here).max())
+    slope, bend = (behind - before) / (2 * h), (behind - 2 * here + before) / h**2
+    np.testing.assert_allclose(speed, slope, rtol=0, atol=1e-3 * np.abs(slope).max())
+    np.testing.assert_allclose(push, bend, rtol=0, atol=1e-2 * np.abs(bend).max())

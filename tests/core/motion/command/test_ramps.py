@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
 from flyby.core.motion.command.commanded_motion import stamped_motion
+from flyby.core.motion.command.ramp import ramped
+from flyby.core.motion.command.smoothing import even_times
 from flyby.core.motion.model.motion_file import load_motion_model
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveL
@@ -66,6 +68,23 @@ def test_acceleration_along_a_line_rises_and_falls_over_the_ramp(abb, ramp) -> N
     most = abb.robot.limits.acceleration
     assert (np.abs(ddq).max(axis=0) <= 1.05 * most).all()
     assert (np.abs(jerk).max(axis=0) <= 2.1 * most / ramp + 5.0).all()
+
+
+@settings(max_examples=6, deadline=None)
+@given(ramp=st.floats(0.005, 0.08), start=st.sampled_from([0.0, 0.15]))
+def test_a_ramp_is_a_mean_of_the_place_whatever_its_knots(arm, ramp, start) -> None:
+    """The same places at few knots as at many, velocities their difference quotients."""
+    driven = program(arm, Radius(0.2 * arm.leg), FINE, FINE)
+    controller = arm.controller(MotionModel(ramp=ramp, start_ramp=start))
+    timing = controller.stamp(driven, controller.plan(driven))
+    few = ramped(timing, even_times(0.0, timing.duration, 8e-3))
+    many = ramped(timing, even_times(0.0, timing.duration, 1e-4))
+    same = many.q[::80]
+    np.testing.assert_allclose(few.q[: len(same)], same, atol=1e-9)
+    slopes = np.gradient(many.q, many.t, axis=0)
+    off = np.abs(slopes - many.dq)[1:-1]
+    # Where accelerations jump, a quotient is off by half of what they jump by in a step.
+    assert off.max() < 1e-4 * np.abs(np.gradient(many.dq, many.t, axis=0)).max() + 1e-9
 
 
 def test_a_run_is_at_rest_at_its_ends(arm) -> None:

@@ -8,7 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.motion.command.smoothing import JointMotion, Smoothing, window_for_jerk
+from flyby.core.motion.command.smoothing import (
+    JointMotion,
+    Smoothing,
+    averaged,
+    even_times,
+    window_for_jerk,
+)
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
@@ -238,3 +244,27 @@ def test_a_jerk_limit_is_held_by_the_window(ur, jerk) -> None:
 def test_windows_below_zero_are_refused(broken) -> None:
     with pytest.raises(InputError):
         MotionModel(**broken)
+
+
+@settings(max_examples=40, deadline=None)
+@given(window=st.floats(0.003, 0.2), step=st.sampled_from([0.001, 0.002]), seed=st.integers(0, 99))
+def test_an_average_at_even_knots_is_the_average_there(window, step, seed) -> None:
+    """Whether the window is a whole number of steps or not, and beyond both ends of the motion."""
+    rng = np.random.default_rng(seed)
+    t = even_times(0.3, 0.5, step)
+    q, dq = rng.normal(size=(2, len(t), 3))
+    dq[[0, -1]] = 0.0
+    made = averaged(JointMotion(t, q, dq, step), window, step)
+    assert made.t[0] == t[0] and made.t[-1] >= t[-1] + window - 1e-12
+    places, speeds, _ = JointMotion(t, q, dq).averaged(window, made.t)
+    np.testing.assert_allclose(made.q, places, atol=1e-12)
+    np.testing.assert_allclose(made.dq, speeds, atol=1e-9)
+
+
+@given(begin=st.floats(0, 100), span=st.floats(0, 10), step=st.sampled_from([1e-3, 2e-3, 4e-3]))
+def test_even_times_cover_a_span_with_multiples_of_their_step(begin, span, step) -> None:
+    t = even_times(begin, begin + span, step)
+    assert len(t) >= 2
+    assert t[0] <= begin + 1e-5 * step and t[-1] >= begin + span - 1e-5 * step
+    assert t[0] > begin - step and t[-1] < begin + span + 2 * step
+    np.testing.assert_allclose(t / step, np.round(t / step), atol=1e-9)
