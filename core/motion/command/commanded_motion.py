@@ -91,7 +91,8 @@ def stamped_motion(timing: Timing, begin: float = -np.inf, end: float = np.inf) 
         begin, end: s, what is wanted of it.
     """
     if timing.ramp > 0.0:
-        return ramped(timing, even_times(max(begin, 0.0), min(end, timing.duration), STEP))
+        t = even_times(max(begin, 0.0), min(end, timing.duration), STEP)
+        return ramped(timing.intervals, timing.along.states, timing.start, timing.ramp, t)
     even = sample_times(0.0, timing.duration, STEP, (begin, end))
     edges = timing.start.driven(np.concatenate([timing.begin, timing.end]))
     edges = edges[(even[0] <= edges) & (edges <= even[-1])]

@@ -5,23 +5,44 @@ Between samples x = (dℓ/dt)² is linear in ℓ: ℓ̈ is constant, and ℓ a p
 
 from __future__ import annotations
 
-from ...arrays import FloatArray
+from typing import NamedTuple
+
+from ...arrays import FloatArray, IntArray
 from ...robot.kinematics.lean import lean
 from ..path.tcp_samples import States
 
 
-@lean
-def progress(
-    begin: float, end: float, spacing: float, x0: float, x1: float, t: float
-) -> tuple[float, float]:
-    """The share of an interval that is behind at time t, 0 to 1, and dℓ/dt there.
+class Intervals(NamedTuple):
+    """K intervals of a stamped path.
 
     Args:
-        begin, end: s, when it is entered and left.
-        spacing: ℓ of it.
-        x0, x1: (dℓ/dt)² at its ends.
-        t: s; before and after, what holds at the nearer end.
+        begin, end: (K,) s, when each is entered and left, waits included.
+        sample: (K,), the sample at the left of each.
+        spacing: (K,), ℓ of each.
+        x: (K + 1,), (dℓ/dt)² at their ends.
     """
+
+    begin: FloatArray
+    end: FloatArray
+    sample: IntArray
+    spacing: FloatArray
+    x: FloatArray
+
+    def rows(self, first: int, last: int) -> Intervals:
+        """A view of some of them."""
+        own = slice(first, last)
+        x = self.x[first : last + 1]
+        return Intervals(self.begin[own], self.end[own], self.sample[own], self.spacing[own], x)
+
+
+@lean
+def progress(intervals: Intervals, k: int, t: float) -> tuple[float, float]:
+    """The share of interval k that is behind at time t in s, 0 to 1, and dℓ/dt there.
+
+    Before and after, what holds at the nearer end.
+    """
+    begin, end, spacing = intervals.begin[k], intervals.end[k], intervals.spacing[k]
+    x0, x1 = intervals.x[k], intervals.x[k + 1]
     change = (x1 - x0) / (2 * spacing)
     tau = min(max(t - begin, 0.0), end - begin)
     # From the nearer end, so that arrival at a stop is exact.

@@ -13,7 +13,7 @@ from ..model.rules import Pace
 from ..path.path import Path
 from ..path.tcp_samples import States
 from .arc_length import ArcLength
-from .interval import joint_at, progress, sigma_at
+from .interval import Intervals, joint_at, progress, sigma_at
 from .limits import PathLimits, SegmentLimits, path_limits
 from .rests import InPosition, Rests
 from .stamping import Stamp, StampingError, stamp
@@ -164,10 +164,8 @@ class Timing:
         Between samples the path is the quintic in ℓ that meets both samples' derivatives.
         """
         q, dq, ddq = (np.empty((len(t), self.path.q.shape[1])) for _ in range(3))
-        left = self.path.pieces.interval_samples
-        timed = self.begin, self.end, left, self.along.spacing, self.stamp.x
         t = np.ascontiguousarray(t)
-        _drive(t, self._interval(t), *timed, self.along.states, q, dq, ddq)
+        _drive(t, self._entered(t), self.intervals, self.along.states, q, dq, ddq)
         return q, dq, ddq
 
     def driven_at(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -183,12 +181,16 @@ class Timing:
         """σ (T,) on the path at times t (T,) in s, with time that comes up to speed."""
         t = np.ascontiguousarray(self.start.stamped(t)[0])
         at = np.empty(len(t))
-        left = self.path.pieces.interval_samples
-        timed = self.begin, self.end, left, self.along.spacing, self.stamp.x
-        _places(t, self._interval(t), *timed, self.path.sigma, self.along.rate, at)
+        _places(t, self._entered(t), self.intervals, self.path.sigma, self.along.rate, at)
         return at
 
-    def _interval(self, t: FloatArray) -> IntArray:
+    @property
+    def intervals(self) -> Intervals:
+        """The K intervals, as stamped."""
+        sample = self.path.pieces.interval_samples
+        return Intervals(self.begin, self.end, sample, self.along.spacing, self.stamp.x)
+
+    def _entered(self, t: FloatArray) -> IntArray:
         """(T,), the interval that is entered last."""
         return np.clip(np.searchsorted(self.begin, t, side="right") - 1, 0, None)
 
@@ -197,11 +199,7 @@ class Timing:
 def _drive(
     t: FloatArray,
     interval: IntArray,
-    begin: FloatArray,
-    end: FloatArray,
-    left: IntArray,
-    spacing: FloatArray,
-    x: FloatArray,
+    intervals: Intervals,
     states: States,
     q: FloatArray,
     dq: FloatArray,
@@ -209,13 +207,13 @@ def _drive(
 ) -> None:
     for i in range(t.size):
         k = interval[i]
-        length = spacing[k]
-        z, rate = progress(begin[k], end[k], length, x[k], x[k + 1], t[i])
-        change = (x[k + 1] - x[k]) / (2 * length)
-        if not begin[k] <= t[i] <= end[k]:
+        s, length = intervals.sample[k], intervals.spacing[k]
+        z, rate = progress(intervals, k, t[i])
+        change = (intervals.x[k + 1] - intervals.x[k]) / (2 * length)
+        if not intervals.begin[k] <= t[i] <= intervals.end[k]:
             rate = change = 0.0
         for j in range(q.shape[1]):
-            q[i, j], slope, bend = joint_at(states, left[k], j, length, z)
+            q[i, j], slope, bend = joint_at(states, s, j, length, z)
             dq[i, j] = slope * rate
             ddq[i, j] = bend * rate * rate + slope * change
 
@@ -224,19 +222,15 @@ def _drive(
 def _places(
     t: FloatArray,
     interval: IntArray,
-    begin: FloatArray,
-    end: FloatArray,
-    left: IntArray,
-    spacing: FloatArray,
-    x: FloatArray,
+    intervals: Intervals,
     sigma: FloatArray,
     ratio: FloatArray,
     at: FloatArray,
 ) -> None:
     for i in range(t.size):
         k = interval[i]
-        z, _ = progress(begin[k], end[k], spacing[k], x[k], x[k + 1], t[i])
-        at[i] = sigma_at(sigma, ratio, left[k], spacing[k], z)
+        z, _ = progress(intervals, k, t[i])
+        at[i] = sigma_at(sigma, ratio, intervals.sample[k], intervals.spacing[k], z)
 
 
 def along_path(path: Path, acceleration: FloatArray) -> ArcLength:

@@ -99,7 +99,8 @@ def test_means_over_a_ramp_are_as_near_the_mean_place_as_bounded(abb, ramp, zone
     timing = timing_of(abb, zone, model, tcp)
     course, averages = course_of(timing, model)
     off = averages.over_ramp()
-    motion = ramped(timing, even_times(0.0, timing.duration, 1e-3))
+    stamped = timing.intervals, timing.along.states, timing.start, ramp
+    motion = ramped(*stamped, even_times(0.0, timing.duration, 1e-3))
     made = means(timing, ramp, motion.t) - motion.q
     cell = cells_at(timing, course, motion.q)
     nearby = int(averages.reach / np.diff(motion.t).max())

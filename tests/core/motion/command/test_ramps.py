@@ -77,8 +77,9 @@ def test_a_ramp_is_a_mean_of_the_place_whatever_its_knots(arm, ramp, start) -> N
     driven = program(arm, Radius(0.2 * arm.leg), FINE, FINE)
     controller = arm.controller(MotionModel(ramp=ramp, start_ramp=start))
     timing = controller.stamp(driven, controller.plan(driven))
-    few = ramped(timing, even_times(0.0, timing.duration, 8e-3))
-    many = ramped(timing, even_times(0.0, timing.duration, 1e-4))
+    stamped = timing.intervals, timing.along.states, timing.start, ramp
+    few = ramped(*stamped, even_times(0.0, timing.duration, 8e-3))
+    many = ramped(*stamped, even_times(0.0, timing.duration, 1e-4))
     same = many.q[::80]
     np.testing.assert_allclose(few.q[: len(same)], same, atol=1e-9)
     slopes = np.gradient(many.q, many.t, axis=0)
