@@ -91,7 +91,6 @@ def waypoints(route: Route, count: int, start: FloatArray | None = None) -> Floa
 
     Args:
         route: the program's; moves that go nowhere are not in it.
-        count: number of the program's moves.
         start: (N,) where the robot stands, for a route without a segment.
     """
     q = route.ends.q[0, 0] if len(route.moves) else start

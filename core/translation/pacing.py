@@ -56,7 +56,6 @@ class EmulatedProgram:
 
     Args:
         segment: index of the segment of each move that is driven.
-        peaks: what the segments take and reach.
         change: (M, N), how far each segment turns the joints.
         length: (M,) m of TCP path where that is a line or arc.
     """
@@ -83,11 +82,7 @@ class EmulatedProgram:
 
 
 class Pacer:
-    """States the speeds of a program for another language.
-
-    Args:
-        old: the program on the old robot.
-    """
+    """States the speeds of a program for another language."""
 
     def __init__(
         self, old: EmulatedProgram, target: Party, dialect: Dialect, losses: LossesOfPart
@@ -107,7 +102,6 @@ class Pacer:
 
         Args:
             program: on the new robot, with the old speeds.
-            path: of the new robot through it.
         """
         change = path.route.ends.q[:, 1] - path.route.ends.q[:, 0]
         segment = {move: k for k, move in enumerate(path.route.moves)}

@@ -50,7 +50,6 @@ class Translation:
         losses: what could not be carried over, in the order of the source; moves and lines are
             the source's.
         start: where the new robot stands at first.
-        original: the program that was given.
     """
 
     program: Program

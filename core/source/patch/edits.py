@@ -10,7 +10,6 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from itertools import pairwise
-from pathlib import PurePath
 
 from ...errors import InputError, Span
 from ...program.move import Move
@@ -39,7 +38,6 @@ class Edit:
 
     Args:
         span: of the text that goes; empty where text is put in.
-        text: what comes.
         move: index of the move that asks for it.
     """
 
@@ -123,37 +121,6 @@ def patched(after: Program, reading: Reading, edits: Iterable[Edit]) -> Files:
             else f"the patched text does not give the changed program: {part}; nothing was changed"
         )
     return files
-
-
-def runnable_set(program: Program, changed: Files) -> Files:
-    """Changed files with those that the program cannot run without, as they were read.
-
-    These are the file with the entry, those whose motions are driven and whose numbers they read,
-    and all that are called like one of them: a ``.dat`` belongs to its ``.src``.
-
-    Args:
-        program: as its reader made it.
-        changed: some of its files; none give none.
-
-    Raises:
-        InputError: it was not read from source files.
-    """
-    if not changed:
-        return {}
-    reading = reading_of(program)
-    needed = {reading.main, *(file.name for file in changed.values())}
-    for move in program.moves:
-        if move.origin is not None:
-            parts = (getattr(move.origin, kind) for kind in PARTS)
-            spans = [span for part in parts if part is not None for span in part.numbers]
-            needed |= {span.file for span in (move.origin.statement, *spans) if span is not None}
-    stems = set(map(_stem, needed))
-    together = {name: file for name, file in reading.files.items() if _stem(name) in stems}
-    return {**together, **{file.name: file for file in changed.values()}}
-
-
-def _stem(file: str) -> str:
-    return str(PurePath(file).with_suffix("")).casefold()
 
 
 def difference(

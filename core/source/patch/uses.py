@@ -35,10 +35,8 @@ class Use:
     """A part of a move.
 
     Args:
-        statement: span of the motion instruction.
         old: its value in the text.
         new: the value that it shall have.
-        move: as it shall become.
     """
 
     index: int

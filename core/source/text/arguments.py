@@ -6,10 +6,6 @@ from collections.abc import Sequence
 
 
 def wrong_count(wanted: int, given: int, names: Sequence[str] = ()) -> str:
-    """``takes 1 argument (ToPoint), not 2``.
-
-    Args:
-        names: what they are called, if that is known.
-    """
+    """``takes 1 argument (ToPoint), not 2``."""
     listed = f" ({', '.join(names)})" if names else ""
     return f"takes {wanted} argument{'' if wanted == 1 else 's'}{listed}, not {given}"

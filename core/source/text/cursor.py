@@ -49,8 +49,6 @@ class TokenCursor(Generic[Source]):
 
     Args:
         source: what the tokens' offsets count in.
-        tokens: to be read.
-        text: what the tokens were found in.
         base: offset of its first character.
 
     Attributes:

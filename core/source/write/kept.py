@@ -24,10 +24,6 @@ def check_kept(program: Program, sources: Mapping[str, str], wording: Wording) -
     What is declared beside the program and set nowhere is the controller's own, and stays there.
     What the new files declare counts if the old ones give it one value.
 
-    Args:
-        program: whose kept statements have been written.
-        sources: its new texts.
-
     Raises:
         SourceError: naming the statement and the name.
     """

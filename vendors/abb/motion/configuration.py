@@ -58,6 +58,11 @@ class AbbConfiguration:
         return f"[{self.cf1},{self.cf4},{self.cf6},{self.cfx}]"
 
     @property
+    def record(self) -> tuple[float, ...]:
+        """As a confdata."""
+        return tuple(map(float, (self.cf1, self.cf4, self.cf6, self.cfx)))
+
+    @property
     def exact(self) -> bool:
         """True: the controller goes to this solution or reports an error."""
         return True

@@ -111,7 +111,7 @@ class RobotFunctions:
 
         def ask(value: Value, tool: Tool, frame: WorkObject) -> Record | None:
             target = self.convert.joint_target(value, None, False, call.span)
-            return self._asked(call, lambda: self.position.forward(target, tool, frame))
+            return self._asked(call, lambda: self.position.robtarget_at(target, tool, frame))
 
         return self._converted(evaluator, call, scope, JOINTTARGET, ask)
 
@@ -120,7 +120,7 @@ class RobotFunctions:
 
         def ask(value: Value, tool: Tool, frame: WorkObject) -> Record | None:
             target = self.convert.pose_target(value, None, True, call.span)
-            return self._asked(call, lambda: self.position.backward(target, tool, frame))
+            return self._asked(call, lambda: self.position.jointtarget_at(target, tool, frame))
 
         return self._converted(evaluator, call, scope, ROBTARGET, ask)
 

@@ -88,17 +88,8 @@ FORMS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class _Common:
-    """What every move has, converted."""
-
-    speed: Speed
-    zone: Zone
-    tool: Tool
-    work_object: WorkObject
-    load: Load | None
-    speed_part: Part
-    zone_part: Part
+Common = tuple[Speed, Zone, Tool, WorkObject, Load | None]
+"""What every move has beside its target."""
 
 
 class _MoveReader:
@@ -153,7 +144,8 @@ class _MoveReader:
             )
         return (present[0], _record(value)[1])
 
-    def common(self) -> _Common:
+    def common(self) -> tuple[Common, Part, Part]:
+        """What every move has, and what its speed and zone are made of."""
         tool = self._tool()
         work_object = self._work_object()
         if tool.robot_held == work_object.robot_held:
@@ -165,7 +157,7 @@ class _MoveReader:
         tool, load = self._loads(tool)
         speed, speed_part = self._speed()
         zone, zone_part = self._zone()
-        return _Common(speed, zone, tool, work_object, load, speed_part, zone_part)
+        return (speed, zone, tool, work_object, load), speed_part, zone_part
 
     def _found(self, expression: Expression, kind: str, type_: Type) -> Located:
         found = self.run.evaluator.locate(expression, self.scope)
@@ -295,25 +287,26 @@ def read_move(
     _note_singularity(run, form, bound)
     reader = _MoveReader(run, scope, bound)
     settings = run.settings.now
+    follow = settings.check_joint if form.kind == "joint" else settings.check_linear
+    arc = _arc_orientation(run, bound) if form.kind == "circular" else None
+    via: PoseTarget | None = None
+    via_part: Part | None = None
+    target: PoseTarget | JointTarget
     if form.kind in ("absolute", "external"):
-        joints, part = reader.joint_target(form.kind == "external")
-        common = reader.common()
-        move: Move = MoveJ(joints, *_fields(common), events=events)
-        return move, _parts(bound, common, part), reader.record
-    if form.kind == "circular":
-        arc = _arc_orientation(run, bound)
-        via, via_part = reader.pose_target("CirPoint", settings.check_linear)
-        target, part = reader.pose_target("ToPoint", settings.check_linear)
-        common = reader.common()
-        move = MoveC(target, *_fields(common), events=events, via=via, orientation=arc)
-        return move, _parts(bound, common, part, via_part), reader.record
-    joint = form.kind == "joint"
-    follow = settings.check_joint if joint else settings.check_linear
-    target, part = reader.pose_target("ToPoint", follow)
-    common = reader.common()
-    kind = MoveJ if joint else MoveL
-    move = kind(target, *_fields(common), events=events)
-    return move, _parts(bound, common, part), reader.record
+        target, part = reader.joint_target(form.kind == "external")
+    else:
+        if arc is not None:
+            via, via_part = reader.pose_target("CirPoint", follow)
+        target, part = reader.pose_target("ToPoint", follow)
+    common, speed_part, zone_part = reader.common()
+    parts = MoveParts(bound.span, part, speed_part, zone_part, via_part)
+    if arc is not None:
+        assert via is not None and isinstance(target, PoseTarget)
+        move: Move = MoveC(target, *common, events=events, via=via, orientation=arc)
+    else:
+        kind = MoveL if form.kind == "linear" else MoveJ
+        move = kind(target, *common, events=events)
+    return move, parts, reader.record
 
 
 def bind_move(invoke: Invoke, form: Form) -> Bound:
@@ -380,14 +373,6 @@ def _arc_orientation(run: MovesRun, bound: Bound) -> ArcOrientation:
         f"{bound.text} under CirPathMode \\{arc} is not emulated: use \\PathFrame or \\ObjectFrame",
         bound.span,
     )
-
-
-def _fields(common: _Common) -> tuple[Speed, Zone, Tool, WorkObject, Load | None]:
-    return common.speed, common.zone, common.tool, common.work_object, common.load
-
-
-def _parts(bound: Bound, common: _Common, target: Part, via: Part | None = None) -> MoveParts:
-    return MoveParts(bound.span, target, common.speed_part, common.zone_part, via)
 
 
 MOVES: dict[str, MovesHandler] = dict.fromkeys(FORMS, _plain)

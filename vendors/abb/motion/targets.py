@@ -318,14 +318,11 @@ class Converter:
     def _units(self, value: Value, type_: RecordType, span: Span) -> Record:
         """A record whose quaternions are of unit length."""
         assert isinstance(value, tuple)
-        return self._normalised(value, type_, span)
-
-    def _normalised(self, record: Record, type_: RecordType, span: Span) -> Record:
         if type_ is ORIENT:
-            return self._unit(record, span)
+            return self._unit(value, span)
         return tuple(
-            self._normalised(part, component, span) if isinstance(component, RecordType) else part
-            for part, component in zip(record, type_.components.values(), strict=True)
+            self._units(part, component, span) if isinstance(component, RecordType) else part
+            for part, component in zip(value, type_.components.values(), strict=True)
         )
 
     def _unit(self, orient: Record, span: Span) -> Record:

@@ -18,7 +18,17 @@ from ..values.outputs import write
 from ..values.records import PER_METRE
 from ..values.scope import Scope
 from ..values.types import NUM, Unknown, Value, mismatch
-from .moves import OVER_POINT, TO_JOINTS, TO_POINT, Form, MovesHandler, MovesRun, bind_move, drive
+from .moves import (
+    FORMS,
+    OVER_POINT,
+    TO_JOINTS,
+    TO_POINT,
+    Form,
+    MovesHandler,
+    MovesRun,
+    bind_move,
+    drive,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,19 +188,9 @@ def _collected(value: Value) -> tuple[TriggData, ...]:
 # --------------------------------------------------------- moves with one more action
 
 
-def _with(form: Form, *names: str) -> Form:
-    return replace(form, names=(*form.names, *names))
-
-
-_LINEAR, _JOINT, _ARC = (
-    Form("linear", TO_POINT),
-    Form("joint", TO_POINT),
-    Form("circular", OVER_POINT),
-)
-
 _ACTION_FORMS = {
-    f"move{kind}{suffix}": _with(form, *names)
-    for kind, form in (("l", _LINEAR), ("j", _JOINT), ("c", _ARC))
+    f"{move}{suffix}": replace(FORMS[move], names=(*FORMS[move].names, *names))
+    for move in ("movel", "movej", "movec")
     for suffix, names in (
         ("do", ("Signal", "Value")),
         ("ao", ("Signal", "Value")),

@@ -145,8 +145,7 @@ def _configuration(configuration: Configuration | None) -> list[LiteralNumber]:
         return [LiteralNumber(None, 0.0, _same)] * 4
     if not isinstance(configuration, AbbConfiguration):
         raise InputError(f"{configuration} is no confdata: label the target for this robot")
-    parts = (configuration.cf1, configuration.cf4, configuration.cf6, configuration.cfx)
-    return [as_it_is(float(part)) for part in parts]
+    return list(map(as_it_is, configuration.record))
 
 
 def _external(values: Sequence[float], kinds: Sequence[str]) -> list[LiteralNumber]:

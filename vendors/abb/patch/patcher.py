@@ -36,18 +36,10 @@ from .substitutes import Substitutes
 
 
 def patch(program: Program, options: PatchOptions, axis_kinds: Sequence[str] = ()) -> Files:
-    """The files of ``program`` with its targets, speeds and zones.
+    """The program's files with its numbers; see `core.source.patch.plan.patch_program`.
 
     Args:
-        program: read from files, then changed.
         axis_kinds: ``"linear"`` or ``"rotating"`` for eax_a, eax_b, …, as for the reader.
-
-    Returns:
-        The files that changed, by name.
-
-    Raises:
-        FlybyError: a change has no place in the text, or the patched text is not read as
-            ``program``.
     """
     places = Places(reading_of(program).files)
     literals = RapidLiterals(places, axis_kinds)

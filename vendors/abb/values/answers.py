@@ -26,7 +26,6 @@ class Answers:
 
         Args:
             type_: of the answer, None if it is not known.
-            sizes: of an array.
 
         Raises:
             SourceError: the answer is of another type.

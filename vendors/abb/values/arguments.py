@@ -66,10 +66,6 @@ class Bound:
 def check_count(text: str, wanted: int, given: int, span: Span, names: Sequence[str] = ()) -> None:
     """Refuse too few or too many required arguments.
 
-    Args:
-        text: name of the function, routine or instruction.
-        names: what they are called, if that is known.
-
     Raises:
         SourceError: the numbers differ.
     """

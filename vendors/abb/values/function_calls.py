@@ -74,7 +74,6 @@ def function_value(
     """The value of a call; the user's answer where it is not known.
 
     Args:
-        run: runs one of the program's own functions.
         special: functions whose arguments are no plain values, by lower-case name.
 
     Raises:

@@ -40,7 +40,6 @@ class Scalar:
     """``num``, ``dnum``, ``bool`` or ``string``.
 
     Args:
-        python: the class of its values.
         default: of a variable without an initial value.
     """
 
@@ -217,7 +216,6 @@ def check_type(
 
     Args:
         own: type of the datum that has the value, None if it is none or that is not known.
-        name: of the datum.
 
     Raises:
         SourceError: it is none of ``type_``.

@@ -80,7 +80,10 @@ class Events:
                 return alone
         if len(move.events) > MOST:
             raise InputError(f"{plain} takes {MOST} events, not {len(move.events)}: leave some out")
-        triggers = [self._operands.trigger(_definition(event)) for event in move.events]
+        triggers = [
+            self._operands.declarations.add_undefined("triggdata", _definition(event))
+            for event in move.events
+        ]
         verb = plain.replace("Move", "Trigg")
         return Said(tuple(self._definitions(triggers)), verb, tuple(triggers))
 

@@ -110,10 +110,6 @@ class Operands:
             return "load0"
         return self.declarations.add("loaddata", load_record(load), load.name, "load1")
 
-    def trigger(self, definition: str) -> Datum:
-        """A triggdata, which an instruction defines."""
-        return self.declarations.add_undefined("triggdata", definition)
-
     def _external(self, values: Sequence[float]) -> Record:
         """``extax``: mm or degrees, ``9E9`` for axes that are not positioned."""
         kinds = self._options.external_axes
@@ -152,8 +148,7 @@ def _configuration(configuration: Configuration | None) -> Record:
             f"{configuration} is no confdata: label the target's solution for this robot, or take "
             "the configuration away"
         )
-    parts = (configuration.cf1, configuration.cf4, configuration.cf6, configuration.cfx)
-    return tuple(map(float, parts))
+    return configuration.record
 
 
 _NOT_IN_RAPID = {

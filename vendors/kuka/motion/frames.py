@@ -12,11 +12,10 @@ from dataclasses import replace
 from ....core.errors import InputError, SourceError, Span
 from ....core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from ....core.spatial.pose import IDENTITY, Pose
-from ..values.frames import pose_of
-from ..values.placement import Placement
+from ..values.frames import number_or_zero, pose_of
 from ..values.scope import Variable
 from ..values.types import FRAME_FIELDS
-from ..values.values import Choice, Struct, Value, find_unknown, left_open
+from ..values.values import Choice, Placement, Struct, find_unknown, left_open
 
 Note = Callable[[str, str, Span], None]
 
@@ -111,7 +110,7 @@ class Placements:
         try:
             centre = pose_of(frame.fields) if isinstance(frame, Struct) else IDENTITY
             moments = inertia.fields if isinstance(inertia, Struct) else {}
-            x, y, z = (_number(moments.get(axis)) for axis in "xyz")
+            x, y, z = (number_or_zero(moments.get(axis)) for axis in "xyz")
             return Load(float(mass), centre.position, (x, y, z), centre.quaternion, value.label)
         except InputError as error:
             raise SourceError(f"$LOAD: {error}", span) from None
@@ -125,12 +124,8 @@ def _name(frame: Struct, nothing: str, literal: str) -> str:
     """The datum that the frame was read from."""
     if frame.label is not None:
         return frame.label
-    zero = all(_number(frame.fields.get(f)) == 0 for f in FRAME_FIELDS)
+    zero = all(number_or_zero(frame.fields.get(f)) == 0 for f in FRAME_FIELDS)
     return nothing if zero and frame.moved_by is None else literal
-
-
-def _number(value: Value | None) -> float:
-    return float(value) if isinstance(value, int | float) else 0.0
 
 
 def _seen_from(frame: Pose, load: Load | None) -> Load | None:

@@ -6,7 +6,7 @@ sets system variables for one motion. A motion to ``$POS_ACT`` or ``$AXIS_ACT`` 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from ....core.errors import InputError, SourceError, Span
@@ -23,27 +23,20 @@ from ..syntax.tree import MotionInstruction
 from ..values.data import Data
 from ..values.evaluator import Evaluator
 from ..values.frames import frame_of, pose_of
-from ..values.placement import Placement
 from ..values.predefined import MOTION, POSITION
 from ..values.provenance import KrlSource, LeafSource, Sources
 from ..values.scope import Scope, Variable
 from ..values.types import AXES, FRAME_FIELDS, POSES, KrlTypeError, convert
-from ..values.values import Pending, Struct, Unknown, Value, copied, shown
+from ..values.values import Pending, Placement, Struct, Unknown, Value, copied, shown
 from .arcs import beyond
 from .frames import Placements
 from .position import Position
-from .settings import Set, Settings
+from .settings import Settings
 from .targets import AXIS_NUMBERS, POSE_NUMBERS, ReadTarget, Targets, is_axes
 from .triggers import Triggers
 
-
-@dataclass(frozen=True, slots=True)
-class _Common:
-    """What every move has, converted."""
-
-    placement: Placement
-    speed: Set
-    zone: Set
+Common = tuple[Speed, Zone, Tool, WorkObject, Load | None]
+"""What every move has beside its target."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,10 +99,10 @@ class MotionReader:
                     f"{motion.word.upper()} takes a position, not axis values", motion.span
                 )
             found = self._constant_orientation(found, start, placement, motion)
-        common = self._common(motion, joint, placement)
+        common, *sources = self._common(motion, joint, placement)
         kind = MoveJ if joint else MoveL
-        move: Move = kind(found.target, *_fields(common), events=self.triggers.taken())
-        self._emit(motion, move, found, common)
+        move: Move = kind(found.target, *common, events=self.triggers.taken())
+        self._emit(motion, move, found, sources)
 
     # --------------------------------------------------------------------- one kind each
 
@@ -167,19 +160,19 @@ class MotionReader:
             complete = Struct("e6pos", {**found.complete.fields, **frame_of(target.pose).fields})
             found = replace(found, target=target, complete=complete, sources=Sources(()))
             via_part = Part(motion.targets[0].span)
-            for sources in (auxiliary.sources, found.sources):
-                self._read_by_expression(sources.entries)
+            for read in (auxiliary.sources, found.sources):
+                self._read_by_expression(read.entries)
         found = self._constant_orientation(found, start, placement, motion)
-        common = self._common(motion, False, placement)
+        common, *sources = self._common(motion, False, placement)
         assert isinstance(found.target, PoseTarget)
         move = MoveC(
             found.target,
-            *_fields(common),
+            *common,
             via=via,
             orientation=self._arc_orientation(motion),
             events=self.triggers.taken(),
         )
-        self._emit(motion, move, found, common, via_part)
+        self._emit(motion, move, found, sources, via_part)
 
     def _by_angle(
         self,
@@ -340,13 +333,17 @@ class MotionReader:
             if source is not None:
                 self.evaluator.reads.by_expression(source, self.transcript.move_index)  # type: ignore[arg-type]
 
-    def _common(self, motion: MotionInstruction, joint: bool, placement: Placement) -> _Common:
-        settings = self.settings
-        span = motion.span
+    def _common(
+        self, motion: MotionInstruction, joint: bool, placement: Placement
+    ) -> tuple[Common, Sources, Sources]:
+        """What every move has, and what its speed and zone are made of."""
+        settings, span = self.settings, motion.span
         speed = settings.joint_speed(span) if joint else settings.path_speed(span)
         spline = motion.word.startswith("s")
         zone = settings.zone(motion.approximation, joint, spline, motion.approximated)
-        return _Common(placement, speed, zone)
+        assert isinstance(speed.value, Speed) and not isinstance(zone.value, Speed)
+        at = placement.tool, placement.work_object, placement.load
+        return (speed.value, zone.value, *at), speed.sources, zone.sources
 
     def _part(self, span: Span, sources: Sources, predefined: str | None = None) -> Part:
         reads, index = self.evaluator.reads, self.transcript.move_index
@@ -361,14 +358,14 @@ class MotionReader:
         motion: MotionInstruction,
         move: Move,
         found: ReadTarget,
-        common: _Common,
+        sources: Sequence[Sources],
         via: Part | None = None,
     ) -> None:
         parts = MoveParts(
             motion.span,
             self._part(motion.targets[-1].span, found.sources, found.predefined),
-            self._part(motion.span, common.speed.sources),
-            self._part(motion.approximated, common.zone.sources),
+            self._part(motion.span, sources[0]),
+            self._part(motion.approximated, sources[1]),
             via,
         )
         if isinstance(found.target, PoseTarget):
@@ -389,13 +386,6 @@ def _held(cell: Variable) -> Value:
     value = cell.value
     assert value is not None and not isinstance(value, Pending)
     return value
-
-
-def _fields(common: _Common) -> tuple[Speed, Zone, Tool, WorkObject, Load | None]:
-    speed, zone = common.speed.value, common.zone.value
-    at = common.placement
-    assert isinstance(speed, Speed) and not isinstance(zone, Speed)
-    return speed, zone, at.tool, at.work_object, at.load
 
 
 def _only_position(found: ReadTarget) -> Sources:

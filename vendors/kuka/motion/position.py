@@ -17,9 +17,8 @@ from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.joint import JointKind
 from ....core.spatial.pose import Pose
 from ..values.frames import frame_of
-from ..values.placement import Placement
 from ..values.types import AXIS_FIELDS, EXTERNAL_FIELDS
-from ..values.values import Struct, Unknown, Value
+from ..values.values import Placement, Struct, Unknown, Value
 from .configuration import label
 
 if TYPE_CHECKING:

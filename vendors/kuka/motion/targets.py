@@ -16,10 +16,9 @@ from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
 from ..values.frames import pose_of
-from ..values.placement import Placement
 from ..values.provenance import Sources
 from ..values.types import AXES, AXIS_FIELDS, EXTERNAL_FIELDS, FRAME_FIELDS
-from ..values.values import Struct, Unknown, Value, find_unknown, left_open, shown
+from ..values.values import Placement, Struct, Unknown, Value, find_unknown, left_open, shown
 from .configuration import KukaConfiguration
 from .position import Position
 

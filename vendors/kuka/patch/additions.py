@@ -18,8 +18,6 @@ class PlacedMove:
     """A move where it stands.
 
     Args:
-        move: as it shall become.
-        statement: span of the motion instruction.
         literals: where the numbers of a variable stand that it reads.
     """
 

@@ -90,7 +90,7 @@ class KrlLiterals:
         elif isinstance(old, Speed) and isinstance(new, Speed):
             yield from _speed(old, new, len(use.origin.numbers))
         elif type(old) is type(new):
-            a, b, unit = _size(old), _size(new), _unit(old)  # type: ignore[arg-type]
+            (a, unit), (b, _) = _size(old), _size(new)  # type: ignore[arg-type]
             yield Component("APO", not _same(a, b), _scaled(a, b, unit))
 
     def _external(self, old: Sequence[float], new: Sequence[float]) -> Iterator[Component]:
@@ -161,18 +161,13 @@ def _speed(old: Speed, new: Speed, count: int) -> Iterator[Component]:
         yield Component(name, not _same(a, b), _scaled(a, b, unit))
 
 
-def _size(zone: Zone) -> float:
+def _size(zone: Zone) -> tuple[float, float]:
+    """The size of a zone, and KRL's unit in an SI unit."""
     if isinstance(zone, Radius):
-        return zone.tcp
-    if isinstance(zone, ContourFraction | SpeedFraction):
-        return zone.fraction
-    return zone.angle if isinstance(zone, Angle) else 0.0
-
-
-def _unit(zone: Zone) -> float:
-    if isinstance(zone, Radius):
-        return 1 / MM
-    return math.degrees(1.0) if isinstance(zone, Angle) else 100.0
+        return zone.tcp, 1 / MM
+    if isinstance(zone, Angle):
+        return zone.angle, _DEGREES
+    return (zone.fraction if isinstance(zone, ContourFraction | SpeedFraction) else 0.0), 100.0
 
 
 def _same(old: float | None, new: float | None) -> bool:

@@ -44,18 +44,10 @@ _WORDS = re.compile(r"(?i)(?:[ \t]+C_(?:PTP|DIS|ORI|VEL|SPL))+[ \t]*$")
 
 
 def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
-    """The files of ``program`` with its targets, speeds and zones.
+    """The program's files with its numbers; see `core.source.patch.plan.patch_program`.
 
     Args:
-        program: read from files, then changed.
         options: ``shared`` and ``derived``, each ``refuse`` or ``own``; see `PatchOptions`.
-
-    Returns:
-        The files that changed, by name.
-
-    Raises:
-        FlybyError: a change has no place in the text, or the patched text is not read as
-            ``program``.
     """
     reading = reading_of(program)
     places = Places(reading.files)
@@ -171,14 +163,11 @@ class _Edits:
         own = settings_of(use.move)
         if use.kind is Kind.SPEED:
             own = {k: text for k, text in own.items() if not k.startswith("$APO")}
-            before = self._settings_before(use)
+            before = settings_of(replace(use.move, speed=use.old))  # type: ignore[arg-type]
             own = {k: text for k, text in own.items() if before.get(k) != text}
         else:
             own = {k: text for k, text in own.items() if k.startswith("$APO")}
         self._additions.set(use.index, own)
-
-    def _settings_before(self, use: Use) -> dict[str, str]:
-        return settings_of(replace(use.move, speed=use.old))  # type: ignore[arg-type]
 
     # ------------------------------------------------------------------- approximation
 

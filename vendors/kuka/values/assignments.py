@@ -10,6 +10,7 @@ from .data import Data
 from .elements import Names, Path, spelled
 from .predefined import OUTPUTS
 from .scope import Scope, Variable
+from .types import no_component
 from .values import Array, Pending, Struct, Unknown, Value, copied, shown
 
 
@@ -121,11 +122,7 @@ class Assignment:
                 raise SourceError(f"{target.text} has no components", target.span)
             fields = self._data.types.get(holder.type)
             if fields is not None and step not in fields:
-                known = ", ".join(name.upper() for name in fields)
-                raise SourceError(
-                    f"{holder.type.upper()} has no component {step.upper()} (it has {known})",
-                    target.span,
-                )
+                raise SourceError(str(no_component(holder.type, step, fields)), target.span)
             holder.fields[step] = value
             return
         if not isinstance(holder, Array):

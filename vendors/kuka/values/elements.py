@@ -17,7 +17,7 @@ from .data import Data
 from .frames import null_frame
 from .predefined import NEVER_KNOWN, OUTPUTS, POSITION, STOPS_WHEN_READ
 from .scope import Scope, Variable
-from .types import PREDEFINED, KrlTypeError, convert
+from .types import PREDEFINED, KrlTypeError, convert, no_component
 from .values import Array, Choice, Pending, Struct, Unknown, Value, copied, shown, unplaced
 
 Position = Callable[[str, Span], Value]
@@ -184,11 +184,7 @@ class Names:
             found = value.fields.get(step)
             fields = self.data.types.get(value.type)
             if found is None and fields is not None and step not in fields:
-                known = ", ".join(name.upper() for name in fields)
-                raise SourceError(
-                    f"{value.type.upper()} has no component {step.upper()} (it has {known})",
-                    node.span,
-                )
+                raise SourceError(str(no_component(value.type, step, fields)), node.span)
             return found
         if not step:
             return value

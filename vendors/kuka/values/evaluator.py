@@ -75,7 +75,7 @@ class Evaluator:
         self.names = Names(self, data, course, position, advance)
         self.assign = Assignment(data, self.names).assign
         self._evaluate: dict[type, Callable[..., Value]] = {
-            Flat: self._flat,
+            Flat: lambda node, scope, datum: flat_literal(node, datum),
             Aggregate: self._aggregate,
             Operation: self._operation,
             Unary: self._unary,
@@ -135,9 +135,6 @@ class Evaluator:
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise SourceError(f"{use} is a number, not {shown(value)}", expression.span)
         return value
-
-    def _flat(self, node: Flat, scope: Scope, datum: str | None) -> Value:
-        return flat_literal(node, datum)
 
     def _aggregate(self, node: Aggregate, scope: Scope, datum: str | None) -> Value:
         """An aggregate with structures or expressions in it; its numbers belong to one literal."""

@@ -15,11 +15,12 @@ def pose_of(fields: Mapping[str, Value]) -> Pose:
     Raises:
         InputError: a number is not finite.
     """
-    x, y, z, a, b, c = (_number(fields.get(name)) for name in "xyzabc")
+    x, y, z, a, b, c = (number_or_zero(fields.get(name)) for name in "xyzabc")
     return Pose((x / 1000, y / 1000, z / 1000), quaternion(a, b, c))
 
 
-def _number(value: Value | None) -> float:
+def number_or_zero(value: Value | None) -> float:
+    """A component; one that is not set, or not known, counts as 0."""
     return float(value) if isinstance(value, int | float) else 0.0
 
 

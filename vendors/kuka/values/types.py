@@ -7,7 +7,7 @@ the inline forms' FDAT, PDAT, LDAT).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from .values import Array, Choice, Real, Struct, Unknown, Value, Whole, leaf_of, shown
 
@@ -18,6 +18,12 @@ EXTERNAL_FIELDS = ("e1", "e2", "e3", "e4", "e5", "e6")
 
 class KrlTypeError(Exception):
     """A value is of another type than is wanted; the message says both."""
+
+
+def no_component(type_name: str, name: str, fields: Iterable[str]) -> KrlTypeError:
+    """The error that a structure has no such component."""
+    known = ", ".join(field.upper() for field in fields)
+    return KrlTypeError(f"{type_name.upper()} has no component {name.upper()} (it has {known})")
 
 
 def _fields(text: str) -> dict[str, str]:
@@ -127,10 +133,7 @@ def _struct(value: Struct, type_name: str, fields: Mapping[str, str], types: Typ
         if wanted is None:
             if value.type and type_name in POSES | AXES:
                 continue  # an E6POS handed to a POS or FRAME
-            known = ", ".join(f.upper() for f in fields)
-            raise KrlTypeError(
-                f"{type_name.upper()} has no component {name.upper()} (it has {known})"
-            )
+            raise no_component(type_name, name, fields)
         if wanted in ("", "char") or isinstance(part, Array | Choice):
             made[name] = part
             continue

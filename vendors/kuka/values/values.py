@@ -13,9 +13,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from ....core.errors import SourceError, Span
+from ....core.program.tool import Load, Tool, WorkObject
 from ....core.source.text.files import SourceText
 from ..syntax.expression_tree import Expression
-from .placement import Placement
 
 
 class Root:
@@ -147,6 +147,15 @@ class Array:
         """An array of its own with the same values."""
         items = {k: v if isinstance(v, Pending) else copied(v) for k, v in self.items.items()}
         return Array(self.type, self.sizes, items)
+
+
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """Tool, work object and payload of a move."""
+
+    tool: Tool
+    work_object: WorkObject
+    load: Load | None
 
 
 @dataclass(frozen=True, slots=True)

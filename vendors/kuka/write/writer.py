@@ -51,13 +51,7 @@ EXTERNALS = (
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """What stands round the statements of a program.
-
-    Args:
-        header: comments at the top.
-        before: statements before the first.
-        after: statements after the last.
-    """
+    """What stands round the statements of a program."""
 
     header: Sequence[str] = ()
     before: Sequence[str] = ()

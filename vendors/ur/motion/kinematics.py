@@ -48,6 +48,9 @@ class KinematicsRun(Evaluation, Protocol):
         """Where the robot stands."""
 
 
+Ask = Callable[[KinematicsRun, Call, Scope], Located]
+
+
 def _as_pose(value: Value) -> Value:
     """An answer of six numbers, where a pose is asked for."""
     return UrPose(*value) if isinstance(value, tuple) and len(value) == _SIX else value
@@ -69,17 +72,18 @@ def _pose(run: KinematicsRun, call: Call, tool: Tool) -> Located:
     return Located(pose if isinstance(pose, Unknown) else value_of(pose))
 
 
-def _joints(run: KinematicsRun, call: Call, scope: Scope) -> Located:
-    told = given(run, call)
-    if told is None:
-        told = run.position.joints(f"{call.name}()", run.texts.span_of(call))
-    return Located(told)
+def _unless_told(ask: Callable[[KinematicsRun, Call, Scope], Value]) -> Ask:
+    """The user's answer goes before what the kinematics say."""
+
+    def asked(run: KinematicsRun, call: Call, scope: Scope) -> Located:
+        told = given(run, call)
+        return Located(ask(run, call, scope) if told is None else told)
+
+    return asked
 
 
-def _steady(run: KinematicsRun, call: Call, scope: Scope) -> Located:
-    """``is_steady()``: what stands behind a move is read when the robot has come to rest."""
-    told = given(run, call)
-    return Located(True if told is None else told)
+def _joints(run: KinematicsRun, call: Call, scope: Scope) -> Value:
+    return run.position.joints(f"{call.name}()", run.texts.span_of(call))
 
 
 def _tcp_offset(run: KinematicsRun, call: Call, scope: Scope) -> Located:
@@ -110,23 +114,15 @@ def _forward(run: KinematicsRun, call: Call, scope: Scope) -> Located:
     return Located(pose if isinstance(pose, Unknown) else value_of(pose))
 
 
-def _inverse(run: KinematicsRun, call: Call, scope: Scope) -> Located:
-    told = given(run, call)
-    return Located(solution(run, call, scope) if told is None else told)
-
-
-def _has_solution(run: KinematicsRun, call: Call, scope: Scope) -> Located:
-    told = given(run, call)
-    if told is not None:
-        return Located(told)
+def _has_solution(run: KinematicsRun, call: Call, scope: Scope) -> Value:
     found = solution(run, call, scope)
     span = run.texts.span_of(call)
     if isinstance(found, Unknown):
-        return Located(found)
+        return found
     if not run.position.has_robot:
-        return Located(Unknown(f"{call.name}, for which the robot's kinematics are needed", span))
+        return Unknown(f"{call.name}, for which the robot's kinematics are needed", span)
     near = found.near if isinstance(found.near, UrConfiguration) else None
-    return Located(run.position.solve(found.pose, found.tcp, near, span) is not None)
+    return run.position.solve(found.pose, found.tcp, near, span) is not None
 
 
 def solution(run: KinematicsRun, call: Call, scope: Scope) -> PendingInverse | Unknown:
@@ -219,7 +215,7 @@ def _checked_pose(run: KinematicsRun, value: Value, node: Expression) -> Pose:
         raise run.texts.error_at(fault, node) from None
 
 
-KINEMATICS: dict[str, Callable[[KinematicsRun, Call, Scope], Located]] = {
+KINEMATICS: dict[str, Ask] = {
     **dict.fromkeys(
         ("get_actual_tcp_pose", "get_target_tcp_pose", "get_target_waypoint", "tool_pose"),
         _tcp_pose,
@@ -232,12 +228,13 @@ KINEMATICS: dict[str, Callable[[KinematicsRun, Call, Scope], Located]] = {
             "get_joint_positions",
             "get_actual_joint_positions_history",
         ),
-        _joints,
+        _unless_told(_joints),
     ),
-    "is_steady": _steady,
+    # What stands behind a move is read when the robot has come to rest.
+    "is_steady": _unless_told(lambda run, call, scope: True),
     "get_tcp_offset": _tcp_offset,
     "get_forward_kin": _forward,
-    INVERSE: _inverse,
-    "get_inverse_kin_has_solution": _has_solution,
+    INVERSE: _unless_told(solution),
+    "get_inverse_kin_has_solution": _unless_told(_has_solution),
 }
 """Function that asks for the robot's position or kinematics → what carries it out."""

@@ -134,18 +134,19 @@ class _MoveReader:
         *vias, last = [self._target(self.given[name]) for name in self.signature.targets]
         numbers_ = {name: self._number(name) for name in self.signature.others}
         values = {name: value for name, (value, _) in numbers_.items()}
+        sources = {name: found.sources for name, (_, found) in numbers_.items()}
         speed, zone = self._speed(values), self._zone(values["r"])
         parts = MoveParts(
             self.span,
             last[1],
-            self._part(_SPEED, {n: f.sources for n, (_, f) in numbers_.items()}),
-            self._part(("r",), {n: f.sources for n, (_, f) in numbers_.items()}),
+            self._part(_SPEED, sources),
+            self._part(("r",), sources),
             vias[0][1] if vias else None,
         )
         common = speed, zone, self.tool, run.position.base
         run.literals.reader = ELSEWHERE
         if vias:
-            run.emit_move(*self._arc(vias[0], last, values["mode"], parts, common))
+            run.emit_move(self._arc(vias[0][0], last[0], values["mode"], common), parts)
             return
         kind = MoveJ if self.call.name in ("movej", "optimovej") else MoveL
         self._note_kind()
@@ -296,24 +297,16 @@ class _MoveReader:
 
     # ---------------------------------------------------------------------- arcs
 
-    def _arc(
-        self,
-        via: tuple[Target, Part],
-        end: tuple[Target, Part],
-        mode: float,
-        parts: MoveParts,
-        common: tuple[object, ...],
-    ) -> tuple[Move, MoveParts]:
+    def _arc(self, via: Target, end: Target, mode: float, common: tuple[object, ...]) -> Move:
         if mode not in (0.0, 1.0):
             raise SourceError(f"the mode of movec is 0 or 1, not {mode:g}", self.span)
-        middle, target = self._as_pose(via[0]), self._as_pose(end[0])
+        middle, target = self._as_pose(via), self._as_pose(end)
         if mode == 0.0:
             orientation = ArcOrientation.FIXED_FRAME
         else:
             orientation = ArcOrientation.FOLLOWS_ARC
             target = self._turned_along(middle, target)
-        made = MoveC(target, *common, via=middle, orientation=orientation)  # type: ignore[arg-type]
-        return made, parts
+        return MoveC(target, *common, via=middle, orientation=orientation)  # type: ignore[arg-type]
 
     def _as_pose(self, target: Target) -> PoseTarget:
         if isinstance(target, PoseTarget):

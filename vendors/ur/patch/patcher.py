@@ -27,19 +27,10 @@ from .places import PUT_IN, MoveCall, MoveCalls
 
 
 def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
-    """The files that a program was read from, with the numbers that it has now.
+    """The program's files with its numbers; see `core.source.patch.plan.patch_program`.
 
     Args:
-        program: read from files, then changed.
         options: ``shared`` and ``derived``, each ``refuse`` or ``own``; see `PatchOptions`.
-
-    Returns:
-        The files that changed, by name.
-
-    Raises:
-        InputError: a change has no place in the text, or reading the patched text does not give
-            the changed program.
-        MotionError: the same of one move.
     """
     chosen = PatchOptions.of(options, "URScript patcher")
     calls = MoveCalls(reading_of(program).files)

@@ -202,10 +202,6 @@ def _locate_literal(run: Evaluation, expression: Number | Numbers, scope: Scope)
     return Located(evaluate(run, expression, scope), (run.literals.literal(expression),))
 
 
-def _numbers(run: Evaluation, expression: Numbers, scope: Scope) -> Value:
-    return _listed(run, expression, expression.values)
-
-
 def _aggregate(run: Evaluation, aggregate: Aggregate, scope: Scope) -> Value:
     values = [plain(run, item, scope) for item in aggregate.items]
     return _listed(run, aggregate, tuple(values))
@@ -239,18 +235,6 @@ def _listed(run: Evaluation, node: Numbers | Aggregate, values: tuple[Value, ...
         raise run.texts.error_at(fault, node) from None
 
 
-def _locate_call(run: Evaluation, call: Call, scope: Scope) -> Located:
-    return run.call(call, scope)
-
-
-def _method(run: Evaluation, call: MethodCall, scope: Scope) -> Value:
-    return run.method(call, scope)
-
-
-def _thread(run: Evaluation, start: StartThread, scope: Scope) -> Value:
-    return run.start_thread(start, scope)
-
-
 def _unary(run: Evaluation, unary: Unary, scope: Scope) -> Value:
     try:
         return negate(unary.operator, plain(run, unary.operand, scope))
@@ -281,14 +265,14 @@ _EVALUATORS: dict[type, Callable[[Evaluation, Any, Scope], Value]] = {
     Number: _constant,
     Text: _constant,
     Constant: _constant,
-    Numbers: _numbers,
+    Numbers: lambda run, node, scope: _listed(run, node, node.values),
     Aggregate: _aggregate,
     Name: _read,
     Index: _read,
     Member: _member,
     Call: _read,
-    MethodCall: _method,
-    StartThread: _thread,
+    MethodCall: lambda run, call, scope: run.method(call, scope),
+    StartThread: lambda run, start, scope: run.start_thread(start, scope),
     Unary: _unary,
     Operation: _operation,
 }
@@ -298,5 +282,5 @@ _LOCATORS: dict[type, Callable[[Evaluation, Any, Scope], Located]] = {
     Name: _locate_name,
     Aggregate: _locate_aggregate,
     Index: _locate_index,
-    Call: _locate_call,
+    Call: lambda run, call, scope: run.call(call, scope),
 }

@@ -151,34 +151,29 @@ def speed_arguments(move: Move) -> str:
     Raises:
         InputError: the move has another speed than its call can give.
     """
-    check_speed(move.speed)
-    return _joint_speed(move.speed) if isinstance(move, MoveJ) else _tcp_speed(move.speed)
-
-
-def _tcp_speed(speed: Speed) -> str:
-    _refuse_shares(speed)
-    names = "Speed.tcp_acceleration", "Speed.tcp"
-    return _arguments(speed.tcp_acceleration, speed.tcp, speed.duration, names)
-
-
-def _joint_speed(speed: Speed) -> str:
-    if speed.tcp is not None:
+    speed = move.speed
+    check_speed(speed)
+    if isinstance(move, MoveJ) and speed.tcp is not None:
         raise InputError(
             "URScript's movej has no limit on the speed of the TCP (Speed.tcp): give the move a "
             "joint speed or a duration"
         )
-    _refuse_shares(speed)
-    names = "Speed.joint_acceleration", "Speed.joint"
-    return _arguments(speed.joint_acceleration, speed.joint, speed.duration, names)
-
-
-def _refuse_shares(speed: Speed) -> None:
     for name, what in _SHARES.items():
         if getattr(speed, name) != 1.0:
             raise InputError(
                 f"there is no argument for {what} (Speed.{name}): give a speed and an acceleration "
                 "that stay within it, or write optimove with the option shares=optimove"
             )
+    paced = "joint" if isinstance(move, MoveJ) else "tcp"
+    fields = {"a": f"{paced}_acceleration", "v": paced, "t": "duration"}
+    given = {argument: getattr(speed, field) for argument, field in fields.items()}
+    for argument in ("a", "v"):
+        if given["t"] is None and given[argument] is None:
+            raise InputError(
+                f"URScript needs Speed.{fields[argument]}: without it the controller takes a "
+                "default of its own"
+            )
+    return ", ".join(f"{k}={number(v)}" for k, v in given.items() if v is not None)
 
 
 def gives_shares(speed: Speed) -> bool:
@@ -199,16 +194,3 @@ def shares(move: Move) -> str:
         raise InputError("optimove takes shares of the robot's speed and acceleration alone")
     a, v = speed.joint_acceleration_fraction, speed.joint_fraction
     return f"a={number(a)}, v={number(v)}"
-
-
-def _arguments(
-    acceleration: float | None, speed: float | None, duration: float | None, names: tuple[str, str]
-) -> str:
-    given = {"a": acceleration, "v": speed, "t": duration}
-    if duration is None:
-        for name, value in zip(names, (acceleration, speed), strict=True):
-            if value is None:
-                raise InputError(
-                    f"URScript needs {name}: without it the controller takes a default of its own"
-                )
-    return ", ".join(f"{k}={number(v)}" for k, v in given.items() if v is not None)

@@ -42,13 +42,7 @@ def write(program: Program, robot: Robot, options: Mapping[str, str]) -> Sources
 
 @dataclass(frozen=True, slots=True)
 class Script:
-    """The parts of a script before they become one text.
-
-    Args:
-        name: of its function.
-        declarations: lines that define its data.
-        statements: the lines of the function's body.
-    """
+    """The parts of a script before they become one text."""
 
     name: str
     declarations: list[str]
