@@ -19,7 +19,7 @@ where it does not, h = 3s² − 2s³ and K = 0, so that the edge is not bent.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
@@ -45,40 +45,33 @@ class Blend:
         InputError: α does not run from 0 to 1, or a leg would be driven backwards at its edge.
     """
 
-    kind: Literal["polynomial", "arc"] = field(
+    kind: Literal["polynomial", "arc"] = figure(
+        "kind",
+        Choice(("polynomial", "arc")),
+        Stage.PATH,
+        "polynomial, or the circle tangent to both legs (positions on straight legs only; "
+        "everything else then follows the polynomial)",
         default="polynomial",
-        metadata=figure(
-            "kind",
-            Choice(("polynomial", "arc")),
-            Stage.PATH,
-            "",
-            "polynomial, or the circle tangent to both legs (positions on straight legs only; "
-            "everything else then follows the polynomial)",
-            always=True,
-        ),
+        always=True,
     )
-    alpha: tuple[float, ...] = field(
+    alpha: tuple[float, ...] = figure(
+        "alpha",
+        Row(per="power of s"),
+        Stage.PATH,
+        "coefficients of α by rising powers of s, α(0) = 0 and α(1) = 1",
+        unit="1",
         default=(0.0, 1.0),
-        metadata=figure(
-            "alpha",
-            Row(per="power of s"),
-            Stage.PATH,
-            "1",
-            "coefficients of α by rising powers of s, α(0) = 0 and α(1) = 1",
-            always=True,
-        ),
+        always=True,
     )
-    beta: tuple[float, ...] = field(
+    beta: tuple[float, ...] = figure(
+        "beta",
+        Row(per="power of s"),
+        Stage.PATH,
+        "coefficients of the polynomial that multiplies s² (1 − s)²",
+        unit="1",
         default=(),
-        metadata=figure(
-            "beta",
-            Row(per="power of s"),
-            Stage.PATH,
-            "1",
-            "coefficients of the polynomial that multiplies s² (1 − s)²",
-            always=True,
-            fit=Fit(-8.0, 8.0, 0.5),
-        ),
+        always=True,
+        fit=Fit(-8.0, 8.0, 0.5),
     )
 
     def __post_init__(self) -> None:

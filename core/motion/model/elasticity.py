@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from ...errors import InputError
 from .figures import Fit, Stage, Tables, check_figures, figure, member
@@ -15,23 +15,16 @@ _LEAD = Fit(-5e-3, 5e-3, 1e-4)
 class Carried:
     """A mass on the axis of a joint, as the gears before it feel it."""
 
-    joint: int = field(
-        metadata=member(
-            "joint",
-            Whole(),
-            "",
-            "the joint of the arm, counted from one, on whose axis the mass is",
-        )
+    joint: int = member(
+        "joint", Whole(), "the joint of the arm, counted from one, on whose axis the mass is"
     )
-    lead: tuple[float, ...] = field(
-        metadata=member(
-            "lead_s2_per_m2",
-            Row(FINITE),
-            "s²/m²",
-            "lead in rad per N m, times kg, of each joint before that, first to last; a rigid "
-            "mass has none below zero, what is fitted may, as joints also bend each other",
-            fit=_LEAD,
-        )
+    lead: tuple[float, ...] = member(
+        "lead_s2_per_m2",
+        Row(FINITE),
+        "lead in rad per N m, times kg, of each joint before that, first to last; a rigid "
+        "mass has none below zero, what is fitted may, as joints also bend each other",
+        unit="s²/m²",
+        fit=_LEAD,
     )
 
 
@@ -39,20 +32,14 @@ class Carried:
 class Coupled:
     """A joint that the torque on another one bends as well."""
 
-    joint: int = field(
-        metadata=member("joint", Whole(), "", "the joint that leads, counted from one")
-    )
-    by: int = field(
-        metadata=member("by", Whole(), "", "the joint whose torque does it, counted from one")
-    )
-    share: float = field(
-        metadata=member(
-            "share",
-            RealNumber(),
-            "1",
-            "share of what the stiffness of that one alone lets it give way by",
-            fit=Fit(-2.0, 2.0, 0.1),
-        )
+    joint: int = member("joint", Whole(), "the joint that leads, counted from one")
+    by: int = member("by", Whole(), "the joint whose torque does it, counted from one")
+    share: float = member(
+        "share",
+        RealNumber(),
+        "share of what the stiffness of that one alone lets it give way by",
+        unit="1",
+        fit=Fit(-2.0, 2.0, 0.1),
     )
 
 
@@ -64,74 +51,59 @@ class Elasticity:
         InputError: a figure makes no sense, on its own or beside the others.
     """
 
-    own: tuple[float, ...] = field(
+    own: tuple[float, ...] = figure(
+        "own_s2",
+        Row(FINITE),
+        Stage.LEAD,
+        "lead per acceleration of the joint itself, whatever the posture; joints beyond have none",
+        unit="s²",
         default=(),
-        metadata=figure(
-            "own_s2",
-            Row(FINITE),
-            Stage.LEAD,
-            "s²",
-            "lead per acceleration of the joint itself, whatever the posture; joints beyond have "
-            "none",
-            fit=_LEAD,
-        ),
+        fit=_LEAD,
     )
-    carried: tuple[Carried, ...] = field(
-        default=(), metadata=figure("carried", Tables(Carried), Stage.LEAD, "", "masses on the arm")
+    carried: tuple[Carried, ...] = figure(
+        "carried", Tables(Carried), Stage.LEAD, "masses on the arm", default=()
     )
-    slack: tuple[float, ...] = field(
+    slack: tuple[float, ...] = figure(
+        "slack_rad",
+        Row(NOT_NEGATIVE),
+        Stage.LEAD,
+        "how much farther a joint gives way at most before its gear is stiff; joints beyond do not",
+        unit="rad",
         default=(),
-        metadata=figure(
-            "slack_rad",
-            Row(NOT_NEGATIVE),
-            Stage.LEAD,
-            "rad",
-            "how much farther a joint gives way at most before its gear is stiff; joints beyond "
-            "do not",
-            fit=Fit(0.0, 5e-3, 1e-4),
-        ),
+        fit=Fit(0.0, 5e-3, 1e-4),
     )
-    lag: tuple[float, ...] = field(
+    lag: tuple[float, ...] = figure(
+        "lag_s",
+        Row(FINITE),
+        Stage.LEAD,
+        "how far a joint is ahead of the others where it moves (below zero: behind), as the "
+        "servos of a measured arm follow at different distances; joints beyond are not",
+        unit="s",
         default=(),
-        metadata=figure(
-            "lag_s",
-            Row(FINITE),
-            Stage.LEAD,
-            "s",
-            "how far a joint is ahead of the others where it moves (below zero: behind), as the "
-            "servos of a measured arm follow at different distances; joints beyond are not",
-            fit=_LEAD,
-        ),
+        fit=_LEAD,
     )
-    weight: tuple[float, ...] = field(
+    weight: tuple[float, ...] = figure(
+        "weight",
+        Row(FINITE),
+        Stage.LEAD,
+        "how many times the masses' weight the gear of a joint holds, which uses up slack; "
+        "joints beyond hold none",
+        unit="1",
         default=(),
-        metadata=figure(
-            "weight",
-            Row(FINITE),
-            Stage.LEAD,
-            "1",
-            "how many times the masses' weight the gear of a joint holds, which uses up slack; "
-            "joints beyond hold none",
-            fit=Fit(-10.0, 10.0, 0.5),
-        ),
+        fit=Fit(-10.0, 10.0, 0.5),
     )
-    spring: tuple[float, ...] = field(
+    spring: tuple[float, ...] = figure(
+        "spring_rad",
+        Row(FINITE),
+        Stage.LEAD,
+        "lead that a spring which balances the arm adds to what the gear holds, times the "
+        "sine of the joint; joints beyond have none",
+        unit="rad",
         default=(),
-        metadata=figure(
-            "spring_rad",
-            Row(FINITE),
-            Stage.LEAD,
-            "rad",
-            "lead that a spring which balances the arm adds to what the gear holds, times the "
-            "sine of the joint; joints beyond have none",
-            fit=_LEAD,
-        ),
+        fit=_LEAD,
     )
-    coupled: tuple[Coupled, ...] = field(
-        default=(),
-        metadata=figure(
-            "coupled", Tables(Coupled), Stage.LEAD, "", "joints that the torque on others bends"
-        ),
+    coupled: tuple[Coupled, ...] = figure(
+        "coupled", Tables(Coupled), Stage.LEAD, "joints that the torque on others bends", default=()
     )
 
     def __post_init__(self) -> None:

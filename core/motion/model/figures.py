@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from enum import IntEnum
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar, cast
@@ -171,26 +171,26 @@ def figure(
     key: str,
     kind: Kind,
     stage: Stage,
-    unit: str,
     help: str,
     *,
+    default: Any,
+    unit: str = "",
     always: bool = False,
     fit: Fit | None = None,
-) -> dict[str, Figure]:
-    """What a field of a motion model, or of a part of one, says of the figure that it is."""
-    return {_FIGURE: Figure(key, kind, stage, unit, help, always, fit)}
+) -> Any:
+    """A field of a motion model, or of a part of one, that is a figure; see `Figure`."""
+    said = Figure(key, kind, stage, unit, help, always, fit, neutral=default)
+    return field(default=default, metadata={_FIGURE: said})
 
 
-def part(key: str) -> dict[str, str]:
-    """What a field says that holds figures of its own, which files state below a key."""
-    return {_PART: key}
+def part(key: str, default: DataclassInstance) -> Any:
+    """A field that holds figures of its own, which files state below a key."""
+    return field(default=default, metadata={_PART: key})
 
 
-def member(
-    key: str, kind: Kind, unit: str, help: str, *, fit: Fit | None = None
-) -> dict[str, Member]:
-    """What a field of one of several tables says; see `Member`."""
-    return {_FIGURE: Member(key, kind, unit, help, fit)}
+def member(key: str, kind: Kind, help: str, *, unit: str = "", fit: Fit | None = None) -> Any:
+    """A field of one of several tables; see `Member`."""
+    return field(metadata={_FIGURE: Member(key, kind, unit, help, fit)})
 
 
 @cache
@@ -199,7 +199,7 @@ def figures_of(owner: type[DataclassInstance]) -> tuple[Figure, ...]:
     found: list[Figure] = []
     for one in fields(owner):
         if _FIGURE in one.metadata:
-            found.append(replace(one.metadata[_FIGURE], neutral=one.default, path=(one.name,)))
+            found.append(replace(one.metadata[_FIGURE], path=(one.name,)))
         elif _PART in one.metadata:
             key = one.metadata[_PART]
             found += [

@@ -32,243 +32,196 @@ class MotionModel:
         InputError: a figure makes no sense; the message names its key.
     """
 
-    period: float = field(
+    period: float = figure(
+        "period_s",
+        RealNumber(POSITIVE),
+        Stage.SAMPLES,
+        "interpolation period of the controller",
+        unit="s",
         default=0.004,
-        metadata=figure(
-            "period_s",
-            RealNumber(POSITIVE),
-            Stage.SAMPLES,
-            "s",
-            "interpolation period of the controller",
-            always=True,
-        ),
+        always=True,
     )
-    tcp: Blend = field(default=PARABOLA, metadata=part("blend.tcp"))
-    joint: Blend = field(default=PARABOLA, metadata=part("blend.joint"))
-    orientation: Blend = field(default=PARABOLA, metadata=part("blend.orientation"))
-    line_turn: LineTurn = field(
+    tcp: Blend = part("blend.tcp", PARABOLA)
+    joint: Blend = part("blend.joint", PARABOLA)
+    orientation: Blend = part("blend.orientation", PARABOLA)
+    line_turn: LineTurn = figure(
+        "line.turn",
+        Choice(LineTurn),
+        Stage.PATH,
+        "how the tool turns along lines, and what limits of turning hold for there",
         default=LineTurn.AXIS,
-        metadata=figure(
-            "line.turn",
-            Choice(LineTurn),
-            Stage.PATH,
-            "",
-            "how the tool turns along lines, and what limits of turning hold for there",
-        ),
     )
-    arc_turn: ArcTurn = field(
+    arc_turn: ArcTurn = figure(
+        "arc.turn",
+        Choice(ArcTurn),
+        Stage.PATH,
+        "how the tool turns along arcs",
         default=ArcTurn.PROGRAMMED,
-        metadata=figure(
-            "arc.turn", Choice(ArcTurn), Stage.PATH, "", "how the tool turns along arcs"
-        ),
     )
-    overlap: Overlap = field(
+    overlap: Overlap = figure(
+        "zone.overlap",
+        Choice(Overlap),
+        Stage.PATH,
+        "what neighbouring zones do to each other",
         default=Overlap.HALF,
-        metadata=figure(
-            "zone.overlap",
-            Choice(Overlap),
-            Stage.PATH,
-            "",
-            "what neighbouring zones do to each other",
-            always=True,
-        ),
+        always=True,
     )
-    neighbour_fraction: float = field(
+    neighbour_fraction: float = figure(
+        "zone.neighbour_fraction",
+        RealNumber(
+            Range(0.0, 0.5, above=True, reason="beyond a half, neighbouring zones would overlap")
+        ),
+        Stage.PATH,
+        'share of the way to a neighbour that a zone may reach (overlap "half")',
+        unit="1",
         default=0.5,
-        metadata=figure(
-            "zone.neighbour_fraction",
-            RealNumber(
-                Range(
-                    0.0, 0.5, above=True, reason="beyond a half, neighbouring zones would overlap"
-                )
-            ),
-            Stage.PATH,
-            "1",
-            'share of the way to a neighbour that a zone may reach (overlap "half")',
-            always=True,
-            fit=Fit(0.0, 0.5),
-        ),
+        always=True,
+        fit=Fit(0.0, 0.5),
     )
-    orientation_zone: OrientationZone = field(
+    orientation_zone: OrientationZone = figure(
+        "zone.orientation",
+        Choice(OrientationZone),
+        Stage.PATH,
+        "in which zone the tool begins to turn towards the next target",
         default=OrientationZone.TCP,
-        metadata=figure(
-            "zone.orientation",
-            Choice(OrientationZone),
-            Stage.PATH,
-            "",
-            "in which zone the tool begins to turn towards the next target",
-            always=True,
-        ),
+        always=True,
     )
-    mixed_space: Space = field(
+    mixed_space: Space = figure(
+        "zone.mixed_space",
+        Choice(Space),
+        Stage.PATH,
+        "the space a corner between a joint move and a TCP move is blended in",
         default=Space.JOINT,
-        metadata=figure(
-            "zone.mixed_space",
-            Choice(Space),
-            Stage.PATH,
-            "",
-            "the space a corner between a joint move and a TCP move is blended in",
-            always=True,
-        ),
+        always=True,
     )
-    stops_at_pure_reorientation: bool = field(
+    stops_at_pure_reorientation: bool = figure(
+        "zone.stops_at_pure_reorientation",
+        Truth(),
+        Stage.PATH,
+        "no zone between a TCP move and a mere reorientation",
         default=False,
-        metadata=figure(
-            "zone.stops_at_pure_reorientation",
-            Truth(),
-            Stage.PATH,
-            "",
-            "no zone between a TCP move and a mere reorientation",
-            always=True,
-        ),
+        always=True,
     )
-    pace: Pace = field(
-        default=Pace.LIMITS,
-        metadata=figure("zone.pace", Choice(Pace), Stage.PATH, "", "how fast zones are driven"),
+    pace: Pace = figure(
+        "zone.pace", Choice(Pace), Stage.PATH, "how fast zones are driven", default=Pace.LIMITS
     )
-    duration: DurationRule = field(
+    duration: DurationRule = figure(
+        "time.duration",
+        Choice(DurationRule),
+        Stage.TIMING,
+        "how a move is driven that is programmed to take a time",
         default=DurationRule.SCALED,
-        metadata=figure(
-            "time.duration",
-            Choice(DurationRule),
-            Stage.TIMING,
-            "",
-            "how a move is driven that is programmed to take a time",
-        ),
     )
-    start_ramp: float = field(
+    start_ramp: float = figure(
+        "time.start_ramp_s",
+        RealNumber(_WAIT),
+        Stage.TIMING,
+        "over which a program's time comes up to speed when it starts",
+        unit="s",
         default=0.0,
-        metadata=figure(
-            "time.start_ramp_s",
-            RealNumber(_WAIT),
-            Stage.TIMING,
-            "s",
-            "over which a program's time comes up to speed when it starts",
-            fit=Fit(),
-        ),
+        fit=Fit(),
     )
-    ramp: float = field(
+    ramp: float = figure(
+        "time.ramp_s",
+        RealNumber(_WAIT),
+        Stage.TIMING,
+        "length of a moving average over the place on the path, before the joints are "
+        "smoothed: accelerations along the path rise and fall over this time",
+        unit="s",
         default=0.0,
-        metadata=figure(
-            "time.ramp_s",
-            RealNumber(_WAIT),
-            Stage.TIMING,
-            "s",
-            "length of a moving average over the place on the path, before the joints are "
-            "smoothed: accelerations along the path rise and fall over this time",
-            fit=Fit(0.0, 0.5, 0.02),
-        ),
+        fit=Fit(0.0, 0.5, 0.02),
     )
-    smoothing: tuple[float, ...] = field(
+    smoothing: tuple[float, ...] = figure(
+        "time.smoothing_s",
+        Row(_WAIT, per="average", single=True),
+        Stage.TIMING,
+        "lengths of moving averages, one after the other, over the commanded joints",
+        unit="s",
         default=(),
-        metadata=figure(
-            "time.smoothing_s",
-            Row(_WAIT, per="average", single=True),
-            Stage.TIMING,
-            "s",
-            "lengths of moving averages, one after the other, over the commanded joints",
-            always=True,
-            fit=Fit(0.0, 0.5, 0.01),
-        ),
+        always=True,
+        fit=Fit(0.0, 0.5, 0.01),
     )
-    settling: float | None = field(
+    settling: float | None = figure(
+        "time.settling_s",
+        RealNumber(_WAIT, optional=True),
+        Stage.TIMING,
+        "how long the stamped motion waits at stops on the way; without, until the commanded "
+        "motion has come to rest, which takes the whole window of ramp and smoothing",
+        unit="s",
         default=None,
-        metadata=figure(
-            "time.settling_s",
-            RealNumber(_WAIT, optional=True),
-            Stage.TIMING,
-            "s",
-            "how long the stamped motion waits at stops on the way; without, until the commanded "
-            "motion has come to rest, which takes the whole window of ramp and smoothing",
-            fit=Fit(0.0, 1.0, 0.1),
-        ),
+        fit=Fit(0.0, 1.0, 0.1),
     )
-    in_position: float = field(
+    in_position: float = figure(
+        "time.in_position_rad",
+        RealNumber(_WAIT),
+        Stage.TIMING,
+        "how near all axes are to be to a stop on the way for the wait to end earlier; zero "
+        "for waits of one length",
+        unit="rad (m of a linear axis)",
         default=0.0,
-        metadata=figure(
-            "time.in_position_rad",
-            RealNumber(_WAIT),
-            Stage.TIMING,
-            "rad (m of a linear axis)",
-            "how near all axes are to be to a stop on the way for the wait to end earlier; zero "
-            "for waits of one length",
-            fit=Fit(0.0, 0.1, 2e-3),
-        ),
+        fit=Fit(0.0, 0.1, 2e-3),
     )
-    in_position_time: float | None = field(
+    in_position_time: float | None = figure(
+        "time.in_position_time_s",
+        RealNumber(_WAIT, optional=True),
+        Stage.TIMING,
+        "for how long they are to be; without, as long as the whole window of ramp and smoothing",
+        unit="s",
         default=None,
-        metadata=figure(
-            "time.in_position_time_s",
-            RealNumber(_WAIT, optional=True),
-            Stage.TIMING,
-            "s",
-            "for how long they are to be; without, as long as the whole window of ramp and "
-            "smoothing",
-            fit=Fit(0.0, 1.0, 0.05),
-        ),
+        fit=Fit(0.0, 1.0, 0.05),
     )
-    jerk: float | None = field(
+    jerk: float | None = figure(
+        "time.jerk",
+        RealNumber(POSITIVE, optional=True),
+        Stage.TIMING,
+        "joint jerk limit as a multiple of each joint's acceleration limit per second, held "
+        "by lengthening the longest moving average",
+        unit="1/s",
         default=None,
-        metadata=figure(
-            "time.jerk",
-            RealNumber(POSITIVE, optional=True),
-            Stage.TIMING,
-            "1/s",
-            "joint jerk limit as a multiple of each joint's acceleration limit per second, held "
-            "by lengthening the longest moving average",
-            always=True,
-            fit=Fit(),
-        ),
+        always=True,
+        fit=Fit(),
     )
     # Where corners of superposed legs are too sharp for their speed, it makes blends smaller.
-    tcp_acceleration: float | None = field(
+    tcp_acceleration: float | None = figure(
+        "limit.tcp_acceleration",
+        RealNumber(POSITIVE, optional=True),
+        Stage.PATH,
+        "along the path, where the program states none",
+        unit="m/s²",
         default=None,
-        metadata=figure(
-            "limit.tcp_acceleration",
-            RealNumber(POSITIVE, optional=True),
-            Stage.PATH,
-            "m/s²",
-            "along the path, where the program states none",
-            fit=Fit(),
-        ),
+        fit=Fit(),
     )
-    reorientation_acceleration: float | None = field(
+    reorientation_acceleration: float | None = figure(
+        "limit.reorientation_acceleration",
+        RealNumber(POSITIVE, optional=True),
+        Stage.TIMING,
+        "of the turn along the path, where the program states none",
+        unit="rad/s²",
         default=None,
-        metadata=figure(
-            "limit.reorientation_acceleration",
-            RealNumber(POSITIVE, optional=True),
-            Stage.TIMING,
-            "rad/s²",
-            "of the turn along the path, where the program states none",
-            fit=Fit(),
-        ),
+        fit=Fit(),
     )
-    centripetal: float | None = field(
+    centripetal: float | None = figure(
+        "limit.centripetal",
+        RealNumber(POSITIVE, optional=True),
+        Stage.PATH,
+        "greatest centripetal acceleration of the TCP, as a multiple of the acceleration "
+        "along the path",
+        unit="1",
         default=None,
-        metadata=figure(
-            "limit.centripetal",
-            RealNumber(POSITIVE, optional=True),
-            Stage.PATH,
-            "1",
-            "greatest centripetal acceleration of the TCP, as a multiple of the acceleration "
-            "along the path",
-            fit=Fit(),
-        ),
+        fit=Fit(),
     )
-    joint_acceleration_scale: tuple[float, ...] = field(
+    joint_acceleration_scale: tuple[float, ...] = figure(
+        "limit.joint_acceleration_scale",
+        Row(Range(1e-4, 1e4), neutral=1.0),
+        Stage.TIMING,
+        "what the robot's own acceleration limits are multiplied by; joints beyond the last "
+        "keep theirs",
+        unit="1",
         default=(),
-        metadata=figure(
-            "limit.joint_acceleration_scale",
-            Row(Range(1e-4, 1e4), neutral=1.0),
-            Stage.TIMING,
-            "1",
-            "what the robot's own acceleration limits are multiplied by; joints beyond the last "
-            "keep theirs",
-            fit=Fit(0.1, 10.0, 0.5),
-        ),
+        fit=Fit(0.1, 10.0, 0.5),
     )
-    torque: Torque = field(default=WITHOUT_LIMIT, metadata=part("torque"))
-    elasticity: Elasticity = field(default=RIGID, metadata=part("elasticity"))
+    torque: Torque = part("torque", WITHOUT_LIMIT)
+    elasticity: Elasticity = part("elasticity", RIGID)
     provenance: Mapping[str, Provenance] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from ...errors import InputError
 from .figures import Fit, Stage, Tables, check_figures, figure, member
@@ -13,22 +13,15 @@ from .kinds import NOT_NEGATIVE, POSITIVE, Row, Whole
 class Borne:
     """A mass on the axis of a joint, as the motors before it feel it."""
 
-    joint: int = field(
-        metadata=member(
-            "joint",
-            Whole(),
-            "",
-            "the joint of the arm, counted from one, on whose axis the mass is",
-        )
+    joint: int = member(
+        "joint", Whole(), "the joint of the arm, counted from one, on whose axis the mass is"
     )
-    share: tuple[float, ...] = field(
-        metadata=member(
-            "share_s2_per_m2",
-            Row(NOT_NEGATIVE),
-            "s²/m²",
-            "share of the limit per N m, times kg, of each joint before that, first to last",
-            fit=Fit(0.0, 10.0, 0.05),
-        )
+    share: tuple[float, ...] = member(
+        "share_s2_per_m2",
+        Row(NOT_NEGATIVE),
+        "share of the limit per N m, times kg, of each joint before that, first to last",
+        unit="s²/m²",
+        fit=Fit(0.0, 10.0, 0.05),
     )
 
 
@@ -40,42 +33,36 @@ class Torque:
         InputError: a figure makes no sense, on its own or beside the others.
     """
 
-    own: tuple[float, ...] = field(
+    own: tuple[float, ...] = figure(
+        "own_s2",
+        Row(POSITIVE),
+        Stage.TIMING,
+        "share of its limit per acceleration of the joint itself, whatever the posture; "
+        "joints that have one are limited by torque, those beyond by their acceleration",
+        unit="s²/rad",
         default=(),
-        metadata=figure(
-            "own_s2",
-            Row(POSITIVE),
-            Stage.TIMING,
-            "s²/rad",
-            "share of its limit per acceleration of the joint itself, whatever the posture; "
-            "joints that have one are limited by torque, those beyond by their acceleration",
-            fit=Fit(1e-6, 10.0, 0.05),
-        ),
+        fit=Fit(1e-6, 10.0, 0.05),
     )
-    carried: tuple[Borne, ...] = field(
-        default=(), metadata=figure("carried", Tables(Borne), Stage.TIMING, "", "masses on the arm")
+    carried: tuple[Borne, ...] = figure(
+        "carried", Tables(Borne), Stage.TIMING, "masses on the arm", default=()
     )
-    weight: tuple[float, ...] = field(
+    weight: tuple[float, ...] = figure(
+        "weight",
+        Row(NOT_NEGATIVE),
+        Stage.TIMING,
+        "share of the masses' weight that the joint's motor holds; joints beyond hold none",
+        unit="1",
         default=(),
-        metadata=figure(
-            "weight",
-            Row(NOT_NEGATIVE),
-            Stage.TIMING,
-            "1",
-            "share of the masses' weight that the joint's motor holds; joints beyond hold none",
-            fit=Fit(0.0, 5.0, 0.5),
-        ),
+        fit=Fit(0.0, 5.0, 0.5),
     )
-    fade: tuple[float, ...] = field(
+    fade: tuple[float, ...] = figure(
+        "fade_s2",
+        Row(NOT_NEGATIVE),
+        Stage.TIMING,
+        "share of the limit that is lost per square of the joint's speed",
+        unit="s²/rad²",
         default=(),
-        metadata=figure(
-            "fade_s2",
-            Row(NOT_NEGATIVE),
-            Stage.TIMING,
-            "s²/rad²",
-            "share of the limit that is lost per square of the joint's speed",
-            fit=Fit(0.0, 10.0, 0.2),
-        ),
+        fit=Fit(0.0, 10.0, 0.2),
     )
 
     def __post_init__(self) -> None:
