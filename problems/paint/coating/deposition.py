@@ -23,7 +23,7 @@ from ....core.errors import InputError
 from ..spray.footprint import Footprint
 from ..spray.trajectory import PaintTrajectory
 from ..surface.samples import SurfaceSamples
-from .kernels import Brush, Cone, Guns
+from .kernels import Brush, Cone, Guns, Surface
 from .loops import add_adjoint, add_block, add_coat, fill_jacobian, fill_rates, live_segments
 from .surface_blocks import grouped
 
@@ -92,20 +92,19 @@ class Deposition:
         self.samples = samples
         self.footprint = footprint
         self.subpoints = subpoints
-        self._blocks, self._order = grouped(samples)
-        self._brush = _brush(footprint)
-        self._visible = self._mask(visible)
+        blocks, self._order = grouped(samples)
+        self._surface = Surface(_brush(footprint), blocks, self._mask(visible))
 
     def with_footprint(self, footprint: Footprint) -> Deposition:
         """The same surface under another gun."""
         made = copy(self)
-        made.footprint, made._brush = footprint, _brush(footprint)
+        made.footprint, made._surface = footprint, self._surface._replace(brush=_brush(footprint))
         return made
 
     def with_visible(self, visible: BoolArray | None) -> Deposition:
         """The same with another mask (V, S), or none."""
         made = copy(self)
-        made._visible = self._mask(visible)
+        made._surface = self._surface._replace(visible=self._mask(visible))
         return made
 
     # ------------------------------------------------------------------------------- the coat
@@ -117,7 +116,7 @@ class Deposition:
         coat = np.zeros(self.samples.size)
 
         def lay(first: int, last: int) -> None:
-            add_coat(self._brush, guns, self._blocks, self._visible, amount, first, last, coat)
+            add_coat(self._surface, guns, amount, first, last, coat)
 
         self._shared(lay)
         return self._scattered(coat)
@@ -144,7 +143,7 @@ class Deposition:
             values = np.zeros((len(points), len(live)))
             column = np.full(trajectory.segments, -1)
             column[live] = np.arange(len(live))
-            fill_rates(self._brush, guns, self._blocks, self._visible, column, first, last, values)
+            fill_rates(self._surface, guns, column, first, last, values)
             values *= trajectory.flow[live]
             return RateRows(points, live, values)
 
@@ -165,9 +164,7 @@ class Deposition:
 
         def pull(first: int, last: int) -> tuple[FloatArray, FloatArray, FloatArray]:
             parts = np.zeros((waypoints, 3)), np.zeros((waypoints, 3)), np.zeros(len(amount))
-            add_adjoint(
-                self._brush, guns, self._blocks, self._visible, amount, weights, first, last, *parts
-            )
+            add_adjoint(self._surface, guns, amount, weights, first, last, *parts)
             return parts
 
         parts = zip(*self._shared(pull), strict=True)
@@ -201,8 +198,7 @@ class Deposition:
             column[live] = 5 * len(near) + np.arange(len(live))
             points = self._order[self._points(first, last)]
             rows = np.zeros((len(points), 5 * len(near) + len(live)))
-            surface = self._brush, guns, self._blocks, self._visible
-            fill_jacobian(*surface, amount, turns, place, column, first, last, rows)
+            fill_jacobian(self._surface, guns, amount, turns, place, column, first, last, rows)
             rows[:, 5 * len(near) :] *= trajectory.flow[live]
             rows *= roots[points, None]
             columns = (5 * near[:, None] + np.arange(5)).ravel()
@@ -218,7 +214,7 @@ class Deposition:
     @cached_property
     def _chunks(self) -> list[tuple[int, int]]:
         """Ranges of groups of about as many points as a matrix product likes."""
-        starts = self._blocks.starts
+        starts = self._surface.blocks.starts
         ends = np.searchsorted(starts, np.arange(_CHUNK, starts[-1] + _CHUNK, _CHUNK), side="left")
         limits = np.unique(np.concatenate(([0], np.minimum(ends, len(starts) - 1))))
         return [(int(a), int(b)) for a, b in pairwise(limits)]
@@ -235,20 +231,23 @@ class Deposition:
     def _guns(self, trajectory: PaintTrajectory) -> Guns:
         if (trajectory.fan is None) and self.footprint.aspect != 1.0:
             raise InputError("an elliptic footprint needs the fan's direction at every waypoint")
-        if len(self._visible) and self._visible.shape[1] != trajectory.segments:
+        visible = self._surface.visible
+        if len(visible) and visible.shape[1] != trajectory.segments:
             raise InputError(
-                f"the mask is of {self._visible.shape[1]} segments, the trajectory has "
+                f"the mask is of {visible.shape[1]} segments, the trajectory has "
                 f"{trajectory.segments}"
             )
         return guns_along(trajectory, self.subpoints, self.footprint.aspect != 1.0)
 
     def _live(self, guns: Guns, flow: FloatArray, first: int, last: int) -> IntArray:
         live = np.zeros(len(flow), dtype=np.bool_)
-        live_segments(self._brush, guns, self._blocks, first, last, live)
+        live_segments(self._surface, guns, first, last, live)
         return np.flatnonzero(live & (flow > 0.0))
 
     def _points(self, first: int, last: int) -> slice:
-        return slice(int(self._blocks.starts[first]), int(self._blocks.starts[last]))
+        return slice(
+            int(self._surface.blocks.starts[first]), int(self._surface.blocks.starts[last])
+        )
 
     def _scattered(self, values: FloatArray) -> FloatArray:
         found = np.empty_like(values)
@@ -257,7 +256,7 @@ class Deposition:
 
     def _shared(self, work: Callable[[int, int], T]) -> list[T]:
         """The work on all groups, in as many parts as there are workers."""
-        groups = len(self._blocks.radii)
+        groups = len(self._surface.blocks.radii)
         limits = np.unique(np.linspace(0, groups, 4 * WORKERS + 1).astype(np.int64))
         ranges = [(int(a), int(b)) for a, b in pairwise(limits)]
         if WORKERS == 1:

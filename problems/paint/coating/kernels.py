@@ -9,8 +9,8 @@ where D is the distance of the plane of reference from the source, e the fan's l
 a, and a_y the aspect; for symmetric footprints a_y = 1 and √q is the tangent of the angle off the
 axis. A ray from the source carries the same paint to whatever it meets, so paint is conserved.
 
-Functions for the inner loops take plain numbers where they return early: arrays that they took
-would be counted at every call, which costs four times what the arithmetic does.
+They make no array, and are compiled without numba's counts of references: counting those of the
+arrays that inner functions take costs four times what the arithmetic does.
 """
 
 from __future__ import annotations
@@ -20,9 +20,13 @@ from typing import NamedTuple
 
 from numba import njit
 
-from ....core.arrays import FloatArray, IntArray
+from ....core.arrays import BoolArray, FloatArray, IntArray
+from ....core.robot.kinematics.vectors import Vector, add, dot, load_row, scale, subtract
 
 _CENTRE = 1e-12
+
+compiled = njit(cache=True, error_model="numpy", nogil=True, _nrt=False)
+"""See the module."""
 
 
 class Cone(NamedTuple):
@@ -73,6 +77,20 @@ class Blocks(NamedTuple):
     radii: FloatArray
 
 
+class Surface(NamedTuple):
+    """What is painted by which footprint.
+
+    Args:
+        brush: the footprint.
+        blocks: (V,) points.
+        visible: (V, S) which points each segment sees; (0, 0) for all.
+    """
+
+    brush: Brush
+    blocks: Blocks
+    visible: BoolArray
+
+
 class Guns(NamedTuple):
     """Where the gun is at every sub-point.
 
@@ -95,89 +113,61 @@ class Guns(NamedTuple):
 
 
 class Gun(NamedTuple):
-    """One sub-point: the virtual source, the nozzle and the fan."""
+    """One sub-point: the virtual source, the nozzle and the fan, zero for symmetric footprints."""
 
-    x: float
-    y: float
-    z: float
-    ax: float
-    ay: float
-    az: float
-    hx: float
-    hy: float
-    hz: float
+    source: Vector
+    nozzle: Vector
+    fan: Vector
 
 
 class Slopes(NamedTuple):
-    """The growth and its derivatives by the TCP (x, y, z) and by the nozzle (a, b, c)."""
+    """The growth and its derivatives by the TCP and by the nozzle."""
 
     value: float
-    x: float
-    y: float
-    z: float
-    a: float
-    b: float
-    c: float
+    tcp: Vector
+    nozzle: Vector
 
 
-_njit = njit(cache=True, error_model="numpy", nogil=True, forceinline=True)
-
-
-@_njit
+@compiled
 def gun_at(cone: Cone, guns: Guns, p: int) -> Gun:
     """The gun at a sub-point."""
-    ax, ay, az = guns.nozzle[p, 0], guns.nozzle[p, 1], guns.nozzle[p, 2]
-    hx, hy, hz = 0.0, 0.0, 0.0
-    if len(guns.fan):
-        hx, hy, hz = guns.fan[p, 0], guns.fan[p, 1], guns.fan[p, 2]
-    return Gun(
-        guns.tcp[p, 0] - cone.source * ax,
-        guns.tcp[p, 1] - cone.source * ay,
-        guns.tcp[p, 2] - cone.source * az,
-        ax,
-        ay,
-        az,
-        hx,
-        hy,
-        hz,
-    )
+    nozzle = load_row(guns.nozzle, p)
+    fan = load_row(guns.fan, p) if len(guns.fan) else (0.0, 0.0, 0.0)
+    return Gun(subtract(load_row(guns.tcp, p), scale(cone.source, nozzle)), nozzle, fan)
 
 
-@_njit
-def meets(cone: Cone, gun: Gun, x: float, y: float, z: float, radius: float) -> bool:
-    """Whether the cone may meet a sphere."""
-    x, y, z = x - gun.x, y - gun.y, z - gun.z
-    s = x * gun.ax + y * gun.ay + z * gun.az
+@compiled
+def meets(surface: Surface, gun: Gun, g: int) -> bool:
+    """Whether the cone may meet a group."""
+    cone, radius = surface.brush.cone, surface.blocks.radii[g]
+    v = subtract(load_row(surface.blocks.centres, g), gun.source)
+    s = dot(v, gun.nozzle)
     if s < -radius:
         return False
-    off = math.sqrt(max(0.0, x * x + y * y + z * z - s * s))
+    off = math.sqrt(max(0.0, dot(v, v) - s * s))
     return bool(off - s * cone.opening <= radius * math.sqrt(1.0 + cone.widest))
 
 
-@_njit
-def ray(
-    cone: Cone, gun: Gun, px: float, py: float, pz: float, nx: float, ny: float, nz: float
-) -> tuple[float, float]:
-    """Radius r at which a point is seen, and B / f(r); r is negative where no paint arrives.
-
-    Args:
-        px, py, pz: the point.
-        nx, ny, nz: its normal.
-    """
-    x, y, z = px - gun.x, py - gun.y, pz - gun.z
-    s = x * gun.ax + y * gun.ay + z * gun.az
+@compiled
+def ray(surface: Surface, gun: Gun, segment: int, k: int) -> tuple[float, float]:
+    """Radius r at which point k is seen, and B / f(r); r is negative where no paint arrives."""
+    cone, visible = surface.brush.cone, surface.visible
+    if len(visible) and not visible[k, segment]:
+        return -1.0, 0.0
+    v = subtract(load_row(surface.blocks.points, k), gun.source)
+    s = dot(v, gun.nozzle)
     if s <= 0.0:
         return -1.0, 0.0
     inverse = 1.0 / (s * s)
-    q = (x * x + y * y + z * z) * inverse - 1.0
+    q = dot(v, v) * inverse - 1.0
     if q >= cone.widest:
         return -1.0, 0.0
-    c = -(x * nx + y * ny + z * nz)
+    c = -dot(v, load_row(surface.blocks.normals, k))
     if c <= 0.0:
         return -1.0, 0.0
     if cone.across > 1.0:
-        leaning = gun.hx * gun.ax + gun.hy * gun.ay + gun.hz * gun.az
-        w = x * gun.hx + y * gun.hy + z * gun.hz - leaning * s
+        leaning = dot(gun.fan, gun.nozzle)
+        w = dot(v, gun.fan) - leaning * s
         along = w * w * inverse / (1.0 - leaning * leaning)
         q = cone.across * q + (1.0 - cone.across) * along
         if q >= cone.widest:
@@ -185,64 +175,54 @@ def ray(
     return cone.reach * math.sqrt(max(0.0, q)), c * cone.reach * cone.reach * inverse / s
 
 
-@_njit
-def profile(knots: FloatArray, coefficients: FloatArray, r: float) -> float:
-    """f(r) within the rim, m/s."""
+@compiled
+def _piece(brush: Brush, r: float) -> int:
+    """Where the spline has a radius within the rim."""
     i = 0
-    while i < len(knots) - 2 and r >= knots[i + 1]:
+    while i < len(brush.knots) - 2 and r >= brush.knots[i + 1]:
         i += 1
-    t = r - knots[i]
-    e = coefficients
+    return i
+
+
+@compiled
+def profile(brush: Brush, r: float) -> float:
+    """f(r) within the rim, m/s."""
+    e, i = brush.coefficients, _piece(brush, r)
+    t = r - brush.knots[i]
     return float(e[i, 0] + t * (e[i, 1] + t * (e[i, 2] + t * e[i, 3])))
 
 
-@_njit
-def slope_over_radius(knots: FloatArray, coefficients: FloatArray, r: float) -> float:
+@compiled
+def _slope_over_radius(brush: Brush, r: float) -> float:
     """f'(r) / r within the rim, which has a value at the centre too."""
-    i = 0
-    while i < len(knots) - 2 and r >= knots[i + 1]:
-        i += 1
-    t = r - knots[i]
-    e = coefficients
-    if r > _CENTRE * knots[-1]:
+    e, i = brush.coefficients, _piece(brush, r)
+    t = r - brush.knots[i]
+    if r > _CENTRE * brush.knots[-1]:
         return float((e[i, 1] + t * (2.0 * e[i, 2] + 3.0 * t * e[i, 3])) / r)
     return float(2.0 * e[0, 2])
 
 
-@_njit
-def slopes_of(
-    knots: FloatArray,
-    coefficients: FloatArray,
-    cone: Cone,
-    gun: Gun,
-    px: float,
-    py: float,
-    pz: float,
-    nx: float,
-    ny: float,
-    nz: float,
-    r: float,
-) -> Slopes:
-    """B at a point that paint arrives at, and its derivatives.
+@compiled
+def slopes_at(surface: Surface, gun: Gun, k: int, r: float) -> Slopes:
+    """B at point k, that paint arrives at, and its derivatives.
 
     Args:
-        px, py, pz, nx, ny, nz: the point and its normal.
         r: radius at which it is seen.
     """
-    f = profile(knots, coefficients, r)
-    slope = slope_over_radius(knots, coefficients, r)
-    x, y, z = px - gun.x, py - gun.y, pz - gun.z
-    s = x * gun.ax + y * gun.ay + z * gun.az
+    cone = surface.brush.cone
+    normal = load_row(surface.blocks.normals, k)
+    f = profile(surface.brush, r)
+    slope = _slope_over_radius(surface.brush, r)
+    v = subtract(load_row(surface.blocks.points, k), gun.source)
+    s, vv, c = dot(v, gun.nozzle), dot(v, v), -dot(v, normal)
     inverse = 1.0 / (s * s)
-    vv = x * x + y * y + z * z
-    c = -(x * nx + y * ny + z * nz)
     # dq by v is v_v v + v_a a + v_h h; by a, with v held, a_v v + a_h h.
     v_v, v_a, v_h = 2.0 * inverse, -2.0 * vv * inverse / s, 0.0
     a_v, a_h = -2.0 * vv * inverse / s, 0.0
     if cone.across > 1.0:
-        leaning = gun.hx * gun.ax + gun.hy * gun.ay + gun.hz * gun.az
+        leaning = dot(gun.fan, gun.nozzle)
         square = 1.0 - leaning * leaning
-        w = x * gun.hx + y * gun.hy + z * gun.hz - leaning * s
+        w = dot(v, gun.fan) - leaning * s
         along = w * w * inverse / square
         rest = 1.0 - cone.across
         first = 2.0 * w * inverse / square
@@ -256,26 +236,14 @@ def slopes_of(
     by_s = -3.0 * by_c * c / s
     by_v, by_a, by_h = by_q * v_v, by_q * v_a + by_s, by_q * v_h
     turn_v, turn_h = by_q * a_v + by_s, by_q * a_h
-    gx = by_v * x + by_a * gun.ax + by_h * gun.hx - by_c * nx
-    gy = by_v * y + by_a * gun.ay + by_h * gun.hy - by_c * ny
-    gz = by_v * z + by_a * gun.az + by_h * gun.hz - by_c * nz
-    return Slopes(
-        by_c * c,
-        -gx,
-        -gy,
-        -gz,
-        turn_v * x + turn_h * gun.hx + cone.source * gx,
-        turn_v * y + turn_h * gun.hy + cone.source * gy,
-        turn_v * z + turn_h * gun.hz + cone.source * gz,
-    )
+    by_point = add(add(scale(by_v, v), scale(by_a, gun.nozzle)), scale(by_h, gun.fan))
+    by_point = subtract(by_point, scale(by_c, normal))
+    turning = add(add(scale(turn_v, v), scale(turn_h, gun.fan)), scale(cone.source, by_point))
+    return Slopes(by_c * c, scale(-1.0, by_point), turning)
 
 
-@_njit
-def across(gun: Gun, length: float, a: float, b: float, c: float) -> tuple[float, float, float]:
+@compiled
+def across(gun: Gun, length: float, slope: Vector) -> Vector:
     """From the slope by a unit vector to that by the vector of ``length`` it was made from."""
-    along = a * gun.ax + b * gun.ay + c * gun.az
-    return (
-        (a - along * gun.ax) / length,
-        (b - along * gun.ay) / length,
-        (c - along * gun.az) / length,
-    )
+    x, y, z = subtract(slope, scale(dot(slope, gun.nozzle), gun.nozzle))
+    return x / length, y / length, z / length

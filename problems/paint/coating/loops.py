@@ -1,78 +1,62 @@
 """Compiled sums over sub-points and points: the coat, its adjoint, its Jacobian.
 
 All take a range of groups, so that threads may share the work. ``amount`` (S,) is duration times
-flow of each segment; ``visible`` (V, S) says which points a segment sees, (0, 0) for all.
+flow of each segment.
 """
 
 from __future__ import annotations
 
-import numpy as np
-from numba import njit
-
 from ....core.arrays import BoolArray, FloatArray, IntArray
-from .kernels import Blocks, Brush, Guns, across, gun_at, meets, profile, ray, slopes_of
+from ....core.robot.kinematics.vectors import ZERO, Vector, add, dot, load_row, scale
+from .kernels import (
+    Guns,
+    Surface,
+    across,
+    compiled,
+    gun_at,
+    meets,
+    profile,
+    ray,
+    slopes_at,
+)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@compiled
 def add_coat(
-    brush: Brush,
-    guns: Guns,
-    blocks: Blocks,
-    visible: BoolArray,
-    amount: FloatArray,
-    first: int,
-    last: int,
-    coat: FloatArray,
+    surface: Surface, guns: Guns, amount: FloatArray, first: int, last: int, coat: FloatArray
 ) -> None:
     """Add the thickness (V,) of the groups from ``first`` up to ``last``, m."""
-    knots, coefficients, cone = brush
-    points, normals, starts, centres, radii = blocks
-    masked = len(visible) > 0
+    brush, starts = surface.brush, surface.blocks.starts
     for p in range(len(guns.segment)):
         i = guns.segment[p]
         share = amount[i] * guns.weight[p]
         if share == 0.0:
             continue
-        gun = gun_at(cone, guns, p)
+        gun = gun_at(brush.cone, guns, p)
         for g in range(first, last):
-            if not meets(cone, gun, centres[g, 0], centres[g, 1], centres[g, 2], radii[g]):
+            if not meets(surface, gun, g):
                 continue
             for k in range(starts[g], starts[g + 1]):
-                if masked and not visible[k, i]:
-                    continue
-                px, py, pz = points[k, 0], points[k, 1], points[k, 2]
-                nx, ny, nz = normals[k, 0], normals[k, 1], normals[k, 2]
-                r, scale = ray(cone, gun, px, py, pz, nx, ny, nz)
-                if r < 0.0:
-                    continue
-                coat[k] += share * scale * profile(knots, coefficients, r)
+                r, spread = ray(surface, gun, i, k)
+                if r >= 0.0:
+                    coat[k] += share * spread * profile(brush, r)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def live_segments(
-    brush: Brush, guns: Guns, blocks: Blocks, first: int, last: int, live: BoolArray
-) -> None:
+@compiled
+def live_segments(surface: Surface, guns: Guns, first: int, last: int, live: BoolArray) -> None:
     """Mark the segments (S,) whose cones may meet one of the groups."""
-    cone, centres, radii = brush.cone, blocks.centres, blocks.radii
     for p in range(len(guns.segment)):
         i = guns.segment[p]
-        gun = gun_at(cone, guns, p)
+        gun = gun_at(surface.brush.cone, guns, p)
         g = first
         while g < last and not live[i]:
-            live[i] = meets(cone, gun, centres[g, 0], centres[g, 1], centres[g, 2], radii[g])
+            live[i] = meets(surface, gun, g)
             g += 1
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@compiled
 def fill_rates(
-    brush: Brush,
-    guns: Guns,
-    blocks: Blocks,
-    visible: BoolArray,
-    column: IntArray,
-    first: int,
-    last: int,
-    rates: FloatArray,
+    surface: Surface, guns: Guns, column: IntArray, first: int, last: int, rates: FloatArray
 ) -> None:
     """Add what each segment lays on each point in a second at nominal flow, m/s.
 
@@ -80,36 +64,26 @@ def fill_rates(
         column: (S,) of each segment in ``rates``; -1 for those that are left out.
         rates: (points of the groups, columns).
     """
-    knots, coefficients, cone = brush
-    points, normals, starts, centres, radii = blocks
-    masked = len(visible) > 0
-    start = starts[first]
+    brush, starts = surface.brush, surface.blocks.starts
     for p in range(len(guns.segment)):
         i = guns.segment[p]
         if column[i] < 0:
             continue
         own, weight = column[i], guns.weight[p]
-        gun = gun_at(cone, guns, p)
+        gun = gun_at(brush.cone, guns, p)
         for g in range(first, last):
-            if not meets(cone, gun, centres[g, 0], centres[g, 1], centres[g, 2], radii[g]):
+            if not meets(surface, gun, g):
                 continue
             for k in range(starts[g], starts[g + 1]):
-                if masked and not visible[k, i]:
-                    continue
-                px, py, pz = points[k, 0], points[k, 1], points[k, 2]
-                nx, ny, nz = normals[k, 0], normals[k, 1], normals[k, 2]
-                r, scale = ray(cone, gun, px, py, pz, nx, ny, nz)
-                if r < 0.0:
-                    continue
-                rates[k - start, own] += weight * scale * profile(knots, coefficients, r)
+                r, spread = ray(surface, gun, i, k)
+                if r >= 0.0:
+                    rates[k - starts[first], own] += weight * spread * profile(brush, r)
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@compiled
 def add_adjoint(
-    brush: Brush,
+    surface: Surface,
     guns: Guns,
-    blocks: Blocks,
-    visible: BoolArray,
     amount: FloatArray,
     adjoint: FloatArray,
     first: int,
@@ -125,50 +99,46 @@ def add_adjoint(
         by_tcp, by_nozzle: (W, 3) by waypoints' positions, and directions as free vectors.
         by_amount: (S,).
     """
-    knots, coefficients, cone = brush
-    points, normals, starts, centres, radii = blocks
-    masked = len(visible) > 0
-    twist = np.zeros(3)
+    starts = surface.blocks.starts
     for p in range(len(guns.segment)):
         i = guns.segment[p]
-        gun = gun_at(cone, guns, p)
-        total, x, y, z, a, b, c = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        gun = gun_at(surface.brush.cone, guns, p)
+        total, pull, twist = 0.0, ZERO, ZERO
         for g in range(first, last):
-            if not meets(cone, gun, centres[g, 0], centres[g, 1], centres[g, 2], radii[g]):
+            if not meets(surface, gun, g):
                 continue
             for k in range(starts[g], starts[g + 1]):
-                if masked and not visible[k, i]:
-                    continue
-                px, py, pz = points[k, 0], points[k, 1], points[k, 2]
-                nx, ny, nz = normals[k, 0], normals[k, 1], normals[k, 2]
-                r, _ = ray(cone, gun, px, py, pz, nx, ny, nz)
+                r, _ = ray(surface, gun, i, k)
                 if r < 0.0:
                     continue
-                slopes = slopes_of(knots, coefficients, cone, gun, px, py, pz, nx, ny, nz, r)
+                slopes = slopes_at(surface, gun, k, r)
                 total += adjoint[k] * slopes.value
-                x += adjoint[k] * slopes.x
-                y += adjoint[k] * slopes.y
-                z += adjoint[k] * slopes.z
-                a += adjoint[k] * slopes.a
-                b += adjoint[k] * slopes.b
-                c += adjoint[k] * slopes.c
+                pull = add(pull, scale(adjoint[k], slopes.tcp))
+                twist = add(twist, scale(adjoint[k], slopes.nozzle))
         ahead, weight = guns.share[p], guns.weight[p]
         by_amount[i] += weight * total
-        twist[0], twist[1], twist[2] = across(gun, guns.length[p], a, b, c)
-        for j, pull in enumerate((x, y, z)):
-            scale = weight * amount[i]
-            by_tcp[i, j] += (1.0 - ahead) * scale * pull
-            by_tcp[i + 1, j] += ahead * scale * pull
-            by_nozzle[i, j] += (1.0 - ahead) * scale * twist[j]
-            by_nozzle[i + 1, j] += ahead * scale * twist[j]
+        twist = across(gun, guns.length[p], twist)
+        for w, share in ((i, 1.0 - ahead), (i + 1, ahead)):
+            for j in range(3):
+                by_tcp[w, j] += share * (weight * amount[i]) * pull[j]
+                by_nozzle[w, j] += share * (weight * amount[i]) * twist[j]
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@compiled
+def _add_waypoint(
+    rows: FloatArray, n: int, at: int, share: float, pull: Vector, twist: Vector, turns: FloatArray
+) -> None:
+    """Add derivatives by a waypoint's position and two angles to row n, from column ``at`` on."""
+    for j in range(3):
+        rows[n, at + j] += share * pull[j]
+    for j in range(2):
+        rows[n, at + 3 + j] += share * dot(twist, load_row(turns, j))
+
+
+@compiled
 def fill_jacobian(
-    brush: Brush,
+    surface: Surface,
     guns: Guns,
-    blocks: Blocks,
-    visible: BoolArray,
     amount: FloatArray,
     turns: FloatArray,
     place: IntArray,
@@ -185,48 +155,30 @@ def fill_jacobian(
         column: (S,) of each segment's amount; -1 for segments that are left out.
         rows: (points of the groups, columns).
     """
-    knots, coefficients, cone = brush
-    points, normals, starts, centres, radii = blocks
-    masked = len(visible) > 0
-    start = starts[first]
+    starts = surface.blocks.starts
     for p in range(len(guns.segment)):
         i = guns.segment[p]
         if column[i] < 0:
             continue
-        gun = gun_at(cone, guns, p)
+        gun = gun_at(surface.brush.cone, guns, p)
         weight, ahead = guns.weight[p], guns.share[p]
-        front = ahead * weight * amount[i]
-        rear = (1.0 - ahead) * weight * amount[i]
-        here, there, own = place[i], place[i + 1], column[i]
-        u, v = turns[i], turns[i + 1]
+        front, rear = ahead * weight * amount[i], (1.0 - ahead) * weight * amount[i]
         for g in range(first, last):
-            if not meets(cone, gun, centres[g, 0], centres[g, 1], centres[g, 2], radii[g]):
+            if not meets(surface, gun, g):
                 continue
             for k in range(starts[g], starts[g + 1]):
-                if masked and not visible[k, i]:
-                    continue
-                px, py, pz = points[k, 0], points[k, 1], points[k, 2]
-                nx, ny, nz = normals[k, 0], normals[k, 1], normals[k, 2]
-                r, _ = ray(cone, gun, px, py, pz, nx, ny, nz)
+                r, _ = ray(surface, gun, i, k)
                 if r < 0.0:
                     continue
-                slopes = slopes_of(knots, coefficients, cone, gun, px, py, pz, nx, ny, nz, r)
-                n = k - start
-                a, b, c = across(gun, guns.length[p], slopes.a, slopes.b, slopes.c)
-                rows[n, own] += weight * slopes.value
-                rows[n, here] += rear * slopes.x
-                rows[n, here + 1] += rear * slopes.y
-                rows[n, here + 2] += rear * slopes.z
-                rows[n, here + 3] += rear * (a * u[0, 0] + b * u[0, 1] + c * u[0, 2])
-                rows[n, here + 4] += rear * (a * u[1, 0] + b * u[1, 1] + c * u[1, 2])
-                rows[n, there] += front * slopes.x
-                rows[n, there + 1] += front * slopes.y
-                rows[n, there + 2] += front * slopes.z
-                rows[n, there + 3] += front * (a * v[0, 0] + b * v[0, 1] + c * v[0, 2])
-                rows[n, there + 4] += front * (a * v[1, 0] + b * v[1, 1] + c * v[1, 2])
+                slopes = slopes_at(surface, gun, k, r)
+                n = k - starts[first]
+                twist = across(gun, guns.length[p], slopes.nozzle)
+                rows[n, column[i]] += weight * slopes.value
+                _add_waypoint(rows, n, place[i], rear, slopes.tcp, twist, turns[i])
+                _add_waypoint(rows, n, place[i + 1], front, slopes.tcp, twist, turns[i + 1])
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@compiled
 def add_block(columns: IntArray, block: FloatArray, found: FloatArray) -> None:
     """Add a block (k, k) at the rows and columns (k,) of a matrix (n, n)."""
     for i in range(len(columns)):
