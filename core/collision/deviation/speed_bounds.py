@@ -17,6 +17,7 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray
+from ...motion.timing.stamping_kernels import Rows
 from ...motion.timing.timing import Timing
 
 _LOOSER = 1e-9
@@ -66,7 +67,7 @@ def greatest(timing: Timing) -> FloatArray:
     most = _UNBOUNDED * rows.ceiling[known].max(initial=1.0)
     ceiling = (1.0 + _LOOSER) * np.where(known, rows.ceiling, most)
     ceiling = np.maximum(ceiling, timing.stamp.x)
-    _reach(*rows.rows, rows.spacing, ceiling)
+    _reach(rows.rows, rows.spacing, ceiling)
     return np.asarray(np.maximum(ceiling, timing.stamp.x))
 
 
@@ -93,20 +94,17 @@ def coefficients(timing: Timing, part: slice) -> tuple[FloatArray, FloatArray]:
 
 @njit(cache=True, error_model="numpy")
 def _reach(
-    a: FloatArray,
-    b: FloatArray,
-    lower: FloatArray,
-    upper: FloatArray,
+    rows: Rows,
     spacing: FloatArray,
     ceiling: FloatArray,
 ) -> None:
     """Lower the ceilings to what can be braked from, to what can be sped up to, and to both."""
-    corners = np.empty((4 + 4 * a.shape[2], 2))
+    corners = np.empty((4 + 4 * rows.a.shape[2], 2))
     spare = np.empty_like(corners)
     for back in (0, 1, 0):
         for i in range(spacing.size):
             k = spacing.size - 1 - i if back == 0 else i
-            size = _polygon(k, a, b, lower, upper, spacing, ceiling, corners, spare)
+            size = _polygon(k, rows, spacing, ceiling, corners, spare)
             most = 0.0
             for v in range(size):
                 most = max(most, corners[v, back])
@@ -116,16 +114,14 @@ def _reach(
 @njit(cache=True, error_model="numpy")
 def _polygon(
     k: int,
-    a: FloatArray,
-    b: FloatArray,
-    lower: FloatArray,
-    upper: FloatArray,
+    rows: Rows,
     spacing: FloatArray,
     ceiling: FloatArray,
     here: FloatArray,
     spare: FloatArray,
 ) -> int:
     """Write the corners of one interval's polygon; how many there are."""
+    a, b, lower, upper = rows
     here[0] = 0.0, 0.0
     here[1] = ceiling[k], 0.0
     here[2] = ceiling[k], ceiling[k + 1]

@@ -14,14 +14,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from ...arrays import FloatArray, IntArray
 from ...errors import InputError
+from ...robot.kinematics.lean import lean
 from ..timing.stamping import Stamp
-from ..timing.stamping_kernels import CEILING, NEXT, bound_normal, half_plane
-
-RowArrays = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+from ..timing.stamping_kernels import CEILING, NEXT, Rows, bound_normal, half_plane
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,8 +55,7 @@ def stamp_adjoint(
     x_seed = _seed(x_bar, "x_bar", count)
     t_seed = _seed(t_bar, "t_bar", count)
     spacing, ceiling, top = np.zeros(count), np.zeros(count + 1), np.zeros(count + 1)
-    a, b, lower, upper = (np.zeros(limits.a.shape) for _ in range(4))
-    out = a, b, lower, upper
+    out = Rows(*(np.zeros(limits.a.shape) for _ in range(4)))
     pull_times(limits.spacing, stamp.x, t_seed, x_seed, spacing)
     pull_forth(limits.spacing, limits.rows, stamp.x, stamp.source, x_seed, top, out, spacing)
     free_start = stamp.x[0] < stamp.top[0]
@@ -81,7 +78,7 @@ def stamp_adjoint(
         ceiling[-1] += top[-1]
     x_start = float(x_seed[0]) if free_start else 0.0
     x_end = float(top[-1]) if free_end else 0.0
-    return StampGradient(spacing, a, b, lower, upper, ceiling, x_start, x_end)
+    return StampGradient(spacing, *out, ceiling, x_start, x_end)
 
 
 def _seed(bar: FloatArray | None, name: str, count: int) -> FloatArray:
@@ -93,7 +90,7 @@ def _seed(bar: FloatArray | None, name: str, count: int) -> FloatArray:
     return seed
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def pull_times(
     spacing: FloatArray,
     x: FloatArray,
@@ -115,7 +112,7 @@ def pull_times(
             x_bar[k + 1] -= slope / right
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _add_row(
     m: float,
     code: int,
@@ -123,39 +120,38 @@ def _add_row(
     spacing: FloatArray,
     y: float,
     z: float,
-    rows: RowArrays,
-    out: RowArrays,
+    rows: Rows,
+    out: Rows,
     spacing_bar: FloatArray,
 ) -> None:
     """Add m · (dh - dn · (y, z)) of a row's half-plane to the derivatives of its numbers."""
-    a, a_bar, b_bar, lower_bar, upper_bar = rows[0], out[0], out[1], out[2], out[3]
+    a = rows.a
     i = code >> 1
     end = 1 if i >= a.shape[2] else 0
     r = i - end * a.shape[2]
     u = (z - y) * (0.5 / spacing[k])
     if code & 1:
-        upper_bar[k, end, r] += m
+        out.upper[k, end, r] += m
     else:
-        lower_bar[k, end, r] -= m
+        out.lower[k, end, r] -= m
         m = -m
-    a_bar[k, end, r] -= m * u
-    b_bar[k, end, r] -= m * (z if end else y)
+    out.a[k, end, r] -= m * u
+    out.b[k, end, r] -= m * (z if end else y)
     spacing_bar[k] += m * a[k, end, r] * u / spacing[k]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def pull_forth(
     spacing: FloatArray,
-    rows: RowArrays,
+    rows: Rows,
     x: FloatArray,
     source: IntArray,
     x_bar: FloatArray,
     top_bar: FloatArray,
-    out: RowArrays,
+    out: Rows,
     spacing_bar: FloatArray,
 ) -> None:
     """Pull ``x_bar`` back through the sweep forth; ``x_bar[0]`` is complete afterwards."""
-    a, b, lower, upper = rows
     for k in range(spacing.shape[0] - 1, -1, -1):
         seed = x_bar[k + 1]
         code = source[k]
@@ -164,33 +160,33 @@ def pull_forth(
         if code == NEXT:
             top_bar[k + 1] += seed
             continue
-        p, q, _ = half_plane(code, k, 0.5 / spacing[k], a, b, lower, upper)
+        p, q, _ = half_plane(code, k, 0.5 / spacing[k], rows)
         _add_row(seed / q, code, k, spacing, x[k], x[k + 1], rows, out, spacing_bar)
         x_bar[k] -= seed * p / q
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _normal(
-    code: int, k: int, w: float, rows: RowArrays, ceiling: float, following: float
+    code: int, k: int, w: float, rows: Rows, ceiling: float, following: float
 ) -> tuple[float, float]:
     """(p, q) of any half-plane of interval k."""
     if code >= 0:
-        p, q, _ = half_plane(code, k, w, rows[0], rows[1], rows[2], rows[3])
+        p, q, _ = half_plane(code, k, w, rows)
     else:
         p, q = bound_normal(code, ceiling, following)
     return p, q
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def pull_back(
     spacing: FloatArray,
-    rows: RowArrays,
+    rows: Rows,
     ceiling: FloatArray,
     top: FloatArray,
     partner: FloatArray,
     pair: IntArray,
     top_bar: FloatArray,
-    out: RowArrays,
+    out: Rows,
     spacing_bar: FloatArray,
     ceiling_bar: FloatArray,
 ) -> None:

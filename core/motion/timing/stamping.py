@@ -104,9 +104,9 @@ class StampLimits:
             raise InputError(f"ceiling has shape {self.ceiling.shape}; it must be ({count + 1},)")
 
     @property
-    def rows(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """(a, b, lower, upper), as the kernels take them."""
-        return self.a, self.b, self.lower, self.upper
+    def rows(self) -> kernels.Rows:
+        """The rows, as the kernels take them."""
+        return kernels.Rows(self.a, self.b, self.lower, self.upper)
 
 
 def joint_limits(
@@ -198,8 +198,9 @@ def stamp(limits: StampLimits, x_start: float = 0.0, x_end: float = 0.0) -> Stam
     top, x, t = np.empty(count + 1), np.empty(count + 1), np.empty(count + 1)
     partner, pair = np.empty(count), np.empty((count, 2), dtype=np.int64)
     source, limit = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
+    planes = np.empty((4 * limits.a.shape[2] + 4, 3))
     knot = kernels.sweep_back(
-        limits.spacing, *limits.rows, limits.ceiling, x_end, top, partner, pair
+        limits.spacing, limits.rows, limits.ceiling, x_end, planes, top, partner, pair
     )
     if knot >= 0:
         raise StampingError(
@@ -209,7 +210,7 @@ def stamp(limits: StampLimits, x_start: float = 0.0, x_end: float = 0.0) -> Stam
         )
     _check_boundary("start", 0, x_start, top[0])
     interval = kernels.sweep_forth(
-        limits.spacing, *limits.rows, x_start, top, partner, pair, x, t, source, limit
+        limits.spacing, limits.rows, x_start, top, partner, pair, x, t, source, limit
     )
     if interval >= 0:
         raise StampingError(
@@ -232,7 +233,7 @@ def _check(limits: StampLimits, x_start: float, x_end: float) -> None:
         raise InputError(f"the ceiling at knot {knot} is {limits.ceiling[knot]}; it must be ≥ 0")
     if not (0.0 <= x_start < np.inf and 0.0 <= x_end < np.inf):
         raise InputError(f"x_start = {x_start} and x_end = {x_end} must be finite and ≥ 0")
-    unsound = kernels.first_unsound_row(*limits.rows)
+    unsound = kernels.first_unsound_row(limits.rows)
     if unsound >= 0:
         _refuse_row(limits, unsound)
 

@@ -8,17 +8,17 @@ end e is a pair of half-planes p y + q z ≤ h, with w = 1 / (2Δ) and c = a w:
 
 The half-plane of row r at end e has the code ``2 * (e * R + r) + side``, side 0 for ``lower`` and
 1 for ``upper``; the bounds that are no rows have the negative codes below.
-
-Kernels take a, b, lower and upper one by one: numba counts references to arrays inside a tuple,
-which doubled the time of a sweep.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
+from ...robot.kinematics.lean import lean
 from .stamping_polygon import ROUNDING, greatest_sum
 
 CEILING = -1
@@ -36,21 +36,30 @@ NONE = -5
 SLOWDOWN = 1e-6
 
 
-@njit(cache=True, error_model="numpy")
-def first_unsound_row(a: FloatArray, b: FloatArray, lower: FloatArray, upper: FloatArray) -> int:
+class Rows(NamedTuple):
+    """Rows of K intervals, (K, 2, R) each; see `stamping.StampLimits`."""
+
+    a: FloatArray
+    b: FloatArray
+    lower: FloatArray
+    upper: FloatArray
+
+
+@lean
+def first_unsound_row(rows: Rows) -> int:
     """Flat index of the first row that is not finite or forbids u = x = 0; -1 if all are sound."""
-    rows = a.shape[2]
+    a, b, lower, upper = rows
     for k in range(a.shape[0]):
         for end in range(2):
-            for r in range(rows):
+            for r in range(a.shape[2]):
                 # 0 · v is 0 for a finite v only.
                 finite = a[k, end, r] * 0.0 + b[k, end, r] * 0.0 == 0.0
                 if not (finite & (lower[k, end, r] <= 0.0) & (upper[k, end, r] >= 0.0)):
-                    return int((2 * k + end) * rows + r)
+                    return int((2 * k + end) * a.shape[2] + r)
     return -1
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def first_unsound_length(spacing: FloatArray) -> int:
     """Index of the first value that is not positive and finite, -1 if there is none."""
     for k in range(spacing.shape[0]):
@@ -59,7 +68,7 @@ def first_unsound_length(spacing: FloatArray) -> int:
     return -1
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def first_unsound_ceiling(ceiling: FloatArray) -> int:
     """Index of the first value that is not at least zero, -1 if there is none."""
     for k in range(ceiling.shape[0]):
@@ -92,17 +101,15 @@ def fill_joint_limits(
         ceiling[k] = 1.0 / (ceiling[k] * ceiling[k])
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def half_plane(
     code: int,
     k: int,
     w: float,
-    a: FloatArray,
-    b: FloatArray,
-    lower: FloatArray,
-    upper: FloatArray,
+    rows: Rows,
 ) -> tuple[float, float, float]:
     """(p, q, h) of a row's half-plane p y + q z ≤ h in interval k."""
+    a, b, lower, upper = rows
     i = code >> 1
     end = 1 if i >= a.shape[2] else 0
     r = i - end * a.shape[2]
@@ -113,7 +120,7 @@ def half_plane(
     return -p, -q, -lower[k, end, r]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def bound_normal(code: int, ceiling: float, following: float) -> tuple[float, float]:
     """(p, q) of a bound that is no row; ``following`` bounds z."""
     if code == CEILING:
@@ -125,18 +132,16 @@ def bound_normal(code: int, ceiling: float, following: float) -> tuple[float, fl
     return -1.0, (SLOWDOWN if ceiling > 0.0 else 0.0)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _rows_hold(
     k: int,
     w: float,
     y: float,
     z: float,
-    a: FloatArray,
-    b: FloatArray,
-    lower: FloatArray,
-    upper: FloatArray,
+    rows: Rows,
 ) -> bool:
     """Whether all rows of interval k hold at (y, z), up to rounding: a scan without branches."""
+    a, b, lower, upper = rows
     u = (z - y) * w
     size = (z + y) * w * ROUNDING
     size_y, size_z = y * ROUNDING, z * ROUNDING
@@ -152,19 +157,17 @@ def _rows_hold(
     return violated == 0
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _fill_polygon(
     k: int,
     w: float,
-    a: FloatArray,
-    b: FloatArray,
-    lower: FloatArray,
-    upper: FloatArray,
+    rows: Rows,
     ceiling: float,
     following: float,
     planes: FloatArray,
 ) -> None:
     """Write the half-planes of interval k to ``planes`` (4R + 4, 3), each at its code."""
+    a, b, lower, upper = rows
     for r in range(a.shape[2]):
         for end in range(2):
             c = a[k, end, r] * w
@@ -179,7 +182,7 @@ def _fill_polygon(
     planes[NEXT, 2] = following
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _first_pair(planes: FloatArray) -> tuple[int, int]:
     """Two half-planes of a polygon that bound y + z together: where the walk begins."""
     following = planes[NEXT, 2]
@@ -195,15 +198,12 @@ def _first_pair(planes: FloatArray) -> tuple[int, int]:
     return best, (NEXT if planes[best, 1] <= planes[best, 0] else SLOWEST)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _guess(
     code: int,
     k: int,
     w: float,
-    a: FloatArray,
-    b: FloatArray,
-    lower: FloatArray,
-    upper: FloatArray,
+    rows: Rows,
     ceiling: float,
     following: float,
 ) -> tuple[float, int]:
@@ -212,21 +212,19 @@ def _guess(
     The row that held in the interval after this one mostly holds here too.
     """
     if code >= 0:
-        p, q, h = half_plane(code, k, w, a, b, lower, upper)
+        p, q, h = half_plane(code, k, w, rows)
         if p > 0.0 and q <= p and h - q * following <= ceiling * p:
             return (h - q * following) / p, code
     return ceiling, CEILING
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def sweep_back(
     spacing: FloatArray,
-    a: FloatArray,
-    b: FloatArray,
-    lower: FloatArray,
-    upper: FloatArray,
+    rows: Rows,
     ceiling: FloatArray,
     x_end: float,
+    planes: FloatArray,
     top: FloatArray,
     partner: FloatArray,
     pair: IntArray,
@@ -234,20 +232,19 @@ def sweep_back(
     """Squared speeds from which the end can be reached, one knot after the other.
 
     Writes ``top`` (K + 1,) and ``partner`` (K,): where x_k + x_{k+1} is greatest while x_{k+1} is
-    at most ``top[k + 1]``; ``pair`` (K, 2): the half-planes that meet there. Returns the knot
-    whose speed nothing bounds, -1 if there is none.
+    at most ``top[k + 1]``; ``pair`` (K, 2): the half-planes that meet there. ``planes`` (4R + 4, 3)
+    is room for half-planes. Returns the knot whose speed nothing bounds, -1 if there is none.
     """
     count = spacing.shape[0]
-    planes = np.empty((4 * a.shape[2] + 4, 3))
     top[count] = min(float(ceiling[count]), x_end)
     row = NONE
     for k in range(count - 1, -1, -1):
         w = 0.5 / spacing[k]
         z, j = top[k + 1], NEXT
-        y, i = _guess(row, k, w, a, b, lower, upper, ceiling[k], z)
+        y, i = _guess(row, k, w, rows, ceiling[k], z)
         near = z * SLOWDOWN <= y and y * SLOWDOWN <= z
-        if not (near and _rows_hold(k, w, y, z, a, b, lower, upper)):
-            _fill_polygon(k, w, a, b, lower, upper, ceiling[k], z, planes)
+        if not (near and _rows_hold(k, w, y, z, rows)):
+            _fill_polygon(k, w, rows, ceiling[k], z, planes)
             if i == CEILING:
                 i, j = _first_pair(planes)
             if i == NONE:
@@ -265,35 +262,32 @@ def sweep_back(
     return -1
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _farthest(
     guess: int,
     k: int,
     w: float,
     y: float,
-    a: FloatArray,
-    b: FloatArray,
-    lower: FloatArray,
-    upper: FloatArray,
+    rows: Rows,
     following: float,
 ) -> tuple[float, int]:
     """max z from x_k = y in interval k, and the half-plane that stops it there."""
     z, source = following, NEXT
     if guess >= 0:
-        p, q, h = half_plane(guess, k, w, a, b, lower, upper)
+        p, q, h = half_plane(guess, k, w, rows)
         if q > 0.0 and h - p * y < q * z:
             z, source = max((h - p * y) / q, 0.0), guess
-    if _rows_hold(k, w, y, z, a, b, lower, upper):
+    if _rows_hold(k, w, y, z, rows):
         return z, source
-    for code in range(4 * a.shape[2]):
-        p, q, h = half_plane(code, k, w, a, b, lower, upper)
+    for code in range(4 * rows.a.shape[2]):
+        p, q, h = half_plane(code, k, w, rows)
         excess = p * y + q * z - h
         if q > 0.0 and excess > ROUNDING * (abs(p * y) + q * z):
             z, source = max((h - p * y) / q, 0.0), code
     return z, source
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _limit(y: float, top: float, source: int, i: int, j: int) -> int:
     """Which half-plane holds the speed down in an interval (see ``Stamp.limit``)."""
     if source >= 0:
@@ -305,13 +299,10 @@ def _limit(y: float, top: float, source: int, i: int, j: int) -> int:
     return j if j >= 0 and i != CEILING else CEILING
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def sweep_forth(
     spacing: FloatArray,
-    a: FloatArray,
-    b: FloatArray,
-    lower: FloatArray,
-    upper: FloatArray,
+    rows: Rows,
     x_start: float,
     top: FloatArray,
     partner: FloatArray,
@@ -335,7 +326,7 @@ def sweep_forth(
         z, code = top[k + 1], NEXT
         # From (top, partner) the path follows the sweep back, as long as that has z = following.
         if y < top[k] or partner[k] < z:
-            z, code = _farthest(row, k, 0.5 / spacing[k], y, a, b, lower, upper, z)
+            z, code = _farthest(row, k, 0.5 / spacing[k], y, rows, z)
             row = code
         # The polygon is convex and holds the origin and (top, partner), so this much is allowed:
         # rounding in a row that barely depends on z cannot throw the speed to zero.

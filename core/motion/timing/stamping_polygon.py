@@ -9,9 +9,8 @@ may be negative, as everywhere in numpy.
 
 from __future__ import annotations
 
-from numba import njit
-
 from ...arrays import FloatArray
+from ...robot.kinematics.lean import lean
 
 ROUNDING = 1e-14
 """Rounding of p y + q z, relative to the size of its terms."""
@@ -19,7 +18,7 @@ ROUNDING = 1e-14
 WALK_PER_PLANE = 2
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def vertex(planes: FloatArray, i: int, j: int) -> tuple[float, float]:
     """(y, z) where the edges of two half-planes meet."""
     # Of the two orders of elimination, the one whose factor times the row keeps rounding down.
@@ -30,7 +29,7 @@ def vertex(planes: FloatArray, i: int, j: int) -> tuple[float, float]:
     return (planes[i, 2] - planes[i, 1] * z) / planes[i, 0], z
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def most_violated(planes: FloatArray, y: float, z: float) -> int:
     """Index of the half-plane that (y, z) is farthest outside of; M if it is in all of them."""
     worst = len(planes)
@@ -46,7 +45,7 @@ def most_violated(planes: FloatArray, y: float, z: float) -> int:
     return worst
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def exchange(planes: FloatArray, entering: int, i: int, j: int) -> tuple[int, int]:
     """The pair that bounds y + z once ``entering`` holds too.
 
@@ -68,7 +67,7 @@ def exchange(planes: FloatArray, entering: int, i: int, j: int) -> tuple[int, in
     return i, entering
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def shrink(planes: FloatArray, y: float, z: float) -> float:
     """The greatest factor in [0, 1] with which (y, z) is in the polygon: the origin is."""
     factor = 1.0
@@ -79,7 +78,7 @@ def shrink(planes: FloatArray, y: float, z: float) -> float:
     return factor
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def greatest_sum(planes: FloatArray, i: int, j: int) -> tuple[float, float, int, int]:
     """(y, z, i, j) where y + z is greatest, from a pair (i, j) that bounds the sum."""
     y = z = 0.0
