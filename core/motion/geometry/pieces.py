@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,19 @@ class Sampling:
     most: int = 200
     halvings: int = 9
     approach: int = 0
+
+
+class PieceIndices(NamedTuple):
+    """Where the samples and intervals of P pieces are, as kernels take it; see `Pieces`.
+
+    Args:
+        first_sample, first_interval: (P + 1,).
+        segment: (P,).
+    """
+
+    first_sample: IntArray
+    first_interval: IntArray
+    segment: IntArray
 
 
 @dataclass(frozen=True)
@@ -80,6 +94,11 @@ class Pieces:
     def first_interval(self) -> IntArray:
         """(P + 1,), index of each piece's first interval."""
         return np.concatenate([[0], np.cumsum(self.intervals)])
+
+    @property
+    def indices(self) -> PieceIndices:
+        """Where samples and intervals are."""
+        return PieceIndices(self.first_sample, self.first_interval, self.segment)
 
     @cached_property
     def sample_pieces(self) -> IntArray:

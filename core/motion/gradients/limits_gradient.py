@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from ..geometry.pieces import Pieces
+from ..geometry.pieces import PieceIndices, Pieces
 from ..geometry.segments import Segments
 from ..geometry.swivel import pull_turn_shares
 from ..path.tcp_samples import States
@@ -91,9 +91,7 @@ def _pull_torque_rows(
 @njit(cache=True, error_model="numpy")
 def _pull_fill(
     states: States,
-    first_sample: IntArray,
-    first_interval: IntArray,
-    segment: IntArray,
+    pieces: PieceIndices,
     velocity: FloatArray,
     acceleration: FloatArray,
     centripetal: float,
@@ -108,6 +106,7 @@ def _pull_fill(
     acceleration_bar: FloatArray,
 ) -> None:
     """Reverse of `limits._fill`."""
+    first_sample, first_interval, segment = pieces
     axes = states.q.shape[1]
     rate, bend = np.empty(axes + 2), np.empty(axes + 2)
     rate_bar, bend_bar = np.empty(axes + 2), np.empty(axes + 2)
@@ -162,14 +161,14 @@ def pull_path_limits(
     torque_bar = np.zeros_like(limits.torque)
     shape = (len(made.rows.spacing), 2, limits.acceleration.shape[1])
     a_bar, b_bar, bound_bar = (np.zeros(shape) for _ in range(3))
-    plain = len(made.limited)
+    plain, indices = len(made.limited), pieces.indices
     a_bar[:, :, made.limited] = bar.a[:, :, :plain]
     b_bar[:, :, made.limited] = bar.b[:, :, :plain]
     bound_bar[:, :, made.limited] = (bar.upper - bar.lower)[:, :, :plain]
     pull_between(
         states,
         made.rows.spacing,
-        pieces,
+        indices,
         limits.velocity,
         made.rows.ceiling,
         made.binding,
@@ -181,7 +180,7 @@ def pull_path_limits(
     pull_ceilings(
         states,
         made.rows.spacing,
-        pieces,
+        indices,
         limits.acceleration,
         made.zones,
         made.binding,
@@ -192,9 +191,7 @@ def pull_path_limits(
     )
     _pull_fill(
         states,
-        pieces.first_sample,
-        pieces.first_interval,
-        pieces.segment,
+        indices,
         limits.velocity,
         limits.acceleration,
         limits.centripetal,
@@ -212,7 +209,7 @@ def pull_path_limits(
     if made.shares is not None:
         ends, left = pieces.interval_ends, torque_left(pieces, limits)
         shares_bar, left_bar = _pull_torque_rows(made.shares, ends, left, bar)
-        np.add.at(torque_bar, np.repeat(pieces.segment, pieces.intervals), left_bar)
+        np.add.at(torque_bar, pieces.interval_segments, left_bar)
     turning_bar = _pull_segment_limits(
         limits, velocity_bar, acceleration_bar, torque_bar, speeds_bar
     )

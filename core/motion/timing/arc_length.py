@@ -15,12 +15,13 @@ blend turns back.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
+from ...robot.kinematics.lean import lean
 from ..geometry.corners import JOINT_CORNER, POSITION
 from ..geometry.layout import Layout
 from ..geometry.pieces import Pieces
@@ -32,6 +33,13 @@ _TURNING = 0.1
 """m that a turn of the tool by one rad counts."""
 _LEAST = 0.2
 """Share of the trapezium rule below which the corrected length of an interval is not trusted."""
+
+
+class _Rates(NamedTuple):
+    """w = dℓ/dσ of the samples (S,), and dw/dσ."""
+
+    w: FloatArray
+    turn: FloatArray
 
 
 @dataclass(frozen=True)
@@ -73,14 +81,13 @@ class ArcLength:
             acceleration: (N,) rad/s² or m/s², the axes' limits.
         """
         zones, weights = _zones(layout, pieces, flat), 1.0 / acceleration**2
-        count = len(sigma)
-        rate, change = np.ones(count), np.zeros(count)
+        rates = _Rates(np.ones(len(sigma)), np.zeros(len(sigma)))
         states = States(samples.q, *(array.copy() for array in samples[1:]))
-        _even(samples, sigma, zones, weights, rate, change, states)
+        _even(samples, sigma, zones, weights, rates, states)
         left = pieces.interval_samples
         spacing = np.empty(len(left))
-        _measure(sigma, left, rate, change, spacing)
-        return cls(states, rate, spacing, zones, weights)
+        _measure(sigma, left, rates, spacing)
+        return cls(states, rates.w, spacing, zones, weights)
 
     def pull(
         self,
@@ -99,33 +106,12 @@ class ArcLength:
             spacing_bar: (K,).
             sigma_bar: (S,), added to.
         """
-        count = len(sigma)
-        rate, change = np.ones(count), np.zeros(count)
+        rates = _Rates(np.ones(len(sigma)), np.zeros(len(sigma)))
+        rates_bar = _Rates(np.zeros(len(sigma)), np.zeros(len(sigma)))
         scratch = States(*(np.empty_like(array) for array in samples))
-        _even(samples, sigma, self.zones, self.weights, rate, change, scratch)
-        rate_bar, change_bar = np.zeros(count), np.zeros(count)
-        _pull_measure(
-            sigma,
-            pieces.interval_samples,
-            rate,
-            change,
-            spacing_bar,
-            sigma_bar,
-            rate_bar,
-            change_bar,
-        )
-        _pull_even(
-            samples,
-            sigma,
-            self.zones,
-            self.weights,
-            rate,
-            change,
-            bar,
-            rate_bar,
-            change_bar,
-            sigma_bar,
-        )
+        _even(samples, sigma, self.zones, self.weights, rates, scratch)
+        _pull_measure(sigma, pieces.interval_samples, rates, spacing_bar, sigma_bar, rates_bar)
+        _pull_even(samples, sigma, self.zones, self.weights, rates, bar, rates_bar, sigma_bar)
         return bar
 
 
@@ -140,7 +126,7 @@ def _zones(layout: Layout, pieces: Pieces, flat: NDArray[np.bool_]) -> IntArray:
     return np.stack([samples[first], samples[last + 1] - 1, joint], -1).astype(np.int64)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _square(states: States, k: int, joint: int, weights: FloatArray) -> tuple[float, float]:
     """|x'|² and x' · x'' of sample k."""
     square = mixed = 0.0
@@ -156,7 +142,7 @@ def _square(states: States, k: int, joint: int, weights: FloatArray) -> tuple[fl
     return square, mixed
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _ends(
     states: States, first: int, last: int, joint: int, weights: FloatArray
 ) -> tuple[float, float, float]:
@@ -167,14 +153,13 @@ def _ends(
     return floor, np.sqrt(begin + floor), np.sqrt(end + floor)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _even(
     states: States,
     sigma: FloatArray,
     zones: IntArray,
     weights: FloatArray,
-    rate: FloatArray,
-    change: FloatArray,
+    rates: _Rates,
     out: States,
 ) -> None:
     """Write w and dw/dσ of the samples in zones, and their derivatives with respect to ℓ."""
@@ -191,7 +176,7 @@ def _even(
             d = n0 + slope * (sigma[k] - sigma[first])
             w = n / d
             turn = mixed / (n * d) - n * slope / d**2
-            rate[k], change[k] = w, turn
+            rates.w[k], rates.turn[k] = w, turn
             for j in range(weights.size):
                 out.dq[k, j] = states.dq[k, j] / w
                 out.ddq[k, j] = (states.ddq[k, j] - states.dq[k, j] * turn / w) / w**2
@@ -200,48 +185,44 @@ def _even(
                 out.a[k, i] = (states.a[k, i] - states.v[k, i] * turn / w) / w**2
 
 
-@njit(cache=True, error_model="numpy")
-def _measure(
-    sigma: FloatArray, left: IntArray, rate: FloatArray, change: FloatArray, spacing: FloatArray
-) -> None:
+@lean
+def _measure(sigma: FloatArray, left: IntArray, rates: _Rates, spacing: FloatArray) -> None:
     """Write ℓ of the intervals: the trapezium rule with its end correction."""
     for i in range(left.size):
         k = left[i]
         h = sigma[k + 1] - sigma[k]
-        plain = 0.5 * h * (rate[k] + rate[k + 1])
-        corrected = plain + h * h / 12 * (change[k] - change[k + 1])
+        plain = 0.5 * h * (rates.w[k] + rates.w[k + 1])
+        corrected = plain + h * h / 12 * (rates.turn[k] - rates.turn[k + 1])
         spacing[i] = corrected if corrected > _LEAST * plain else plain
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _pull_measure(
     sigma: FloatArray,
     left: IntArray,
-    rate: FloatArray,
-    change: FloatArray,
+    rates: _Rates,
     spacing_bar: FloatArray,
     sigma_bar: FloatArray,
-    rate_bar: FloatArray,
-    change_bar: FloatArray,
+    rates_bar: _Rates,
 ) -> None:
     """Reverse of `_measure`."""
     for i in range(left.size):
         k, bar = left[i], spacing_bar[i]
         h = sigma[k + 1] - sigma[k]
-        plain = 0.5 * h * (rate[k] + rate[k + 1])
-        turned = change[k] - change[k + 1]
-        h_bar = 0.5 * bar * (rate[k] + rate[k + 1])
+        plain = 0.5 * h * (rates.w[k] + rates.w[k + 1])
+        turned = rates.turn[k] - rates.turn[k + 1]
+        h_bar = 0.5 * bar * (rates.w[k] + rates.w[k + 1])
         if plain + h * h / 12 * turned > _LEAST * plain:
             h_bar += bar * h / 6 * turned
-            change_bar[k] += bar * h * h / 12
-            change_bar[k + 1] -= bar * h * h / 12
-        rate_bar[k] += 0.5 * bar * h
-        rate_bar[k + 1] += 0.5 * bar * h
+            rates_bar.turn[k] += bar * h * h / 12
+            rates_bar.turn[k + 1] -= bar * h * h / 12
+        rates_bar.w[k] += 0.5 * bar * h
+        rates_bar.w[k + 1] += 0.5 * bar * h
         sigma_bar[k + 1] += h_bar
         sigma_bar[k] -= h_bar
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _pull_square(
     states: States,
     k: int,
@@ -265,7 +246,7 @@ def _pull_square(
         bar.a[k, i] += weight * one * mixed_bar
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _pull_rates(
     first: FloatArray,
     second: FloatArray,
@@ -286,17 +267,15 @@ def _pull_rates(
     return w_bar, turn_bar
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _pull_even(
     states: States,
     sigma: FloatArray,
     zones: IntArray,
     weights: FloatArray,
-    rate: FloatArray,
-    change: FloatArray,
+    rates: _Rates,
     bar: States,
-    rate_bar: FloatArray,
-    change_bar: FloatArray,
+    rates_bar: _Rates,
     sigma_bar: FloatArray,
 ) -> None:
     """Reverse of `_even`; ``bar`` becomes the gradient of the path's own samples."""
@@ -309,10 +288,10 @@ def _pull_even(
         slope = (n1 - n0) / length
         floor_bar = n0_bar = slope_bar = begin_bar = 0.0
         for k in range(first, last + 1):
-            w, turn = rate[k], change[k]
+            w, turn = rates.w[k], rates.turn[k]
             a, b = _pull_rates(states.dq[k], states.ddq[k], w, turn, bar.dq[k], bar.ddq[k])
             c, e = _pull_rates(states.v[k], states.a[k], w, turn, bar.v[k], bar.a[k])
-            w_bar, turn_bar = rate_bar[k] + a + c, change_bar[k] + b + e
+            w_bar, turn_bar = rates_bar.w[k] + a + c, rates_bar.turn[k] + b + e
             square, mixed = _square(states, k, joint, weights)
             n = np.sqrt(square + floor)
             d = n0 + slope * (sigma[k] - sigma[first])

@@ -15,7 +15,8 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from ..geometry.pieces import Pieces
+from ...robot.kinematics.lean import lean
+from ..geometry.pieces import PieceIndices
 from ..geometry.quintic import slopes
 from ..path.tcp_samples import States
 from .rates import pull_rates, rates
@@ -46,47 +47,7 @@ def row_between(code: int) -> int:
     return (code - BETWEEN) // (2 * len(_PLACES))
 
 
-def lower_between(
-    states: States,
-    spacing: FloatArray,
-    pieces: Pieces,
-    velocity: FloatArray,
-    ceiling: FloatArray,
-    binding: IntArray,
-) -> None:
-    """Lower ceilings (K + 1,), 0 at stops, where the line between two passes a limit.
-
-    Args:
-        states: (S,) samples.
-        spacing: (K,), of the intervals.
-        pieces: the path's pieces.
-        velocity: (M, N + 2), limits of the segments.
-        ceiling: lowered.
-        binding: (K + 1, 3), becomes (sample at the left of the interval, code, segment).
-    """
-    layout = pieces.first_sample, pieces.first_interval, pieces.segment
-    _lower(states, spacing, *layout, velocity, ceiling, binding)
-
-
-def pull_between(
-    states: States,
-    spacing: FloatArray,
-    pieces: Pieces,
-    velocity: FloatArray,
-    ceiling: FloatArray,
-    binding: IntArray,
-    ceiling_bar: FloatArray,
-    states_bar: States,
-    spacing_bar: FloatArray,
-    velocity_bar: FloatArray,
-) -> None:
-    """Reverse of `lower_between`: adds to the last three."""
-    layout = pieces.first_sample, pieces.first_interval, pieces.segment
-    bars = ceiling_bar, states_bar, spacing_bar, velocity_bar
-    _pull(states, spacing, *layout, velocity, ceiling, binding, *bars)
-
-
-@njit(cache=True, error_model="numpy")
+@lean
 def _least(rate: FloatArray, velocity: FloatArray) -> tuple[float, int]:
     """Greatest x at these rates, and the row that bounds it."""
     most, row = 0.0, -1
@@ -97,7 +58,7 @@ def _least(rate: FloatArray, velocity: FloatArray) -> tuple[float, int]:
     return (1.0 / (most * most) if row >= 0 else np.inf), row
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _inside(states: States, s: int, h: float, m: int, rate: FloatArray, twist: FloatArray) -> None:
     """Write the rates (N + 2) and the twist (6,) at place m between samples s and s + 1."""
     axes = rate.size - 2
@@ -121,16 +82,25 @@ def _inside(states: States, s: int, h: float, m: int, rate: FloatArray, twist: F
 
 
 @njit(cache=True, error_model="numpy")
-def _lower(
+def lower_between(
     states: States,
     spacing: FloatArray,
-    first_sample: IntArray,
-    first_interval: IntArray,
-    segment: IntArray,
+    pieces: PieceIndices,
     velocity: FloatArray,
     ceiling: FloatArray,
     binding: IntArray,
 ) -> None:
+    """Lower ceilings (K + 1,), 0 at stops, where the line between two passes a limit.
+
+    Args:
+        states: (S,) samples.
+        spacing: (K,), of the intervals.
+        pieces: of the path.
+        velocity: (M, N + 2), limits of the segments.
+        ceiling: lowered.
+        binding: (K + 1, 3), becomes (sample at the left of the interval, code, segment).
+    """
+    first_sample, first_interval, segment = pieces
     size = velocity.shape[1]
     rate, bend, twist = np.empty(size), np.empty(size), np.empty(6)
     end, lowered = np.empty(2), np.empty(2)
@@ -168,12 +138,10 @@ def _lower(
 
 
 @njit(cache=True, error_model="numpy")
-def _pull(
+def pull_between(
     states: States,
     spacing: FloatArray,
-    first_sample: IntArray,
-    first_interval: IntArray,
-    segment: IntArray,
+    pieces: PieceIndices,
     velocity: FloatArray,
     ceiling: FloatArray,
     binding: IntArray,
@@ -182,6 +150,8 @@ def _pull(
     spacing_bar: FloatArray,
     velocity_bar: FloatArray,
 ) -> None:
+    """Reverse of `lower_between`: adds to the last three."""
+    first_sample, first_interval, segment = pieces
     size = velocity.shape[1]
     axes = size - 2
     rate, bend, twist = np.empty(size), np.empty(size), np.empty(6)

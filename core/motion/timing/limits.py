@@ -21,7 +21,7 @@ from ...arrays import FloatArray, IntArray
 from ...program.speed import Speed
 from ...robot.joint import JointKind
 from ...robot.model import Robot
-from ..geometry.pieces import Pieces
+from ..geometry.pieces import PieceIndices, Pieces
 from ..geometry.segments import JOINT_SEGMENT, Segments
 from ..geometry.swivel import turn_shares
 from ..model.motion_model import MotionModel
@@ -29,6 +29,7 @@ from ..path.tcp_samples import States
 from . import stamping
 from .between_samples import lower_between
 from .rates import rates, sideways
+from .stamping_kernels import Rows
 from .superposed_legs import lower_ceilings, room_along
 from .torque_rows import Shares, torque_rows
 
@@ -155,24 +156,21 @@ def _limits(
 @njit(cache=True, error_model="numpy")
 def _fill(
     states: States,
-    first_sample: IntArray,
-    first_interval: IntArray,
-    segment: IntArray,
+    pieces: PieceIndices,
     velocity: FloatArray,
     acceleration: FloatArray,
     centripetal: float,
     room: FloatArray,
     place: IntArray,
-    a: FloatArray,
-    b: FloatArray,
-    bound: FloatArray,
+    rows: Rows,
     ceiling: FloatArray,
     binding: IntArray,
 ) -> None:
-    """Write rows (K, 2, …), bounds and ceilings (K + 1,) with what binds them.
+    """Write rows (K, 2, …), but for lower bounds, and ceilings (K + 1,) with what binds them.
 
     ``place`` (N + 2,) says which row is whose; −1 of what is limited nowhere.
     """
+    first_sample, first_interval, segment = pieces
     axes = states.q.shape[1]
     rate, bend = np.empty(axes + 2), np.empty(axes + 2)
     for p in range(segment.size):
@@ -187,11 +185,11 @@ def _fill(
                     x = (velocity[s, j] / rate[j]) ** 2
                     if x < ceiling[knot]:
                         ceiling[knot] = x
-                        binding[knot, 0], binding[knot, 1], binding[knot, 2] = k, j, s
+                        binding[knot] = k, j, s
             most = centripetal * acceleration[s, axes]
             if most < np.inf and sideways(states, k) * ceiling[knot] > most:
                 ceiling[knot] = most / sideways(states, k)
-                binding[knot, 0], binding[knot, 1], binding[knot, 2] = k, CENTRIPETAL, s
+                binding[knot] = k, CENTRIPETAL, s
             for end in range(2):
                 interval = knot - end
                 if interval < first_interval[p] or interval >= first_interval[p + 1]:
@@ -201,9 +199,10 @@ def _fill(
                     if row < 0:
                         continue
                     limited = acceleration[s, j] < np.inf
-                    a[interval, end, row] = rate[j] if limited else 0.0
-                    b[interval, end, row] = bend[j] if limited else 0.0
-                    bound[interval, end, row] = acceleration[s, j] * (room[p] if j >= axes else 1.0)
+                    rows.a[interval, end, row] = rate[j] if limited else 0.0
+                    rows.b[interval, end, row] = bend[j] if limited else 0.0
+                    most = acceleration[s, j] * (room[p] if j >= axes else 1.0)
+                    rows.upper[interval, end, row] = most
 
 
 @dataclass(frozen=True)
@@ -249,53 +248,40 @@ def path_limits(
         shares: (S, L), what share of its torque's limit each joint takes; None if none is limited.
         known: of the same path with the same limits but of velocities; its rows are taken.
     """
-    first_sample, first_interval = pieces.first_sample, pieces.first_interval
     limited = np.flatnonzero((limits.acceleration < np.inf).any(axis=0))
     place = np.full(limits.acceleration.shape[1], -1)
     place[limited] = np.arange(len(limited))
-    count, rows = int(first_interval[-1]), len(limited)
+    count, plain = int(pieces.first_interval[-1]), len(limited)
     torques = 0 if shares is None else 2 * shares.h.shape[1]
     if known is None:
-        a, b, lower, upper = (np.zeros((count, 2, rows + torques)) for _ in range(4))
+        rows = Rows(*(np.zeros((count, 2, plain + torques)) for _ in range(4)))
     else:
         place[:] = -1
-        a, b, lower, upper = known.rows.rows[:4]
+        rows = known.rows.rows
     ceiling = np.full(count + 1, np.inf)
     binding = np.full((count + 1, 3), -1, dtype=np.int64)
-    _fill(
-        states,
-        first_sample,
-        first_interval,
-        pieces.segment,
-        limits.velocity,
-        limits.acceleration,
-        limits.centripetal,
-        room_along(zones, pieces),
-        place,
-        a,
-        b,
-        upper,
-        ceiling,
-        binding,
-    )
-    stops = first_interval[pieces.stop]
+    velocity, acceleration = limits.velocity, limits.acceleration
+    room = room_along(zones, pieces)
+    indices, most = pieces.indices, limits.centripetal
+    _fill(states, indices, velocity, acceleration, most, room, place, rows, ceiling, binding)
+    stops = pieces.first_interval[pieces.stop]
     ceiling[stops] = 0.0
     binding[stops] = -1
-    lower_between(states, spacing, pieces, limits.velocity, ceiling, binding)
-    lower_ceilings(states, spacing, pieces, limits.acceleration, zones, ceiling, binding)
+    lower_between(states, spacing, indices, velocity, ceiling, binding)
+    lower_ceilings(states, spacing, indices, acceleration, zones, ceiling, binding)
     if known is None:
-        np.negative(upper, out=lower)
+        np.negative(rows.upper, out=rows.lower)
     if known is None and shares is not None:
         ends, left = pieces.interval_ends, torque_left(pieces, limits)
         for first in range(0, count, _TOGETHER):
             part = slice(first, first + _TOGETHER)
             made = torque_rows(shares, ends[part], left[part])
-            for whole, own in zip((a, b, lower, upper), made, strict=True):
-                whole[part, :, rows:] = own
-    found = stamping.StampLimits(spacing, a, b, lower, upper, ceiling)
+            for whole, own in zip(rows, made, strict=True):
+                whole[part, :, plain:] = own
+    found = stamping.StampLimits(spacing, *rows, ceiling)
     return PathLimits(found, limited, shares, zones, binding)
 
 
 def torque_left(pieces: Pieces, limits: SegmentLimits) -> FloatArray:
     """(K,), the share of the torques' limits that may be used in each interval."""
-    return limits.torque[np.repeat(pieces.segment, pieces.intervals)]
+    return limits.torque[pieces.interval_segments]

@@ -24,10 +24,11 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
+from ...robot.kinematics.lean import lean
 from ..geometry.corners import POSITION, TCP_CORNER
 from ..geometry.curves import ARC, Curves
 from ..geometry.layout import Layout
-from ..geometry.pieces import Pieces
+from ..geometry.pieces import PieceIndices, Pieces
 from ..path.tcp_samples import States
 from .rates import pull_rates, rates
 
@@ -53,49 +54,7 @@ def room_along(zones: IntArray, pieces: Pieces) -> FloatArray:
     return room
 
 
-def lower_ceilings(
-    states: States,
-    spacing: FloatArray,
-    pieces: Pieces,
-    acceleration: FloatArray,
-    zones: IntArray,
-    ceiling: FloatArray,
-    binding: IntArray,
-) -> None:
-    """Lower ceilings (K + 1,) to how fast zones are driven, noting where that binds.
-
-    Args:
-        states: (S,) samples.
-        spacing: (K,) of the intervals.
-        pieces: of the path.
-        acceleration: (M, N + 2), limits of the segments.
-        zones: (Z, 4), see `superposed_zones`.
-        ceiling: lowered.
-        binding: (K + 1, 3), becomes (`ZONE`, `ZONE`, index of the zone).
-    """
-    layout = pieces.first_sample, pieces.first_interval, pieces.segment
-    _lower(states, spacing, *layout, acceleration, zones, ceiling, binding)
-
-
-def pull_ceilings(
-    states: States,
-    spacing: FloatArray,
-    pieces: Pieces,
-    acceleration: FloatArray,
-    zones: IntArray,
-    binding: IntArray,
-    ceiling_bar: FloatArray,
-    states_bar: States,
-    spacing_bar: FloatArray,
-    acceleration_bar: FloatArray,
-) -> None:
-    """Reverse of `lower_ceilings`: adds to the last three."""
-    layout = pieces.first_sample, pieces.first_interval, pieces.segment
-    bars = ceiling_bar, states_bar, spacing_bar, acceleration_bar
-    _pull(states, spacing, *layout, acceleration, zones, binding, *bars)
-
-
-@njit(cache=True, error_model="numpy")
+@lean
 def _brakes(
     states: States, k: int, limits: FloatArray, rate: FloatArray, bend: FloatArray
 ) -> tuple[float, int]:
@@ -108,7 +67,7 @@ def _brakes(
     return least, row
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _speed(states: States, k: int) -> float:
     """|p'|² at sample k."""
     square = 0.0
@@ -117,15 +76,12 @@ def _speed(states: States, k: int) -> float:
     return square
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _ends(
-    spacing: FloatArray,
-    first_sample: IntArray,
-    first_interval: IntArray,
-    segment: IntArray,
-    zone: IntArray,
+    spacing: FloatArray, pieces: PieceIndices, zone: IntArray
 ) -> tuple[tuple[int, int], tuple[int, int], tuple[float, float]]:
     """Samples at a zone's entry and exit, the segments there, and the zone's extents."""
+    first_sample, first_interval, segment = pieces
     first, behind, last = zone[0], zone[1], zone[2]
     before = after = 0.0
     for i in range(first_interval[first], first_interval[behind]):
@@ -136,7 +92,7 @@ def _ends(
     return samples, (segment[first], segment[last]), (before, after)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _asked(
     states: States,
     samples: tuple[int, int],
@@ -162,20 +118,30 @@ def _asked(
 
 
 @njit(cache=True, error_model="numpy")
-def _lower(
+def lower_ceilings(
     states: States,
     spacing: FloatArray,
-    first_sample: IntArray,
-    first_interval: IntArray,
-    segment: IntArray,
+    pieces: PieceIndices,
     acceleration: FloatArray,
     zones: IntArray,
     ceiling: FloatArray,
     binding: IntArray,
 ) -> None:
+    """Lower ceilings (K + 1,) to how fast zones are driven, noting where that binds.
+
+    Args:
+        states: (S,) samples.
+        spacing: (K,) of the intervals.
+        pieces: of the path.
+        acceleration: (M, N + 2), limits of the segments.
+        zones: (Z, 4), see `superposed_zones`.
+        ceiling: lowered.
+        binding: (K + 1, 3), becomes (`ZONE`, `ZONE`, index of the zone).
+    """
+    first_sample, first_interval, _ = pieces
     rate, bend = np.empty(acceleration.shape[1]), np.empty(acceleration.shape[1])
     for z in range(zones.shape[0]):
-        samples, owners, extents = _ends(spacing, first_sample, first_interval, segment, zones[z])
+        samples, owners, extents = _ends(spacing, pieces, zones[z])
         arc = zones[z, 3]
         square, side, _, _ = _asked(states, samples, owners, extents, arc, acceleration, rate, bend)
         if side < 0:
@@ -194,20 +160,14 @@ def _lower(
                     x = begin + (end - begin) * way / (before + after)
                 if x < ceiling[knot]:
                     ceiling[knot] = x
-                    binding[knot, 0], binding[knot, 1], binding[knot, 2] = (
-                        first_sample[p] + i,
-                        ZONE,
-                        z,
-                    )
+                    binding[knot] = first_sample[p] + i, ZONE, z
 
 
 @njit(cache=True, error_model="numpy")
-def _pull(
+def pull_ceilings(
     states: States,
     spacing: FloatArray,
-    first_sample: IntArray,
-    first_interval: IntArray,
-    segment: IntArray,
+    pieces: PieceIndices,
     acceleration: FloatArray,
     zones: IntArray,
     binding: IntArray,
@@ -216,11 +176,13 @@ def _pull(
     spacing_bar: FloatArray,
     acceleration_bar: FloatArray,
 ) -> None:
+    """Reverse of `lower_ceilings`: adds to the last three."""
+    first_interval = pieces.first_interval
     size = acceleration.shape[1]
     rate, bend = np.empty(size), np.empty(size)
     rate_bar, bend_bar = np.zeros(size), np.zeros(size)
     for z in range(zones.shape[0]):
-        samples, owners, extents = _ends(spacing, first_sample, first_interval, segment, zones[z])
+        samples, owners, extents = _ends(spacing, pieces, zones[z])
         arc = zones[z, 3]
         square, side, A, row = _asked(
             states, samples, owners, extents, arc, acceleration, rate, bend

@@ -28,7 +28,7 @@ def lowered(timing, states: States, spacing, velocity) -> tuple[np.ndarray, np.n
     ceiling = np.full(len(spacing) + 1, np.inf)
     ceiling[[0, -1]] = 0.0
     binding = np.full((len(ceiling), 3), -1, dtype=np.int64)
-    lower_between(states, spacing, timing.path.pieces, velocity, ceiling, binding)
+    lower_between(states, spacing, timing.path.pieces.indices, velocity, ceiling, binding)
     return ceiling, binding
 
 
@@ -51,7 +51,7 @@ def test_the_reverse_is_the_slope(timing, part) -> None:
     pull_between(
         states,
         spacing,
-        timing.path.pieces,
+        timing.path.pieces.indices,
         velocity,
         ceiling,
         binding,
