@@ -25,6 +25,7 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
+from ...robot.kinematics.lean import lean
 from ...robot.kinematics.vectors import (
     Vector,
     add,
@@ -64,6 +65,27 @@ class _Travel(NamedTuple):
     origin: Vector
 
 
+class _Middle(NamedTuple):
+    """Bodies in the world at the middle of an interval.
+
+    Args:
+        tree, outlines: of F frames and B bodies.
+        R, p: (F, 3, 3), (F, 3) m, the frames.
+        axis: (F, 3), of their joints.
+        levers: (B, F), Λ (m) of every body about every axis below it; 1 for slides.
+        centre, edges: (B, 3), (B, 3, 3) m, boxes round the bodies.
+    """
+
+    tree: FrameTree
+    outlines: Outlines
+    R: FloatArray
+    p: FloatArray
+    axis: FloatArray
+    levers: FloatArray
+    centre: FloatArray
+    edges: FloatArray
+
+
 @njit(cache=True, error_model="numpy")
 def sweep(
     tree: FrameTree,
@@ -90,215 +112,160 @@ def sweep(
         found: written.
     """
     frames, bodies = tree.parent.size, outlines.frame.size
-    R, p = np.empty((frames, 3, 3)), np.empty((frames, 3))
-    axis = np.zeros((frames, 3))
-    levers = np.zeros((bodies, frames))
-    centre, edges = np.empty((bodies, 3)), np.empty((bodies, 3, 3))
+    at = _Middle(
+        tree,
+        outlines,
+        np.empty((frames, 3, 3)),
+        np.empty((frames, 3)),
+        np.zeros((frames, 3)),
+        np.zeros((bodies, frames)),
+        np.empty((bodies, 3)),
+        np.empty((bodies, 3, 3)),
+    )
     current = -1
     for k in range(items.interval.size):
         i = items.interval[k]
         if i != current:
             current = i
-            _place(tree, outlines, boxes.q[i], R, p, axis, centre, edges)
-            _measure_levers(tree, outlines, boxes.reach[i], stretches.most[i], R, p, axis, levers)
+            _place(at, boxes.q[i])
+            _measure_levers(at, boxes.reach[i], stretches.most[i])
         a, b = pairs[items.pair[k], 0], pairs[items.pair[k], 1]
-        first = _travel(
-            tree, outlines, boxes, stretches.most[i], residual, levers, axis, p, i, a, b
-        )
-        second = _travel(
-            tree, outlines, boxes, stretches.most[i], residual, levers, axis, p, i, b, a
-        )
+        first = _travel(at, boxes, stretches.most[i], residual, i, a, b)
+        second = _travel(at, boxes, stretches.most[i], residual, i, b, a)
         found.travel[k] = first.reach + second.reach
         motion = first.reach + second.reach + first.deviation + second.deviation
         found.motion[k] = motion
         own = stretches.own[i]
-        found.deviation[k] = _deviation(
-            tree, outlines, deviations.most[own], levers, residual, a, b
-        )
+        found.deviation[k] = _deviation(at, deviations.most[own], residual, a, b)
         n = load_row(items.normal, k)
         lower = items.distance[k] - motion
         if dot(n, n) > 0.0:
-            gap = _planar_gap(outlines, R, p, a, b, first, second, n)
+            gap = _planar_gap(at, a, b, first, second, n)
             off = first.deviation + second.deviation
             if stretches.last[i] - stretches.first[i] < _FEW:
                 most = 0.0
                 for c in range(stretches.first[i], stretches.last[i] + 1):
-                    lost = _lost(
-                        tree, outlines, deviations, c, residual, levers, axis, R, p, a, b, n
-                    )
-                    most = max(most, lost)
+                    most = max(most, _lost(at, deviations, c, residual, a, b, n))
                 off = min(off, most)
-            bend = _deviation_bend(tree, outlines, deviations.most[own], levers, a, b)
-            lost = _lost(tree, outlines, deviations, own, residual, levers, axis, R, p, a, b, n)
+            bend = _deviation_bend(at, deviations.most[own], a, b)
+            lost = _lost(at, deviations, own, residual, a, b, n)
             found.deviation[k] = min(found.deviation[k], lost + bend)
             lower = max(lower, gap - off)
         else:
-            lower = max(lower, _box_gap(outlines, centre, edges, a, b) - motion)
+            lower = max(lower, _box_gap(at, a, b) - motion)
         found.lower[k] = lower
 
 
-@njit(cache=True, error_model="numpy")
-def _apart(tree: FrameTree, outlines: Outlines, body: int, other: int, f: int) -> bool:
+@lean
+def _apart(at: _Middle, body: int, other: int, f: int) -> bool:
     """Whether frame f moves ``body`` against ``other``."""
-    return f > 0 and not tree.moves[outlines.frame[other], f - 1]
+    return f > 0 and not at.tree.moves[at.outlines.frame[other], f - 1]
 
 
-@njit(cache=True, error_model="numpy")
-def _deviation(
-    tree: FrameTree,
-    outlines: Outlines,
-    most_off: FloatArray,
-    levers: FloatArray,
-    residual: float,
-    a: int,
-    b: int,
-) -> float:
+@lean
+def _deviation(at: _Middle, most_off: FloatArray, residual: float, a: int, b: int) -> float:
     """m by which deviations within ``most_off`` (N,) and the residual move two bodies at most."""
     total = 0.0
     for body, other in ((a, b), (b, a)):
-        f = outlines.frame[body]
-        if _apart(tree, outlines, body, other, f):
+        f = at.outlines.frame[body]
+        if _apart(at, body, other, f):
             total += residual
-        while _apart(tree, outlines, body, other, f):
-            total += most_off[f - 1] * levers[body, f]
-            f = tree.parent[f]
+        while _apart(at, body, other, f):
+            total += most_off[f - 1] * at.levers[body, f]
+            f = at.tree.parent[f]
     return total
 
 
-@njit(cache=True, error_model="numpy")
-def _deviation_bend(
-    tree: FrameTree, outlines: Outlines, most_off: FloatArray, levers: FloatArray, a: int, b: int
-) -> float:
+@lean
+def _deviation_bend(at: _Middle, most_off: FloatArray, a: int, b: int) -> float:
     """m by which they move them at most beside what is linear in them."""
     total = 0.0
     for body, other in ((a, b), (b, a)):
-        f, speed = outlines.frame[body], 0.0
-        while _apart(tree, outlines, body, other, f):
-            d, far = most_off[f - 1], levers[body, f]
-            if not tree.prismatic[f]:
+        f, speed = at.outlines.frame[body], 0.0
+        while _apart(at, body, other, f):
+            d, far = most_off[f - 1], at.levers[body, f]
+            if not at.tree.prismatic[f]:
                 total += 0.5 * (2.0 * d * speed + d * d * far)
             speed += d * far
-            f = tree.parent[f]
+            f = at.tree.parent[f]
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _lost(
-    tree: FrameTree,
-    outlines: Outlines,
-    deviations: DeviationBounds,
-    c: int,
-    residual: float,
-    levers: FloatArray,
-    axis: FloatArray,
-    R: FloatArray,
-    p: FloatArray,
-    a: int,
-    b: int,
-    n: Vector,
+    at: _Middle, deviations: DeviationBounds, c: int, residual: float, a: int, b: int, n: Vector
 ) -> float:
     """m that deviations and the residual may take along n, as far as it is linear in them."""
-    total: float = _deviation(tree, outlines, deviations.rest[c], levers, residual, a, b)
+    total: float = _deviation(at, deviations.rest[c], residual, a, b)
     for w in range(deviations.ways.shape[1]):
-        way, least, most = (
-            deviations.ways[c, w],
-            deviations.share[c, w, 0],
-            deviations.share[c, w, 1],
-        )
+        way = deviations.ways[c, w]
+        least, most = deviations.share[c, w, 0], deviations.share[c, w, 1]
         if least == 0.0 and most == 0.0:
             continue
-        low, high = _extent(tree, outlines, way, axis, R, p, a, b, n)
+        low, high = _extent(at, way, a, b, n)
         total += max(-most * low, -least * high, 0.0)
-        low, high = _extent(tree, outlines, way, axis, R, p, b, a, n)
+        low, high = _extent(at, way, b, a, n)
         total += max(most * high, least * low, 0.0)
     return total
 
 
-@njit(cache=True, error_model="numpy")
-def _extent(
-    tree: FrameTree,
-    outlines: Outlines,
-    way: FloatArray,
-    axis: FloatArray,
-    R: FloatArray,
-    p: FloatArray,
-    body: int,
-    other: int,
-    n: Vector,
-) -> tuple[float, float]:
+@lean
+def _extent(at: _Middle, way: FloatArray, body: int, other: int, n: Vector) -> tuple[float, float]:
     """How far along n the points of a body go against another, joints going a way (N,)."""
-    f = own = outlines.frame[body]
+    f = own = at.outlines.frame[body]
     omega, origin, moved = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), False
-    while _apart(tree, outlines, body, other, f):
-        rate = scale(way[f - 1], load_row(axis, f))
-        if tree.prismatic[f]:
+    while _apart(at, body, other, f):
+        rate = scale(way[f - 1], load_row(at.axis, f))
+        if at.tree.prismatic[f]:
             origin = add(origin, rate)
         else:
             omega = add(omega, rate)
-            origin = add(origin, cross(load_row(p, f), rate))
+            origin = add(origin, cross(load_row(at.p, f), rate))
         moved = True
-        f = tree.parent[f]
+        f = at.tree.parent[f]
     if not moved:
         return 0.0, 0.0
     across, along = cross(n, omega), dot(n, origin)
-    low = along - support(outlines, body, R[own], p[own], scale(-1.0, across))
-    return low, along + support(outlines, body, R[own], p[own], across)
+    low = along - support(at.outlines, body, at.R[own], at.p[own], scale(-1.0, across))
+    return low, along + support(at.outlines, body, at.R[own], at.p[own], across)
 
 
-@njit(cache=True, error_model="numpy")
-def _place(
-    tree: FrameTree,
-    outlines: Outlines,
-    q: FloatArray,
-    R: FloatArray,
-    p: FloatArray,
-    axis: FloatArray,
-    centre: FloatArray,
-    edges: FloatArray,
-) -> None:
+@lean
+def _place(at: _Middle, q: FloatArray) -> None:
     """Write frames, joint axes (F, 3), and the bodies' boxes in the world."""
-    place_frames(tree, q, R, p)
-    for f in range(1, tree.parent.size):
-        s = turn(load_rotation(R, f), load_row(tree.axis, f))
-        axis[f, 0], axis[f, 1], axis[f, 2] = s
-    for b in range(outlines.frame.size):
-        f = outlines.frame[b]
-        turned = load_rotation(R, f)
-        c = add(load_row(p, f), turn(turned, load_row(outlines.centre, b)))
-        centre[b, 0], centre[b, 1], centre[b, 2] = c
+    place_frames(at.tree, q, at.R, at.p)
+    for f in range(1, at.tree.parent.size):
+        s = turn(load_rotation(at.R, f), load_row(at.tree.axis, f))
+        at.axis[f, 0], at.axis[f, 1], at.axis[f, 2] = s
+    for b in range(at.outlines.frame.size):
+        f = at.outlines.frame[b]
+        turned = load_rotation(at.R, f)
+        c = add(load_row(at.p, f), turn(turned, load_row(at.outlines.centre, b)))
+        at.centre[b, 0], at.centre[b, 1], at.centre[b, 2] = c
         for i in range(3):
-            e = turn(turned, load_row(outlines.edges[b], i))
-            edges[b, i, 0], edges[b, i, 1], edges[b, i, 2] = e
+            e = turn(turned, load_row(at.outlines.edges[b], i))
+            at.edges[b, i, 0], at.edges[b, i, 1], at.edges[b, i, 2] = e
 
 
-@njit(cache=True, error_model="numpy")
-def _measure_levers(
-    tree: FrameTree,
-    outlines: Outlines,
-    reach: FloatArray,
-    most_off: FloatArray,
-    R: FloatArray,
-    p: FloatArray,
-    axis: FloatArray,
-    levers: FloatArray,
-) -> None:
-    """Write Λ (B, F), m, of every body about every axis below it; 1 for slides."""
-    for b in range(outlines.frame.size):
-        own = outlines.frame[b]
+@lean
+def _measure_levers(at: _Middle, reach: FloatArray, most_off: FloatArray) -> None:
+    """Write the levers."""
+    for b in range(at.outlines.frame.size):
+        own = at.outlines.frame[b]
         f, behind = own, 0.0
         while f > 0:
-            if tree.prismatic[f]:
-                levers[b, f] = 1.0
+            if at.tree.prismatic[f]:
+                at.levers[b, f] = 1.0
             else:
                 # In the body's frame, where its box is kept.
-                step = subtract(load_row(p, f), load_row(p, own))
-                s, o = _into(R, own, load_row(axis, f)), _into(R, own, step)
-                levers[b, f] = lever(outlines, b, s, o) + behind
-            behind += (reach[f - 1] + most_off[f - 1]) * levers[b, f]
-            f = tree.parent[f]
+                step = subtract(load_row(at.p, f), load_row(at.p, own))
+                s, o = _into(at.R, own, load_row(at.axis, f)), _into(at.R, own, step)
+                at.levers[b, f] = lever(at.outlines, b, s, o) + behind
+            behind += (reach[f - 1] + most_off[f - 1]) * at.levers[b, f]
+            f = at.tree.parent[f]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _into(R: FloatArray, f: int, x: Vector) -> Vector:
     """A world vector in the axes of frame f."""
     return (
@@ -308,93 +275,74 @@ def _into(R: FloatArray, f: int, x: Vector) -> Vector:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _travel(
-    tree: FrameTree,
-    outlines: Outlines,
-    boxes: Boxes,
-    most_off: FloatArray,
-    residual: float,
-    levers: FloatArray,
-    axis: FloatArray,
-    p: FloatArray,
-    i: int,
-    body: int,
-    other: int,
+    at: _Middle, boxes: Boxes, most_off: FloatArray, residual: float, i: int, body: int, other: int
 ) -> _Travel:
     """How ``body`` moves on interval i, seen from the last joint that also carries ``other``.
 
     Its acceleration builds up from tip to base: turning a frame at ω adds 2 ω × v and
     ω × (ω × r) to what happens in it.
     """
-    f = outlines.frame[body]
-    shared = tree.moves[outlines.frame[other]]
+    f = at.outlines.frame[body]
+    shared = at.tree.moves[at.outlines.frame[other]]
     reach = bend = speed = 0.0
     deviation = residual if f > 0 and not shared[f - 1] else 0.0
     omega, origin = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     while f > 0 and not shared[f - 1]:
-        j, far = f - 1, levers[body, f]
+        j, far = f - 1, at.levers[body, f]
         d1, d2 = boxes.first[i, j] + most_off[j], boxes.second[i, j]
-        s = load_row(axis, f)
+        s = load_row(at.axis, f)
         reach += boxes.reach[i, j] * far
         deviation += most_off[j] * far
-        if tree.prismatic[f]:
+        if at.tree.prismatic[f]:
             bend += d2
             origin = add(origin, scale(boxes.rate[i, j], s))
         else:
             bend += 2.0 * d1 * speed + (d2 + d1 * d1) * far
             rate = scale(boxes.rate[i, j], s)
             omega = add(omega, rate)
-            origin = add(origin, cross(load_row(p, f), rate))
+            origin = add(origin, cross(load_row(at.p, f), rate))
         speed += d1 * far
-        f = tree.parent[f]
+        f = at.tree.parent[f]
     return _Travel(reach, bend, deviation, omega, origin)
 
 
-@njit(cache=True, error_model="numpy")
-def _planar_gap(
-    outlines: Outlines,
-    R: FloatArray,
-    p: FloatArray,
-    a: int,
-    b: int,
-    first: _Travel,
-    second: _Travel,
-    n: Vector,
-) -> float:
+@lean
+def _planar_gap(at: _Middle, a: int, b: int, first: _Travel, second: _Travel, n: Vector) -> float:
     """How far apart planes square to n keep bodies a and b all along the interval."""
     gap = math.inf
-    fa, fb = outlines.frame[a], outlines.frame[b]
+    fa, fb = at.outlines.frame[a], at.outlines.frame[b]
     for t in (-1.0, 1.0):
         down = scale(-1.0, add(n, scale(t, cross(n, first.omega))))
-        low = -support(outlines, a, R[fa], p[fa], down) + t * dot(n, first.origin)
+        low = -support(at.outlines, a, at.R[fa], at.p[fa], down) + t * dot(n, first.origin)
         up = add(n, scale(t, cross(n, second.omega)))
-        high = support(outlines, b, R[fb], p[fb], up) + t * dot(n, second.origin)
+        high = support(at.outlines, b, at.R[fb], at.p[fb], up) + t * dot(n, second.origin)
         gap = min(gap, low - high)
     return gap - 0.5 * (first.bend + second.bend)
 
 
-@njit(cache=True, error_model="numpy")
-def _box_gap(outlines: Outlines, centre: FloatArray, edges: FloatArray, a: int, b: int) -> float:
+@lean
+def _box_gap(at: _Middle, a: int, b: int) -> float:
     """A lower bound of the distance of two bodies from the boxes and balls that hold them."""
-    step = subtract(load_row(centre, a), load_row(centre, b))
-    gap = math.sqrt(dot(step, step)) - outlines.reach[a] - outlines.reach[b]
+    step = subtract(load_row(at.centre, a), load_row(at.centre, b))
+    gap = math.sqrt(dot(step, step)) - at.outlines.reach[a] - at.outlines.reach[b]
     for owner in (a, b):
         for i in range(3):
-            e = load_row(edges[owner], i)
+            e = load_row(at.edges[owner], i)
             size = math.sqrt(dot(e, e))
             if size == 0.0:
                 continue
             n = scale(1.0 / size, e)
-            apart = abs(dot(n, step)) - _half_width(outlines, edges, a, n)
-            gap = max(gap, apart - _half_width(outlines, edges, b, n))
+            apart = abs(dot(n, step)) - _half_width(at, a, n)
+            gap = max(gap, apart - _half_width(at, b, n))
     return float(gap)
 
 
-@njit(cache=True, error_model="numpy")
-def _half_width(outlines: Outlines, edges: FloatArray, body: int, n: Vector) -> float:
+@lean
+def _half_width(at: _Middle, body: int, n: Vector) -> float:
     """Half the width along n of the box or ball that holds a body, whichever is less."""
     width = 0.0
     for i in range(3):
-        width += abs(dot(n, load_row(edges[body], i)))
-    return float(min(width, outlines.reach[body]))
+        width += abs(dot(n, load_row(at.edges[body], i)))
+    return float(min(width, at.outlines.reach[body]))

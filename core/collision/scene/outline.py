@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ...arrays import FloatArray, IntArray
+from ...robot.kinematics.lean import lean
 from ...robot.kinematics.vectors import Vector, load_row
 from ...robot.shape import Box, Capsule, Cylinder, Sphere
 from ..distance.convex import hull
@@ -95,7 +95,7 @@ def _disc(solid: Solid) -> float:
     return solid.radius if isinstance(solid, Cylinder) else 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def support(outlines: Outlines, body: int, R: FloatArray, p: FloatArray, n: Vector) -> float:
     """Largest n · x (m) over the points x of a body whose frame is at R (3, 3), p (3,)."""
     x = R[0, 0] * n[0] + R[1, 0] * n[1] + R[2, 0] * n[2]
@@ -114,7 +114,7 @@ def support(outlines: Outlines, body: int, R: FloatArray, p: FloatArray, n: Vect
     return float(most + n[0] * p[0] + n[1] * p[1] + n[2] * p[2])
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def lever(outlines: Outlines, body: int, axis: Vector, origin: Vector) -> float:
     """How far (m) a body gets from an axis through ``origin``, all in the frame of the body.
 
@@ -133,7 +133,7 @@ def lever(outlines: Outlines, body: int, axis: Vector, origin: Vector) -> float:
     return float(min(ball, math.sqrt(box)))
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _square_off(x: Vector, axis: Vector, origin: Vector) -> float:
     """Squared distance of a point from a line."""
     a, b, c = x[0] - origin[0], x[1] - origin[1], x[2] - origin[2]
