@@ -20,7 +20,7 @@ from .inverse import InverseSolution, equivalent_turns, solve
 from .joint import ExternalAxis, ExternalRole, Joint, JointLimits
 from .kinematics.arm_geometry import Recognised, recognise
 from .kinematics.chain import Chain
-from .kinematics.chain_derivatives import hessians, jacobian_rates
+from .kinematics.chain_derivatives import hessians
 from .kinematics.chain_kernels import jacobians, poses
 from .shape import LinkShape
 
@@ -217,11 +217,6 @@ class Robot:
         """Derivatives ∂J[:, j]/∂q[k] of the Jacobian, (..., 6, N, N) with j before k."""
         lead, (rows,) = self._rows(q)
         return np.asarray(hessians(self.chain, rows)).reshape(*lead, 6, self.size, self.size)
-
-    def jacobian_derivative(self, q: ArrayLike, dq: ArrayLike) -> FloatArray:
-        """Rates dJ/dt (..., 6, N) of the Jacobian for velocities dq (..., N)."""
-        lead, (rows, rates) = self._rows(q, dq)
-        return np.asarray(jacobian_rates(self.chain, rows, rates)).reshape(*lead, 6, self.size)
 
     @cached_property
     def recognised(self) -> Recognised | None:

@@ -27,7 +27,8 @@ from ...core.motion.command.commanded_motion import stamped_motion
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.model.blend import Blend
 from ...core.motion.model.elasticity import RIGID
-from ...core.motion.model.motion_model import MotionModel
+from ...core.motion.model.figures import Stage
+from ...core.motion.model.motion_model import MotionModel, first_change
 from ...core.motion.path.path import Path
 from ...core.motion.timing.timing import Timing
 from ...core.program.move import Move, MoveC, MoveJ, MoveL
@@ -64,7 +65,7 @@ class StudiedFigure:
         key: dotted key of the model's file.
         value: in the studied model.
         spread: standard deviation beforehand.
-        bends: the moves whose corners change with it; none if timing alone does.
+        bends: the moves whose corners change with it; none if it acts upon all moves.
     """
 
     key: str
@@ -200,7 +201,7 @@ class Informer:
         value = figure.value + _STEP * figure.spread
         model = with_value(self.model, figure.key, value)
         controller = Controller(self.vendor, self.robot, model)
-        if figure.bends:
+        if first_change(self.model, model) is Stage.PATH:
             path = controller.plan(program, start)
         return _commanded(controller, program, path, controller.stamp(program, path), t)[0]
 

@@ -25,13 +25,6 @@ def hessians(chain: Chain, q: FloatArray) -> FloatArray:
     return out
 
 
-def jacobian_rates(chain: Chain, q: FloatArray, dq: FloatArray) -> FloatArray:
-    """dJ/dt (M, 6, N) of configurations q moving at dq, both (M, N)."""
-    out = np.zeros((q.shape[0], 6, q.shape[1]))
-    _add_rates(chain.joint, _columns(chain, q), dq, out)
-    return out
-
-
 def _columns(chain: Chain, q: FloatArray) -> FloatArray:
     """One column per chain joint, (M, 6, K), even where several share a value."""
     single = chain._replace(joint=np.arange(chain.joint.size))
@@ -60,16 +53,3 @@ def _add_hessians(joint: NDArray[np.int64], columns: FloatArray, out: FloatArray
                 for i in range(3):
                     out[m, i, joint[j], joint[k]] += linear[i]
                     out[m, 3 + i, joint[j], joint[k]] += angular[i]
-
-
-@njit(cache=True, error_model="numpy")
-def _add_rates(
-    joint: NDArray[np.int64], columns: FloatArray, dq: FloatArray, out: FloatArray
-) -> None:
-    for m in range(columns.shape[0]):
-        for j in range(joint.size):
-            for k in range(joint.size):
-                linear, angular = _column_change(columns, m, j, k)
-                for i in range(3):
-                    out[m, i, joint[j]] += linear[i] * dq[m, joint[k]]
-                    out[m, 3 + i, joint[j]] += angular[i] * dq[m, joint[k]]

@@ -9,6 +9,7 @@ from enum import StrEnum
 import numpy as np
 
 from ....core.errors import InputError
+from ...checks import not_negative, positive
 
 Direction = tuple[float, float, float]
 
@@ -84,13 +85,10 @@ class SweepPlan:
 
     def __post_init__(self) -> None:
         for name in ("sweep_width", "distance", "speed", "longest_segment"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0.0):
-                raise InputError(f"SweepPlan.{name} must be above zero, not {value}")
+            positive(f"SweepPlan.{name}", getattr(self, name))
         for name in ("overhang", "edge_offset", "smoothing_radius", "hole_size"):
-            value = getattr(self, name)
-            if value is not None and not (math.isfinite(value) and value >= 0.0):
-                raise InputError(f"SweepPlan.{name} must be zero or more, not {value}")
+            if getattr(self, name) is not None:
+                not_negative(f"SweepPlan.{name}", getattr(self, name))
         for name in ("view", "heading"):
             value = getattr(self, name)
             if value is not None and not 0.0 < float(np.linalg.norm(value)) < math.inf:

@@ -7,7 +7,6 @@ has a place and a time (RAPID ``TriggIO``, KRL ``TRIGGER WHEN … DELAY``).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -18,6 +17,7 @@ from ....core.dialect import OutputWords
 from ....core.errors import InputError
 from ....core.program.event import Event
 from ....core.vendor import Vendor
+from ...checks import not_negative, positive
 from .trajectory import PaintTrajectory
 
 _SAME_FLOW = 1e-6
@@ -46,10 +46,8 @@ class GunSignals:
     def __post_init__(self) -> None:
         if not self.switch.strip() or (self.flow is not None and not self.flow.strip()):
             raise InputError("GunSignals: an output needs a name")
-        if not (math.isfinite(self.nominal_flow) and self.nominal_flow > 0.0):
-            raise InputError(f"nominal_flow: above zero is needed, not {self.nominal_flow!r}")
-        if not (math.isfinite(self.delay) and self.delay >= 0.0):
-            raise InputError(f"delay: zero seconds or more are needed, not {self.delay!r}")
+        positive("GunSignals.nominal_flow", self.nominal_flow)
+        not_negative("GunSignals.delay", self.delay)
 
 
 def gun_events(

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from ....core.arrays import FloatArray
 from ....core.errors import InputError
+from ...checks import positive
 from .footprint import Footprint
 
 _NODES = 16
@@ -59,9 +60,7 @@ class Stroke:
                 f"a coat of {thickness.max():g} m: is it in µm? Lengths are in metres here"
             )
         for name in ("distance", "speed", "flow"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0.0):
-                raise InputError(f"{name}: a number above zero is needed, not {value!r}")
+            positive(name, getattr(self, name))
         for name, array in (("across", across), ("thickness", thickness)):
             array.flags.writeable = False
             object.__setattr__(self, name, array)

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from ....core.errors import InputError
+from ...checks import not_negative
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,9 +62,7 @@ class PaintWeights:
 
     def __post_init__(self) -> None:
         for name in ("time", "paint", "position", "bend", "direction", "speed"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0.0):
-                raise InputError(f"{name}: a weight is a number >= 0, not {value!r}")
+            not_negative(f"PaintWeights.{name}", getattr(self, name))
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ....core.errors import InputError
+from ...checks import not_negative
 from ..coating.deposition import Deposition
 from .objective import Scenario
 
@@ -28,9 +28,7 @@ class PaintErrors:
 
     def __post_init__(self) -> None:
         for name in ("height", "radius"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0.0):
-                raise InputError(f"{name}: an error is a number >= 0, not {value!r}")
+            not_negative(f"PaintErrors.{name}", getattr(self, name))
 
 
 NO_ERRORS = PaintErrors()

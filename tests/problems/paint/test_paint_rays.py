@@ -95,23 +95,6 @@ def test_first_hits_are_those_of_brute_force(engine: RayEngine, seed: int, count
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@given(seed=st.integers(0, 10_000), count=st.integers(1, 40))
-@settings(max_examples=15)
-def test_lines_take_the_nearer_of_both_ways(engine: RayEngine, seed: int, count: int) -> None:
-    vertices, faces = soup(seed, count)
-    rng = np.random.default_rng(seed + 1)
-    origins, ways = rng.normal(size=(50, 3)), unit(rng.normal(size=(50, 3)))
-    clear = off_sides(vertices, faces, origins, ways) & off_sides(vertices, faces, origins, -ways)
-    origins, ways = origins[clear], ways[clear]
-    hits = make_rays(vertices, faces, engine).along_line(origins, ways)
-    ahead = crossings(vertices, faces, origins, ways).min(axis=1)
-    behind = crossings(vertices, faces, origins, -ways).min(axis=1)
-    assert (hits.found == np.isfinite(np.minimum(ahead, behind))).all()
-    signed = np.where(behind < ahead, -behind, ahead)
-    assert hits.distance[hits.found] == pytest.approx(signed[hits.found], abs=1e-9)
-
-
-@pytest.mark.parametrize("engine", ENGINES)
 @given(seed=st.integers(0, 10_000), count=st.integers(1, 60))
 @settings(max_examples=25)
 def test_sight_is_blocked_as_by_brute_force(engine: RayEngine, seed: int, count: int) -> None:

@@ -69,18 +69,6 @@ class Rays(ABC):
         face, distance = self._first(origins, directions, far)
         return _hits(origins, directions, face, distance)
 
-    def along_line(self, points: FloatArray, directions: FloatArray) -> Hits:
-        """What lies nearest to points (N, 3) on the lines along unit directions (N, 3).
-
-        The projection operator P_S(p, v) of D. Gleeson et al. 2022, section IV-A.
-        """
-        points, directions = _rays(points, directions)
-        face, distance = self._first(points, directions, math.inf)
-        back, behind = self._first(points, -directions, math.inf)
-        nearer = behind < distance
-        face = np.where(nearer, back, face)
-        return _hits(points, directions, face, np.where(nearer, -behind, distance))
-
     def blocked(
         self, origins: FloatArray, targets: FloatArray, gap: float = 1e-6
     ) -> NDArray[np.bool_]:
