@@ -101,14 +101,19 @@ def _draw_space(axes: Any, cell: Cell, runs: Sequence[tuple[str, Run]], things: 
         points = 1e3 * traced.trajectory.position
         text = f"{label}: {traced.duration:.3f} s"
         axes.plot(*points.T, color=colour, linewidth=1.8, label=text, zorder=10)
-    axes.computed_zorder = False  # the traces are seen through everything
     traces = np.concatenate([traced.trajectory.position for _, traced in runs])
     corners = np.concatenate([arm.reshape(-1, 3), _seen(things, traces), traces])
+    show_space(axes, corners)
+
+
+def show_space(axes: Any, corners: FloatArray, zoom: float = 1.0) -> None:
+    """Show the space that holds some points (P, 3) m, with axes in mm and a legend."""
+    axes.computed_zorder = False  # the traces are seen through everything
     lowest, highest = 1e3 * corners.min(axis=0), 1e3 * corners.max(axis=0)
     for axis, low, high in zip("xyz", lowest, highest, strict=True):
         getattr(axes, f"set_{axis}lim")(low, high)
         getattr(axes, f"set_{axis}label")(f"{axis}, mm")
-    axes.set_box_aspect(highest - lowest, zoom=1.0)
+    axes.set_box_aspect(highest - lowest, zoom=zoom)
     axes.view_init(elev=24, azim=-62)
     axes.tick_params(labelsize=7, pad=1)
     axes.legend(loc="upper left")

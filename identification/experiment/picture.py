@@ -8,6 +8,7 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.cell.cell import Cell
+from ...drawing.cell import show_space
 from ...drawing.solids import obstacle_triangles, robot_triangles
 from ...drawing.style import STYLE, figure_file
 from .plan import Designed, Experiment
@@ -92,17 +93,9 @@ def _draw_space(axes: Any, cell: Cell, experiment: Experiment, colours: dict[str
         label = None if kind in seen else kind
         seen.add(kind)
         axes.plot(*points.T, color=colours[kind], linewidth=0.9, label=label, zorder=10)
-    axes.computed_zorder = False  # the traces are seen through everything
     traces = np.concatenate([run.run.trajectory.position for run in experiment.runs])
     corners = np.concatenate([*(arm.reshape(-1, 3) for arm in arms), traces])
-    lowest, highest = 1e3 * corners.min(axis=0), 1e3 * corners.max(axis=0)
-    for axis, low, high in zip("xyz", lowest, highest, strict=True):
-        getattr(axes, f"set_{axis}lim")(low, high)
-        getattr(axes, f"set_{axis}label")(f"{axis}, mm")
-    axes.set_box_aspect(highest - lowest, zoom=0.95)
-    axes.view_init(elev=24, azim=-62)
-    axes.tick_params(labelsize=7, pad=1)
-    axes.legend(loc="upper left")
+    show_space(axes, corners, zoom=0.95)
 
 
 def _draw_plane(axes: Axes, experiment: Experiment, number: int, colours: dict[str, str]) -> None:
