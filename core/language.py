@@ -81,3 +81,7 @@ class Recorder(Protocol):
     def record(self, program: Program, robot: Robot, period: float) -> Sources:
         """Source files by file name; joint values are logged every ``period`` s."""
         ...
+
+
+class Language(Reader, Writer, Patcher, Recorder, Protocol):
+    """All four."""

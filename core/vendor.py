@@ -6,12 +6,13 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from .errors import InputError, UnknownNameError
-from .language import Patcher, Reader, Recorder, Sources, Writer
+from .language import Language, Patcher, Reader, Recorder, Sources, Writer
 
 if TYPE_CHECKING:
     import numpy as np
@@ -255,6 +256,36 @@ def _read_options(
 
     return ReadOptions(
         entry, robot, answers or Answers(), others=tuple(map(Path, others)), start=start
+    )
+
+
+def vendor_of(package: str, folder: Path, language: Language, **others: Any) -> Vendor:
+    """The vendor that a package is, called as the package's folder.
+
+    Args:
+        package: its name; the function ``label`` of its module ``motion.configuration`` is the
+            vendor's.
+        folder: where it is; robots and motion files stand in ``data``.
+        language: reader, writer, patcher and recorder.
+        others: see `Vendor`.
+    """
+    data = folder / "data"
+
+    def label(robot: Robot, q: NDArray[np.float64]) -> Configuration | None:
+        labelling = import_module(".motion.configuration", package)  # takes time
+        return cast("Configuration | None", labelling.label(robot, q))
+
+    return Vendor(
+        name=folder.name,
+        robots=lazy_robots(data.glob("robots/*.toml")),
+        motion=lazy_motion(data / "motion.toml"),
+        robot_motion=motion_layers(data.glob("motion/*.toml")),
+        label=label,
+        reader=language,
+        writer=language,
+        patcher=language,
+        recorder=language,
+        **others,
     )
 
 

@@ -2,54 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import ClassVar, Generic, Protocol, TypeVar
+from typing import ClassVar, Generic, Self, TypeVar
 
-from ...errors import SourceError
+from ...errors import SourceError, Span
+from .lexer import END, END_OF_LINE, NAME, Source, Tokens
+
+Item = TypeVar("Item")
 
 NESTING_LIMIT = 60
 """Brackets and blocks inside each other; what goes deeper is damaged or hostile."""
-
-END, END_OF_LINE, NAME = "end of file", "end of line", "name"
-"""Kinds of token that languages have in common."""
 
 _SHOWN = 40
 """Characters of a token that a message repeats."""
 
 
-class Tokens(Protocol):
-    """The tokens of a text, as parallel lists that end with an `END`."""
-
-    @property
-    def kinds(self) -> list[str]:
-        """A kind that has a name, or the symbol or keyword itself."""
-
-    @property
-    def starts(self) -> list[int]:
-        """Offsets."""
-
-    @property
-    def ends(self) -> list[int]:
-        """Offsets."""
-
-
-class Errors(Protocol):
-    """A text that makes errors of its places, such as `core.source.text.SourceText`."""
-
-    def error(self, message: str, start: int, end: int | None = None) -> SourceError:
-        """An error at ``start``, to be raised."""
-
-
-Source = TypeVar("Source", bound=Errors)
-
-
 class TokenCursor(Generic[Source]):
     """Reads tokens from left to right; a language's own cursor derives from it.
-
-    Args:
-        source: what the tokens' offsets count in.
-        base: offset of its first character.
 
     Attributes:
         keywords: kinds that are keywords, and how a message writes them.
@@ -61,13 +31,13 @@ class TokenCursor(Generic[Source]):
     keywords: ClassVar[Mapping[str, str]]
     nouns: ClassVar[Mapping[str, str]]
 
-    def __init__(self, source: Source, tokens: Tokens, text: str, base: int = 0) -> None:
-        self.source = source
+    def __init__(self, tokens: Tokens[Source]) -> None:
+        self.source = tokens.source
         self.kinds = tokens.kinds
         self.starts = tokens.starts
         self.ends = tokens.ends
-        self._text = text
-        self._base = base
+        self._text = tokens.text
+        self._base = tokens.base
         self.index = 0
         self.depth = 0
 
@@ -91,6 +61,13 @@ class TokenCursor(Generic[Source]):
         """The token that comes next, as it stands."""
         index, base = self.index, self._base
         return self._text[self.starts[index] - base : self.ends[index] - base]
+
+    def span_from(self, start: int) -> Span:
+        """From an offset to the end of the token gone past last, ends of line left out."""
+        index = self.index - 1
+        while index > 0 and self.kinds[index] == END_OF_LINE:
+            index -= 1
+        return self.source.span(start, max(start, self.ends[index] if self.index else start))
 
     def peek(self, ahead: int = 1) -> str:
         """Kind of the token ``ahead`` places after the next one."""
@@ -130,6 +107,13 @@ class TokenCursor(Generic[Source]):
         text = self.text
         self.index += 1
         return text
+
+    def listed(self, item: Callable[[Self], Item]) -> tuple[Item, ...]:
+        """What ``item`` reads, once or more, with commas between."""
+        items = [item(self)]
+        while self.accept(","):
+            items.append(item(self))
+        return tuple(items)
 
     def unexpected(self, wanted: str) -> SourceError:
         """The error that ``wanted`` should stand where the next token is."""

@@ -12,6 +12,7 @@ from flyby.core.errors import SourceError
 from flyby.core.program.move import Opaque
 from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import ContourFraction, Radius
+from flyby.core.registry import find_robot
 
 POINTS = """EXT  BAS (BAS_COMMAND  :IN,REAL  :IN )
 DECL INT SUCCESS
@@ -84,10 +85,7 @@ SLIN XP1 WITH $VEL=SVEL_CP( 0.3, , LCPDAT1), $TOOL=STOOL2( FP1), $BASE= SBASE( F
 
 @pytest.fixture(scope="module")
 def robot():
-    from flyby.core.robot.catalogue import load_robot
-    from flyby.vendors.kuka.plugin import DATA
-
-    return load_robot(DATA / "robots" / "kr30-3.toml")
+    return find_robot("kuka/kr30-3")
 
 
 def test_forms_of_krc2(krl, robot):

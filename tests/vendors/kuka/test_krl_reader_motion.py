@@ -18,11 +18,11 @@ from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL, Opaque,
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import FLANGE, WORLD
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction
+from flyby.core.registry import find_robot
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from flyby.core.spatial.pose import IDENTITY, Pose
 from flyby.vendors.kuka.motion.arcs import beyond
 from flyby.vendors.kuka.motion.configuration import KukaConfiguration
-from flyby.vendors.kuka.plugin import DATA
 from flyby.vendors.kuka.values.angles import quaternion
 
 SET = """$VEL_AXIS[1]=50
@@ -47,9 +47,8 @@ INT i,h
 
 @pytest.fixture(scope="module")
 def robot():
-    from flyby.core.robot.catalogue import load_robot
 
-    return load_robot(DATA / "robots" / "kr30-3.toml")
+    return find_robot("kuka/kr30-3")
 
 
 def one(krl, line, data=DATA_LIST, **options):

@@ -6,26 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.steps import NOTHING, Exit, Step
-from ..syntax.traversal import calls_in, expressions_of, inner_blocks, names_in
-from ..syntax.tree import (
-    Argument,
-    Assign,
-    Block,
-    Expression,
-    For,
-    Goto,
-    If,
-    Invoke,
-    Keyword,
-    Label,
-    LateInvoke,
-    Name,
-    Return,
-    Routine,
-    Statement,
-    Test,
-    While,
-)
+from ..syntax import tree
+from ..syntax.traversal import calls_in, expressions_of, names_in
 from ..values.data import Globals
 from ..values.outputs import WRITING
 from ..values.scope import NOWHERE, Home
@@ -50,31 +32,31 @@ class RapidTree:
         self._home = home
         self._homes: dict[int, Home] = {}
 
-    def body(self, routine: Routine) -> Block:
+    def body(self, routine: tree.Routine) -> tree.Block:
         """What a routine runs."""
         self._homes[id(routine.body)] = self._data.scope_of(routine).home
         return routine.body
 
-    def called(self, expression: Expression, home: Home) -> Iterator[Block]:
+    def called(self, expression: tree.Expression, home: Home) -> Iterator[tree.Block]:
         """Bodies of the program's own functions that an expression calls."""
         for call in calls_in(expression):
             routine = self._data.routine(call.name, home)
             if routine is not None:
                 yield self.body(routine)
 
-    def steps(self, block: Block) -> Sequence[Step[Block]]:
+    def steps(self, block: tree.Block) -> Sequence[Step[tree.Block]]:
         """See `core.source.execution.steps.Tree.steps`."""
         home = self._homes.get(id(block)) or self._home()
         return [self._step(statement, home) for statement in block.statements]
 
-    def _step(self, statement: Statement, home: Home) -> Step[Block]:
-        if isinstance(statement, Label):
+    def _step(self, statement: tree.Statement, home: Home) -> Step[tree.Block]:
+        if isinstance(statement, tree.Label):
             return Step(mark=statement.name)
-        if isinstance(statement, Goto):
+        if isinstance(statement, tree.Goto):
             return Step(exit=Exit.JUMP, label=statement.name)
-        if isinstance(statement, Keyword):
+        if isinstance(statement, tree.Keyword):
             return Step(exit=Exit.PROGRAM if statement.word in _ENDING else None)
-        inner = tuple(inner_blocks(statement))
+        inner = tuple(statement.blocks)
         for block in inner:
             self._homes[id(block)] = home
         expressions = list(_evaluated(statement))
@@ -90,30 +72,31 @@ class RapidTree:
                 calls=functions,
                 asks=bool(functions),
                 inner=inner,
-                loop=isinstance(statement, For | While),
-                exhaustive=isinstance(statement, If | Test) and statement.otherwise is not None,
+                loop=isinstance(statement, tree.For | tree.While),
+                exhaustive=isinstance(statement, tree.If | tree.Test)
+                and statement.otherwise is not None,
             )
-        if isinstance(statement, Invoke | LateInvoke):
+        if isinstance(statement, tree.Invoke | tree.LateInvoke):
             return self._invoked(statement, home, functions, names, given)
-        written = {statement.target.name} if isinstance(statement, Assign) else NOTHING
+        written = {statement.target.name} if isinstance(statement, tree.Assign) else NOTHING
         return Step(
             writes=given | written,
             made_of=names,
             calls=functions,
             asks=bool(functions),
-            exit=Exit.ROUTINE if isinstance(statement, Return) else None,
+            exit=Exit.ROUTINE if isinstance(statement, tree.Return) else None,
         )
 
     def _invoked(
         self,
-        statement: Invoke | LateInvoke,
+        statement: tree.Invoke | tree.LateInvoke,
         home: Home,
-        functions: tuple[Block, ...],
+        functions: tuple[tree.Block, ...],
         names: frozenset[str],
         given: frozenset[str],
-    ) -> Step[Block]:
+    ) -> Step[tree.Block]:
         handed = frozenset(_given(statement.arguments))
-        if isinstance(statement, LateInvoke):
+        if isinstance(statement, tree.LateInvoke):
             return Step(
                 moves=True,
                 writes=handed | given,
@@ -143,30 +126,30 @@ class RapidTree:
         )
 
 
-def routine_moves(data: Globals, routine: Routine) -> bool:
+def routine_moves(data: Globals, routine: tree.Routine) -> bool:
     """Whether a routine moves the robot."""
-    tree = RapidTree(data)
-    return Analysis(tree).moves(tree.body(routine))
+    statements = RapidTree(data)
+    return Analysis(statements).moves(statements.body(routine))
 
 
-def _evaluated(statement: Statement) -> Iterator[Expression]:
+def _evaluated(statement: tree.Statement) -> Iterator[tree.Expression]:
     """The expressions that a statement evaluates itself."""
     yield from expressions_of(statement)
-    if isinstance(statement, Test):
+    if isinstance(statement, tree.Test):
         yield statement.subject
         for case in statement.cases:
             yield from case.values
-    elif isinstance(statement, For):
+    elif isinstance(statement, tree.For):
         yield from (statement.start, statement.stop)
         if statement.step is not None:
             yield statement.step
-    elif isinstance(statement, Assign):
+    elif isinstance(statement, tree.Assign):
         for step in statement.target.path:
             if not isinstance(step, str):
                 yield from step
 
 
-def _given(arguments: Iterable[Argument]) -> Iterator[str]:
+def _given(arguments: Iterable[tree.Argument]) -> Iterator[str]:
     for argument in arguments:
-        if isinstance(argument.value, Name):
+        if isinstance(argument.value, tree.Name):
             yield argument.value.name

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import PureWindowsPath
 
 from ....core.errors import Note, SourceError, Span
-from ..syntax.traversal import calls_in, expressions_of, statements_of
+from ..syntax.traversal import calls_in, expressions_of
 from ..syntax.tree import Invoke, Module, Routine
 from ..values.data import Globals
 from ..values.scope import NOWHERE, unknown_name
@@ -94,7 +94,7 @@ def _called(modules: Sequence[Module]) -> set[str]:
     called: set[str] = set()
     for module in modules:
         for routine in module.routines:
-            for statement in statements_of(routine.body):
+            for statement in routine.body.walk():
                 if isinstance(statement, Invoke) and statement.name != routine.name:
                     called.add(statement.name)
                 for expression in expressions_of(statement):

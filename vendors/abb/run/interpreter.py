@@ -28,26 +28,7 @@ from ..motion.kinematics import RobotFunctions
 from ..motion.position import Position
 from ..motion.settings import SettingsInForce
 from ..motion.targets import Converter
-from ..syntax.tree import (
-    Argument,
-    Assign,
-    Block,
-    Call,
-    Expression,
-    For,
-    Goto,
-    If,
-    Invoke,
-    Keyword,
-    Label,
-    LateInvoke,
-    Name,
-    Return,
-    Routine,
-    Statement,
-    Test,
-    While,
-)
+from ..syntax import tree
 from ..values.changes import Snapshot
 from ..values.data import Globals
 from ..values.evaluator import Evaluator
@@ -65,7 +46,7 @@ class _Returned(Exception):
 
 
 class _Jump(Exception):
-    def __init__(self, goto: Goto) -> None:
+    def __init__(self, goto: tree.Goto) -> None:
         self.goto = goto
 
 
@@ -106,14 +87,14 @@ class Interpreter:
         )
         self.tree = RapidTree(data, lambda: host.home)
         self.analysis = Analysis(self.tree)
-        self.flow: Flow[Block] = Flow(self.analysis, host)
+        self.flow: Flow[tree.Block] = Flow(self.analysis, host)
         self.place: object = None
         self._scopes: list[Scope] = []
-        self._loops: dict[int, Block] = {}  # bodies of loops that a GOTO closes, by its id
+        self._loops: dict[int, tree.Block] = {}  # bodies of loops that a GOTO closes, by its id
 
     # --------------------------------------------------------------------- the run
 
-    def run(self, entry: Routine) -> None:
+    def run(self, entry: tree.Routine) -> None:
         """Execute a procedure without parameters to its end."""
         with suppress(_Finished):
             self._call(entry, (), self.data.scope_of(entry), entry.span)
@@ -167,7 +148,7 @@ class Interpreter:
         """A note, unless one of its kind was taken before."""
         self.out.notes.once(kind, message, span)
 
-    def text_of(self, expression: Expression) -> str:
+    def text_of(self, expression: tree.Expression) -> str:
         """An expression as it stands, on one line."""
         return " ".join(self.out.text_of(expression.span).split())
 
@@ -189,7 +170,7 @@ class Interpreter:
 
     # -------------------------------------------------------------------- statements
 
-    def run_block(self, block: Block, scope: Scope) -> None:
+    def run_block(self, block: tree.Block, scope: Scope) -> None:
         """Execute statements in order."""
         statements = block.statements
         index = 0
@@ -200,7 +181,7 @@ class Interpreter:
             except _Jump as jump:
                 index = self._after_jump(block, index, jump.goto, scope)
 
-    def _after_jump(self, block: Block, index: int, goto: Goto, scope: Scope) -> int:
+    def _after_jump(self, block: tree.Block, index: int, goto: tree.Goto, scope: Scope) -> int:
         """Index of the statement where a block goes on after a jump out of one of its statements.
 
         A jump back that stands in the block itself closes a loop.
@@ -209,7 +190,7 @@ class Interpreter:
             _Jump: the label is further out.
         """
 
-        def carry_out(way: Block) -> bool:
+        def carry_out(way: tree.Block) -> bool:
             self.run_block(way, scope)
             return True
 
@@ -218,7 +199,9 @@ class Interpreter:
             if target > index:
                 return target - 1  # the label itself
             always = goto is block.statements[index]
-            body = self._loops.setdefault(id(goto), Block(block.statements[target - 1 : index + 1]))
+            body = self._loops.setdefault(
+                id(goto), tree.Block(block.statements[target - 1 : index + 1])
+            )
             loop = Loop(body, goto.span, f"GOTO {goto.name}", endless=always)
             label = id(block.statements[target - 1])
             try:
@@ -229,34 +212,34 @@ class Interpreter:
                 goto = jump.goto
         raise _Jump(goto)
 
-    def _run_statement(self, statement: Statement, scope: Scope) -> None:
+    def _run_statement(self, statement: tree.Statement, scope: Scope) -> None:
         self.meter.statement(statement.span)
-        if isinstance(statement, Invoke):
+        if isinstance(statement, tree.Invoke):
             self._invoke(statement, scope)
-        elif isinstance(statement, Assign):
+        elif isinstance(statement, tree.Assign):
             value = self.evaluator.evaluate(statement.value, scope)
             self.evaluator.assign(statement.target, value, scope)
-        elif isinstance(statement, If):
+        elif isinstance(statement, tree.If):
             run_if(self, statement, scope)
-        elif isinstance(statement, For):
+        elif isinstance(statement, tree.For):
             run_for(self, statement, scope)
-        elif isinstance(statement, While):
+        elif isinstance(statement, tree.While):
             run_while(self, statement, scope)
-        elif isinstance(statement, Test):
+        elif isinstance(statement, tree.Test):
             run_test(self, statement, scope)
-        elif isinstance(statement, Return):
+        elif isinstance(statement, tree.Return):
             value_ = statement.value
             raise _Returned(None if value_ is None else self.evaluator.evaluate(value_, scope))
-        elif isinstance(statement, Goto):
+        elif isinstance(statement, tree.Goto):
             raise _Jump(statement)
-        elif isinstance(statement, LateInvoke):
+        elif isinstance(statement, tree.LateInvoke):
             self._late(statement, scope)
-        elif isinstance(statement, Label):
+        elif isinstance(statement, tree.Label):
             self.flow.label(id(statement))
-        else:
+        elif isinstance(statement, tree.Keyword):
             self._keyword(statement, scope)
 
-    def _keyword(self, statement: Keyword, scope: Scope) -> None:
+    def _keyword(self, statement: tree.Keyword, scope: Scope) -> None:
         if statement.word == "exit":
             raise _Finished
         if statement.word == "connect":
@@ -279,7 +262,7 @@ class Interpreter:
 
     # ------------------------------------------------------------------------- calls
 
-    def _invoke(self, statement: Invoke, scope: Scope) -> None:
+    def _invoke(self, statement: tree.Invoke, scope: Scope) -> None:
         name = statement.name
         routine = self.data.routine(name, scope.home)
         if routine is not None and routine.kind == "proc":
@@ -305,12 +288,12 @@ class Interpreter:
         else:
             raise refusal(statement, self.data)
 
-    def fetched(self, statement: Invoke, scope: Scope) -> Routine | None:
+    def fetched(self, statement: tree.Invoke, scope: Scope) -> tree.Routine | None:
         """A procedure of a module beside the program."""
         found = self.data.fetched_routine(statement.name, scope.home, statement.span)
         return found if found is not None and found.kind == "proc" else None
 
-    def keep(self, statement: Invoke, scope: Scope) -> None:
+    def keep(self, statement: tree.Invoke, scope: Scope) -> None:
         """Step over an instruction that does not move the robot; it stays as it stands."""
         kept = KEPT[statement.name]
         for argument in statement.arguments:
@@ -323,13 +306,17 @@ class Interpreter:
         self.out.keep(statement.span, statement.text, kept.why, kept.stops)
         for argument in statement.arguments:
             flag = argument.value
-            if argument.option == "timeflag" and isinstance(flag, Name) and scope.find(flag.name):
+            if (
+                argument.option == "timeflag"
+                and isinstance(flag, tree.Name)
+                and scope.find(flag.name)
+            ):
                 self.evaluator.assign(flag, False, scope)
 
-    def _fill(self, statement: Invoke, scope: Scope) -> None:
+    def _fill(self, statement: tree.Invoke, scope: Scope) -> None:
         """Data that a kept instruction writes have the user's answers, or no known value."""
         for argument in statement.arguments:
-            if not isinstance(argument.value, Name):
+            if not isinstance(argument.value, tree.Name):
                 continue
             cell = scope.find(argument.value.name)
             if cell is not None and not cell.constant:
@@ -337,23 +324,23 @@ class Interpreter:
                 unknown = Unknown(f"what {statement.text} gave {name}", statement.span, name)
                 self.evaluator.fill(argument.value, unknown, scope)
 
-    def note_undeclared(self, name: Name) -> None:
+    def note_undeclared(self, name: tree.Name) -> None:
         message = f"'{name.text}' is written and not declared in what is at hand: it is taken to "
         self.out.notes.count(message + "be declared in a module that is not", name.span)
 
-    def _with_present_arguments(self, statement: Invoke, scope: Scope) -> Invoke:
+    def _with_present_arguments(self, statement: tree.Invoke, scope: Scope) -> tree.Invoke:
         """Without the arguments that are handed on from absent parameters."""
         if not any(a.conditional for a in statement.arguments):
             return statement
         return replace(statement, arguments=tuple(present(statement.arguments, scope)))
 
-    def _late(self, statement: LateInvoke, scope: Scope) -> None:
+    def _late(self, statement: tree.LateInvoke, scope: Scope) -> None:
         name = self.evaluator.known(statement.routine, scope, STRING, "the routine to call")
         assert isinstance(name, str)
         self.call_named(name, statement.arguments, scope, statement.span)
 
     def call_named(
-        self, name: str, arguments: tuple[Argument, ...], scope: Scope, span: Span
+        self, name: str, arguments: tuple[tree.Argument, ...], scope: Scope, span: Span
     ) -> None:
         """Call the procedure that a string names.
 
@@ -370,7 +357,7 @@ class Interpreter:
             raise SourceError(unknown_name("routine", name, known), span)
         self._call(routine, arguments, scope, span)
 
-    def call_function(self, routine: Routine, call: Call, scope: Scope) -> Value:
+    def call_function(self, routine: tree.Routine, call: tree.Call, scope: Scope) -> Value:
         reader, self.evaluator.reader = self.evaluator.reader, ELSEWHERE
         value = self._call(routine, call.arguments, scope, call.span)
         self.evaluator.reader = reader
@@ -383,7 +370,7 @@ class Interpreter:
         return interpreted(value, type_, call.span)
 
     def _call(
-        self, routine: Routine, arguments: tuple[Argument, ...], caller: Scope, span: Span
+        self, routine: tree.Routine, arguments: tuple[tree.Argument, ...], caller: Scope, span: Span
     ) -> Value | None:
         outer = self.data.scope_of(routine)
         scope = outer.inner(f"{routine.kind.upper()} {routine.text}")
@@ -414,7 +401,7 @@ class Interpreter:
                 self._hand_back(cell, target, caller)
         return None
 
-    def _hand_back(self, cell: Variable, target: Name, caller: Scope) -> None:
+    def _hand_back(self, cell: Variable, target: tree.Name, caller: Scope) -> None:
         """What a routine made of an element or component that was passed by reference."""
         if cell.source is None and cell.value is not None:
             self.evaluator.assign(target, cell.value, caller)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ....core.errors import Span
 from ....core.source.text.cursor import TokenCursor
 from ....core.source.text.files import SourceText
 from .lexer import KEYWORDS, LITERAL, Tokens
@@ -24,10 +23,5 @@ class Cursor(TokenCursor[SourceText]):
     nouns: ClassVar = {LITERAL: "value"}
 
     def __init__(self, tokens: Tokens) -> None:
-        super().__init__(tokens.source, tokens, tokens.source.text)
+        super().__init__(tokens)
         self.values = tokens.values
-
-    def span_from(self, start: int) -> Span:
-        """From ``start`` to the end of the token gone past last."""
-        end = self.ends[self.index - 1] if self.index else start
-        return self.source.span(start, max(start, end))

@@ -9,30 +9,22 @@ not have, applies to the comparison that follows it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
+from ....core.source.text.operators import Operators, operation
+from . import tree
 from .cursor import Cursor
 from .lexer import LITERAL, NAME, NUMBER, STRING, number_value, string_value
-from .tree import (
-    Aggregate,
-    Argument,
-    Call,
-    Expression,
-    Name,
-    Number,
-    Operation,
-    Packed,
-    Star,
-    Text,
-    Truth,
-    Unary,
-)
+from .tree import Expression
 
-PRODUCT = frozenset({"*", "/", "div", "mod"})
 SUM = frozenset({"+", "-"})
-RELATION = frozenset({"<", ">", "<>", "<=", ">=", "="})
-AND = frozenset({"and"})
-OR = frozenset({"or", "xor"})
+_LEVELS = (
+    frozenset({"or", "xor"}),
+    frozenset({"and"}),
+    frozenset({"<", ">", "<>", "<=", ">=", "="}),
+    SUM,
+    frozenset({"*", "/", "div", "mod"}),
+)
+_AND, _RELATION = 1, 2
 _CLOSING = frozenset({",", "]", ")", ";", "}"})
 _ENDING = _CLOSING | {"\\"}
 
@@ -42,7 +34,7 @@ def parse_expression(cursor: Cursor) -> Expression:
     quick = _lone_value(cursor)
     if quick is not None:
         return quick
-    return _chain(cursor, OR, _negatable_term)
+    return _operators.read(cursor)
 
 
 def _lone_value(cursor: Cursor) -> Expression | None:
@@ -52,7 +44,7 @@ def _lone_value(cursor: Cursor) -> Expression | None:
         text = cursor.text
         start, end = cursor.starts[index], cursor.ends[index]
         cursor.index += 1
-        return Name(cursor.source.span(start, end), text.lower(), text)
+        return tree.Name(cursor.source.span(start, end), text.lower(), text)
     if kinds[index] == LITERAL and kinds[index + 1] in _ENDING:
         return _packed(cursor)
     signed = kinds[index] == "-"
@@ -61,49 +53,16 @@ def _lone_value(cursor: Cursor) -> Expression | None:
     return _number(cursor)
 
 
-def _negatable_term(cursor: Cursor) -> Expression:
+def _operand(cursor: Cursor, level: int) -> Expression:
     start = cursor.start
-    if not cursor.accept("not"):
-        return _term(cursor)
+    if level > _RELATION or not cursor.accept("not"):
+        return _primary(cursor)
     with cursor.nested():
-        operand = _negatable_term(cursor)
-    return Unary(cursor.span_from(start), "not", operand)
+        operand = _operators.read(cursor, max(level, _AND))
+    return tree.Unary(cursor.span_from(start), "not", operand)
 
 
-def _term(cursor: Cursor) -> Expression:
-    return _chain(cursor, AND, _negatable_relation)
-
-
-def _negatable_relation(cursor: Cursor) -> Expression:
-    start = cursor.start
-    if not cursor.accept("not"):
-        return _chain(cursor, RELATION, _sum)
-    with cursor.nested():
-        operand = _negatable_relation(cursor)
-    return Unary(cursor.span_from(start), "not", operand)
-
-
-def _sum(cursor: Cursor) -> Expression:
-    return _chain(cursor, SUM, _product)
-
-
-def _product(cursor: Cursor) -> Expression:
-    return _chain(cursor, PRODUCT, _primary)
-
-
-def _chain(
-    cursor: Cursor, operators: frozenset[str], operand: Callable[[Cursor], Expression]
-) -> Expression:
-    """Operands with operators of one priority between them."""
-    start = cursor.start
-    first = operand(cursor)
-    if cursor.kind not in operators:
-        return first
-    rest = []
-    while (operator := cursor.kind) in operators:
-        cursor.advance()
-        rest.append((operator, operand(cursor)))
-    return Operation(cursor.span_from(start), first, tuple(rest))
+_operators = Operators(_LEVELS, _operand, operation)
 
 
 def _primary(cursor: Cursor) -> Expression:
@@ -119,13 +78,13 @@ def _primary(cursor: Cursor) -> Expression:
     if kind == STRING:
         value = string_value(cursor.text)
         cursor.advance()
-        return Text(cursor.span_from(start), value)
+        return tree.Text(cursor.span_from(start), value)
     if kind in ("true", "false"):
         cursor.advance()
-        return Truth(cursor.span_from(start), kind == "true")
+        return tree.Truth(cursor.span_from(start), kind == "true")
     if kind == "*":
         cursor.advance()
-        return Star(cursor.span_from(start))
+        return tree.Star(cursor.span_from(start))
     with cursor.nested():
         if cursor.accept("("):
             inner = parse_expression(cursor)
@@ -134,11 +93,11 @@ def _primary(cursor: Cursor) -> Expression:
         if kind in SUM:
             cursor.advance()
             operand = _primary(cursor)
-            return Unary(cursor.span_from(start), kind, operand)
+            return tree.Unary(cursor.span_from(start), kind, operand)
     raise cursor.unexpected("a value")
 
 
-def _number(cursor: Cursor) -> Number:
+def _number(cursor: Cursor) -> tree.Number:
     start = cursor.start
     negative = cursor.accept("-")
     value = number_value(cursor.text)
@@ -146,25 +105,23 @@ def _number(cursor: Cursor) -> Number:
     span = cursor.span_from(start)
     if not math.isfinite(value):
         raise cursor.source.error("this number is too large", span.start, span.end)
-    return Number(span, -value if negative else value)
+    return tree.Number(span, -value if negative else value)
 
 
-def _packed(cursor: Cursor) -> Packed:
+def _packed(cursor: Cursor) -> tree.Packed:
     start, text, value = cursor.start, cursor.text, cursor.values[cursor.index]
     cursor.index += 1
-    return Packed(cursor.source.span(start, start + len(text)), value, text)
+    return tree.Packed(cursor.source.span(start, start + len(text)), value, text)
 
 
-def _aggregate(cursor: Cursor) -> Aggregate:
+def _aggregate(cursor: Cursor) -> tree.Aggregate:
     start = cursor.start
     cursor.enter()
     cursor.advance()
-    items = [parse_expression(cursor)]
-    while cursor.accept(","):
-        items.append(parse_expression(cursor))
+    items = cursor.listed(parse_expression)
     cursor.expect("]", "or ',' after this value")
     cursor.depth -= 1
-    return Aggregate(cursor.span_from(start), tuple(items))
+    return tree.Aggregate(cursor.span_from(start), items)
 
 
 def _name_or_call(cursor: Cursor) -> Expression:
@@ -176,10 +133,10 @@ def _name_or_call(cursor: Cursor) -> Expression:
         cursor.advance()
         arguments = parse_arguments(cursor, ")")
         cursor.expect(")", f"to end the arguments of {text}")
-    return Call(cursor.span_from(start), text.lower(), text, arguments)
+    return tree.Call(cursor.span_from(start), text.lower(), text, arguments)
 
 
-def parse_name(cursor: Cursor) -> Name:
+def parse_name(cursor: Cursor) -> tree.Name:
     """A datum with its components and indices."""
     start = cursor.start
     text = cursor.name("a name")
@@ -190,23 +147,21 @@ def parse_name(cursor: Cursor) -> Name:
         elif cursor.kind == "{":
             path.append(parse_braces(cursor))
         else:
-            return Name(cursor.span_from(start), text.lower(), text, tuple(path))
+            return tree.Name(cursor.span_from(start), text.lower(), text, tuple(path))
 
 
 def parse_braces(cursor: Cursor) -> tuple[Expression, ...]:
     """``{a, b}``: indices or dimensions."""
     with cursor.nested():
         cursor.expect("{", "before the index")
-        items = [parse_expression(cursor)]
-        while cursor.accept(","):
-            items.append(parse_expression(cursor))
+        items = cursor.listed(parse_expression)
         cursor.expect("}", "to close the index")
-    return tuple(items)
+    return items
 
 
-def parse_arguments(cursor: Cursor, end: str) -> tuple[Argument, ...]:
+def parse_arguments(cursor: Cursor, end: str) -> tuple[tree.Argument, ...]:
     """The arguments of a call up to the token ``end``: ``a, b:=c\\Option:=d, \\Switch``."""
-    arguments: list[Argument] = []
+    arguments: list[tree.Argument] = []
     while cursor.kind != end:
         if arguments and not cursor.accept(",") and cursor.kind != "\\":
             raise cursor.unexpected(f"',' or '{end}'")
@@ -214,7 +169,7 @@ def parse_arguments(cursor: Cursor, end: str) -> tuple[Argument, ...]:
     return tuple(arguments)
 
 
-def _argument(cursor: Cursor) -> Argument:
+def _argument(cursor: Cursor) -> tree.Argument:
     start = cursor.start
     if not cursor.accept("\\"):
         named = cursor.kind == NAME and cursor.peek() == ":="
@@ -222,12 +177,12 @@ def _argument(cursor: Cursor) -> Argument:
         if named:
             cursor.advance()
         value = parse_expression(cursor)
-        return Argument(value.span, value, parameter=name)
+        return tree.Argument(value.span, value, parameter=name)
     option = cursor.name("the name of an optional argument").lower()
     if cursor.accept(":="):
         given: Expression | None = parse_expression(cursor)
-        return Argument(cursor.span_from(start), given, option)
+        return tree.Argument(cursor.span_from(start), given, option)
     if cursor.accept("?"):
         parameter = parse_name(cursor)
-        return Argument(cursor.span_from(start), parameter, option, conditional=True)
-    return Argument(cursor.span_from(start), None, option)
+        return tree.Argument(cursor.span_from(start), parameter, option, conditional=True)
+    return tree.Argument(cursor.span_from(start), None, option)

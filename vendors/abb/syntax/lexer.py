@@ -17,9 +17,9 @@ import json
 import re
 from dataclasses import dataclass
 
-from ....core.source.text import cursor
-from ....core.source.text.files import SourceText, unbroken
-from ....core.source.text.lexer import UNCLOSED, stray, words
+from ....core.source.text import lexer
+from ....core.source.text.files import SourceText
+from ....core.source.text.lexer import UNCLOSED, Lexicon, stray, words
 
 KEYWORDS = words(
     """alias and backward case connect const default div do else elseif endfor endfunc endif
@@ -29,7 +29,7 @@ KEYWORDS = words(
 )
 """Reserved words (the attributes of a module are not: they may be used as names)."""
 
-END, NAME = cursor.END, cursor.NAME
+END, NAME = lexer.END, lexer.NAME
 NUMBER, STRING, LITERAL = "number", "string", "literal"
 
 _LEAF = r"-?+[0-9][0-9.eE+-]*+\s*+"
@@ -51,8 +51,7 @@ _TOKEN = re.compile(
     )""",
     re.VERBOSE,
 )
-_GROUPS = ("", NAME, NUMBER, STRING, LITERAL, "symbol", END)
-_NAME, _LITERAL, _SYMBOL = (_TOKEN.groupindex[name] for name in ("name", "literal", "symbol"))
+_BLANK = re.compile(r"(?:[\s\ufeff\x1a]++|![^\r\n]*+)*+")
 _HEADER = re.compile(r"[\s\ufeff]*%%%.*?%%%", re.DOTALL)
 _ESCAPE = re.compile(r'""|\\\\|\\([0-9a-fA-F]{2})')
 
@@ -61,21 +60,13 @@ Row = tuple[float | tuple[float, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Tokens:
-    """The tokens of a text, as parallel lists that end with an `END`.
+class Tokens(lexer.Tokens[SourceText]):
+    """The tokens of a text.
 
     Args:
-        source: the text.
-        kinds: `NAME`, `NUMBER`, `STRING`, `LITERAL`, `END`, or the symbol or lower-case keyword
-            itself.
-        starts, ends: offsets.
         values: of the tokens that are a `LITERAL`, by index.
     """
 
-    source: SourceText
-    kinds: list[str]
-    starts: list[int]
-    ends: list[int]
     values: dict[int, Row]
 
 
@@ -85,38 +76,20 @@ def tokenize(source: SourceText) -> Tokens:
     Raises:
         SourceError: a character that no token begins with, or a string without an end.
     """
-    text = unbroken(source.text)
-    kinds: list[str] = []
-    starts: list[int] = []
-    ends: list[int] = []
+    text = source.text
     values: dict[int, Row] = {}
+
+    def literal(kinds: list[str], start: int, end: int) -> tuple[str, int]:
+        value = _literal_value(text[start:end])
+        if value is None:
+            return "[", start + 1
+        values[len(kinds)] = value
+        return LITERAL, end
+
     header = _HEADER.match(text)
-    position = header.end() if header else 0
-    match = _TOKEN.match
-    while True:
-        found = match(text, position)
-        if found is None:
-            raise _stray(source, position)
-        group = found.lastindex or 0
-        start, position = found.span(group)
-        kind = _GROUPS[group]
-        if group == _SYMBOL:
-            kind = text[start:position]
-        elif group == _NAME:
-            word = text[start:position].lower()
-            if word in KEYWORDS:
-                kind = word
-        elif group == _LITERAL:
-            value = _literal_value(text[start:position])
-            if value is None:
-                kind, position = "[", start + 1
-            else:
-                values[len(kinds)] = value
-        kinds.append(kind)
-        starts.append(start)
-        ends.append(position)
-        if kind == END:
-            return Tokens(source, kinds, starts, ends, values)
+    start = header.end() if header else 0
+    found = _LEXICON.tokens(source, text, start=start, special={LITERAL: literal})
+    return Tokens(source, text, 0, found.kinds, found.starts, found.ends, values)
 
 
 _decode = json.JSONDecoder(parse_int=float).decode
@@ -155,12 +128,8 @@ def string_value(literal: str) -> str:
     return _ESCAPE.sub(unescape, literal[1:-1])
 
 
-_BLANK = re.compile(r"(?:[\s\ufeff\x1a]++|![^\r\n]*+)*+")
+def _stray(text: str, at: int) -> str:
+    return UNCLOSED if text[at] == '"' else stray(text[at], "a RAPID text")
 
 
-def _stray(source: SourceText, position: int) -> Exception:
-    blank = _BLANK.match(unbroken(source.text), position)
-    start = blank.end() if blank else position
-    character = source.text[start]
-    message = UNCLOSED if character == '"' else stray(character, "a RAPID text")
-    return source.error(message, start)
+_LEXICON = Lexicon(_TOKEN, _BLANK, KEYWORDS, _stray)

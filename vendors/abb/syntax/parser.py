@@ -147,9 +147,7 @@ def _handlers(cursor: Cursor, ends: frozenset[str], head: str, start: int) -> tu
     while (kind := cursor.kind) in HANDLERS:
         cursor.advance()
         if kind == "error" and cursor.accept("("):
-            parse_expression(cursor)
-            while cursor.accept(","):
-                parse_expression(cursor)
+            cursor.listed(parse_expression)
             cursor.expect(")", "after the error numbers")
         parse_block(cursor, ends, head, start)
         handlers.append(kind)

@@ -4,26 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from . import tree
 from .cursor import Cursor
 from .expressions import parse_arguments, parse_expression, parse_name
 from .lexer import END, NAME
-from .tree import (
-    Assign,
-    Block,
-    Branch,
-    Case,
-    For,
-    Goto,
-    If,
-    Invoke,
-    Keyword,
-    Label,
-    LateInvoke,
-    Return,
-    Statement,
-    Test,
-    While,
-)
+from .tree import Block, Statement
 
 _CLOSING = frozenset(
     {"else", "elseif", "endif", "endfor", "endwhile", "case", "default", "endtest"}
@@ -59,75 +44,66 @@ def parse_block(cursor: Cursor, ends: frozenset[str], opened_by: str, start: int
 
 def parse_statement(cursor: Cursor) -> Statement:
     """The statement that starts at the cursor."""
-    parse = _BY_KEYWORD.get(cursor.kind)
+    kind, start = cursor.kind, cursor.start
+    if kind == NAME:
+        return _name_statement(cursor, start)
+    parse = _BY_KEYWORD.get(kind)
     if parse is None:
         raise cursor.unexpected("a statement")
-    return parse(cursor)
+    cursor.index += 1
+    return parse(cursor, start)
 
 
-def _name_statement(cursor: Cursor) -> Statement:
+def _name_statement(cursor: Cursor, start: int) -> Statement:
     following = cursor.peek()
     if following == ":":
-        return _label(cursor)
+        name = cursor.name("a label").lower()
+        cursor.advance()
+        return tree.Label(cursor.span_from(start), name)
     if following in (":=", ".", "{"):
-        return _assignment(cursor)
-    start = cursor.start
+        return _assignment(cursor, start)
     text = cursor.name("an instruction")
     arguments = parse_arguments(cursor, ";")
     cursor.advance()
-    return Invoke(cursor.span_from(start), text.lower(), text, arguments)
+    return tree.Invoke(cursor.span_from(start), text.lower(), text, arguments)
 
 
-def _assignment(cursor: Cursor) -> Assign:
-    start = cursor.start
+def _assignment(cursor: Cursor, start: int) -> tree.Assign:
     target = parse_name(cursor)
     cursor.expect(":=", f"after {target.text}")
     value = parse_expression(cursor)
     cursor.expect(";", "at the end of the assignment")
-    return Assign(cursor.span_from(start), target, value)
+    return tree.Assign(cursor.span_from(start), target, value)
 
 
-def _label(cursor: Cursor) -> Label:
-    start = cursor.start
-    name = cursor.name("a label").lower()
-    cursor.advance()
-    return Label(cursor.span_from(start), name)
-
-
-def _late_call(cursor: Cursor) -> LateInvoke:
-    start = cursor.start
-    cursor.advance()
+def _late_call(cursor: Cursor, start: int) -> tree.LateInvoke:
     routine = parse_expression(cursor)
     cursor.expect("%", "to end the name of the routine")
     arguments = parse_arguments(cursor, ";")
     cursor.advance()
-    return LateInvoke(cursor.span_from(start), routine, arguments)
+    return tree.LateInvoke(cursor.span_from(start), routine, arguments)
 
 
-def _if(cursor: Cursor) -> If:
-    start = cursor.start
-    cursor.advance()
+def _if(cursor: Cursor, start: int) -> tree.If:
     condition = parse_expression(cursor)
     if not cursor.accept("then"):
         with cursor.nested():
             compact = Block((parse_statement(cursor),))
-        return If(cursor.span_from(start), (Branch(condition, compact),), None)
+        return tree.If(cursor.span_from(start), (tree.Branch(condition, compact),), None)
     ends = frozenset({"elseif", "else", "endif"})
-    branches = [Branch(condition, parse_block(cursor, ends, "the IF", start))]
+    branches = [tree.Branch(condition, parse_block(cursor, ends, "the IF", start))]
     while cursor.accept("elseif"):
         condition = parse_expression(cursor)
         cursor.expect("then", "after the condition")
-        branches.append(Branch(condition, parse_block(cursor, ends, "the IF", start)))
+        branches.append(tree.Branch(condition, parse_block(cursor, ends, "the IF", start)))
     otherwise = None
     if cursor.accept("else"):
         otherwise = parse_block(cursor, frozenset({"endif"}), "the IF", start)
     _end(cursor, "endif")
-    return If(cursor.span_from(start), tuple(branches), otherwise)
+    return tree.If(cursor.span_from(start), tuple(branches), otherwise)
 
 
-def _for(cursor: Cursor) -> For:
-    start = cursor.start
-    cursor.advance()
+def _for(cursor: Cursor, start: int) -> tree.For:
     name = cursor.name("the name of the loop variable").lower()
     cursor.expect("from", "after the loop variable")
     first = parse_expression(cursor)
@@ -137,84 +113,69 @@ def _for(cursor: Cursor) -> For:
     cursor.expect("do", "at the head of the loop")
     body = parse_block(cursor, frozenset({"endfor"}), "the FOR", start)
     _end(cursor, "endfor")
-    return For(cursor.span_from(start), name, first, last, step, body)
+    return tree.For(cursor.span_from(start), body, name, first, last, step)
 
 
-def _while(cursor: Cursor) -> While:
-    start = cursor.start
-    cursor.advance()
+def _while(cursor: Cursor, start: int) -> tree.While:
     condition = parse_expression(cursor)
     cursor.expect("do", "after the condition")
     body = parse_block(cursor, frozenset({"endwhile"}), "the WHILE", start)
     _end(cursor, "endwhile")
-    return While(cursor.span_from(start), condition, body)
+    return tree.While(cursor.span_from(start), body, condition)
 
 
-def _test(cursor: Cursor) -> Test:
-    start = cursor.start
-    cursor.advance()
+def _test(cursor: Cursor, start: int) -> tree.Test:
     subject = parse_expression(cursor)
     cursor.accept(";")
     ends = frozenset({"case", "default", "endtest"})
     cases = []
     while cursor.accept("case"):
-        values = [parse_expression(cursor)]
-        while cursor.accept(","):
-            values.append(parse_expression(cursor))
+        values = cursor.listed(parse_expression)
         cursor.expect(":", "after the values of the case")
-        cases.append(Case(tuple(values), parse_block(cursor, ends, "the TEST", start)))
+        cases.append(tree.Case(values, parse_block(cursor, ends, "the TEST", start)))
     otherwise = None
     if cursor.accept("default"):
         cursor.expect(":", "after DEFAULT")
         otherwise = parse_block(cursor, frozenset({"endtest"}), "the TEST", start)
     _end(cursor, "endtest")
-    return Test(cursor.span_from(start), subject, tuple(cases), otherwise)
+    return tree.Test(cursor.span_from(start), subject, tuple(cases), otherwise)
 
 
-def _goto(cursor: Cursor) -> Goto:
-    start = cursor.start
-    cursor.advance()
+def _goto(cursor: Cursor, start: int) -> tree.Goto:
     name = cursor.name("a label").lower()
     cursor.expect(";", "after the label")
-    return Goto(cursor.span_from(start), name)
+    return tree.Goto(cursor.span_from(start), name)
 
 
-def _return(cursor: Cursor) -> Return:
-    start = cursor.start
-    cursor.advance()
+def _return(cursor: Cursor, start: int) -> tree.Return:
     value = None if cursor.kind == ";" else parse_expression(cursor)
     cursor.expect(";", "after RETURN")
-    return Return(cursor.span_from(start), value)
+    return tree.Return(cursor.span_from(start), value)
 
 
-def _word(cursor: Cursor) -> Keyword:
+def _word(cursor: Cursor, start: int) -> tree.Keyword:
     """``EXIT;``, ``RETRY;``, ``TRYNEXT;`` and ``RAISE`` with or without a number."""
-    start, word = cursor.start, cursor.kind
-    cursor.advance()
+    word = cursor.kinds[cursor.index - 1]
     if word == "raise" and cursor.kind != ";":
         parse_expression(cursor)
     cursor.expect(";", f"after {word.upper()}")
-    return Keyword(cursor.span_from(start), word)
+    return tree.Keyword(cursor.span_from(start), word)
 
 
-def _connect(cursor: Cursor) -> Keyword:
-    start = cursor.start
-    cursor.advance()
+def _connect(cursor: Cursor, start: int) -> tree.Keyword:
     parse_name(cursor)
     cursor.expect("with", "after the interrupt")
     name = cursor.name("the name of a trap routine").lower()
     cursor.expect(";", "at the end of CONNECT")
-    return Keyword(cursor.span_from(start), "connect", name)
+    return tree.Keyword(cursor.span_from(start), "connect", name)
 
 
-def _placeholder(cursor: Cursor) -> Keyword:
+def _placeholder(cursor: Cursor, start: int) -> tree.Keyword:
     """``<SMT>``, which an editor leaves where a statement is still to be filled in."""
-    start = cursor.start
-    cursor.advance()
     cursor.name("a statement")
     cursor.expect(">", "to close the placeholder")
     cursor.accept(";")
-    return Keyword(cursor.span_from(start), "placeholder")
+    return tree.Keyword(cursor.span_from(start), "placeholder")
 
 
 def _end(cursor: Cursor, keyword: str) -> None:
@@ -222,8 +183,7 @@ def _end(cursor: Cursor, keyword: str) -> None:
     cursor.accept(";")
 
 
-_BY_KEYWORD: dict[str, Callable[[Cursor], Statement]] = {
-    NAME: _name_statement,
+_BY_KEYWORD: dict[str, Callable[[Cursor, int], Statement]] = {
     "%": _late_call,
     "if": _if,
     "for": _for,
@@ -231,10 +191,7 @@ _BY_KEYWORD: dict[str, Callable[[Cursor], Statement]] = {
     "test": _test,
     "goto": _goto,
     "return": _return,
-    "exit": _word,
-    "raise": _word,
-    "retry": _word,
-    "trynext": _word,
+    **dict.fromkeys(("exit", "raise", "retry", "trynext"), _word),
     "connect": _connect,
     "<": _placeholder,
 }

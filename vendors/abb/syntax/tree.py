@@ -6,46 +6,47 @@ looked up by ``name``, which is lower case.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 
-from ....core.errors import Span
+from ....core.source.text import nodes
+from ....core.source.text.nodes import Looping, Node, Term
+
+Block = nodes.Block
+Case = nodes.Case
+Expression = nodes.Expression
+Goto = nodes.Goto
+Label = nodes.Label
+Operation = nodes.Operation
+Return = nodes.Return
+Statement = nodes.Statement
+Test = nodes.Switch
+Text = nodes.Text
+Truth = nodes.Truth
+Unary = nodes.Unary
+While = nodes.While
 
 
 @dataclass(frozen=True, slots=True)
-class Number:
+class Number(Term):
     """A number, with its sign if one stands before it."""
 
-    span: Span
     value: float
 
 
 @dataclass(frozen=True, slots=True)
-class Text:
-    """A string."""
-
-    span: Span
-    value: str
-
-
-@dataclass(frozen=True, slots=True)
-class Truth:
-    """``TRUE`` or ``FALSE``."""
-
-    span: Span
-    value: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Aggregate:
+class Aggregate(Term):
     """``[a, b, …]``: a record or an array."""
 
-    span: Span
     items: tuple[Expression, ...]
+
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return self.items
 
 
 @dataclass(frozen=True, slots=True)
-class Packed:
+class Packed(Term):
     """An `Aggregate` of nothing but numbers, two brackets deep at most: most of any program's text.
 
     Its parts have no nodes of their own until somebody asks for them (`packed`).
@@ -54,13 +55,12 @@ class Packed:
         text: as it stands in the source.
     """
 
-    span: Span
     value: tuple[float | tuple[float, ...], ...]
     text: str
 
 
 @dataclass(frozen=True, slots=True)
-class Name:
+class Name(Term):
     """A datum or a part of it: ``p10``, ``p10.trans.x``, ``path{3}``.
 
     Args:
@@ -69,55 +69,35 @@ class Name:
         path: components (lower-case words) and tuples of indices (expressions), left to right.
     """
 
-    span: Span
     name: str
     text: str
     path: tuple[str | tuple[Expression, ...], ...] = ()
 
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return [index for step in self.path if not isinstance(step, str) for index in step]
+
 
 @dataclass(frozen=True, slots=True)
-class Call:
+class Call(Term):
     """A function's value: ``Offs(p10, 0, 0, 50)``."""
 
-    span: Span
     name: str
     text: str
     arguments: tuple[Argument, ...]
 
-
-@dataclass(frozen=True, slots=True)
-class Unary:
-    """``-``, ``+`` or ``not`` before an operand."""
-
-    span: Span
-    operator: str
-    operand: Expression
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return [a.value for a in self.arguments if a.value is not None]
 
 
 @dataclass(frozen=True, slots=True)
-class Operation:
-    """Operators of one priority, evaluated from left to right: ``a + b - c``.
-
-    A flat list and no nest of pairs, so that a sum of a thousand terms is no deep tree.
-    """
-
-    span: Span
-    first: Expression
-    rest: tuple[tuple[str, Expression], ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Star:
+class Star(Term):
     """``*`` for a position that is kept outside the text."""
 
-    span: Span
-
-
-Expression = Number | Text | Truth | Aggregate | Packed | Name | Call | Unary | Operation | Star
-
 
 @dataclass(frozen=True, slots=True)
-class Argument:
+class Argument(Node):
     """An argument of a routine.
 
     Args:
@@ -127,7 +107,6 @@ class Argument:
         parameter: name of the required argument (lower case) where it is written: ``n:=1``.
     """
 
-    span: Span
     value: Expression | None
     option: str | None = None
     conditional: bool = False
@@ -135,29 +114,26 @@ class Argument:
 
 
 @dataclass(frozen=True, slots=True)
-class Assign:
+class Assign(Statement):
     """``target := value;``"""
 
-    span: Span
     target: Name
     value: Expression
 
 
 @dataclass(frozen=True, slots=True)
-class Invoke:
+class Invoke(Statement):
     """A call of a procedure or an instruction: ``MoveL p10, v100, z10, tool0;``"""
 
-    span: Span
     name: str
     text: str
     arguments: tuple[Argument, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class LateInvoke:
+class LateInvoke(Statement):
     """A call of the procedure that a string names: ``%"part" + n%;``"""
 
-    span: Span
     routine: Expression
     arguments: tuple[Argument, ...]
 
@@ -171,109 +147,44 @@ class Branch:
 
 
 @dataclass(frozen=True, slots=True)
-class If:
+class If(Statement):
     """``IF … ELSEIF … ELSE … ENDIF``, or the compact ``IF condition statement``."""
 
-    span: Span
     branches: tuple[Branch, ...]
     otherwise: Block | None
 
+    @property
+    def blocks(self) -> Sequence[Block]:
+        bodies = [branch.body for branch in self.branches]
+        return bodies if self.otherwise is None else [*bodies, self.otherwise]
+
 
 @dataclass(frozen=True, slots=True)
-class For:
+class For(Looping):
     """``FOR name FROM start TO stop STEP step DO … ENDFOR``"""
 
-    span: Span
     name: str
     start: Expression
     stop: Expression
     step: Expression | None
-    body: Block
 
 
 @dataclass(frozen=True, slots=True)
-class While:
-    """``WHILE condition DO … ENDWHILE``"""
-
-    span: Span
-    condition: Expression
-    body: Block
-
-
-@dataclass(frozen=True, slots=True)
-class Case:
-    """One ``CASE a, b:`` of a ``TEST``."""
-
-    values: tuple[Expression, ...]
-    body: Block
-
-
-@dataclass(frozen=True, slots=True)
-class Test:
-    """``TEST subject CASE … DEFAULT … ENDTEST``"""
-
-    span: Span
-    subject: Expression
-    cases: tuple[Case, ...]
-    otherwise: Block | None
-
-
-@dataclass(frozen=True, slots=True)
-class Label:
-    """``name:``"""
-
-    span: Span
-    name: str
-
-
-@dataclass(frozen=True, slots=True)
-class Goto:
-    """``GOTO name;``"""
-
-    span: Span
-    name: str
-
-
-@dataclass(frozen=True, slots=True)
-class Return:
-    """``RETURN;`` or ``RETURN value;``"""
-
-    span: Span
-    value: Expression | None
-
-
-@dataclass(frozen=True, slots=True)
-class Keyword:
+class Keyword(nodes.Keyword):
     """A statement that is one word with, perhaps, an argument that is not read here.
 
+    Its word is ``exit``, ``raise``, ``retry``, ``trynext``, ``connect``, or ``placeholder`` for an
+    unfilled ``<SMT>``.
+
     Args:
-        word: ``exit``, ``raise``, ``retry``, ``trynext``, ``connect``, or ``placeholder`` for
-            an unfilled ``<SMT>``.
         name: of the trap routine that is connected, lower case.
     """
 
-    span: Span
-    word: str
     name: str = ""
 
 
-Statement = Assign | Invoke | LateInvoke | If | For | While | Test | Label | Goto | Return | Keyword
-
-
-@dataclass(frozen=True)
-class Block:
-    """Statements in order."""
-
-    statements: tuple[Statement, ...] = ()
-
-    @cached_property
-    def labels(self) -> dict[str, int]:
-        """Index of the statement behind each label of this block."""
-        return {s.name: i + 1 for i, s in enumerate(self.statements) if isinstance(s, Label)}
-
-
 @dataclass(frozen=True, slots=True)
-class Declaration:
+class Declaration(Node):
     """``[LOCAL] CONST|VAR|PERS type name{dimensions} := value;``
 
     Args:
@@ -282,7 +193,6 @@ class Declaration:
         local: known in its own module only.
     """
 
-    span: Span
     kind: str
     type: str
     name: str
@@ -293,7 +203,7 @@ class Declaration:
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class Parameter(Node):
     """A parameter of a routine.
 
     Args:
@@ -304,7 +214,6 @@ class Parameter:
         group: parameters of one group exclude each other.
     """
 
-    span: Span
     mode: str
     type: str
     name: str
@@ -314,7 +223,7 @@ class Parameter:
 
 
 @dataclass(frozen=True, slots=True)
-class Routine:
+class Routine(Node):
     """A ``PROC``, ``FUNC`` or ``TRAP``.
 
     Args:
@@ -324,7 +233,6 @@ class Routine:
         local: known in its own module only.
     """
 
-    span: Span
     kind: str
     name: str
     text: str
@@ -337,30 +245,27 @@ class Routine:
 
 
 @dataclass(frozen=True, slots=True)
-class RecordDefinition:
+class RecordDefinition(Node):
     """``RECORD name … ENDRECORD``: component types and names, lower case."""
 
-    span: Span
     name: str
     components: tuple[tuple[str, str], ...]
     local: bool = False
 
 
 @dataclass(frozen=True, slots=True)
-class AliasDefinition:
+class AliasDefinition(Node):
     """``ALIAS type name;``"""
 
-    span: Span
     name: str
     type: str
     local: bool = False
 
 
 @dataclass(frozen=True)
-class Module:
+class Module(Node):
     """``MODULE name … ENDMODULE``"""
 
-    span: Span
     name: str
     text: str
     attributes: tuple[str, ...] = ()

@@ -10,21 +10,7 @@ from ....core.errors import SourceError, Span
 from ....core.source.execution.answers import Course
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.provenance import ELSEWHERE, Reads
-from ..syntax.tree import (
-    Aggregate,
-    Call,
-    Declaration,
-    Expression,
-    Name,
-    Number,
-    Operation,
-    Packed,
-    Routine,
-    Star,
-    Text,
-    Truth,
-    Unary,
-)
+from ..syntax import tree
 from .answers import Answers, like_signals
 from .data import Globals
 from .elements import (
@@ -58,10 +44,10 @@ from .types import (
 class Host(Protocol):
     """Runs what expressions call."""
 
-    def call_function(self, routine: Routine, call: Call, scope: Scope) -> Value:
+    def call_function(self, routine: tree.Routine, call: tree.Call, scope: Scope) -> Value:
         """The value of one of the program's own functions."""
 
-    def note_undeclared(self, name: Name) -> None:
+    def note_undeclared(self, name: tree.Name) -> None:
         """A name is assigned and declared nowhere at hand."""
 
 
@@ -93,31 +79,31 @@ class Evaluator:
 
     # ------------------------------------------------------------------ values
 
-    def evaluate(self, expression: Expression, scope: Scope) -> Value:
+    def evaluate(self, expression: tree.Expression, scope: Scope) -> Value:
         """The value of an expression; `Unknown` where only the controller has it.
 
         Raises:
             SourceError: it has none.
         """
-        if isinstance(expression, Number | Packed | Text | Truth):
+        if isinstance(expression, tree.Number | tree.Packed | tree.Text | tree.Truth):
             return expression.value
-        if isinstance(expression, Name):
+        if isinstance(expression, tree.Name):
             return self._read_name(expression, scope)
-        if isinstance(expression, Aggregate):
+        if isinstance(expression, tree.Aggregate):
             return tuple(self.evaluate(item, scope) for item in expression.items)
-        if isinstance(expression, Operation):
+        if isinstance(expression, tree.Operation):
             return self._operation(expression, scope)
-        if isinstance(expression, Unary):
+        if isinstance(expression, tree.Unary):
             operand = self.evaluate(expression.operand, scope)
             try:
                 return negate(expression.operator, operand)
             except OperandError as error:
                 raise SourceError(str(error), expression.span) from None
-        if isinstance(expression, Call):
+        if isinstance(expression, tree.Call):
             return function_value(self, self._host.call_function, self._special, expression, scope)
         return _star(expression)
 
-    def locate(self, expression: Expression, scope: Scope, asking: bool = True) -> Located:
+    def locate(self, expression: tree.Expression, scope: Scope, asking: bool = True) -> Located:
         """A value that a move takes as it stands, with its source.
 
         Unlike `evaluate` this does not count as a read by an expression: the caller tells
@@ -126,12 +112,12 @@ class Evaluator:
         Args:
             asking: whether the user's answer is taken where a datum is not known.
         """
-        if isinstance(expression, Name):
+        if isinstance(expression, tree.Name):
             return self._locate_name(expression, scope, asking)
         value = self.evaluate(expression, scope)
         return Located(value, source_of_literal(expression, None), None)
 
-    def known(self, expression: Expression, scope: Scope, type_: Type, use: str) -> Value:
+    def known(self, expression: tree.Expression, scope: Scope, type_: Type, use: str) -> Value:
         """A value that must be known and of a type.
 
         Args:
@@ -165,7 +151,7 @@ class Evaluator:
         if found.cell is not None:
             self._checked[id(found.value)] = (found.value, type_)
 
-    def number(self, expression: Expression, scope: Scope, use: str) -> float:
+    def number(self, expression: tree.Expression, scope: Scope, use: str) -> float:
         """A known num."""
         value = self.known(expression, scope, NUM, use)
         assert isinstance(value, float)
@@ -180,16 +166,16 @@ class Evaluator:
 
     # ------------------------------------------------------------------- answers
 
-    def fill(self, target: Name, unknown: Unknown, scope: Scope) -> None:
+    def fill(self, target: tree.Name, unknown: Unknown, scope: Scope) -> None:
         """An instruction writes a datum: the user's answer, or what is not known."""
         found = self.locate(target, scope, asking=False)
         sizes = found.cell.dimensions if found.cell is not None and not target.path else ()
         answer = self.answers.ask(target.span, found.type, sizes)
         self.assign(target, unknown if answer is None else answer, scope)
 
-    def signal(self, expression: Expression | None, scope: Scope) -> str | None:
+    def signal(self, expression: tree.Expression | None, scope: Scope) -> str | None:
         """The signal that an expression means, lower case; None if that is not known."""
-        if not isinstance(expression, Name) or expression.path:
+        if not isinstance(expression, tree.Name) or expression.path:
             return None
         cell = self.cell(expression, scope)
         if cell is None:
@@ -197,7 +183,7 @@ class Evaluator:
         value = self.settle(cell) if isinstance(cell.type, Foreign) and cell.present else None
         return value.key.lower() or None if isinstance(value, Unknown) else None
 
-    def output(self, signal: Expression | None, asked: Span, scope: Scope) -> Value | None:
+    def output(self, signal: tree.Expression | None, asked: Span, scope: Scope) -> Value | None:
         """What the program has set an output to; None if that is not known.
 
         Args:
@@ -236,14 +222,14 @@ class Evaluator:
         cell.pending = None
         return cell.value
 
-    def _size(self, expression: Expression, scope: Scope) -> int:
+    def _size(self, expression: tree.Expression, scope: Scope) -> int:
         size = self.number(expression, scope, "the size of an array")
         if size < 1 or size != int(size):
             raise SourceError(f"an array has one element or more, not {size:g}", expression.span)
         return int(size)
 
     def _initial(
-        self, declaration: Declaration, type_: Type, sizes: tuple[int, ...], scope: Scope
+        self, declaration: tree.Declaration, type_: Type, sizes: tuple[int, ...], scope: Scope
     ) -> tuple[Value, Literal | None, str | None]:
         if isinstance(type_, Foreign):
             reason = f"'{declaration.text}', a {type_.name}"
@@ -260,7 +246,7 @@ class Evaluator:
             source = Literal(source.expression, source.root, declaration.text)
         return value, source, found.predefined
 
-    def assign(self, target: Name, value: Value, scope: Scope) -> None:
+    def assign(self, target: tree.Name, value: Value, scope: Scope) -> None:
         """``target := value``
 
         Raises:
@@ -284,7 +270,7 @@ class Evaluator:
             return
         self._assign_part(cell, target, value, scope)
 
-    def _assign_part(self, cell: Variable, target: Name, value: Value, scope: Scope) -> None:
+    def _assign_part(self, cell: Variable, target: tree.Name, value: Value, scope: Scope) -> None:
         """An element or component is written."""
         old = self._settled(cell)
         path = self._path(target, scope)
@@ -301,7 +287,7 @@ class Evaluator:
         else:
             cell.value, cell.source = replaced(old, cell, path, value, target), None
 
-    def _assign_elsewhere(self, target: Name, value: Value) -> None:
+    def _assign_elsewhere(self, target: tree.Name, value: Value) -> None:
         """A datum of a module that is not at hand moves nothing by being written.
 
         It keeps the value that it is given; of a part of it the type is not known.
@@ -314,18 +300,18 @@ class Evaluator:
 
     # ------------------------------------------------------------------- names
 
-    def cell(self, name: Name, scope: Scope) -> Variable | None:
+    def cell(self, name: tree.Name, scope: Scope) -> Variable | None:
         """The datum of a name, of a module beside the program if need be."""
         found = scope.find(name.name)
         return self.data.fetched_cell(name.name, name.span) if found is None else found
 
-    def _read_name(self, name: Name, scope: Scope) -> Value:
+    def _read_name(self, name: tree.Name, scope: Scope) -> Value:
         found = self._locate_name(name, scope)
         if found.source is not None:
             self.reads.by_expression(found.source, self.reader)
         return found.value
 
-    def _locate_name(self, name: Name, scope: Scope, asking: bool = True) -> Located:
+    def _locate_name(self, name: tree.Name, scope: Scope, asking: bool = True) -> Located:
         found = self._find(name, scope)
         if asking and isinstance(found.value, Unknown):
             held = self.output(name, name.span, scope)
@@ -339,7 +325,7 @@ class Evaluator:
                 return Located(answer, None, found.cell, type=found.type)
         return found
 
-    def _find(self, name: Name, scope: Scope) -> Located:
+    def _find(self, name: tree.Name, scope: Scope) -> Located:
         cell = self.cell(name, scope)
         if cell is None and not name.path and name.name in self._elsewhere:
             return Located(self._elsewhere[name.name], None, None)
@@ -358,7 +344,7 @@ class Evaluator:
             return Located(path, None, cell)
         return located_part(cell, value, path, name)
 
-    def _path(self, name: Name, scope: Scope) -> list[str | tuple[int, ...]] | Unknown:
+    def _path(self, name: tree.Name, scope: Scope) -> list[str | tuple[int, ...]] | Unknown:
         path: list[str | tuple[int, ...]] = []
         for step in name.path:
             if isinstance(step, str):
@@ -387,7 +373,7 @@ class Evaluator:
 
     # -------------------------------------------------- operators and functions
 
-    def _operation(self, operation: Operation, scope: Scope) -> Value:
+    def _operation(self, operation: tree.Operation, scope: Scope) -> Value:
         value = self.evaluate(operation.first, scope)
         for symbol, operand in operation.rest:
             right = self.evaluate(operand, scope)
@@ -400,7 +386,7 @@ class Evaluator:
         return value
 
 
-def _star(star: Star) -> Value:
+def _star(star: tree.Expression) -> Value:
     raise SourceError(
         "the position of '*' is not in the text: write the robtarget out, or store it with a "
         "name, and read the program again",

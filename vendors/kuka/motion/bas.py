@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from ....core.errors import SourceError, Span
 from ....core.source.execution.transcript import Notes
-from ..syntax.expression_tree import Call, Constant, Expression
+from ..syntax.tree import Call, Constant, Expression
 from ..values.config_data import ConfigData
 from ..values.data import Data
 from ..values.evaluator import Evaluator

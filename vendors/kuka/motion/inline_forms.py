@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from ....core.errors import SourceError, Span
-from ..syntax.expression_tree import Call
+from ..syntax.tree import Call
 from ..values.data import Data
 from ..values.scope import Scope
 from ..values.values import Choice, Struct, Unknown, Value, shown

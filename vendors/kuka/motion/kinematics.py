@@ -10,7 +10,7 @@ from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.joint import ExternalRole
 from ....core.robot.model import Robot
 from ....core.source.execution.transcript import Notes
-from ..syntax.expression_tree import Call, Name
+from ..syntax.tree import Call, Name
 from ..values.evaluator import Evaluator
 from ..values.frames import frame_of
 from ..values.scope import Scope

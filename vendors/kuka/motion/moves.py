@@ -18,8 +18,7 @@ from ....core.program.zone import Zone
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.provenance import ELSEWHERE, Part
 from ....core.source.execution.transcript import MoveParts, Transcript
-from ..syntax.expression_tree import Expression, Flat, Name
-from ..syntax.tree import MotionInstruction
+from ..syntax.tree import Expression, Flat, MotionInstruction, Name
 from ..values.data import Data
 from ..values.evaluator import Evaluator
 from ..values.frames import frame_of, pose_of

@@ -10,8 +10,7 @@ from ....core.errors import InputError, SourceError, Span
 from ....core.program.event import Event, EventAnchor
 from ....core.program.move import Opaque
 from ....core.source.execution.transcript import Transcript
-from ..syntax.expression_tree import Expression
-from ..syntax.tree import Trigger
+from ..syntax.tree import Expression, Trigger
 from ..values.evaluator import Evaluator
 from ..values.scope import Scope
 from ..values.values import shown

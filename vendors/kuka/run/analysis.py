@@ -6,30 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from ....core.errors import SourceError
 from ....core.source.execution.steps import NOTHING, Exit, Step
-from ..syntax.expression_tree import Call, Expression, Name, Number
+from ..syntax import tree
 from ..syntax.traversal import calls_in, data_in, indices_in
-from ..syntax.tree import (
-    Assign,
-    Block,
-    For,
-    Goto,
-    Halt,
-    If,
-    Invoke,
-    Label,
-    Loop,
-    MotionInstruction,
-    Repeat,
-    Return,
-    SplineBlock,
-    Statement,
-    Switch,
-    WaitSec,
-    While,
-)
-from ..syntax.tree import (
-    Exit as ExitStatement,
-)
 from ..values.data import Data
 from ..values.elements import Names
 from ..values.predefined import OUTPUTS
@@ -38,7 +16,7 @@ from .instructions import kept
 
 NATIVE = frozenset({"bas"})
 """Routines of KUKA's own that are carried out natively."""
-_LOOPS = (For, While, Repeat, Loop)
+_LOOPS = (tree.For, tree.While, tree.Repeat, tree.Loop)
 
 
 class KrlTree:
@@ -57,7 +35,7 @@ class KrlTree:
         self._scopes = scopes
         self._homes: dict[int, Module] = {}
 
-    def called(self, call: Call, home: Module) -> Block | None:
+    def called(self, call: tree.Call, home: Module) -> tree.Block | None:
         """The body of the routine that a call means; None if it is not at hand."""
         own = self._data.library.main.routines.get(call.name) or home.routines.get(call.name)
         if own is None and (call.name in NATIVE or kept(call.name) is not None):
@@ -70,7 +48,7 @@ class KrlTree:
         self._homes[id(routine.body)] = module
         return routine.body
 
-    def outputs(self, target: Name, home: Module) -> frozenset[str] | None:
+    def outputs(self, target: tree.Name, home: Module) -> frozenset[str] | None:
         """The outputs that a name stands for; None if only the run knows which."""
         constant = all(self._is_constant(index, home) for index in indices_in(target))
         try:
@@ -78,7 +56,7 @@ class KrlTree:
         except SourceError:
             return None
 
-    def data_read(self, expressions: Iterable[Expression], home: Module) -> frozenset[str]:
+    def data_read(self, expressions: Iterable[tree.Expression], home: Module) -> frozenset[str]:
         """Lower-case names of the data that expressions read; outputs as ``$OUT[3]``."""
         found: set[str] = set()
         for expression in expressions:
@@ -87,25 +65,25 @@ class KrlTree:
                 found |= self.data_read(indices_in(datum), home)
         return frozenset(found)
 
-    def asks(self, expressions: Iterable[Expression], home: Module) -> bool:
+    def asks(self, expressions: Iterable[tree.Expression], home: Module) -> bool:
         """Whether routines of the program have a part in expressions."""
         return any(True for _ in self._functions(expressions, home))
 
-    def steps(self, block: Block) -> Sequence[Step[Block]]:
+    def steps(self, block: tree.Block) -> Sequence[Step[tree.Block]]:
         """See `core.source.execution.steps.Tree.steps`."""
         home = self._homes.get(id(block)) or self._scopes[-1].module
         return [self._step(statement, home) for statement in block.statements]
 
-    def _step(self, statement: Statement, home: Module) -> Step[Block]:
-        if isinstance(statement, Label):
+    def _step(self, statement: tree.Statement, home: Module) -> Step[tree.Block]:
+        if isinstance(statement, tree.Label):
             return Step(mark=statement.name)
-        if isinstance(statement, Goto):
+        if isinstance(statement, tree.Goto):
             return Step(exit=Exit.JUMP, label=statement.name)
-        if isinstance(statement, ExitStatement):
+        if isinstance(statement, tree.Exit):
             return Step(exit=Exit.LOOP)
-        if isinstance(statement, Halt):
+        if isinstance(statement, tree.Halt):
             return Step(halts=True)
-        if isinstance(statement, SplineBlock):
+        if isinstance(statement, tree.SplineBlock):
             return Step(moves=True)
         evaluated = tuple(_evaluated(statement))
         names = self.data_read(evaluated, home)
@@ -115,13 +93,13 @@ class KrlTree:
             for expression in evaluated
             for call in calls_in(expression)
             for argument in call.arguments
-            if isinstance(argument, Name)
+            if isinstance(argument, tree.Name)
         )
-        inner = tuple(inner_blocks(statement))
+        inner = tuple(statement.blocks)
         if inner:
             for block in inner:
                 self._homes[id(block)] = home
-            counter = {statement.counter.name} if isinstance(statement, For) else NOTHING
+            counter = {statement.counter.name} if isinstance(statement, tree.For) else NOTHING
             return Step(
                 reads=names,
                 writes=handed | counter,
@@ -129,27 +107,27 @@ class KrlTree:
                 asks=bool(functions),
                 inner=inner,
                 loop=isinstance(statement, _LOOPS),
-                exhaustive=isinstance(statement, If)
-                or (isinstance(statement, Switch) and statement.otherwise is not None),
+                exhaustive=isinstance(statement, tree.If)
+                or (isinstance(statement, tree.Switch) and statement.otherwise is not None),
             )
-        if isinstance(statement, Invoke):
+        if isinstance(statement, tree.Invoke):
             return self._invoked(statement.call, home, functions, names, handed)
         writes, outputs = self._assigned(statement, home)
         return Step(
-            moves=isinstance(statement, MotionInstruction),
+            moves=isinstance(statement, tree.MotionInstruction),
             writes=handed | writes,
             made_of=names,
             outputs=outputs,
             calls=functions,
             asks=bool(functions),
-            exit=Exit.ROUTINE if isinstance(statement, Return) else None,
+            exit=Exit.ROUTINE if isinstance(statement, tree.Return) else None,
         )
 
     def _assigned(
-        self, statement: Statement, home: Module
+        self, statement: tree.Statement, home: Module
     ) -> tuple[frozenset[str], frozenset[str] | None]:
         """The data and the outputs that an assignment writes."""
-        if not isinstance(statement, Assign):
+        if not isinstance(statement, tree.Assign):
             return NOTHING, NOTHING
         target = statement.target
         outputs = self.outputs(target, home)
@@ -160,13 +138,13 @@ class KrlTree:
 
     def _invoked(
         self,
-        call: Call,
+        call: tree.Call,
         home: Module,
-        functions: tuple[Block, ...],
+        functions: tuple[tree.Block, ...],
         names: frozenset[str],
         handed: frozenset[str],
-    ) -> Step[Block]:
-        written = handed | {a.name for a in call.arguments if isinstance(a, Name)}
+    ) -> Step[tree.Block]:
+        written = handed | {a.name for a in call.arguments if isinstance(a, tree.Name)}
         body = self.called(call, home)
         if body is not None:
             calls = (*functions, body)
@@ -176,59 +154,48 @@ class KrlTree:
             known = kept(call.name)
             if call.name == "pulse":
                 first = call.arguments[0] if call.arguments else None
-                outputs = self.outputs(first, home) if isinstance(first, Name) else None
+                outputs = self.outputs(first, home) if isinstance(first, tree.Name) else None
             elif known is None or known.outputs:
                 outputs = None
         return Step(
             writes=written, made_of=names, outputs=outputs, calls=functions, asks=bool(functions)
         )
 
-    def _functions(self, expressions: Iterable[Expression], home: Module) -> Iterator[Block]:
+    def _functions(
+        self, expressions: Iterable[tree.Expression], home: Module
+    ) -> Iterator[tree.Block]:
         for expression in expressions:
             for call in calls_in(expression):
                 body = self.called(call, home)
                 if body is not None:
                     yield body
 
-    def _is_constant(self, index: Expression, home: Module) -> bool:
-        if isinstance(index, Name) and not index.path:
+    def _is_constant(self, index: tree.Expression, home: Module) -> bool:
+        if isinstance(index, tree.Name) and not index.path:
             cell = self._data.find(index.name, Scope("", home))
             return cell is not None and cell.constant
-        return isinstance(index, Number)
+        return isinstance(index, tree.Number)
 
 
-def inner_blocks(statement: Statement) -> Iterator[Block]:
-    """The blocks that a statement holds."""
-    if isinstance(statement, If):
-        yield statement.body
-        yield statement.otherwise
-    elif isinstance(statement, Switch):
-        yield from (case.body for case in statement.cases)
-        if statement.otherwise is not None:
-            yield statement.otherwise
-    elif isinstance(statement, _LOOPS):
-        yield statement.body
-
-
-def _evaluated(statement: Statement) -> Iterator[Expression]:
+def _evaluated(statement: tree.Statement) -> Iterator[tree.Expression]:
     """The expressions that a statement evaluates itself."""
-    if isinstance(statement, If | While | Repeat):
+    if isinstance(statement, tree.If | tree.While | tree.Repeat):
         yield statement.condition
-    elif isinstance(statement, Switch):
+    elif isinstance(statement, tree.Switch):
         yield statement.subject
         yield from (value for case in statement.cases for value in case.values)
-    elif isinstance(statement, For):
+    elif isinstance(statement, tree.For):
         yield from (statement.counter, statement.start, statement.stop)
         if statement.step is not None:
             yield statement.step
-    elif isinstance(statement, Assign):
+    elif isinstance(statement, tree.Assign):
         yield statement.value
         yield from indices_in(statement.target)
-    elif isinstance(statement, Invoke):
+    elif isinstance(statement, tree.Invoke):
         yield from (argument for argument in statement.call.arguments if argument is not None)
-    elif isinstance(statement, MotionInstruction):
+    elif isinstance(statement, tree.MotionInstruction):
         yield from statement.targets
-    elif isinstance(statement, Return) and statement.value is not None:
+    elif isinstance(statement, tree.Return) and statement.value is not None:
         yield statement.value
-    elif isinstance(statement, WaitSec):
+    elif isinstance(statement, tree.WaitSec):
         yield statement.time

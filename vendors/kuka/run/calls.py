@@ -11,8 +11,7 @@ from ....core.source.execution.provenance import ELSEWHERE
 from ....core.source.execution.scopes import unknown_name
 from ..motion.bas import Basis
 from ..motion.inline_forms import Function
-from ..syntax.expression_tree import Call, Name
-from ..syntax.tree import Invoke
+from ..syntax.tree import Call, Invoke, Name
 from ..values.data import Data
 from ..values.evaluator import Evaluator
 from ..values.functions import COMPUTED

@@ -10,8 +10,23 @@ from ....core.errors import SourceError, Span
 from ....core.source.execution import flow
 from ....core.source.execution.flow import Undecided
 from ....core.source.execution.transcript import Notes
-from ..syntax.expression_tree import Expression, Name, Number, Truth
-from ..syntax.tree import Block, Exit, For, Goto, If, Label, Loop, Repeat, Return, Switch, While
+from ..syntax.tree import (
+    Block,
+    Exit,
+    Expression,
+    For,
+    Goto,
+    If,
+    Label,
+    Loop,
+    Name,
+    Number,
+    Repeat,
+    Return,
+    Switch,
+    Truth,
+    While,
+)
 from ..values.data import Data
 from ..values.evaluator import Evaluator
 from ..values.operators import OperandError, apply

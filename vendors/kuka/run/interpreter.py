@@ -28,14 +28,15 @@ from ..motion.position import Position
 from ..motion.settings import Settings
 from ..motion.targets import Targets
 from ..motion.triggers import Triggers
-from ..syntax.expression_tree import Call, Expression, Name
 from ..syntax.tree import (
     Assign,
     Block,
+    Call,
     Continue,
     Declaration,
     EnumDefinition,
     Exit,
+    Expression,
     For,
     Goto,
     Halt,
@@ -45,6 +46,7 @@ from ..syntax.tree import (
     Label,
     Loop,
     MotionInstruction,
+    Name,
     Repeat,
     Return,
     Routine,

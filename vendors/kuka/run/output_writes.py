@@ -9,10 +9,9 @@ from ....core.errors import SourceError
 from ....core.source.execution.analysis import Analysis
 from ....core.source.text.files import SourceText
 from ..syntax.cursor import Cursor
-from ..syntax.expression_tree import Call, Name
 from ..syntax.lexer import tokenize
 from ..syntax.statements import parse_statement
-from ..syntax.tree import Assign, Block
+from ..syntax.tree import Assign, Block, Call, Name
 from ..values.data import Data
 from ..values.elements import Names
 from ..values.scope import Scope

@@ -7,8 +7,7 @@ from collections.abc import Callable
 from ....core.errors import SourceError
 from ....core.source.execution.limits import Meter
 from ....core.source.text.arguments import wrong_count
-from ..syntax.expression_tree import Call, Name
-from ..syntax.tree import Block, Routine
+from ..syntax.tree import Block, Call, Name, Routine
 from ..values.data import Data
 from ..values.elements import Path
 from ..values.evaluator import Evaluator

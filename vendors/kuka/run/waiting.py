@@ -7,8 +7,8 @@ from contextlib import suppress
 from ....core.errors import SourceError
 from ....core.source.execution.answers import Course
 from ....core.source.execution.suppose import Parts, Supposing
-from ..syntax.expression_tree import Ambiguous, Expression, Name, Operation, Unary
 from ..syntax.traversal import calls_in, data_in
+from ..syntax.tree import Ambiguous, Expression, Name, Operation, Unary
 from ..values.data import Data
 from ..values.evaluator import Evaluator
 from ..values.predefined import MOTION, NEVER_KNOWN, OUTPUTS

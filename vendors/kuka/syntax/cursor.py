@@ -4,24 +4,16 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from ....core.errors import Span
 from ....core.source.text.cursor import TokenCursor
 from ....core.source.text.files import SourceText
-from .lexer import BITS, END, ENUM, KEYWORDS, NAME, NEWLINE, RECORD, Tokens
+from .lexer import BITS, END, ENUM, KEYWORDS, NAME, NEWLINE, RECORD
 
 
 class Cursor(TokenCursor[SourceText]):
-    """Reads tokens from left to right.
-
-    Args:
-        tokens: to be read.
-    """
+    """Reads tokens from left to right."""
 
     keywords: ClassVar = {word: word.upper() for word in KEYWORDS}
     nouns: ClassVar = {BITS: "number", ENUM: "constant", RECORD: "aggregate"}
-
-    def __init__(self, tokens: Tokens) -> None:
-        super().__init__(tokens.source, tokens, tokens.source.text)
 
     @property
     def at_end_of_line(self) -> bool:
@@ -72,11 +64,3 @@ class Cursor(TokenCursor[SourceText]):
         """Go to the end of the line."""
         while self.kinds[self.index] not in (NEWLINE, END):
             self.index += 1
-
-    def span_from(self, start: int) -> Span:
-        """From ``start`` to the end of the token gone past last."""
-        index = self.index - 1
-        while index > 0 and self.kinds[index] == NEWLINE:
-            index -= 1
-        end = self.ends[index] if self.index else start
-        return self.source.span(start, max(start, end))

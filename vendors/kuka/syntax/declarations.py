@@ -78,12 +78,10 @@ def parse_enum(cursor: Cursor) -> EnumDefinition:
     start = cursor.start
     cursor.advance()
     name = cursor.word("the name of the enumeration").lower()
-    constants: list[str] = []
-    while not constants or cursor.accept(","):
-        constants.append(cursor.word("a constant").lower())
+    constants = cursor.listed(lambda cursor: cursor.word("a constant").lower())
     span = cursor.span_from(start)
     cursor.end_of_line("the enumeration")
-    return EnumDefinition(span, name, tuple(constants))
+    return EnumDefinition(span, name, constants)
 
 
 def parse_signal(cursor: Cursor) -> SignalDeclaration:

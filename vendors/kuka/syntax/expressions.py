@@ -9,24 +9,12 @@ AND B`` are met all the same: where both readings differ, both are kept (`Ambigu
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
+from ....core.source.text.operators import Operators, operation
+from . import tree
 from .cursor import Cursor
-from .expression_tree import (
-    Aggregate,
-    Ambiguous,
-    Call,
-    Constant,
-    Expression,
-    Flat,
-    Name,
-    Number,
-    Operation,
-    Text,
-    Truth,
-    Unary,
-)
 from .lexer import BITS, ENUM, NAME, NUMBER, RECORD, STRING, bits_value
+from .tree import Expression
 
 RELATION = frozenset({"==", "<>", "<", ">", "<=", ">="})
 OR = frozenset({"or", "b_or"})
@@ -42,8 +30,6 @@ _CONTINUING = RELATION | _LOGIC | SUM | PRODUCT | FRAME | {"(", "[", "."}
 """What may stand behind an operand that is not all of its expression."""
 _LARGEST_INT = 2**31
 
-Parse = Callable[[Cursor], Expression]
-
 
 def parse_expression(cursor: Cursor) -> Expression:
     """The expression that starts at the cursor."""
@@ -51,14 +37,14 @@ def parse_expression(cursor: Cursor) -> Expression:
     if kinds[index] in _ALONE and kinds[index + 1] not in _CONTINUING:
         return _primary(cursor)
     start = cursor.index
-    manual = _manual(cursor)
+    manual = _manual.read(cursor)
     if not _is_ambiguous(cursor, start, cursor.index):
         return manual
     after = cursor.index
     cursor.index = start
-    usual = _usual(cursor)
+    usual = _usual.read(cursor)
     cursor.index = after
-    return Ambiguous(manual.span, manual, usual)
+    return tree.Ambiguous(manual.span, manual, usual)
 
 
 def _is_ambiguous(cursor: Cursor, start: int, end: int) -> bool:
@@ -75,7 +61,7 @@ def _is_ambiguous(cursor: Cursor, start: int, end: int) -> bool:
     return relation and logic
 
 
-def _primary(cursor: Cursor) -> Expression:
+def _primary(cursor: Cursor, level: int = 0) -> Expression:
     kind, start = cursor.kind, cursor.start
     if kind == NUMBER or (kind == "-" and cursor.peek() == NUMBER):
         return _number(cursor)
@@ -83,20 +69,20 @@ def _primary(cursor: Cursor) -> Expression:
         return parse_name_or_call(cursor)
     if kind == RECORD:
         cursor.advance()
-        return Flat(cursor.source, start, cursor.end)
+        return tree.Flat(cursor.source, start, cursor.end)
     if kind == "{":
         return _aggregate(cursor)
     if kind == ENUM:
         name = cursor.text[1:].strip().lower()
         cursor.advance()
-        return Constant(cursor.span_from(start), name)
+        return tree.Constant(cursor.span_from(start), name)
     if kind == STRING:
         value = cursor.text[1:-1]
         cursor.advance()
-        return Text(cursor.span_from(start), value)
+        return tree.Text(cursor.span_from(start), value)
     if kind in ("true", "false"):
         cursor.advance()
-        return Truth(cursor.span_from(start), kind == "true")
+        return tree.Truth(cursor.span_from(start), kind == "true")
     if kind == BITS:
         return _bits(cursor)
     with cursor.nested():
@@ -107,11 +93,11 @@ def _primary(cursor: Cursor) -> Expression:
         if kind in SUM or kind in _NEGATIONS:
             cursor.advance()
             operand = _primary(cursor)
-            return Unary(cursor.span_from(start), kind, operand)
+            return tree.Unary(cursor.span_from(start), kind, operand)
     raise cursor.unexpected("a value")
 
 
-def _number(cursor: Cursor) -> Number:
+def _number(cursor: Cursor) -> tree.Number:
     start = cursor.start
     negative = cursor.accept("-")
     text = cursor.text
@@ -120,7 +106,7 @@ def _number(cursor: Cursor) -> Number:
     value = number_value(text)
     if not math.isfinite(value):
         raise cursor.source.error("this number is too large", start, end)
-    return Number(cursor.source, start, end, -value if negative else value)
+    return tree.Number(cursor.source, start, end, -value if negative else value)
 
 
 def number_value(text: str) -> int | float:
@@ -133,7 +119,7 @@ def number_value(text: str) -> int | float:
     return float(text)
 
 
-def _bits(cursor: Cursor) -> Number:
+def _bits(cursor: Cursor) -> tree.Number:
     start = cursor.start
     try:
         value = bits_value(cursor.text)
@@ -143,10 +129,10 @@ def _bits(cursor: Cursor) -> Number:
     if value >= 2**32:
         raise cursor.source.error("this number has more than 32 bits", start, end)
     cursor.advance()
-    return Number(cursor.source, start, end, value)
+    return tree.Number(cursor.source, start, end, value)
 
 
-def _aggregate(cursor: Cursor) -> Aggregate:
+def _aggregate(cursor: Cursor) -> tree.Aggregate:
     start = cursor.start
     cursor.enter()
     cursor.advance()
@@ -163,36 +149,35 @@ def _aggregate(cursor: Cursor) -> Aggregate:
     cursor.expect("}", "or ',' after this value")
     cursor.depth -= 1
     end = cursor.end
-    return Aggregate(cursor.source, start, end, type_name, tuple(items))
+    return tree.Aggregate(cursor.source, start, end, type_name, tuple(items))
 
 
-def parse_name_or_call(cursor: Cursor) -> Name | Call:
+def parse_name_or_call(cursor: Cursor) -> tree.Name | tree.Call:
     """``P1.X``, ``ABS(X)``."""
     if cursor.peek() != "(":
         return parse_name(cursor)
     start = cursor.start
     text = cursor.name("a function")
     with cursor.nested():
-        arguments = _arguments(cursor, text)
-    return Call(cursor.span_from(start), text.lower(), text, arguments)
+        cursor.advance()
+        arguments = _items(cursor, ")", f"to end the arguments of {text}")
+    return tree.Call(cursor.span_from(start), text.lower(), text, arguments)
 
 
-def _arguments(cursor: Cursor, text: str) -> tuple[Expression | None, ...]:
-    """``(a, , b)``"""
-    cursor.advance()
-    if cursor.accept(")"):
+def _items(cursor: Cursor, closing: str, where: str) -> tuple[Expression | None, ...]:
+    """What stands in brackets, such as ``a, , b)``; None for what is left out."""
+    if cursor.accept(closing):
         return ()
-    arguments: list[Expression | None] = []
-    while True:
-        left_out = cursor.kind in (",", ")")
-        arguments.append(None if left_out else parse_expression(cursor))
-        if not cursor.accept(","):
-            break
-    cursor.expect(")", f"to end the arguments of {text}")
-    return tuple(arguments)
+
+    def item(cursor: Cursor) -> Expression | None:
+        return None if cursor.kind in (",", closing) else parse_expression(cursor)
+
+    items = cursor.listed(item)
+    cursor.expect(closing, where)
+    return items
 
 
-def parse_name(cursor: Cursor) -> Name:
+def parse_name(cursor: Cursor) -> tree.Name:
     """A datum with its components and indices."""
     start = cursor.start
     text = cursor.name("a name")
@@ -205,51 +190,17 @@ def parse_name(cursor: Cursor) -> Name:
         elif kind == "[":
             path.append(parse_indices(cursor))
         else:
-            return Name(cursor.span_from(start), text.lower(), text, tuple(path))
+            return tree.Name(cursor.span_from(start), text.lower(), text, tuple(path))
 
 
 def parse_indices(cursor: Cursor) -> tuple[Expression | None, ...]:
     """``[i,j]``, ``[]``, ``[i,]``"""
     with cursor.nested():
         cursor.expect("[", "before the index")
-        items: list[Expression | None] = []
-        if cursor.accept("]"):
-            return ()
-        while True:
-            left_out = cursor.kind in (",", "]")
-            items.append(None if left_out else parse_expression(cursor))
-            if not cursor.accept(","):
-                break
-        cursor.expect("]", "to close the index")
-    return tuple(items)
+        return _items(cursor, "]", "to close the index")
 
 
-def _operations(operators: frozenset[str], operand: Parse) -> Parse:
-    """Reads operands with operators of one priority between them."""
-
-    def parse(cursor: Cursor) -> Expression:
-        start = cursor.start
-        first = operand(cursor)
-        if cursor.kind not in operators:
-            return first
-        rest = []
-        while (operator := cursor.kind) in operators:
-            cursor.advance()
-            rest.append((operator, operand(cursor)))
-        return Operation(cursor.span_from(start), first, tuple(rest))
-
-    return parse
-
-
-def _all_operations(*levels: frozenset[str]) -> Parse:
-    """Reads expressions; the levels of operators from the loosest on."""
-    parse: Parse = _primary
-    for operators in reversed(levels):
-        parse = _operations(operators, parse)
-    return parse
-
-
-_manual = _all_operations(RELATION, OR, EXOR, AND, SUM, PRODUCT, FRAME)
+_manual = Operators((RELATION, OR, EXOR, AND, SUM, PRODUCT, FRAME), _primary, operation)
 """As KUKA's table has the priorities."""
-_usual = _all_operations(OR, EXOR, AND, RELATION, SUM, PRODUCT, FRAME)
+_usual = Operators((OR, EXOR, AND, RELATION, SUM, PRODUCT, FRAME), _primary, operation)
 """With comparisons before AND, EXOR and OR."""

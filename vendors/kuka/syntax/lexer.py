@@ -12,11 +12,10 @@ and ``'H…'`` literals, ``{E6POS: X …}``).
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
-from ....core.source.text import cursor
+from ....core.source.text import lexer
 from ....core.source.text.files import SourceText, unbroken
-from ....core.source.text.lexer import UNCLOSED, stray, words
+from ....core.source.text.lexer import UNCLOSED, Lexicon, stray, words
 
 KEYWORDS = words(
     """and anin anout b_and b_exor b_not b_or brake case circ circ_rel continue decl def default
@@ -27,7 +26,7 @@ KEYWORDS = words(
 )
 """Words that a statement or a part of one begins with; other words are names."""
 
-END, NEWLINE, NAME = cursor.END, cursor.END_OF_LINE, cursor.NAME
+END, NEWLINE, NAME = lexer.END, lexer.END_OF_LINE, lexer.NAME
 NUMBER, STRING, BITS, ENUM, RECORD = "number", "string", "bits", "enum", "record"
 
 _NUMBER = r"(?: [0-9]++ (?: \.[0-9]*+ )? | \.[0-9]++ ) (?: [eE][+-]?[0-9]++ )?"
@@ -65,21 +64,7 @@ RECORD_TYPE = re.compile(rf"\{{ [ \t]* (?P<type> {_NAME} ) [ \t]* :", re.VERBOSE
 _HEADER = re.compile(rf"(?: {_BLANK}++ | [\r\n]++ | ;[^\r\n]*+ | &[^\r\n]*+ )*+", re.VERBOSE)
 
 
-@dataclass(frozen=True, slots=True)
-class Tokens:
-    """The tokens of a text, as parallel lists that end with an `END`.
-
-    Args:
-        source: the text.
-        kinds: `NAME`, `NUMBER`, `STRING`, `BITS`, `ENUM`, `RECORD`, `NEWLINE`, `END`, or the symbol
-            or lower-case keyword itself.
-        starts, ends: offsets.
-    """
-
-    source: SourceText
-    kinds: list[str]
-    starts: list[int]
-    ends: list[int]
+Tokens = lexer.Tokens[SourceText]
 
 
 def tokenize(source: SourceText) -> Tokens:
@@ -88,33 +73,9 @@ def tokenize(source: SourceText) -> Tokens:
     Raises:
         SourceError: a character that no token begins with, or a string without an end.
     """
-    text = unbroken(source.text)
-    kinds: list[str] = []
-    starts: list[int] = []
-    ends: list[int] = []
-    header = _HEADER.match(text)
-    position = header.end() if header else 0
-    match = _TOKEN.match
-    while True:
-        found = match(text, position)
-        if found is None:
-            raise _stray(source, position)
-        kind = found.lastgroup or ""
-        start, position = found.span(kind)
-        if kind == "symbol":
-            kind = text[start:position]
-        elif kind == "name":
-            word = text[start:position].lower()
-            if word in KEYWORDS:
-                kind = word
-        elif kind == "newline":
-            kind = NEWLINE
-        kinds.append(kind)
-        starts.append(start)
-        ends.append(position)
-        if kind == "end" and start == position:
-            kinds[-1] = END
-            return Tokens(source, kinds, starts, ends)
+    header = _HEADER.match(unbroken(source.text))
+    start = header.end() if header else 0
+    return _LEXICON.tokens(source, source.text, start=start, special=_SPECIAL)
 
 
 def bits_value(literal: str) -> int:
@@ -129,12 +90,13 @@ def bits_value(literal: str) -> int:
     return int(text[1:], base) if base is not None else int(text)
 
 
-def _stray(source: SourceText, position: int) -> Exception:
-    blank = re.compile(rf"(?:{_BLANK}++|;[^\r\n]*+)*+").match(unbroken(source.text), position)
-    start = blank.end() if blank else position
-    character = source.text[start]
-    if character == '"':
-        return source.error(UNCLOSED, start)
-    if character == "'":
-        return source.error("this is no number in quotes: 'B0101' and 'H1F' are", start)
-    return source.error(stray(character, "a KRL text"), start)
+def _stray(text: str, at: int) -> str:
+    if text[at] == '"':
+        return UNCLOSED
+    if text[at] == "'":
+        return "this is no number in quotes: 'B0101' and 'H1F' are"
+    return stray(text[at], "a KRL text")
+
+
+_LEXICON = Lexicon(_TOKEN, re.compile(rf"(?:{_BLANK}++|;[^\r\n]*+)*+"), KEYWORDS, _stray)
+_SPECIAL: dict[str, lexer.Special] = {"newline": lambda kinds, start, end: (NEWLINE, end)}

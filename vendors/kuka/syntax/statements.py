@@ -6,36 +6,12 @@ from collections.abc import Callable
 
 from ....core.errors import Span
 from ....core.source.text.lexer import words
+from . import tree
 from .cursor import Cursor
 from .declarations import parse_declaration, parse_enum, parse_signal, parse_struc
-from .expression_tree import Call, Expression
 from .expressions import parse_expression, parse_name, parse_name_or_call
 from .lexer import END, ENUM, NAME, NEWLINE
-from .tree import (
-    Assign,
-    Block,
-    Case,
-    Continue,
-    Exit,
-    For,
-    Goto,
-    Halt,
-    If,
-    Invoke,
-    Keyword,
-    Label,
-    Loop,
-    MotionInstruction,
-    Repeat,
-    Return,
-    SplineBlock,
-    Statement,
-    Switch,
-    Trigger,
-    WaitFor,
-    WaitSec,
-    While,
-)
+from .tree import Block, Statement
 
 CLOSING = words("else endif endfor endwhile until endloop case default endswitch end endfct enddat")
 APPROXIMATIONS = frozenset({"c_ptp", "c_dis", "c_ori", "c_vel", "c_spl"})
@@ -67,11 +43,23 @@ def parse_block(cursor: Cursor, ends: frozenset[str], opened_by: str, start: int
 
 def parse_statement(cursor: Cursor) -> tuple[Statement, ...]:
     """The statement that starts at the cursor; a declaration of several names gives several."""
-    parse = _BY_KEYWORD.get(cursor.kind)
+    kind, start = cursor.kind, cursor.start
+    behind = _BEHIND_KEYWORD.get(kind)
+    if behind is not None:
+        cursor.index += 1
+        return (behind(cursor, start),)
+    parse = _AT_WORD.get(kind)
     if parse is None:
         raise cursor.unexpected("a statement")
     found = parse(cursor)
     return found if isinstance(found, tuple) else (found,)
+
+
+def _line(cursor: Cursor, start: int, statement: str) -> Span:
+    """Where a statement stands; past the end of its line."""
+    span = cursor.span_from(start)
+    cursor.end_of_line(statement, CLOSING)
+    return span
 
 
 def _name_statement(cursor: Cursor) -> Statement | tuple[Statement, ...]:
@@ -85,22 +73,18 @@ def _name_statement(cursor: Cursor) -> Statement | tuple[Statement, ...]:
         name = cursor.name("a label").lower()
         cursor.advance()
         cursor.end_of_line("the label")
-        return Label(cursor.span_from(start), name)
+        return tree.Label(cursor.span_from(start), name)
     target = parse_name_or_call(cursor)
-    if isinstance(target, Call):
-        span = cursor.span_from(start)
-        cursor.end_of_line("the call", CLOSING)
-        return Invoke(span, target)
+    if isinstance(target, tree.Call):
+        return tree.Invoke(_line(cursor, start, "the call"), target)
     if target.name == "on_error_proceed" and cursor.at_end_of_line:
         cursor.accept(NEWLINE)
-        return Keyword(target.span, target.name)
+        return tree.Keyword(target.span, target.name)
     if cursor.kind != "=":
         raise cursor.unexpected(f"'=', or '(' for a call, after {target.text}")
     cursor.advance()
     value = parse_expression(cursor)
-    span = cursor.span_from(start)
-    cursor.end_of_line("the assignment", CLOSING)
-    return Assign(span, target, value)
+    return tree.Assign(_line(cursor, start, "the assignment"), target, value)
 
 
 def _named(cursor: Cursor) -> Statement | tuple[Statement, ...]:
@@ -113,12 +97,12 @@ def _named(cursor: Cursor) -> Statement | tuple[Statement, ...]:
     return parse_declaration(cursor)
 
 
-def _kept(cursor: Cursor) -> Keyword:
+def _kept(cursor: Cursor) -> tree.Keyword:
     start, word = cursor.start, cursor.text.lower()
     cursor.skip_line()
     span = cursor.span_from(start)
     cursor.accept(NEWLINE)
-    return Keyword(span, word)
+    return tree.Keyword(span, word)
 
 
 def _global(cursor: Cursor) -> Statement | tuple[Statement, ...]:
@@ -128,29 +112,12 @@ def _global(cursor: Cursor) -> Statement | tuple[Statement, ...]:
     return parse_declaration(cursor)
 
 
-def _continue(cursor: Cursor) -> Continue:
-    return Continue(_single_word(cursor))
+def _single_word(cursor: Cursor, start: int) -> Statement:
+    word = cursor.kinds[cursor.index - 1]
+    return _SINGLE[word](_line(cursor, start, word.upper()))
 
 
-def _exit(cursor: Cursor) -> Exit:
-    return Exit(_single_word(cursor))
-
-
-def _halt(cursor: Cursor) -> Halt:
-    return Halt(_single_word(cursor))
-
-
-def _single_word(cursor: Cursor) -> Span:
-    start, word = cursor.start, cursor.kind
-    cursor.advance()
-    span = cursor.span_from(start)
-    cursor.end_of_line(word.upper(), CLOSING)
-    return span
-
-
-def _if(cursor: Cursor) -> If:
-    start = cursor.start
-    cursor.advance()
+def _if(cursor: Cursor, start: int) -> tree.If:
     condition = parse_expression(cursor)
     cursor.accept(NEWLINE)
     cursor.expect("then", "after the condition of IF")
@@ -158,12 +125,10 @@ def _if(cursor: Cursor) -> If:
     otherwise = Block()
     if cursor.accept("else"):
         otherwise = parse_block(cursor, frozenset({"endif"}), "the IF", start)
-    return If(_end(cursor, start), condition, body, otherwise)
+    return tree.If(_end(cursor, start), condition, body, otherwise)
 
 
-def _for(cursor: Cursor) -> For:
-    start = cursor.start
-    cursor.advance()
+def _for(cursor: Cursor, start: int) -> tree.For:
     counter = parse_name(cursor)
     cursor.expect("=", "after the counter of FOR")
     first = parse_expression(cursor)
@@ -172,39 +137,29 @@ def _for(cursor: Cursor) -> For:
     step = parse_expression(cursor) if cursor.accept("step") else None
     cursor.end_of_line("the head of FOR")
     body = parse_block(cursor, frozenset({"endfor"}), "the FOR", start)
-    return For(_end(cursor, start), counter, first, last, step, body)
+    return tree.For(_end(cursor, start), body, counter, first, last, step)
 
 
-def _while(cursor: Cursor) -> While:
-    start = cursor.start
-    cursor.advance()
+def _while(cursor: Cursor, start: int) -> tree.While:
     condition = parse_expression(cursor)
     cursor.end_of_line("the condition of WHILE")
     body = parse_block(cursor, frozenset({"endwhile"}), "the WHILE", start)
-    return While(_end(cursor, start), condition, body)
+    return tree.While(_end(cursor, start), body, condition)
 
 
-def _repeat(cursor: Cursor) -> Repeat:
-    start = cursor.start
-    cursor.advance()
+def _repeat(cursor: Cursor, start: int) -> tree.Repeat:
     body = parse_block(cursor, frozenset({"until"}), "the REPEAT", start)
     cursor.advance()
     condition = parse_expression(cursor)
-    span = cursor.span_from(start)
-    cursor.end_of_line("the condition of UNTIL", CLOSING)
-    return Repeat(span, condition, body)
+    return tree.Repeat(_line(cursor, start, "the condition of UNTIL"), body, condition)
 
 
-def _loop(cursor: Cursor) -> Loop:
-    start = cursor.start
-    cursor.advance()
+def _loop(cursor: Cursor, start: int) -> tree.Loop:
     body = parse_block(cursor, frozenset({"endloop"}), "the LOOP", start)
-    return Loop(_end(cursor, start), body)
+    return tree.Loop(_end(cursor, start), body)
 
 
-def _switch(cursor: Cursor) -> Switch:
-    start = cursor.start
-    cursor.advance()
+def _switch(cursor: Cursor, start: int) -> tree.Switch:
     subject = parse_expression(cursor)
     cursor.accept(NEWLINE)
     ends = frozenset({"case", "default", "endswitch"})
@@ -215,60 +170,40 @@ def _switch(cursor: Cursor) -> Switch:
             otherwise = parse_block(cursor, ends, "the SWITCH", start)
             continue
         cursor.advance()
-        values = [parse_expression(cursor)]
-        while cursor.accept(","):
-            values.append(parse_expression(cursor))
-        cases.append(Case(tuple(values), parse_block(cursor, ends, "the SWITCH", start)))
+        values = cursor.listed(parse_expression)
+        cases.append(tree.Case(values, parse_block(cursor, ends, "the SWITCH", start)))
     if cursor.kind != "endswitch":
         raise cursor.unexpected("CASE, DEFAULT or ENDSWITCH")
-    return Switch(_end(cursor, start), subject, tuple(cases), otherwise)
+    return tree.Switch(_end(cursor, start), subject, tuple(cases), otherwise)
 
 
 def _end(cursor: Cursor, start: int) -> Span:
     """Past the keyword that closes a block."""
     word = cursor.kind.upper()
     cursor.advance()
-    span = cursor.span_from(start)
-    cursor.end_of_line(word, CLOSING)
-    return span
+    return _line(cursor, start, word)
 
 
-def _goto(cursor: Cursor) -> Goto:
-    start = cursor.start
-    cursor.advance()
+def _goto(cursor: Cursor, start: int) -> tree.Goto:
     name = cursor.name("a label").lower()
-    span = cursor.span_from(start)
-    cursor.end_of_line("GOTO", CLOSING)
-    return Goto(span, name)
+    return tree.Goto(_line(cursor, start, "GOTO"), name)
 
 
-def _return(cursor: Cursor) -> Return:
-    start = cursor.start
-    cursor.advance()
+def _return(cursor: Cursor, start: int) -> tree.Return:
     value = None if cursor.at_end_of_line else parse_expression(cursor)
-    span = cursor.span_from(start)
-    cursor.end_of_line("RETURN", CLOSING)
-    return Return(span, value)
+    return tree.Return(_line(cursor, start, "RETURN"), value)
 
 
-def _wait(cursor: Cursor) -> Statement:
-    start = cursor.start
-    cursor.advance()
+def _wait(cursor: Cursor, start: int) -> Statement:
     if cursor.accept("for"):
         condition = parse_expression(cursor)
-        span = cursor.span_from(start)
-        cursor.end_of_line("WAIT FOR", CLOSING)
-        return WaitFor(span, condition)
+        return tree.WaitFor(_line(cursor, start, "WAIT FOR"), condition)
     cursor.expect_word("sec", "or FOR after WAIT")
     time = parse_expression(cursor)
-    span = cursor.span_from(start)
-    cursor.end_of_line("WAIT SEC", CLOSING)
-    return WaitSec(span, time)
+    return tree.WaitSec(_line(cursor, start, "WAIT SEC"), time)
 
 
-def _trigger(cursor: Cursor) -> Trigger:
-    start = cursor.start
-    cursor.advance()
+def _trigger(cursor: Cursor, start: int) -> tree.Trigger:
     cursor.expect_word("when", "after TRIGGER")
     path = cursor.accept_word("path")
     if not path:
@@ -286,10 +221,10 @@ def _trigger(cursor: Cursor) -> Trigger:
     action = cursor.source.text[begin : cursor.end]
     span = cursor.span_from(start)
     cursor.accept(NEWLINE)
-    return Trigger(span, path, on_start, place, delay, action)
+    return tree.Trigger(span, path, on_start, place, delay, action)
 
 
-def _motion(cursor: Cursor) -> MotionInstruction:
+def _motion(cursor: Cursor) -> tree.MotionInstruction:
     start, word = cursor.start, cursor.kind
     cursor.advance()
     if cursor.at_end_of_line or cursor.kind in ("?", "!"):
@@ -308,13 +243,12 @@ def _motion(cursor: Cursor) -> MotionInstruction:
             angle = parse_expression(cursor)
     words = _MotionWords()
     words.read(cursor)
-    settings: tuple[Assign, ...] = ()
+    settings: tuple[tree.Assign, ...] = ()
     if cursor.accept_word("with"):
-        settings = _motion_settings(cursor)
+        settings = cursor.listed(_motion_setting)
         words.read(cursor)
-    span = cursor.span_from(start)
-    cursor.end_of_line("the motion", CLOSING)
-    return MotionInstruction(
+    span = _line(cursor, start, "the motion")
+    return tree.MotionInstruction(
         span,
         word,
         tuple(targets),
@@ -348,18 +282,15 @@ class _MotionWords:
             cursor.advance()
 
 
-def _motion_settings(cursor: Cursor) -> tuple[Assign, ...]:
-    settings: list[Assign] = []
-    while not settings or cursor.accept(","):
-        start = cursor.start
-        target = parse_name(cursor)
-        cursor.expect("=", f"after {target.text}")
-        value: Expression = parse_expression(cursor)
-        settings.append(Assign(cursor.span_from(start), target, value))
-    return tuple(settings)
+def _motion_setting(cursor: Cursor) -> tree.Assign:
+    start = cursor.start
+    target = parse_name(cursor)
+    cursor.expect("=", f"after {target.text}")
+    value = parse_expression(cursor)
+    return tree.Assign(cursor.span_from(start), target, value)
 
 
-def _spline(cursor: Cursor) -> SplineBlock:
+def _spline(cursor: Cursor) -> tree.SplineBlock:
     start, word = cursor.start, cursor.kind
     while cursor.kind not in ("endspline", END):
         cursor.advance()
@@ -368,11 +299,11 @@ def _spline(cursor: Cursor) -> SplineBlock:
     cursor.skip_line()
     span = cursor.span_from(start)
     cursor.accept(NEWLINE)
-    return SplineBlock(span, word)
+    return tree.SplineBlock(span, word)
 
 
-_BY_KEYWORD: dict[str, Callable[[Cursor], Statement | tuple[Statement, ...]]] = {
-    NAME: _name_statement,
+_SINGLE = {"continue": tree.Continue, "exit": tree.Exit, "halt": tree.Halt}
+_BEHIND_KEYWORD: dict[str, Callable[[Cursor, int], Statement]] = {
     "if": _if,
     "for": _for,
     "while": _while,
@@ -381,18 +312,18 @@ _BY_KEYWORD: dict[str, Callable[[Cursor], Statement | tuple[Statement, ...]]] = 
     "switch": _switch,
     "goto": _goto,
     "return": _return,
-    "exit": _exit,
-    "halt": _halt,
-    "continue": _continue,
     "wait": _wait,
     "trigger": _trigger,
+    **dict.fromkeys(_SINGLE, _single_word),
+}
+_AT_WORD: dict[str, Callable[[Cursor], Statement | tuple[Statement, ...]]] = {
+    NAME: _name_statement,
     "global": _global,
     "decl": parse_declaration,
     "struc": parse_struc,
     "enum": parse_enum,
     "signal": parse_signal,
-    "spline": _spline,
-    "ptp_spline": _spline,
+    **dict.fromkeys(("spline", "ptp_spline"), _spline),
     **dict.fromkeys(MOTIONS, _motion),
     **dict.fromkeys(words("ext extfct import interrupt anout anin digin brake resume"), _kept),
 }

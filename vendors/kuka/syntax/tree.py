@@ -1,37 +1,139 @@
-"""The syntax tree of KRL's statements; see `terms` for expressions.
+"""The syntax tree of KRL: frozen nodes, each with the place it stands at.
 
-Nothing here is evaluated or checked beyond its form.
+Nothing here is evaluated or checked beyond its form. Names keep their spelling in ``text`` and are
+looked up by ``name``, which is lower case.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 from ....core.errors import Span
+from ....core.source.text import nodes
 from ....core.source.text.files import SourceText
-from .expression_tree import Call, Expression, Name
+from ....core.source.text.nodes import Looping, Term
+
+Block = nodes.Block
+Case = nodes.Case
+Expression = nodes.Expression
+Goto = nodes.Goto
+Keyword = nodes.Keyword
+Label = nodes.Label
+Operation = nodes.Operation
+Return = nodes.Return
+Statement = nodes.Statement
+Switch = nodes.Switch
+Text = nodes.Text
+Truth = nodes.Truth
+Unary = nodes.Unary
+While = nodes.While
 
 
 @dataclass(frozen=True, slots=True)
-class Assign:
+class Literal(Expression):
+    """A literal, of which programs hold so many that only some are ever asked for their place."""
+
+    source: SourceText
+    start: int
+    end: int
+
+    @property
+    def span(self) -> Span:
+        """Where it stands."""
+        return self.source.span(self.start, self.end)
+
+
+@dataclass(frozen=True, slots=True)
+class Number(Literal):
+    """A number, with its sign if one stands before it; an ``int`` if it is written as one."""
+
+    value: int | float
+
+
+@dataclass(frozen=True, slots=True)
+class Constant(Term):
+    """A constant of an enumeration, ``#BASE``; its name is lower case."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Flat(Literal):
+    """An aggregate whose items are literals, kept as text until it is asked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Aggregate(Literal):
+    """``{X 1,CM {X 0},POINT2[] " "}``: components by lower-case name, and perhaps a type."""
+
+    type: str | None
+    items: tuple[tuple[str, Expression], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Name(Term):
+    """A datum or a part of it: ``P1``, ``P1.X``, ``P[3]``, ``S[]``, ``TOOL_NAME[1,]``.
+
+    Args:
+        name: of the datum, lower case.
+        text: as it stands in the source.
+        path: components (lower-case words) and tuples of indices, left to right; None in a tuple
+            is an index left out.
+    """
+
+    name: str
+    text: str
+    path: tuple[str | tuple[Expression | None, ...], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Call(Term):
+    """A function's value or the call of a routine; None is an argument left out."""
+
+    name: str
+    text: str
+    arguments: tuple[Expression | None, ...]
+
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return [argument for argument in self.arguments if argument is not None]
+
+
+@dataclass(frozen=True, slots=True)
+class Ambiguous(Term):
+    """A condition that means two things: ``A == 1 AND B == 2``.
+
+    Args:
+        manual: comparisons last, as KUKA's table of priorities has it.
+        usual: comparisons before AND and OR, for programs that mean that.
+    """
+
+    manual: Expression
+    usual: Expression
+
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return (self.manual,)
+
+
+@dataclass(frozen=True, slots=True)
+class Assign(Statement):
     """``target = value``"""
 
-    span: Span
     target: Name
     value: Expression
 
 
 @dataclass(frozen=True, slots=True)
-class Invoke:
+class Invoke(Statement):
     """A call of a routine as a statement."""
 
-    span: Span
     call: Call
 
 
 @dataclass(frozen=True, slots=True)
-class MotionInstruction:
+class MotionInstruction(Statement):
     """A motion instruction.
 
     Args:
@@ -44,7 +146,6 @@ class MotionInstruction:
         settings: what follows ``WITH``: system variables of this motion alone.
     """
 
-    span: Span
     word: str
     targets: tuple[Expression, ...]
     angle: Expression | None
@@ -55,134 +156,71 @@ class MotionInstruction:
 
 
 @dataclass(frozen=True, slots=True)
-class If:
+class If(Statement):
     """``IF … THEN … ELSE … ENDIF``"""
 
-    span: Span
     condition: Expression
     body: Block
     otherwise: Block
 
+    @property
+    def blocks(self) -> Sequence[Block]:
+        return (self.body, self.otherwise)
+
 
 @dataclass(frozen=True, slots=True)
-class For:
+class For(Looping):
     """``FOR counter = start TO stop STEP step … ENDFOR``"""
 
-    span: Span
     counter: Name
     start: Expression
     stop: Expression
     step: Expression | None
-    body: Block
 
 
 @dataclass(frozen=True, slots=True)
-class While:
-    """``WHILE condition … ENDWHILE``"""
-
-    span: Span
-    condition: Expression
-    body: Block
-
-
-@dataclass(frozen=True, slots=True)
-class Repeat:
+class Repeat(Looping):
     """``REPEAT … UNTIL condition``"""
 
-    span: Span
     condition: Expression
-    body: Block
 
 
 @dataclass(frozen=True, slots=True)
-class Loop:
+class Loop(Looping):
     """``LOOP … ENDLOOP``"""
 
-    span: Span
-    body: Block
-
 
 @dataclass(frozen=True, slots=True)
-class Case:
-    """One ``CASE a, b`` of a ``SWITCH``."""
-
-    values: tuple[Expression, ...]
-    body: Block
-
-
-@dataclass(frozen=True, slots=True)
-class Switch:
-    """``SWITCH subject CASE … DEFAULT … ENDSWITCH``"""
-
-    span: Span
-    subject: Expression
-    cases: tuple[Case, ...]
-    otherwise: Block | None
-
-
-@dataclass(frozen=True, slots=True)
-class Label:
-    """``name:``"""
-
-    span: Span
-    name: str
-
-
-@dataclass(frozen=True, slots=True)
-class Goto:
-    """``GOTO name``"""
-
-    span: Span
-    name: str
-
-
-@dataclass(frozen=True, slots=True)
-class Return:
-    """``RETURN`` or ``RETURN value``"""
-
-    span: Span
-    value: Expression | None
-
-
-@dataclass(frozen=True, slots=True)
-class Exit:
+class Exit(Statement):
     """``EXIT``: leave the innermost loop."""
 
-    span: Span
-
 
 @dataclass(frozen=True, slots=True)
-class Halt:
+class Halt(Statement):
     """``HALT``"""
 
-    span: Span
-
 
 @dataclass(frozen=True, slots=True)
-class Continue:
+class Continue(Statement):
     """``CONTINUE``: the next statement does not stop the advance run."""
 
-    span: Span
-
 
 @dataclass(frozen=True, slots=True)
-class WaitSec:
+class WaitSec(Statement):
     """``WAIT SEC time``"""
 
-    span: Span
     time: Expression
 
 
 @dataclass(frozen=True, slots=True)
-class WaitFor:
+class WaitFor(Statement):
     """``WAIT FOR condition``"""
 
-    span: Span
     condition: Expression
 
 
 @dataclass(frozen=True, slots=True)
-class Trigger:
+class Trigger(Statement):
     """``TRIGGER WHEN DISTANCE=0 DELAY=0 DO action``, ``TRIGGER WHEN PATH=… DELAY=… DO action``
 
     Args:
@@ -193,7 +231,6 @@ class Trigger:
         action: the text of what is done.
     """
 
-    span: Span
     path: bool
     on_start: bool
     place: Expression
@@ -202,27 +239,14 @@ class Trigger:
 
 
 @dataclass(frozen=True, slots=True)
-class Keyword:
-    """A statement that is kept as it stands: interrupts, ``ANOUT``, ``BRAKE``, … .
-
-    Args:
-        word: the statement's first word, lower case.
-    """
-
-    span: Span
-    word: str
-
-
-@dataclass(frozen=True, slots=True)
-class SplineBlock:
+class SplineBlock(Statement):
     """``SPLINE … ENDSPLINE``; what stands in it is not read."""
 
-    span: Span
     word: str
 
 
 @dataclass(frozen=True, slots=True)
-class Declaration:
+class Declaration(Statement):
     """``[GLOBAL] [DECL] [CONST] type name[dimensions] = value``, one for each name.
 
     Args:
@@ -230,7 +254,6 @@ class Declaration:
         dimensions: None stands for one left open.
     """
 
-    span: Span
     type: str
     name: str
     text: str
@@ -241,10 +264,9 @@ class Declaration:
 
 
 @dataclass(frozen=True, slots=True)
-class SignalDeclaration:
+class SignalDeclaration(Statement):
     """``SIGNAL name $IN[1] TO $IN[4]``"""
 
-    span: Span
     name: str
     text: str
     first: Name
@@ -252,61 +274,19 @@ class SignalDeclaration:
 
 
 @dataclass(frozen=True, slots=True)
-class StrucDefinition:
+class StrucDefinition(Statement):
     """``STRUC name REAL A, B, INT C[3]``: components as (type, name, number of dimensions)."""
 
-    span: Span
     name: str
     components: tuple[tuple[str, str, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class EnumDefinition:
+class EnumDefinition(Statement):
     """``ENUM name A, B``"""
 
-    span: Span
     name: str
     constants: tuple[str, ...]
-
-
-Statement = (
-    Assign
-    | Invoke
-    | MotionInstruction
-    | If
-    | For
-    | While
-    | Repeat
-    | Loop
-    | Switch
-    | Label
-    | Goto
-    | Return
-    | Exit
-    | Halt
-    | Continue
-    | WaitSec
-    | WaitFor
-    | Trigger
-    | Keyword
-    | SplineBlock
-    | Declaration
-    | SignalDeclaration
-    | StrucDefinition
-    | EnumDefinition
-)
-
-
-@dataclass(frozen=True)
-class Block:
-    """Statements in order."""
-
-    statements: tuple[Statement, ...] = ()
-
-    @cached_property
-    def labels(self) -> dict[str, int]:
-        """Index of the statement behind each label of this block."""
-        return {s.name: i + 1 for i, s in enumerate(self.statements) if isinstance(s, Label)}
 
 
 @dataclass(frozen=True, slots=True)

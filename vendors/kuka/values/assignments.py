@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 from ....core.errors import SourceError, Span
-from ..syntax.expression_tree import Name
+from ..syntax.tree import Name
 from .data import Data
 from .elements import Names, Path, spelled
 from .predefined import OUTPUTS

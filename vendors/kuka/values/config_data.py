@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ....core.errors import SourceError, Span
-from ..syntax.expression_tree import Name
+from ..syntax.tree import Name
 from .data import Data
 from .elements import Names
 from .scope import Scope

@@ -6,11 +6,13 @@ from collections.abc import Iterable
 
 from ....core.errors import Note, SourceError, Span
 from ....core.source.execution.outputs import Outputs
-from ..syntax.expression_tree import Expression, Name, Number
 from ..syntax.tree import (
     Assign,
     Declaration,
     EnumDefinition,
+    Expression,
+    Name,
+    Number,
     SignalDeclaration,
     Statement,
     StrucDefinition,

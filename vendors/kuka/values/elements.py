@@ -11,7 +11,7 @@ from typing import Protocol
 
 from ....core.errors import SourceError, Span
 from ....core.source.execution.answers import Answer, Course
-from ..syntax.expression_tree import Expression, Name
+from ..syntax.tree import Expression, Name
 from .advance_run import AdvanceRun
 from .data import Data
 from .frames import null_frame

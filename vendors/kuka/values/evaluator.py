@@ -8,20 +8,7 @@ from ....core.errors import SourceError, Span
 from ....core.source.execution.answers import Course
 from ....core.source.execution.provenance import ELSEWHERE, Reads
 from ....core.source.execution.scopes import unknown_name
-from ..syntax.expression_tree import (
-    Aggregate,
-    Ambiguous,
-    Call,
-    Constant,
-    Expression,
-    Flat,
-    Name,
-    Number,
-    Operation,
-    Text,
-    Truth,
-    Unary,
-)
+from ..syntax import tree
 from .advance_run import AdvanceRun
 from .assignments import Assignment
 from .data import Data
@@ -46,7 +33,7 @@ from .values import (
     shown,
 )
 
-CallFunction = Callable[[Call, Scope], Value | None]
+CallFunction = Callable[[tree.Call, Scope], Value | None]
 
 
 class Evaluator:
@@ -75,17 +62,19 @@ class Evaluator:
         self.names = Names(self, data, course, position, advance)
         self.assign = Assignment(data, self.names).assign
         self._evaluate: dict[type, Callable[..., Value]] = {
-            Flat: lambda node, scope, datum: flat_literal(node, datum),
-            Aggregate: self._aggregate,
-            Operation: self._operation,
-            Unary: self._unary,
-            Call: self._function,
-            Ambiguous: self._ambiguous,
+            tree.Flat: lambda node, scope, datum: flat_literal(node, datum),
+            tree.Aggregate: self._aggregate,
+            tree.Operation: self._operation,
+            tree.Unary: self._unary,
+            tree.Call: self._function,
+            tree.Ambiguous: self._ambiguous,
         }
 
     # ------------------------------------------------------------------- expressions
 
-    def evaluate(self, expression: Expression, scope: Scope, datum: str | None = None) -> Value:
+    def evaluate(
+        self, expression: tree.Expression, scope: Scope, datum: str | None = None
+    ) -> Value:
         """The value of an expression.
 
         Args:
@@ -94,17 +83,17 @@ class Evaluator:
         Raises:
             SourceError: it has none.
         """
-        if isinstance(expression, Name):
+        if isinstance(expression, tree.Name):
             return self.names.value(expression, scope)
-        if isinstance(expression, Number):
+        if isinstance(expression, tree.Number):
             return number_literal(expression, datum)
-        if isinstance(expression, Truth | Text):
+        if isinstance(expression, tree.Truth | tree.Text):
             return expression.value
-        if isinstance(expression, Constant):
+        if isinstance(expression, tree.Constant):
             return Choice(expression.name)
         return self._evaluate[type(expression)](expression, scope, datum)
 
-    def known(self, expression: Expression, scope: Scope, use: str) -> Value:
+    def known(self, expression: tree.Expression, scope: Scope, use: str) -> Value:
         """A value that something depends on.
 
         Raises:
@@ -125,7 +114,7 @@ class Evaluator:
         if unknown is not None:
             raise left_open(use, unknown, span)
 
-    def number(self, expression: Expression, scope: Scope, use: str) -> float:
+    def number(self, expression: tree.Expression, scope: Scope, use: str) -> float:
         """A known number.
 
         Raises:
@@ -136,27 +125,27 @@ class Evaluator:
             raise SourceError(f"{use} is a number, not {shown(value)}", expression.span)
         return value
 
-    def _aggregate(self, node: Aggregate, scope: Scope, datum: str | None) -> Value:
+    def _aggregate(self, node: tree.Aggregate, scope: Scope, datum: str | None) -> Value:
         """An aggregate with structures or expressions in it; its numbers belong to one literal."""
         root = Root(node.source, node.start, node.end, datum)
         return self._nested(node, scope, root, "")
 
-    def _nested(self, node: Aggregate, scope: Scope, root: Root, prefix: str) -> Struct:
+    def _nested(self, node: tree.Aggregate, scope: Scope, root: Root, prefix: str) -> Struct:
         made: dict[str, Value] = {}
         for name, item in node.items:
             component = f"{prefix}{name}"
-            if isinstance(item, Number):
+            if isinstance(item, tree.Number):
                 root.leaves[component] = (item.start, item.end)
                 made[name] = numeral(item.value, Leaf(root, component))
-            elif isinstance(item, Flat):
+            elif isinstance(item, tree.Flat):
                 made[name] = flat_literal(item, None, root, f"{component}.")
-            elif isinstance(item, Aggregate):
+            elif isinstance(item, tree.Aggregate):
                 made[name] = self._nested(item, scope, root, f"{component}.")
             else:
                 made[name] = copied(self.evaluate(item, scope))
         return Struct(node.type or "", made)
 
-    def _operation(self, operation: Operation, scope: Scope, _: str | None) -> Value:
+    def _operation(self, operation: tree.Operation, scope: Scope, _: str | None) -> Value:
         value = self._operand(operation.first, scope)
         for symbol, operand in operation.rest:
             right = self._operand(operand, scope)
@@ -166,9 +155,9 @@ class Evaluator:
                 raise SourceError(str(error), operation.span) from None
         return value
 
-    def _operand(self, expression: Expression, scope: Scope) -> Value:
+    def _operand(self, expression: tree.Expression, scope: Scope) -> Value:
         """A value that is computed with: the literal it came from is read by an expression."""
-        if isinstance(expression, Number):
+        if isinstance(expression, tree.Number):
             return expression.value
         value = self.evaluate(expression, scope)
         self.note_reads(value)
@@ -184,13 +173,13 @@ class Evaluator:
         if leaf is not None:
             self.reads.by_expression(LeafSource(leaf), self.reader)
 
-    def _unary(self, node: Unary, scope: Scope, _: str | None) -> Value:
+    def _unary(self, node: tree.Unary, scope: Scope, _: str | None) -> Value:
         try:
             return negate(node.operator, self._operand(node.operand, scope))
         except OperandError as error:
             raise SourceError(str(error), node.span) from None
 
-    def _ambiguous(self, node: Ambiguous, scope: Scope, _: str | None) -> Value:
+    def _ambiguous(self, node: tree.Ambiguous, scope: Scope, _: str | None) -> Value:
         try:
             return self.evaluate(node.manual, scope)
         except SourceError:
@@ -198,7 +187,7 @@ class Evaluator:
 
     # --------------------------------------------------------------------- functions
 
-    def _function(self, call: Call, scope: Scope, _: str | None) -> Value:
+    def _function(self, call: tree.Call, scope: Scope, _: str | None) -> Value:
         value = self._call(call, scope)
         if value is not None:
             return value
@@ -213,14 +202,14 @@ class Evaluator:
                 raise SourceError(f"{call.text}: {error}", call.span) from None
         return self.unknown_function(call, scope)
 
-    def unknown_function(self, call: Call, scope: Scope) -> Value:
+    def unknown_function(self, call: tree.Call, scope: Scope) -> Value:
         """What a function gives that is not at hand: an answer, or a value that is not known."""
         answer = self.course.value(self.data.text(call.span))
         if answer is not None:
             return self.names.answered(answer)
         return Unknown(f"the value of {call.text}()", call.span)
 
-    def undeclared(self, node: Name, scope: Scope, kind: str) -> SourceError:
+    def undeclared(self, node: tree.Name, scope: Scope, kind: str) -> SourceError:
         """The error that a datum is declared nowhere."""
         known = self.data.names(scope)
         offer = "declare it, or name the .dat that does (the program's own, or $config.dat)"

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ..syntax.expression_tree import Flat, Number
 from ..syntax.expressions import number_value
 from ..syntax.lexer import ITEM, RECORD_TYPE, bits_value
+from ..syntax.tree import Flat, Number
 from .values import Choice, Leaf, Real, Root, Struct, Value, Whole
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from ..syntax.expression_tree import Name
-from ..syntax.tree import DataList, Routine
+from ..syntax.tree import DataList, Name, Routine
 from .values import Pending, Value
 
 

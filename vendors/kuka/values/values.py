@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from ....core.errors import SourceError, Span
 from ....core.program.tool import Load, Tool, WorkObject
 from ....core.source.text.files import SourceText
-from ..syntax.expression_tree import Expression
+from ..syntax.tree import Expression
 
 
 class Root:

@@ -13,7 +13,6 @@ from ..motion.kinematics import INVERSE, INVERSE_PARAMETERS
 from ..motion.moves import SIGNATURES
 from ..syntax.statements import parse
 from ..syntax.texts import Texts
-from ..syntax.traversal import inner_blocks
 from ..syntax.tree import Argument, Assign, Block, Call, Define, Evaluate, Expression
 from ..values.arguments import bind
 
@@ -108,7 +107,7 @@ class _File:
 def _calls(block: Block) -> Iterator[Call]:
     """The calls that are statements, or the value of an assignment."""
     for statement in block:
-        inner = [statement.body] if isinstance(statement, Define) else inner_blocks(statement)
+        inner = [statement.body] if isinstance(statement, Define) else statement.blocks
         for body in inner:
             yield from _calls(body)
         value = statement.value if isinstance(statement, Assign) else None

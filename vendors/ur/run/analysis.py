@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
 from ....core.source.execution.steps import Exit, Step
+from ..syntax import tree
 from ..syntax.traversal import (
     all_statements,
     base_name,
@@ -13,20 +14,8 @@ from ..syntax.traversal import (
     calls_of,
     calls_written,
     expressions_of,
-    inner_blocks,
     methods_in,
     names_in,
-)
-from ..syntax.tree import (
-    Assign,
-    Block,
-    Define,
-    Expression,
-    If,
-    Keyword,
-    Return,
-    Statement,
-    While,
 )
 from ..values.instructions import MOVES, REFUSED
 from ..values.lists import METHODS
@@ -45,36 +34,36 @@ class ScriptTree:
         skipped: names of refused functions that an answer tells to skip.
     """
 
-    def __init__(self, blocks: Iterable[Block], skipped: frozenset[str] = frozenset()) -> None:
+    def __init__(self, blocks: Iterable[tree.Block], skipped: frozenset[str] = frozenset()) -> None:
         self._refused = REFUSED.keys() - skipped
-        self._functions: defaultdict[str, list[Define]] = defaultdict(list)
+        self._functions: defaultdict[str, list[tree.Define]] = defaultdict(list)
         for block in blocks:
             for statement in all_statements(block):
-                if isinstance(statement, Define):
+                if isinstance(statement, tree.Define):
                     self._functions[statement.name].append(statement)
 
-    def bodies(self, names: Iterable[str]) -> tuple[Block, ...]:
+    def bodies(self, names: Iterable[str]) -> tuple[tree.Block, ...]:
         """Bodies of the program's own functions of some names."""
         return tuple(d.body for name in names for d in self._functions.get(name, ()))
 
-    def asks(self, expression: Expression) -> bool:
+    def asks(self, expression: tree.Expression) -> bool:
         """Whether an expression calls what may read anything: a function, a remote procedure."""
         methods = {call.name for call in methods_in(expression)}
         return not methods <= METHODS.keys() or any(
             c in self._functions for c in _called(expression)
         )
 
-    def reads(self, expression: Expression) -> frozenset[str]:
+    def reads(self, expression: tree.Expression) -> frozenset[str]:
         """Names of the variables and outputs that an expression reads itself."""
         return frozenset(names_in(expression)) | read_by(calls_written(expression))
 
-    def steps(self, block: Block) -> Sequence[Step[Block]]:
+    def steps(self, block: tree.Block) -> Sequence[Step[tree.Block]]:
         """See `core.source.execution.steps.Tree.steps`."""
-        return [self._step(s) for s in block if not isinstance(s, Define)]
+        return [self._step(s) for s in block if not isinstance(s, tree.Define)]
 
-    def _step(self, statement: Statement) -> Step[Block]:
+    def _step(self, statement: tree.Statement) -> Step[tree.Block]:
         expressions = expressions_of(statement)
-        inner = tuple(inner_blocks(statement))
+        inner = tuple(statement.blocks)
         called = {name for e in expressions for name in _called(e)}
         foreign = {name for name in called if name not in self._functions}
         refused = not foreign.isdisjoint(self._refused)
@@ -91,8 +80,8 @@ class ScriptTree:
             # A branch that calls what is refused cannot be read: no branch for a program to take.
             halts=refused,
             inner=inner,
-            loop=isinstance(statement, While),
-            exhaustive=isinstance(statement, If) and statement.otherwise is not None,
+            loop=isinstance(statement, tree.While),
+            exhaustive=isinstance(statement, tree.If) and statement.otherwise is not None,
         )
 
     # -------------------------------------------------------------------- threads
@@ -105,7 +94,7 @@ class ScriptTree:
         """Names of the variables that a thread makes for the whole program."""
         return frozenset(base_name(s.target) for s in self._assignments(name, ("global",)))
 
-    def _assignments(self, name: str, storages: tuple[str, ...]) -> Iterator[Assign]:
+    def _assignments(self, name: str, storages: tuple[str, ...]) -> Iterator[tree.Assign]:
         """Those in a function and in all that it calls."""
         todo = [name]
         reached = {name}
@@ -115,25 +104,25 @@ class ScriptTree:
                 reached |= called
                 todo += called
                 for statement in all_statements(body):
-                    if isinstance(statement, Assign) and statement.storage in storages:
+                    if isinstance(statement, tree.Assign) and statement.storage in storages:
                         yield statement
 
 
-def _called(expression: Expression) -> Iterator[str]:
+def _called(expression: tree.Expression) -> Iterator[str]:
     """Names of the functions and threads that an expression calls or starts."""
     return (name for name in calls_in(expression) if not name.startswith("."))
 
 
-def _written(statement: Statement, expressions: Sequence[Expression]) -> Iterator[str]:
+def _written(statement: tree.Statement, expressions: Sequence[tree.Expression]) -> Iterator[str]:
     """Names of the variables that a statement writes itself."""
-    if isinstance(statement, Assign):
+    if isinstance(statement, tree.Assign):
         yield base_name(statement.target)
     for expression in expressions:
         for call in methods_in(expression):
             yield base_name(call.base)
 
 
-def _exit(statement: Statement) -> Exit | None:
-    if isinstance(statement, Return):
+def _exit(statement: tree.Statement) -> Exit | None:
+    if isinstance(statement, tree.Return):
         return Exit.ROUTINE
-    return _EXITS.get(statement.word) if isinstance(statement, Keyword) else None
+    return _EXITS.get(statement.word) if isinstance(statement, tree.Keyword) else None

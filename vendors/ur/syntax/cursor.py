@@ -23,7 +23,7 @@ class Cursor(TokenCursor[Texts]):
     nouns: ClassVar = {NUMBERS: "list"}
 
     def __init__(self, tokens: Tokens) -> None:
-        super().__init__(tokens.texts, tokens, tokens.text, tokens.base)
+        super().__init__(tokens)
         self.loops = 0
 
     def skip_lines(self) -> None:

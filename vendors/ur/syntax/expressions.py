@@ -9,25 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from ....core.source.text.operators import Operators
+from . import tree
 from .cursor import Cursor
 from .lexer import LINE, NAME, NUMBER, NUMBERS, POSE, STRING, number_value, numbers_in
-from .tree import (
-    Aggregate,
-    Argument,
-    Call,
-    Constant,
-    Expression,
-    Index,
-    Member,
-    MethodCall,
-    Name,
-    Number,
-    Numbers,
-    Operation,
-    StartThread,
-    Text,
-    Unary,
-)
+from .tree import Expression
 
 _LEVELS: tuple[frozenset[str], ...] = (
     frozenset({"or", "xor"}),
@@ -40,7 +26,6 @@ _LEVELS: tuple[frozenset[str], ...] = (
     frozenset({"+", "-"}),
     frozenset({"*", "/", "%"}),
 )
-_LEVEL_OF = {symbol: level for level, symbols in enumerate(_LEVELS) for symbol in symbols}
 _COMPARISON = 2
 _CONSTANTS = {"True": True, "False": False, "None": None}
 _SIGNS = frozenset({"-", "+", "~"})
@@ -56,48 +41,29 @@ def parse_expression(cursor: Cursor) -> Expression:
     parse = _PLAIN.get(kinds[index])
     if parse is not None and kinds[index + 1] in _CLOSING:
         return parse(cursor)
-    return _level(cursor, 0)
+    return _operators.read(cursor)
 
 
-def _level(cursor: Cursor, level: int) -> Expression:
-    """Operators of ``level`` and of all higher ones."""
-    first = _signed(cursor)
-    while True:
-        here = _LEVEL_OF.get(cursor.kind, -1)
-        if here < level:
-            return first
-        rest = []
-        symbols = _LEVELS[here]
-        while cursor.kind in symbols:
-            symbol = cursor.kind
-            cursor.advance()
-            rest.append((symbol, _level(cursor, here + 1)))
-        first = Operation(first.start, cursor.end, first, tuple(rest))
+def _operation(
+    cursor: Cursor, _: int, first: Expression, rest: tuple[tuple[str, Expression], ...]
+) -> Expression:
+    return tree.Operation(first.start, cursor.end, first, rest)
 
 
-def _not(cursor: Cursor) -> Expression:
-    start = cursor.start
-    cursor.advance()
-    with cursor.nested():
-        operand = _level(cursor, _COMPARISON)
-    return Unary(start, cursor.end, "not", operand)
-
-
-def _signed(cursor: Cursor) -> Expression:
-    kind = cursor.kind
-    if kind == "not":
-        return _not(cursor)
-    if kind not in _SIGNS:
+def _signed(cursor: Cursor, level: int = 0) -> Expression:
+    start, kind = cursor.start, cursor.kind
+    if kind != "not" and kind not in _SIGNS:
         return _postfix(cursor)
-    start = cursor.start
-    cursor.advance()
-    if kind != "~" and cursor.kind == NUMBER:
+    cursor.index += 1
+    if kind in "-+" and cursor.kind == NUMBER:
         number = _number(cursor)
-        value = -number.value if kind == "-" else number.value
-        return Number(start, number.end, value)
+        return tree.Number(start, number.end, -number.value if kind == "-" else number.value)
     with cursor.nested():
-        operand = _signed(cursor)
-    return Unary(start, cursor.end, kind, operand)
+        operand = _operators.read(cursor, _COMPARISON) if kind == "not" else _signed(cursor)
+    return tree.Unary(start, cursor.end, kind, operand)
+
+
+_operators = Operators(_LEVELS, _signed, _operation)
 
 
 def _postfix(cursor: Cursor) -> Expression:
@@ -106,15 +72,15 @@ def _postfix(cursor: Cursor) -> Expression:
         kind = cursor.kind
         if kind == "[" or kind == NUMBERS:
             indices = _indices(cursor)
-            base = Index(base.start, cursor.end, base, indices)
+            base = tree.Index(base.start, cursor.end, base, indices)
         elif kind == "." and cursor.peek() == NAME:
             cursor.advance()
             name = cursor.name("the name of a part")
             if cursor.kind == "(":
                 arguments = parse_arguments(cursor, name)
-                base = MethodCall(base.start, cursor.end, base, name, arguments)
+                base = tree.MethodCall(base.start, cursor.end, base, name, arguments)
             else:
-                base = Member(base.start, cursor.end, base, name)
+                base = tree.Member(base.start, cursor.end, base, name)
         else:
             return base
 
@@ -124,7 +90,7 @@ def _indices(cursor: Cursor) -> tuple[Expression, ...]:
     if cursor.kind == NUMBERS:
         listed = _numbers(cursor, pose=False)
         pairs = zip(listed.places, listed.values, strict=True)
-        return tuple(Number(start, end, value) for (start, end), value in pairs)
+        return tuple(tree.Number(start, end, value) for (start, end), value in pairs)
     return _items(cursor, "an index")
 
 
@@ -135,25 +101,25 @@ def _primary(cursor: Cursor) -> Expression:
     return parse(cursor)
 
 
-def _number(cursor: Cursor) -> Number:
+def _number(cursor: Cursor) -> tree.Number:
     start, text = cursor.start, cursor.text
     value = number_value(text)
     cursor.advance()
     if math.isinf(value):
         raise cursor.source.error(f"the number {text[:40]} is too large", start, cursor.end)
-    return Number(start, cursor.end, value)
+    return tree.Number(start, cursor.end, value)
 
 
-def _string(cursor: Cursor) -> Text:
+def _string(cursor: Cursor) -> tree.Text:
     start, text = cursor.start, cursor.text
     cursor.advance()
-    return Text(start, cursor.end, text[1:-1])
+    return tree.Text(start, cursor.end, text[1:-1])
 
 
-def _constant(cursor: Cursor) -> Constant:
+def _constant(cursor: Cursor) -> tree.Constant:
     start, kind = cursor.start, cursor.kind
     cursor.advance()
-    return Constant(start, cursor.end, _CONSTANTS[kind])
+    return tree.Constant(start, cursor.end, _CONSTANTS[kind])
 
 
 def _list_of_numbers(cursor: Cursor) -> Expression:
@@ -164,12 +130,12 @@ def _pose_of_numbers(cursor: Cursor) -> Expression:
     start = cursor.start
     numbers = _numbers(cursor, pose=True)
     if len(numbers.values) == 1:  # p[0]: an element of a variable named p
-        index = Number(*numbers.places[0], numbers.values[0])
-        return Index(start, numbers.end, Name(start, start + 1, "p"), (index,))
+        index = tree.Number(*numbers.places[0], numbers.values[0])
+        return tree.Index(start, numbers.end, tree.Name(start, start + 1, "p"), (index,))
     return numbers
 
 
-def _numbers(cursor: Cursor, *, pose: bool) -> Numbers:
+def _numbers(cursor: Cursor, *, pose: bool) -> tree.Numbers:
     start, text = cursor.start, cursor.text
     found = numbers_in(text)
     values = tuple([number_value(text[a:b]) for a, b in found])
@@ -177,13 +143,13 @@ def _numbers(cursor: Cursor, *, pose: bool) -> Numbers:
     cursor.advance()
     if not all(map(math.isfinite, values)):
         raise cursor.source.error("a number in this list is too large", start, cursor.end)
-    return Numbers(start, cursor.end, values, places, pose)
+    return tree.Numbers(start, cursor.end, values, places, pose)
 
 
 def _list(cursor: Cursor) -> Expression:
     start = cursor.start
     items = _items(cursor, "a list", empty=True)
-    return Aggregate(start, cursor.end, items, pose=False)
+    return tree.Aggregate(start, cursor.end, items, pose=False)
 
 
 def _items(cursor: Cursor, what: str, empty: bool = False) -> tuple[Expression, ...]:
@@ -207,16 +173,16 @@ def _named(cursor: Cursor) -> Expression:
     cursor.index += 1
     if cursor.kinds[cursor.index] == "(":
         arguments = parse_arguments(cursor, text)
-        return Call(start, cursor.end, text, arguments)
+        return tree.Call(start, cursor.end, text, arguments)
     if text == "p" and cursor.kind == "[" and cursor.start == cursor.end:
         items = _items(cursor, "a pose")
         if len(items) == 1:  # p[i]: an element of a variable named p
-            return Index(start, cursor.end, Name(start, start + 1, text), items)
-        return Aggregate(start, cursor.end, items, pose=True)
-    return Name(start, cursor.end, text)
+            return tree.Index(start, cursor.end, tree.Name(start, start + 1, text), items)
+        return tree.Aggregate(start, cursor.end, items, pose=True)
+    return tree.Name(start, cursor.end, text)
 
 
-def parse_arguments(cursor: Cursor, name: str) -> tuple[Argument, ...]:
+def parse_arguments(cursor: Cursor, name: str) -> tuple[tree.Argument, ...]:
     """``(a, b, c=d)`` behind a name.
 
     Raises:
@@ -224,7 +190,7 @@ def parse_arguments(cursor: Cursor, name: str) -> tuple[Argument, ...]:
     """
     opening = cursor.start
     cursor.expect("(", f"after {name}")
-    arguments: list[Argument] = []
+    arguments: list[tree.Argument] = []
     cursor.enter()
     while not cursor.accept(")"):
         if arguments:
@@ -239,7 +205,7 @@ def parse_arguments(cursor: Cursor, name: str) -> tuple[Argument, ...]:
     return tuple(arguments)
 
 
-def _argument(cursor: Cursor) -> Argument:
+def _argument(cursor: Cursor) -> tree.Argument:
     index, kinds = cursor.index, cursor.kinds
     start = cursor.starts[index]
     name = None
@@ -247,7 +213,7 @@ def _argument(cursor: Cursor) -> Argument:
         name = cursor.name("the name of an argument")
         cursor.index += 1
     value = parse_expression(cursor)
-    return Argument(start, cursor.end, name, value)
+    return tree.Argument(start, cursor.end, name, value)
 
 
 def _bracketed(cursor: Cursor) -> Expression:
@@ -266,7 +232,7 @@ def _run(cursor: Cursor) -> Expression:
     begin = cursor.start
     name = cursor.name("the name of a thread")
     arguments = parse_arguments(cursor, name)
-    return StartThread(start, cursor.end, Call(begin, cursor.end, name, arguments))
+    return tree.StartThread(start, cursor.end, tree.Call(begin, cursor.end, name, arguments))
 
 
 _CLOSING = frozenset({",", ")", "]", LINE, ";"})

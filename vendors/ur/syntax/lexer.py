@@ -11,12 +11,10 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 
-from ....core.errors import SourceError
-from ....core.source.text import cursor
+from ....core.source.text import lexer
 from ....core.source.text.files import unbroken
-from ....core.source.text.lexer import UNCLOSED, stray, words
+from ....core.source.text.lexer import UNCLOSED, Lexicon, stray, words
 from .texts import Texts
 
 KEYWORDS = words(
@@ -25,7 +23,7 @@ KEYWORDS = words(
 )
 """Reserved words. Upper and lower case differ."""
 
-END, LINE, NAME = cursor.END, cursor.END_OF_LINE, cursor.NAME
+END, LINE, NAME = lexer.END, lexer.END_OF_LINE, lexer.NAME
 NUMBER, NUMBERS, POSE, STRING = "number", "numbers", "pose", "string"
 
 _DIGITS = r"(?: [0-9]++ (?: \.[0-9]*+ )?+ | \.[0-9]++ ) (?: [eE][+-]?[0-9]++ )?+"
@@ -44,77 +42,41 @@ _TOKEN = re.compile(
       | (?P<line> (?: \r\n | \r | \n ) )
       | (?P<numbers> {_LIST} )
       | (?P<string> "[^"\r\n]*+" | '[^'\r\n]*+' )
-      | (?P<symbol> == | != | <= | >= | << | >> | [-+*/%=<>()\[\],:.;&|^~≟] )
+      | (?P<bracket> [()\[\]] )
+      | (?P<symbol> == | != | <= | >= | << | >> | [-+*/%=<>,:.;&|^~≟] )
       | (?P<end> \Z )
     )""",
     re.VERBOSE,
 )
 _SKIPPED = re.compile(_BLANK, re.VERBOSE)
 _NUMBER_IN_LIST = re.compile(_SIGNED, re.VERBOSE)
-_OPENING, _CLOSING = ("(", "["), (")", "]")
-
-
-@dataclass(frozen=True, slots=True)
-class Tokens:
-    """The tokens of a text, as parallel lists that end with an `END`.
-
-    Ends of line inside brackets are left out, and so are empty lines.
-
-    Args:
-        texts: where offsets are looked up.
-        text: of this file.
-        base: offset of its first character in ``texts``.
-        kinds: one of this module's names, or the symbol or keyword itself.
-        starts, ends: offsets in ``texts``.
-    """
-
-    texts: Texts
-    text: str
-    base: int
-    kinds: list[str]
-    starts: list[int]
-    ends: list[int]
+Tokens = lexer.Tokens[Texts]
 
 
 def tokenize(texts: Texts, which: int) -> Tokens:
-    """All tokens of one of the texts.
+    """All tokens of one of the texts; ends of line inside brackets and empty lines are left out.
 
     Raises:
         SourceError: a character that no token begins with, or a string without an end.
     """
-    text, base = unbroken(texts.sources[which].text), texts.bases[which]
-    kinds: list[str] = []
-    starts: list[int] = []
-    ends: list[int] = []
-    match = _TOKEN.match
-    position = depth = 0
-    while True:
-        found = match(text, position)
-        if found is None:
-            raise _stray(texts, text, base, position)
-        kind = found.lastgroup or ""
-        start, position = found.span(kind)
-        if kind == "symbol":
-            kind = text[start:position]
-            if kind in _OPENING:
-                depth += 1
-            elif kind in _CLOSING:
-                depth = max(depth - 1, 0)
-        elif kind == "name":
-            word = text[start:position]
-            if word in KEYWORDS and kinds[-1:] != ["."]:  # the part `.sec` of a time is a name
-                kind = word
-        elif kind == "line":
-            if depth or not kinds or kinds[-1] == LINE:
-                continue
-            kind = LINE
-        elif kind == "end":
-            kind = END
-        kinds.append(kind)
-        starts.append(start + base)
-        ends.append(position + base)
-        if kind == END:
-            return Tokens(texts, text, base, kinds, starts, ends)
+    text = unbroken(texts.sources[which].text)
+    depth = 0
+
+    def bracket(_: list[str], start: int, end: int) -> tuple[str, int]:
+        nonlocal depth
+        depth = max(depth + (1 if text[start] in "([" else -1), 0)
+        return text[start], end
+
+    def line(kinds: list[str], _: int, end: int) -> tuple[str, int]:
+        return "" if depth or kinds[-1:] in ([], [LINE]) else LINE, end
+
+    special = {"bracket": bracket, "line": line}
+    found = _LEXICON.tokens(texts, text, base=texts.bases[which], special=special)
+    kinds = found.kinds
+    for index, kind in enumerate(kinds):
+        if kind == "." and kinds[index + 1] in KEYWORDS:  # the part `.sec` of a time is a name
+            kinds[index + 1] = NAME
+    return found
 
 
 def number_value(literal: str) -> int | float:
@@ -141,22 +103,21 @@ def numbers_in(literal: str) -> list[tuple[int, int]]:
     return [found.span() for found in _NUMBER_IN_LIST.finditer(literal)]
 
 
-def _stray(texts: Texts, text: str, base: int, position: int) -> SourceError:
-    skipped = _SKIPPED.match(text, position)
-    start = skipped.end() if skipped else position
-    character = text[start]
-    at = start + base
+def _stray(text: str, at: int) -> str:
+    character = text[at]
     if character in "\"'":
-        return texts.error(UNCLOSED, at)
+        return UNCLOSED
     if character in "{}":
-        return texts.error(
+        return (
             f"'{character}' does not belong in a URScript: is this a template whose placeholders "
-            "are still to be filled in? Fill them in and read it again",
-            at,
+            "are still to be filled in? Fill them in and read it again"
         )
     if character in "“”„‘’«»":
-        return texts.error(f"{character} is no quote of URScript: write \" or '", at)
+        return f"{character} is no quote of URScript: write \" or '"
     if character == "<" and text.startswith("<?xml"):
-        return texts.error("this is XML and no URScript: export the program as .script", at)
+        return "this is XML and no URScript: export the program as .script"
     instead = " (.urp files are compressed: export the program as .script)"
-    return texts.error(stray(character, "a URScript", instead), at)
+    return stray(character, "a URScript", instead)
+
+
+_LEXICON = Lexicon(_TOKEN, _SKIPPED, KEYWORDS, _stray, fold=str)

@@ -4,29 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from ....core.source.text.lexer import words
+from . import tree
 from .cursor import Cursor
 from .expressions import parse_expression
 from .lexer import END, LINE, tokenize
 from .texts import Texts
-from .tree import (
-    Assign,
-    Block,
-    Branch,
-    Constant,
-    Define,
-    Evaluate,
-    Expression,
-    If,
-    Index,
-    Keyword,
-    Member,
-    Name,
-    Parameter,
-    Return,
-    Statement,
-    ThreadEnd,
-    While,
-)
+from .tree import Block, Expression, Statement
 
 _BODY = frozenset({"end"})
 _BRANCH = frozenset({"elif", "else", "end"})
@@ -69,27 +53,32 @@ def _block(cursor: Cursor, ends: frozenset[str], opening: str) -> Block:
 
 
 def _statement(cursor: Cursor) -> Statement:
-    statement = _BY_KEYWORD.get(cursor.kind, _simple)(cursor)
+    start, word = cursor.start, cursor.kind
+    behind = _BY_KEYWORD.get(word)
+    if behind is None:
+        statement = _simple(cursor, start)
+    else:
+        cursor.index += 1
+        statement = behind(cursor, start, word)
     if cursor.kind not in _AFTER:
         raise cursor.unexpected("the end of the line, after a statement,")
     return statement
 
 
-def _simple(cursor: Cursor) -> Statement:
+def _simple(cursor: Cursor, start: int) -> Statement:
     """An assignment, or an expression."""
-    start = cursor.start
     expression = parse_expression(cursor)
     if cursor.kind == "=":
         return _assignment(cursor, start, expression, "")
-    if cursor.kind == ":" and isinstance(expression, Name):
+    if cursor.kind == ":" and isinstance(expression, tree.Name):
         raise cursor.source.error(
             f"'{expression.text}' is no statement of URScript", expression.start, expression.end
         )
-    return Evaluate(start, cursor.end, expression)
+    return tree.Evaluate(start, cursor.end, expression)
 
 
-def _assignment(cursor: Cursor, start: int, target: Expression, storage: str) -> Assign:
-    if not isinstance(target, Name | Index | Member):
+def _assignment(cursor: Cursor, start: int, target: Expression, storage: str) -> tree.Assign:
+    if not isinstance(target, tree.Name | tree.Index | tree.Member):
         raise cursor.source.error(
             "only a variable, an element of a list or a part of a struct can be assigned",
             target.start,
@@ -97,24 +86,22 @@ def _assignment(cursor: Cursor, start: int, target: Expression, storage: str) ->
         )
     cursor.expect("=", "after the variable")
     value = parse_expression(cursor)
-    return Assign(start, cursor.end, target, value, storage)
+    return tree.Assign(start, cursor.end, target, value, storage)
 
 
-def _declaration(cursor: Cursor) -> Statement:
+def _declaration(cursor: Cursor, start: int, storage: str) -> Statement:
     """``global name = value`` or ``local name = value``"""
-    start, storage = cursor.start, cursor.kind
-    cursor.advance()
     begin = cursor.start
-    name = Name(begin, begin, cursor.name(f"the name of a variable after '{storage}'"))
-    target = Name(begin, cursor.end, name.text)
+    name = cursor.name(f"the name of a variable after '{storage}'")
+    target = tree.Name(begin, cursor.end, name)
     if cursor.kind == "=":
         return _assignment(cursor, start, target, storage)
-    return Assign(start, cursor.end, target, Constant(cursor.end, cursor.end, None), storage)
+    return tree.Assign(
+        start, cursor.end, target, tree.Constant(cursor.end, cursor.end, None), storage
+    )
 
 
-def _define(cursor: Cursor) -> Statement:
-    start, kind = cursor.start, cursor.kind
-    cursor.advance()
+def _define(cursor: Cursor, start: int, kind: str) -> Statement:
     name = cursor.name(f"a name after '{kind}'")
     opening = f"'{kind} {name}' in {cursor.where(start)}"
     parameters = _parameters(cursor, name)
@@ -123,90 +110,75 @@ def _define(cursor: Cursor) -> Statement:
     body = _block(cursor, _BODY, opening)
     cursor.loops = loops
     cursor.expect("end", f"to close {opening}")
-    return Define(start, cursor.end, kind, name, parameters, body)
+    return tree.Define(start, cursor.end, kind, name, parameters, body)
 
 
-def _parameters(cursor: Cursor, name: str) -> tuple[Parameter, ...]:
+def _parameters(cursor: Cursor, name: str) -> tuple[tree.Parameter, ...]:
     cursor.expect("(", f"after {name}")
-    parameters: list[Parameter] = []
+    parameters: list[tree.Parameter] = []
     while not cursor.accept(")"):
         if parameters:
             cursor.expect(",", f"or ')' between the parameters of {name}")
         word = cursor.name(f"a parameter of {name}")
         default = parse_expression(cursor) if cursor.accept("=") else None
-        parameters.append(Parameter(word, default))
+        parameters.append(tree.Parameter(word, default))
     return tuple(parameters)
 
 
-def _if(cursor: Cursor) -> Statement:
-    start = cursor.start
+def _if(cursor: Cursor, start: int, _: str) -> Statement:
     opening = f"'if' in {cursor.where(start)}"
     branches = [_branch(cursor, opening)]
-    while cursor.kind == "elif":
+    while cursor.accept("elif"):
         branches.append(_branch(cursor, opening))
     otherwise = None
     if cursor.accept("else"):
         cursor.expect(":", "after 'else'")
         otherwise = _block(cursor, _BODY, opening)
     cursor.expect("end", f"to close {opening}")
-    return If(start, cursor.end, tuple(branches), otherwise)
+    return tree.If(start, cursor.end, tuple(branches), otherwise)
 
 
-def _branch(cursor: Cursor, opening: str) -> Branch:
-    cursor.advance()
+def _branch(cursor: Cursor, opening: str) -> tree.Branch:
     condition = parse_expression(cursor)
     cursor.expect(":", "after the condition")
-    return Branch(condition, _block(cursor, _BRANCH, opening))
+    return tree.Branch(condition, _block(cursor, _BRANCH, opening))
 
 
-def _while(cursor: Cursor) -> Statement:
-    start = cursor.start
+def _while(cursor: Cursor, start: int, _: str) -> Statement:
     opening = f"'while' in {cursor.where(start)}"
-    cursor.advance()
     condition = parse_expression(cursor)
     cursor.expect(":", "after the condition")
     cursor.loops += 1
     body = _block(cursor, _BODY, opening)
     cursor.loops -= 1
     cursor.expect("end", f"to close {opening}")
-    return While(start, cursor.end, condition, body)
+    return tree.While(start, cursor.end, condition, body)
 
 
-def _return(cursor: Cursor) -> Statement:
-    start = cursor.start
-    cursor.advance()
+def _return(cursor: Cursor, start: int, _: str) -> Statement:
     value = None if cursor.kind in _AFTER else parse_expression(cursor)
-    return Return(start, cursor.end, value)
+    return tree.Return(start, cursor.end, value)
 
 
-def _word(cursor: Cursor) -> Statement:
-    start, word = cursor.start, cursor.kind
-    cursor.advance()
+def _word(cursor: Cursor, start: int, word: str) -> Statement:
     if word in ("break", "continue") and not cursor.loops:
         raise cursor.source.error(f"'{word}' stands outside of a loop", start, cursor.end)
     if word == "halt" and cursor.accept("("):
         cursor.expect(")", "after 'halt('")
-    return Keyword(start, cursor.end, word)
+    return tree.Keyword(start, cursor.end, word)
 
 
-def _thread_end(cursor: Cursor) -> Statement:
-    start, word = cursor.start, cursor.kind
-    cursor.advance()
+def _thread_end(cursor: Cursor, start: int, word: str) -> Statement:
     handle = parse_expression(cursor)
-    return ThreadEnd(start, cursor.end, word, handle)
+    return tree.ThreadEnd(start, cursor.end, word, handle)
 
 
-_BY_KEYWORD: dict[str, Callable[[Cursor], Statement]] = {
-    "def": _define,
-    "sec": _define,
-    "thread": _define,
+_BY_KEYWORD: dict[str, Callable[[Cursor, int, str], Statement]] = {
     "if": _if,
     "while": _while,
-    "global": _declaration,
-    "local": _declaration,
     "return": _return,
-    "join": _thread_end,
-    "kill": _thread_end,
-    **dict.fromkeys(("break", "continue", "halt", "pass"), _word),
-    **dict.fromkeys(("enter_critical", "exit_critical"), _word),
+    **dict.fromkeys(("def", "sec", "thread"), _define),
+    **dict.fromkeys(("global", "local"), _declaration),
+    **dict.fromkeys(("join", "kill"), _thread_end),
+    **dict.fromkeys(words("break continue halt pass enter_critical exit_critical"), _word),
 }

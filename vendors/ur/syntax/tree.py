@@ -5,38 +5,58 @@ Nothing here is evaluated or checked beyond its form. Offsets are those of `text
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+from ....core.source.text.nodes import Composed
 
 
 @dataclass(frozen=True, slots=True)
-class Number:
-    """A number, with its sign if one stands before it."""
+class Node:
+    """What stands between two offsets."""
 
     start: int
     end: int
+
+
+@dataclass(frozen=True, slots=True)
+class Expression(Node, Composed):
+    """What has a value, or is called."""
+
+
+@dataclass(frozen=True, slots=True)
+class Statement(Node):
+    """What is carried out."""
+
+    @property
+    def blocks(self) -> Sequence[Block]:
+        """The blocks inside it that run when it runs."""
+        return ()
+
+
+@dataclass(frozen=True, slots=True)
+class Number(Expression):
+    """A number, with its sign if one stands before it."""
+
     value: int | float
 
 
 @dataclass(frozen=True, slots=True)
-class Text:
+class Text(Expression):
     """A string."""
 
-    start: int
-    end: int
     value: str
 
 
 @dataclass(frozen=True, slots=True)
-class Constant:
+class Constant(Expression):
     """``True``, ``False`` or ``None``."""
 
-    start: int
-    end: int
     value: bool | None
 
 
 @dataclass(frozen=True, slots=True)
-class Numbers:
+class Numbers(Expression):
     """``[1, -2.5]`` or ``p[…]`` of nothing but numbers.
 
     Args:
@@ -45,151 +65,142 @@ class Numbers:
         pose: written with ``p``.
     """
 
-    start: int
-    end: int
     values: tuple[int | float, ...]
     places: tuple[tuple[int, int], ...]
     pose: bool
 
 
 @dataclass(frozen=True, slots=True)
-class Aggregate:
+class Aggregate(Expression):
     """``[a, b, …]`` or ``p[a, b, …]``."""
 
-    start: int
-    end: int
     items: tuple[Expression, ...]
     pose: bool
 
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return self.items
+
 
 @dataclass(frozen=True, slots=True)
-class Name:
+class Name(Expression):
     """A variable."""
 
-    start: int
-    end: int
     text: str
 
 
 @dataclass(frozen=True, slots=True)
-class Index:
+class Index(Expression):
     """``base[i]`` or ``base[i, j]``."""
 
-    start: int
-    end: int
     base: Expression
     indices: tuple[Expression, ...]
 
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return (self.base, *self.indices)
+
 
 @dataclass(frozen=True, slots=True)
-class Member:
+class Member(Expression):
     """``base.name``: a part of a struct."""
 
-    start: int
-    end: int
     base: Expression
     name: str
 
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return (self.base,)
+
 
 @dataclass(frozen=True, slots=True)
-class Argument:
+class Argument(Node):
     """An argument of a call; ``name`` is None unless it is given as ``name=value``."""
 
-    start: int
-    end: int
     name: str | None
     value: Expression
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
+class Call(Expression):
     """``name(arguments)``; the closing bracket is the last character."""
 
-    start: int
-    end: int
     name: str
     arguments: tuple[Argument, ...]
 
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return [a.value for a in self.arguments]
+
 
 @dataclass(frozen=True, slots=True)
-class MethodCall:
+class MethodCall(Expression):
     """``base.name(arguments)``: of a list, or a remote procedure."""
 
-    start: int
-    end: int
     base: Expression
     name: str
     arguments: tuple[Argument, ...]
 
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return [self.base, *(a.value for a in self.arguments)]
+
 
 @dataclass(frozen=True, slots=True)
-class StartThread:
+class StartThread(Expression):
     """``run name(arguments)``: starts a thread."""
 
-    start: int
-    end: int
     call: Call
+
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return (self.call,)
 
 
 @dataclass(frozen=True, slots=True)
-class Unary:
+class Unary(Expression):
     """``-``, ``+``, ``~`` or ``not`` before an operand."""
 
-    start: int
-    end: int
     operator: str
     operand: Expression
 
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return (self.operand,)
+
 
 @dataclass(frozen=True, slots=True)
-class Operation:
+class Operation(Expression):
     """Operators of one priority, evaluated from left to right: ``a + b - c``.
 
     A flat list and no nest of pairs, so that a sum of a thousand terms is no deep tree.
     """
 
-    start: int
-    end: int
     first: Expression
     rest: tuple[tuple[str, Expression], ...]
 
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return (self.first, *(operand for _, operand in self.rest))
 
-Expression = (
-    Number
-    | Text
-    | Constant
-    | Numbers
-    | Aggregate
-    | Name
-    | Index
-    | Member
-    | Call
-    | MethodCall
-    | StartThread
-    | Unary
-    | Operation
-)
+
 Place = Name | Index | Member
 """What can be assigned."""
 
 
 @dataclass(frozen=True, slots=True)
-class Assign:
+class Assign(Statement):
     """``target = value``; ``storage`` is ``global``, ``local`` or empty."""
 
-    start: int
-    end: int
     target: Place
     value: Expression
     storage: str
 
 
 @dataclass(frozen=True, slots=True)
-class Evaluate:
+class Evaluate(Statement):
     """An expression as a statement: a call."""
 
-    start: int
-    end: int
     expression: Expression
 
 
@@ -202,49 +213,48 @@ class Branch:
 
 
 @dataclass(frozen=True, slots=True)
-class If:
+class If(Statement):
     """``if … elif … else … end``"""
 
-    start: int
-    end: int
     branches: tuple[Branch, ...]
     otherwise: Block | None
 
+    @property
+    def blocks(self) -> Sequence[Block]:
+        bodies = [branch.body for branch in self.branches]
+        return bodies if self.otherwise is None else [*bodies, self.otherwise]
+
 
 @dataclass(frozen=True, slots=True)
-class While:
+class While(Statement):
     """``while condition: … end``"""
 
-    start: int
-    end: int
     condition: Expression
     body: Block
 
+    @property
+    def blocks(self) -> Sequence[Block]:
+        return (self.body,)
+
 
 @dataclass(frozen=True, slots=True)
-class Return:
+class Return(Statement):
     """``return`` with or without a value."""
 
-    start: int
-    end: int
     value: Expression | None
 
 
 @dataclass(frozen=True, slots=True)
-class Keyword:
+class Keyword(Statement):
     """``break``, ``continue``, ``halt``, ``pass``, ``enter_critical`` or ``exit_critical``."""
 
-    start: int
-    end: int
     word: str
 
 
 @dataclass(frozen=True, slots=True)
-class ThreadEnd:
+class ThreadEnd(Statement):
     """``join handle`` or ``kill handle``."""
 
-    start: int
-    end: int
     word: str
     handle: Expression
 
@@ -258,11 +268,9 @@ class Parameter:
 
 
 @dataclass(frozen=True, slots=True)
-class Define:
+class Define(Statement):
     """``def``, ``sec`` or ``thread``: ``kind name(parameters): … end``."""
 
-    start: int
-    end: int
     kind: str
     name: str
     parameters: tuple[Parameter, ...]
@@ -274,5 +282,4 @@ class Define:
         return self.start, self.start + len(self.kind)
 
 
-Statement = Assign | Evaluate | If | While | Return | Keyword | ThreadEnd | Define
 Block = tuple[Statement, ...]

@@ -12,23 +12,8 @@ from typing import Any, Protocol
 
 from ....core.errors import SourceError, Span
 from ....core.source.execution.answers import Course
+from ..syntax import tree
 from ..syntax.texts import Texts
-from ..syntax.tree import (
-    Aggregate,
-    Call,
-    Constant,
-    Expression,
-    Index,
-    Member,
-    MethodCall,
-    Name,
-    Number,
-    Numbers,
-    Operation,
-    StartThread,
-    Text,
-    Unary,
-)
 from .answers import answered
 from .elements import element, whole
 from .located import Located
@@ -57,13 +42,13 @@ class Evaluation(Protocol):
     def literals(self) -> SourceReads:
         """Who reads which literals."""
 
-    def call(self, call: Call, scope: Scope) -> Located:
+    def call(self, call: tree.Call, scope: Scope) -> Located:
         """The value of a function."""
 
-    def method(self, call: MethodCall, scope: Scope) -> Value:
+    def method(self, call: tree.MethodCall, scope: Scope) -> Value:
         """The value of a method."""
 
-    def start_thread(self, run: StartThread, scope: Scope) -> Value:
+    def start_thread(self, run: tree.StartThread, scope: Scope) -> Value:
         """Start a thread; its handle."""
 
     def joints(self, solution: PendingInverse) -> Value:
@@ -73,7 +58,7 @@ class Evaluation(Protocol):
         """Count what copying a list of so many elements costs."""
 
 
-def evaluate(run: Evaluation, expression: Expression, scope: Scope) -> Value:
+def evaluate(run: Evaluation, expression: tree.Expression, scope: Scope) -> Value:
     """The value of an expression; `Unknown` where only the controller has it.
 
     Raises:
@@ -82,7 +67,7 @@ def evaluate(run: Evaluation, expression: Expression, scope: Scope) -> Value:
     return _EVALUATORS[type(expression)](run, expression, scope)
 
 
-def locate(run: Evaluation, expression: Expression, scope: Scope) -> Located:
+def locate(run: Evaluation, expression: tree.Expression, scope: Scope) -> Located:
     """A value that is taken as it stands, with its sources.
 
     Unlike `evaluate` this does not count as a read by an expression: the caller tells
@@ -94,7 +79,7 @@ def locate(run: Evaluation, expression: Expression, scope: Scope) -> Located:
     return found(run, expression, scope)
 
 
-def condition(run: Evaluation, expression: Expression, scope: Scope) -> bool | Unknown:
+def condition(run: Evaluation, expression: tree.Expression, scope: Scope) -> bool | Unknown:
     """An expression as a condition.
 
     Raises:
@@ -109,13 +94,13 @@ def condition(run: Evaluation, expression: Expression, scope: Scope) -> bool | U
         raise run.texts.error_at(fault, expression) from None
 
 
-def plain(run: Evaluation, expression: Expression, scope: Scope) -> Value:
+def plain(run: Evaluation, expression: tree.Expression, scope: Scope) -> Value:
     """The value of an expression, in which inverse kinematics has its numbers."""
     value = evaluate(run, expression, scope)
     return run.joints(value) if isinstance(value, PendingInverse) else value
 
 
-def no_member(run: Evaluation, member: Member, value: Value) -> SourceError:
+def no_member(run: Evaluation, member: tree.Member, value: Value) -> SourceError:
     """The error that a value has no such part."""
     parts = f", which has {', '.join(value.names)}" if isinstance(value, Struct) else ""
     return run.texts.error_at(
@@ -126,7 +111,7 @@ def no_member(run: Evaluation, member: Member, value: Value) -> SourceError:
 # -------------------------------------------------------------------------- names
 
 
-def _read(run: Evaluation, expression: Name | Index | Call, scope: Scope) -> Value:
+def _read(run: Evaluation, expression: tree.Name | tree.Index | tree.Call, scope: Scope) -> Value:
     """A value that an expression computes with."""
     found = locate(run, expression, scope)
     if found.sources:
@@ -134,7 +119,7 @@ def _read(run: Evaluation, expression: Name | Index | Call, scope: Scope) -> Val
     return found.value
 
 
-def _locate_name(run: Evaluation, name: Name, scope: Scope) -> Located:
+def _locate_name(run: Evaluation, name: tree.Name, scope: Scope) -> Located:
     cell = scope.find(name.text)
     if cell is None:
         return Located(_undeclared(run, name))
@@ -147,19 +132,19 @@ def _locate_name(run: Evaluation, name: Name, scope: Scope) -> Located:
     return Located(value, cell.sources, name.text if cell.sources else None)
 
 
-def _undeclared(run: Evaluation, name: Name) -> Value:
+def _undeclared(run: Evaluation, name: tree.Name) -> Value:
     if name.text in _WRITTEN:
         return _WRITTEN[name.text]
     reason = f"'{name.text}', which the program does not declare (an installation variable?)"
     return _open(run, name, reason)
 
 
-def _open(run: Evaluation, name: Name, reason: str) -> Value:
+def _open(run: Evaluation, name: tree.Name, reason: str) -> Value:
     answer = run.course.value(name.text)
     return Unknown(reason, run.texts.span_of(name)) if answer is None else answered(answer)
 
 
-def _locate_index(run: Evaluation, index: Index, scope: Scope) -> Located:
+def _locate_index(run: Evaluation, index: tree.Index, scope: Scope) -> Located:
     base = locate(run, index.base, scope)
     value = base.value
     places: list[int] = []
@@ -182,7 +167,7 @@ def _locate_index(run: Evaluation, index: Index, scope: Scope) -> Located:
     return Located(value, () if source is None else (source,))
 
 
-def _member(run: Evaluation, member: Member, scope: Scope) -> Value:
+def _member(run: Evaluation, member: tree.Member, scope: Scope) -> Value:
     value = evaluate(run, member.base, scope)
     if isinstance(value, Unknown):
         return value
@@ -194,20 +179,24 @@ def _member(run: Evaluation, member: Member, scope: Scope) -> Value:
 # ---------------------------------------------------------- lists, calls, operators
 
 
-def _constant(run: Evaluation, node: Number | Text | Constant, scope: Scope) -> Value:
+def _constant(
+    run: Evaluation, node: tree.Number | tree.Text | tree.Constant, scope: Scope
+) -> Value:
     return node.value
 
 
-def _locate_literal(run: Evaluation, expression: Number | Numbers, scope: Scope) -> Located:
+def _locate_literal(
+    run: Evaluation, expression: tree.Number | tree.Numbers, scope: Scope
+) -> Located:
     return Located(evaluate(run, expression, scope), (run.literals.literal(expression),))
 
 
-def _aggregate(run: Evaluation, aggregate: Aggregate, scope: Scope) -> Value:
+def _aggregate(run: Evaluation, aggregate: tree.Aggregate, scope: Scope) -> Value:
     values = [plain(run, item, scope) for item in aggregate.items]
     return _listed(run, aggregate, tuple(values))
 
 
-def _locate_aggregate(run: Evaluation, aggregate: Aggregate, scope: Scope) -> Located:
+def _locate_aggregate(run: Evaluation, aggregate: tree.Aggregate, scope: Scope) -> Located:
     found = [locate(run, item, scope) for item in aggregate.items]
     values = [
         run.joints(f.value) if isinstance(f.value, PendingInverse) else f.value for f in found
@@ -222,7 +211,9 @@ def _locate_aggregate(run: Evaluation, aggregate: Aggregate, scope: Scope) -> Lo
     return Located(value, tuple(sources) if any(sources) else ())
 
 
-def _listed(run: Evaluation, node: Numbers | Aggregate, values: tuple[Value, ...]) -> Value:
+def _listed(
+    run: Evaluation, node: tree.Numbers | tree.Aggregate, values: tuple[Value, ...]
+) -> Value:
     if node.pose:
         if len(values) != _POSE:
             raise run.texts.error_at(
@@ -235,14 +226,14 @@ def _listed(run: Evaluation, node: Numbers | Aggregate, values: tuple[Value, ...
         raise run.texts.error_at(fault, node) from None
 
 
-def _unary(run: Evaluation, unary: Unary, scope: Scope) -> Value:
+def _unary(run: Evaluation, unary: tree.Unary, scope: Scope) -> Value:
     try:
         return negate(unary.operator, plain(run, unary.operand, scope))
     except ValueFault as fault:
         raise run.texts.error_at(fault, unary) from None
 
 
-def _operation(run: Evaluation, operation: Operation, scope: Scope) -> Value:
+def _operation(run: Evaluation, operation: tree.Operation, scope: Scope) -> Value:
     value = plain(run, operation.first, scope)
     for symbol, operand in operation.rest:
         if _decided(symbol, value):
@@ -262,25 +253,25 @@ def _decided(symbol: str, left: Value) -> bool:
 
 
 _EVALUATORS: dict[type, Callable[[Evaluation, Any, Scope], Value]] = {
-    Number: _constant,
-    Text: _constant,
-    Constant: _constant,
-    Numbers: lambda run, node, scope: _listed(run, node, node.values),
-    Aggregate: _aggregate,
-    Name: _read,
-    Index: _read,
-    Member: _member,
-    Call: _read,
-    MethodCall: lambda run, call, scope: run.method(call, scope),
-    StartThread: lambda run, start, scope: run.start_thread(start, scope),
-    Unary: _unary,
-    Operation: _operation,
+    tree.Number: _constant,
+    tree.Text: _constant,
+    tree.Constant: _constant,
+    tree.Numbers: lambda run, node, scope: _listed(run, node, node.values),
+    tree.Aggregate: _aggregate,
+    tree.Name: _read,
+    tree.Index: _read,
+    tree.Member: _member,
+    tree.Call: _read,
+    tree.MethodCall: lambda run, call, scope: run.method(call, scope),
+    tree.StartThread: lambda run, start, scope: run.start_thread(start, scope),
+    tree.Unary: _unary,
+    tree.Operation: _operation,
 }
 _LOCATORS: dict[type, Callable[[Evaluation, Any, Scope], Located]] = {
-    Number: _locate_literal,
-    Numbers: _locate_literal,
-    Name: _locate_name,
-    Aggregate: _locate_aggregate,
-    Index: _locate_index,
-    Call: lambda run, call, scope: run.call(call, scope),
+    tree.Number: _locate_literal,
+    tree.Numbers: _locate_literal,
+    tree.Name: _locate_name,
+    tree.Aggregate: _locate_aggregate,
+    tree.Index: _locate_index,
+    tree.Call: lambda run, call, scope: run.call(call, scope),
 }

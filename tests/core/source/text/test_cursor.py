@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import ClassVar
 
 import pytest
@@ -11,18 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import SourceError
-from flyby.core.source.text.cursor import END, END_OF_LINE, NAME, NESTING_LIMIT, TokenCursor
+from flyby.core.source.text.cursor import NESTING_LIMIT, TokenCursor
 from flyby.core.source.text.files import SourceText
+from flyby.core.source.text.lexer import END, END_OF_LINE, NAME, Tokens
 
 KEYWORDS = {"if", "do"}
 TOKEN = re.compile(r"(?P<word>\w+)|(?P<line>\n)|(?P<symbol>\S)")
-
-
-@dataclass(frozen=True)
-class Found:
-    kinds: list[str]
-    starts: list[int]
-    ends: list[int]
 
 
 def kind_of(match: re.Match[str]) -> str:
@@ -44,12 +37,15 @@ class Cursor(TokenCursor[SourceText]):
 def at(text: str, base: int = 0) -> Cursor:
     """The beginning of a text whose first character has the offset ``base``."""
     matches = list(TOKEN.finditer(text))
-    tokens = Found(
+    tokens = Tokens(
+        SourceText("\0" * base + text, "a.txt"),
+        text,
+        base,
         [*map(kind_of, matches), END],
         [*(base + match.start() for match in matches), base + len(text)],
         [*(base + match.end() for match in matches), base + len(text)],
     )
-    return Cursor(SourceText("\0" * base + text, "a.txt"), tokens, text, base)
+    return Cursor(tokens)
 
 
 @given(st.text("ab1if+ \n", max_size=30), st.integers(0, 50))

@@ -1,0 +1,191 @@
+"""Nodes that the syntax trees of several languages have; a language's own tree adds the others.
+
+All are frozen. Nothing in a tree is evaluated or checked beyond its form; names are looked up as
+the language folds them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from ...errors import Span
+
+
+class Composed:
+    """What may be made of expressions."""
+
+    __slots__ = ()
+
+    @property
+    def parts(self) -> Sequence[Composed]:
+        """The expressions that it is made of, in order."""
+        return ()
+
+    def walk(self) -> Iterator[Composed]:
+        """It, and all that it is made of, however deep."""
+        yield self
+        for part in self.parts:
+            yield from part.walk()
+
+
+class Expression(Composed):
+    """What has a value."""
+
+    __slots__ = ()
+
+    @property
+    def span(self) -> Span:
+        """Where it stands."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """What stands at a place of the text."""
+
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Term(Node, Expression):
+    """An expression that keeps its place."""
+
+
+@dataclass(frozen=True, slots=True)
+class Text(Term):
+    """A string."""
+
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class Truth(Term):
+    """``TRUE`` or ``FALSE``."""
+
+    value: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Unary(Term):
+    """A sign or a word like ``not`` before an operand."""
+
+    operator: str
+    operand: Expression
+
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return (self.operand,)
+
+
+@dataclass(frozen=True, slots=True)
+class Operation(Term):
+    """Operators of one priority, evaluated from left to right: ``a + b - c``.
+
+    A flat list and no nest of pairs, so that a sum of a thousand terms is no deep tree.
+    """
+
+    first: Expression
+    rest: tuple[tuple[str, Expression], ...]
+
+    @property
+    def parts(self) -> Sequence[Expression]:
+        return (self.first, *(operand for _, operand in self.rest))
+
+
+@dataclass(frozen=True, slots=True)
+class Statement(Node):
+    """What is carried out."""
+
+    @property
+    def blocks(self) -> Sequence[Block]:
+        """The blocks inside it."""
+        return ()
+
+
+@dataclass(frozen=True)
+class Block:
+    """Statements in order."""
+
+    statements: tuple[Statement, ...] = ()
+
+    @cached_property
+    def labels(self) -> dict[str, int]:
+        """Index of the statement behind each label of this block."""
+        return {s.name: i + 1 for i, s in enumerate(self.statements) if isinstance(s, Label)}
+
+    def walk(self) -> Iterator[Statement]:
+        """Its statements, and those of the blocks inside them."""
+        for statement in self.statements:
+            yield statement
+            for inner in statement.blocks:
+                yield from inner.walk()
+
+
+@dataclass(frozen=True, slots=True)
+class Looping(Statement):
+    """A block that is run again and again."""
+
+    body: Block
+
+    @property
+    def blocks(self) -> Sequence[Block]:
+        return (self.body,)
+
+
+@dataclass(frozen=True, slots=True)
+class While(Looping):
+    """A loop as long as a condition holds."""
+
+    condition: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """The values of a `Switch` for which a block is run."""
+
+    values: tuple[Expression, ...]
+    body: Block
+
+
+@dataclass(frozen=True, slots=True)
+class Switch(Statement):
+    """One of several blocks, by the value of an expression: ``TEST``, ``SWITCH``."""
+
+    subject: Expression
+    cases: tuple[Case, ...]
+    otherwise: Block | None
+
+    @property
+    def blocks(self) -> Sequence[Block]:
+        bodies = [case.body for case in self.cases]
+        return bodies if self.otherwise is None else [*bodies, self.otherwise]
+
+
+@dataclass(frozen=True, slots=True)
+class Label(Statement):
+    """Where a ``GOTO`` leads."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Goto(Statement):
+    """A jump to a label."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Return(Statement):
+    """The end of a routine, with or without a value."""
+
+    value: Expression | None
+
+
+@dataclass(frozen=True, slots=True)
+class Keyword(Statement):
+    """A statement of which only the first word is kept, lower case."""
+
+    word: str
