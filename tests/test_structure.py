@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -47,7 +48,12 @@ def imports(name: str, path: Path, known: dict[str, Path]) -> set[str]:
 
 
 MODULES = modules()
-GRAPH = {name: imports(name, path, MODULES) for name, path in MODULES.items()}
+
+
+@cache
+def graph() -> dict[str, set[str]]:
+    """What each module imports; seconds to read, so not where tests are collected."""
+    return {name: imports(name, path, MODULES) for name, path in MODULES.items()}
 
 
 def levels(room: str) -> dict[str, int]:
@@ -59,12 +65,12 @@ def levels(room: str) -> dict[str, int]:
         assert name not in above, " → ".join([*above[above.index(name) :], name])
         if name not in found:
             above.append(name)
-            below = [level(other) for other in GRAPH[name] if other.startswith(room)]
+            below = [level(other) for other in graph()[name] if other.startswith(room)]
             found[name] = 1 + max(below, default=0)
             above.pop()
         return found[name]
 
-    for name in sorted(GRAPH):
+    for name in sorted(graph()):
         if name.startswith(room) and MODULES[name].name != "__init__.py":
             level(name)
     return found
@@ -72,7 +78,7 @@ def levels(room: str) -> dict[str, int]:
 
 def test_the_graph_is_read() -> None:
     assert len(MODULES) > 600
-    assert sum(len(others) for others in GRAPH.values()) > 3000
+    assert sum(len(others) for others in graph().values()) > 3000
 
 
 def test_no_circles_of_files() -> None:

@@ -15,3 +15,10 @@ def logs() -> Path:
     if folder is None:
         pytest.skip("no logged runs here: set FLYBY_LOGS to the folder that holds them")
     return Path(folder)
+
+
+def runs(logs: Path, pattern: str) -> list[Path]:
+    """The records of this pattern; there are some."""
+    found = sorted(logs.glob(pattern))
+    assert found, f"{logs} holds no {pattern}"
+    return found

@@ -10,10 +10,13 @@ import pytest
 
 from flyby.core.errors import InputError
 from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.model.rules import ArcTurn
 from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.logs import clean, load_run
 from flyby.identification.prediction import Prediction, predict
 from flyby.identification.tcp_path import tcp_positions
+
+from .conftest import runs
 
 MM = 1e-3
 AT_REST = 0.15 * MM
@@ -32,12 +35,6 @@ END_OFF = {
 }
 
 
-def runs(logs: Path, pattern: str) -> list[Path]:
-    found = sorted(logs.glob(pattern))
-    assert found, f"{logs} holds no {pattern}"
-    return found
-
-
 @cache
 def prediction(path: Path) -> Prediction:
     run = load_run(path, find_robot)
@@ -52,13 +49,17 @@ def ends(found: Prediction) -> np.ndarray:
     return np.linalg.norm(logged - found.driven.trajectory.position[[0, -1]], axis=1)
 
 
-def test_every_run_can_be_emulated_from_its_start_to_its_end(logs) -> None:
+def test_every_run_is_emulated_from_its_start_to_its_end_and_aligned(logs) -> None:
     for path in runs(logs, "*/*.json"):
         if path.stem in ZONES_FIRST:
             with pytest.raises(InputError, match="does not follow this program"):
                 prediction(path)
             continue
-        start, end = ends(prediction(path))
+        found = prediction(path)
+        joints = np.abs(found.residuals.joint_path).max(axis=1)
+        assert np.degrees(np.percentile(joints, 50)) < 2.0, path
+        assert len(found.alignment.rows) > 0.2 * len(found.log.t), path
+        start, end = ends(found)
         assert start < AT_REST, path
         assert end < max(0.2 * MM, END_OFF.get(path.stem, 0.0)), path
 
@@ -78,6 +79,17 @@ def test_abb_runs_are_followed(logs, pattern, limit) -> None:
         assert found.path_max < OTHER_POSTURES.get(path.stem, limit), path
         # The virtual controller's logs count 4.000 ms where 4.032 pass.
         assert found.cycle_time_ratio == pytest.approx(1.008, abs=0.01), path
+
+
+def test_a_robots_tool_follows_arcs_and_a_virtual_controllers_does_not(logs) -> None:
+    """The same RAPID, told nothing of how to turn."""
+    for folder, turn in (("real", ArcTurn.PROGRAMMED), ("robotstudio", ArcTurn.AXIS)):
+        paths = runs(logs, f"abb_irb6640_{folder}/movec_*.json")
+        assert len(paths) >= 3
+        for path in paths:
+            found = prediction(path)
+            assert found.turn is turn, path
+            assert found.figures.joint_path_rms < np.radians(0.05), path
 
 
 def test_a_dense_curve_at_process_speed_takes_its_time(logs) -> None:

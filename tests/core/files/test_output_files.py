@@ -9,7 +9,7 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -21,18 +21,7 @@ from flyby.core.files.journal import PREFIX
 from flyby.core.files.recovery import recover
 from flyby.core.files.writing import write_file, write_files
 
-STEPS = (
-    "open", "mkdir", "replace", "rename", "fsync", "unlink", "chmod", "chown", "stat", "lstat",
-)  # fmt: skip
-"""Functions of `os` in which a write can break off; `open` is that of folders."""
-OLD = {"a/p.dat": b"old dat", "a/p.src": b"old src", "b/q.src": b"old q"}
-NEW = {"a/p.dat": b"new dat", "a/p.src": b"new src", "b/q.src": b"new q", "c/d/r.src": b"new r"}
-
-
-def _lay(folder: Path) -> None:
-    for name, data in OLD.items():
-        (folder / name).parent.mkdir(exist_ok=True, parents=True)
-        (folder / name).write_bytes(data)
+from .killed import NEW, OLD, breaking, interrupt, lay, wanted
 
 
 def _files(folder: Path) -> dict[str, bytes]:
@@ -44,31 +33,10 @@ def _files(folder: Path) -> dict[str, bytes]:
     }
 
 
-def _wanted(folder: Path) -> dict[Path, bytes]:
-    return {folder / name: data for name, data in NEW.items()}
-
-
 def _recovered(folder: Path) -> dict[str, bytes]:
     for part in sorted({(folder / name).parent for name in NEW}):
         recover(part)
     return _files(folder)
-
-
-def _break(step: int, how: Callable[[], None], done: Callable[[], bool] = lambda: False) -> Any:
-    """Functions of `os` that break off at a step of all their calls."""
-    count = itertools.count()
-
-    def broken(function: Callable[..., Any]) -> Callable[..., Any]:
-        def call(*args: Any, **kwargs: Any) -> Any:
-            if not done() and next(count) == step:
-                how()
-            return function(*args, **kwargs)
-
-        return call
-
-    calls = {name: broken(getattr(os, name)) for name in STEPS}
-    calls["fsync"] = broken(lambda descriptor: None)  # a killed process loses nothing written
-    return calls, count
 
 
 def _fail() -> None:
@@ -76,8 +44,8 @@ def _fail() -> None:
 
 
 def test_a_set_is_written_and_nothing_is_left(tmp_path: Path) -> None:
-    _lay(tmp_path)
-    assert write_files(_wanted(tmp_path), tmp_path) == ()
+    lay(tmp_path)
+    assert write_files(wanted(tmp_path), tmp_path) == ()
     assert _files(tmp_path) == NEW
     assert sorted(p.name for p in tmp_path.rglob(".*")) == []
 
@@ -87,13 +55,13 @@ def test_a_set_that_fails_at_any_step_changes_nothing(
 ) -> None:
     for step in itertools.count():
         folder = tmp_path / str(step)
-        _lay(folder)
-        broken, count = _break(step, _fail)
+        lay(folder)
+        broken, count = breaking(step, _fail)
         with monkeypatch.context() as patched:
             for name, function in broken.items():
                 patched.setattr(os, name, function)
             try:
-                write_files(_wanted(folder), folder)
+                write_files(wanted(folder), folder)
             except InputError as error:
                 assert "cannot be written" in str(error)
                 assert _files(folder) == OLD, step
@@ -105,79 +73,41 @@ def test_a_set_that_fails_at_any_step_changes_nothing(
     assert step > 40  # the steps of four files in three folders were all met
 
 
+def _killed(folder: Path, what: str) -> list[Path]:
+    """The folders that ``what`` of killed.py leaves, by the step at which it was killed.
+
+    A process of its own: this one has grown, and a fork copies the tables of all its pages.
+    """
+    script = Path(__file__).with_name("killed.py")
+    subprocess.run([sys.executable, script, what, folder], check=True)
+    return sorted(folder.iterdir(), key=lambda path: int(path.name))
+
+
 def test_a_set_that_is_killed_at_any_step_is_whole_at_the_next_run(tmp_path: Path) -> None:
     seen = set()
-    for step in itertools.count():
-        folder = tmp_path / str(step)
-        _lay(folder)
-        child = os.fork()
-        if child == 0:
-            try:
-                broken, _ = _break(step, lambda: os.kill(os.getpid(), signal.SIGKILL))
-                for name, function in broken.items():
-                    setattr(os, name, function)
-                write_files(_wanted(folder), folder)
-            finally:
-                os._exit(0)
-        _, status = os.waitpid(child, 0)
+    for folder in _killed(tmp_path, "write"):
         left = {name: data for name, data in _files(folder).items() if PREFIX not in name}
         # Never old beside new, not even before the next run.
-        assert left.items() <= OLD.items() or left.items() <= NEW.items(), step
+        assert left.items() <= OLD.items() or left.items() <= NEW.items(), folder
         found = _recovered(folder)
-        assert found in (OLD, NEW), step
-        assert not list(folder.rglob(PREFIX + "*")), step
+        assert found in (OLD, NEW), folder
+        assert not list(folder.rglob(PREFIX + "*")), folder
         seen.add(found == NEW)
-        if os.WIFEXITED(status):
-            break
     assert seen == {True, False}
 
 
 def test_a_recovery_that_is_killed_itself_is_taken_up_again(tmp_path: Path) -> None:
-    for step in itertools.count():
-        folder = tmp_path / str(step)
-        _lay(folder)
-        _interrupt(folder)
-        child = os.fork()
-        if child == 0:
-            try:
-                broken, _ = _break(step, lambda: os.kill(os.getpid(), signal.SIGKILL))
-                for name, function in broken.items():
-                    setattr(os, name, function)
-                recover(folder / "b")
-            finally:
-                os._exit(0)
-        _, status = os.waitpid(child, 0)
-        assert _recovered(folder) == NEW, step
-        if os.WIFEXITED(status):
-            break
-    assert step > 5
-
-
-def _interrupt(folder: Path) -> None:
-    """A set killed between its old files' going and its new ones' coming."""
-    child = os.fork()
-    if child == 0:
-        try:
-            renames = itertools.count()
-            rename, os.fsync = os.rename, lambda descriptor: None
-
-            def killing(*args: Any) -> None:
-                if next(renames) == len(OLD) + 1:
-                    os.kill(os.getpid(), signal.SIGKILL)
-                rename(*args)
-
-            os.rename = killing  # type: ignore[assignment]
-            write_files(_wanted(folder), folder)
-        finally:
-            os._exit(0)
-    os.waitpid(child, 0)
+    folders = _killed(tmp_path, "recover")
+    for folder in folders:
+        assert _recovered(folder) == NEW, folder
+    assert len(folders) > 6
 
 
 def test_the_next_run_says_what_it_finished(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    _lay(tmp_path)
-    _interrupt(tmp_path)
+    lay(tmp_path)
+    interrupt(tmp_path)
     recover(tmp_path / "a")
     assert "interrupted, and has been finished" in caplog.text
     assert "p.dat" in caplog.text
@@ -185,8 +115,8 @@ def test_the_next_run_says_what_it_finished(
 
 
 def test_damaged_new_files_are_taken_back(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    _lay(tmp_path)
-    _interrupt(tmp_path)
+    lay(tmp_path)
+    interrupt(tmp_path)
     (draft,) = tmp_path.glob("b/*/*.new")
     draft.write_bytes(b"tor")
     assert _recovered(tmp_path) == OLD
@@ -194,8 +124,8 @@ def test_damaged_new_files_are_taken_back(tmp_path: Path, caplog: pytest.LogCapt
 
 
 def test_what_the_user_has_changed_since_is_left_and_said(tmp_path: Path) -> None:
-    _lay(tmp_path)
-    _interrupt(tmp_path)
+    lay(tmp_path)
+    interrupt(tmp_path)
     assert not (tmp_path / "b/q.src").exists()
     (tmp_path / "b/q.src").write_bytes(b"from a backup")
     with pytest.raises(InputError, match=r"q\.src has been changed since.*delete these folders"):
@@ -208,7 +138,7 @@ def test_what_the_user_has_changed_since_is_left_and_said(tmp_path: Path) -> Non
 def test_a_disk_that_also_refuses_to_take_back_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    _lay(tmp_path)
+    lay(tmp_path)
     renames = itertools.count()
     rename = os.rename
 
@@ -220,12 +150,12 @@ def test_a_disk_that_also_refuses_to_take_back_is_said(
     with monkeypatch.context() as patched:
         patched.setattr(os, "rename", failing)
         with pytest.raises(InputError, match="neither finished nor taken back: No space left"):
-            write_files(_wanted(tmp_path), tmp_path)
+            write_files(wanted(tmp_path), tmp_path)
     assert _recovered(tmp_path) == NEW
 
 
 def test_a_write_under_way_is_left_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    _lay(tmp_path)
+    lay(tmp_path)
     replace = os.replace
 
     def looking(*args: Any) -> None:
@@ -233,7 +163,7 @@ def test_a_write_under_way_is_left_alone(tmp_path: Path, monkeypatch: pytest.Mon
         replace(*args)
 
     monkeypatch.setattr(os, "replace", looking)
-    write_files(_wanted(tmp_path), tmp_path)
+    write_files(wanted(tmp_path), tmp_path)
     assert _files(tmp_path) == NEW
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import cvxpy
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
@@ -53,6 +52,8 @@ class QuadraticProgram:
         )
 
     def optimum(self) -> float:
+        import cvxpy  # a second, which collecting the tests need not take
+
         m, n = self.A.shape
         x = cvxpy.Variable(n)
         x_lower, x_upper, c_lower, c_upper = self.bounds

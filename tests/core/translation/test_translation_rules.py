@@ -400,7 +400,7 @@ def test_accelerations_are_those_that_the_maker_allows(between, old: str) -> Non
     run = pair.run_new(made)
     rows = run.trajectory.move == 2
     fastest = np.abs(run.trajectory.ddq[rows]).max()
-    assert line.speed.tcp_acceleration <= 1.2 or fastest < 5.0 * 1.5
+    assert fastest < 5.0 * 1.5
     assert line.speed.tcp_acceleration < 6.0
     told = messages(made)
     assert "instead of" in told and "its maker allows, or drives it with, no more" in told
@@ -459,16 +459,14 @@ def test_a_share_of_acceleration_is_said_in_each_languages_terms(between) -> Non
 
 def test_a_share_of_acceleration_grows_where_the_move_would_be_late(between) -> None:
     pair = between("ur", "abb")
-    # The IRB 1600 accelerates less than the UR10e, so the same share of it is not enough.
     program = Program((pair.joint(), pair.joint(ASIDE, joint_acceleration=3.0, joint=3.0)))
     made = pair.translate(program)
-    old, new = pair.robot(pair.old).limits, pair.robot(pair.new).limits
     share = made.program.moves[1].speed.joint_acceleration_fraction
-    assert new.acceleration[0] < old.acceleration[0] or share > 0.2
-    assert share >= 0.2
+    # The share by which its first axis has the old acceleration is not enough.
+    assert 3.0 / pair.robot(pair.new).limits.acceleration[0] < share < 1.0
     runs = pair.run_old(program), pair.run_new(made)
     wanted, spent = (run.timing.stamp.duration for run in runs)
-    assert spent < 1.06 * wanted or share == 1.0
+    assert spent < 1.06 * wanted
 
 
 def test_a_speed_of_turning_without_words_is_told_if_it_holds(between) -> None:

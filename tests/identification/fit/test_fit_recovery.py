@@ -59,10 +59,8 @@ def test_workers_change_nothing(runs, fitted) -> None:
 
 def test_sound_logs_give_the_parameters_themselves() -> None:
     sound = Faults(noise=0.0, jitter=0.0)
-    runs = [ready(logged(0.03, 0.5, 0, sound)), ready(logged(0.08, 0.2, 1, sound))]
-    found = fit(ParameterSet.named(START, list(TRUE_VALUES)[:2]), runs)
-    # The other figures are not those of the truth: they are not fitted here.
-    runs = [ready(one.run, TRUTH) for one in runs]
+    # The other figures are not fitted here: they are those of the truth.
+    runs = [ready(logged(0.03, 0.5, 0, sound), TRUTH), ready(logged(0.08, 0.2, 1, sound), TRUTH)]
     base = replace(TRUTH, tcp=START.tcp, smoothing=START.smoothing)
     found = fit(ParameterSet.named(base, list(TRUE_VALUES)[:2]), runs)
     np.testing.assert_allclose(found.values, [-0.5, 0.04], rtol=2e-3)

@@ -9,8 +9,11 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from flyby.core.motion.emulator.controller import Controller
 from flyby.identification.fit import ParameterSet, fit, motion_file, outcomes
+from flyby.identification.logs import clean
 from flyby.identification.logs.synthetic import Faults
+from flyby.identification.prediction import predict
 from flyby.identification.report.corners import cut_corners
 from flyby.identification.report.page import page
 from flyby.identification.report.picture import (
@@ -20,7 +23,7 @@ from flyby.identification.report.picture import (
     tcp_profiles,
 )
 
-from .known_truth import START, TRUE_VALUES, logged, ready
+from .known_truth import ROBOT, START, VENDOR, logged, ready
 
 FITTED = ("blend.tcp.beta[0]", "time.smoothing_s[*]", "elasticity.own_s2[1]")
 
@@ -60,10 +63,20 @@ def each(fitted):
     return outcomes(fitted)
 
 
-def test_the_page_states_what_was_found(fitted, each) -> None:
-    file = motion_file(fitted, "flyby identify <logs>")
+@pytest.fixture(scope="module")
+def file(fitted) -> str:
+    return motion_file(fitted, "flyby identify <logs>")
+
+
+@pytest.fixture(scope="module")
+def shown(fitted, each, file) -> str:
+    """The page."""
+    return page(fitted, each, file)
+
+
+def test_the_page_states_what_was_found(fitted, each, shown) -> None:
     text = Text()
-    text.feed(page(fitted, each, file))
+    text.feed(shown)
     assert not text.open
     rows = {row[0]: row[1:] for row in text.rows if row}
     for one in fitted.intervals:
@@ -80,18 +93,19 @@ def test_the_page_says_what_samples_were_as_read(fitted, each) -> None:
     log = replace(one.after.log, notes=("put together",))
     read = replace(one.after.figures, path_max=0.01234, joint_path_max=np.radians(0.567))
     told = replace(one, after=replace(one.after, log=log, read=read))
-    made = page(fitted, [told, *each[1:]], "")
+    made = page(fitted, [told], "")
     assert "put together" in made and "up to 12.340 mm" in made and "up to 0.567°" in made
     assert made.count("As read") == 1
 
 
-def test_the_page_is_whole_in_one_file_and_escapes_what_it_is_told(fitted, each) -> None:
-    made = page(fitted, each, "robot = '<script>'")
-    assert "<script>" not in made and "&lt;script&gt;" in made
-    assert len(re.findall(r'src="data:image/png;base64,', made)) == len(each)
-    assert "http" not in made
-    assert len(made) < 250_000 * len(each)
-    assert made == page(fitted, each, "robot = '<script>'")
+def test_the_page_is_whole_in_one_file_and_escapes_what_it_is_told(
+    fitted, each, file, shown
+) -> None:
+    assert "<logs>" in file and "<logs>" not in shown and "&lt;logs&gt;" in shown
+    assert len(re.findall(r'src="data:image/png;base64,', shown)) == len(each)
+    assert "http" not in shown
+    assert len(shown) < 250_000 * len(each)
+    assert shown == page(fitted, each, file)
 
 
 def test_corners_are_those_of_the_program(each) -> None:
@@ -104,11 +118,10 @@ def test_corners_are_those_of_the_program(each) -> None:
     assert cut_corners(each[1].after) == []
 
 
-@pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
-def test_pictures_of_runs_with_and_without_corners(each, kind) -> None:
-    starts = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}
-    for one in each:
-        assert draw_prediction(one.before, kind).startswith(starts[kind])
+@pytest.mark.parametrize(("run", "kind", "start"), [(0, "svg", b"<?xml"), (1, "pdf", b"%PDF")])
+def test_pictures_of_runs_with_and_without_corners(each, run, kind, start) -> None:
+    """Those of the page are PNG."""
+    assert draw_prediction(each[run].before, kind).startswith(start)
 
 
 def test_profiles_are_exact_on_parabolas_and_average_noise() -> None:
@@ -124,10 +137,10 @@ def test_profiles_are_exact_on_parabolas_and_average_noise() -> None:
 
 
 def test_logs_with_holes_are_drawn() -> None:
-    faults = Faults(noise=1e-5, hole=0.14, torn=3)
-    run = ready(logged(0.03, 0.3, faults=faults))
-    other = fit(ParameterSet.named(START, [next(iter(TRUE_VALUES))]), [run])
-    assert draw_prediction(outcomes(other)[0].after, "png").startswith(b"\x89PNG")
+    run = logged(0.03, 0.3, faults=Faults(noise=1e-5, hole=0.14, torn=3))
+    found = predict(Controller(VENDOR, ROBOT, START), run.name, run.program, clean(run))
+    assert found.log.holes
+    assert draw_prediction(found, "png").startswith(b"\x89PNG")
 
 
 def test_deviations_are_magnified_from_the_nearest_place_by_a_round_factor() -> None:

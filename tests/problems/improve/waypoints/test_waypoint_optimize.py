@@ -300,23 +300,18 @@ def test_an_interrupted_search_gives_what_can_be_proven_of_it() -> None:
     assert found.changed and found.proven and found.after.time < found.before.time
 
 
-def test_progress_is_told_to_the_end() -> None:
+def test_progress_is_told_to_the_end_and_what_is_handed_out_was_read_back() -> None:
     seen: list[Progress] = []
-    found = optimize_waypoints(
-        controller(), PROGRAM, SCENE.cell, PLANE, QUICK, report=lambda s: seen.append(s)
-    )
-    assert seen[-1].stage == "proving" and seen[-1].best < 1.0
-    assert found.changed
-
-
-def test_what_is_handed_out_is_what_was_read_back() -> None:
     read: list[Program] = []
 
     def read_back(program: Program) -> Program:
         read.append(replace(program, notes=(Note("as read from its text"),)))
         return read[-1]
 
-    found = optimize_waypoints(controller(), PROGRAM, SCENE.cell, PLANE, QUICK, read_back)
+    found = optimize_waypoints(
+        controller(), PROGRAM, SCENE.cell, PLANE, QUICK, read_back, lambda s: seen.append(s)
+    )
+    assert seen[-1].stage == "proving" and seen[-1].best < 1.0
     assert found.changed and found.proven
     assert found.program is read[-1]
 

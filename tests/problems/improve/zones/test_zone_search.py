@@ -197,6 +197,7 @@ def _waypoint(trials: Neighbourhoods, corner: int) -> np.ndarray:
     return _path(trials, corner, 0.0).at(np.array([0.0]))[0]
 
 
+@cache
 def _passable(case: str, corner: int, share: float) -> tuple[CollisionScene, float]:
     """A ball that a zone of some share of the largest cannot pass, and that largest size."""
     cell, trials, rules, _ = CASES[case]()
