@@ -79,7 +79,7 @@ def test_a_program_is_told_where_it_starts(name, file, text) -> None:
 @ALL
 def test_without_a_start_it_is_refused(name, file, text) -> None:
     vendor, robot = find_vendor(name.split("/")[0]), find_robot(name)
-    with pytest.raises(SourceError):
+    with pytest.raises(SourceError, match=r"give a start|of values that are not known"):
         vendor.read(text, file, robot=robot)
 
 

@@ -72,8 +72,13 @@ def test_a_delay_beyond_what_the_controller_looks_ahead_is_refused():
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"switch": " "}, {"switch": "a", "delay": -0.1}, {"switch": "a", "nominal_flow": 0.0}]
+    ("wrong", "word"),
+    [
+        ({"switch": " "}, "a name"),
+        ({"switch": "a", "delay": -0.1}, "delay"),
+        ({"switch": "a", "nominal_flow": 0.0}, "nominal_flow"),
+    ],
 )
-def test_signals_check_themselves(wrong: dict):
-    with pytest.raises(InputError):
+def test_signals_check_themselves(wrong: dict, word: str):
+    with pytest.raises(InputError, match=word):
         GunSignals(**wrong)

@@ -337,16 +337,15 @@ def test_a_path_through_a_singular_posture_is_refused_and_one_nearby_noted(abb) 
 
 @pytest.mark.parametrize("broken", [float("nan"), float("inf")])
 def test_numbers_that_are_not_finite_are_refused_where_they_enter(abb, broken) -> None:
-    with pytest.raises(InputError):
-        Pose((broken, 0.0, 0.0))
-    with pytest.raises(InputError):
-        JointTarget((broken, 0.0, 0.0, 0.0, 0.0, 0.0))
-    with pytest.raises(InputError):
-        Radius(broken)
-    with pytest.raises(InputError):
-        Speed(tcp=broken)
-    with pytest.raises(InputError):
-        Wait(broken)
+    for make in (
+        lambda: Pose((broken, 0.0, 0.0)),
+        lambda: JointTarget((broken, 0.0, 0.0, 0.0, 0.0, 0.0)),
+        lambda: Radius(broken),
+        lambda: Speed(tcp=broken),
+        lambda: Wait(broken),
+    ):
+        with pytest.raises(InputError, match=str(broken)):
+            make()
 
 
 def test_a_joint_target_of_another_robot_is_refused(abb) -> None:

@@ -146,19 +146,19 @@ def test_the_reverse_of_the_coefficients_is_the_gradient(alpha, beta, seed) -> N
 
 
 @pytest.mark.parametrize(
-    "broken",
+    ("broken", "word"),
     [
-        {"alpha": ()},
-        {"alpha": (0.1, 0.9)},
-        {"alpha": (0, 0.5)},
-        {"alpha": (0, -1.5, 2.5)},
-        {"alpha": (0, float("nan"))},
-        {"beta": (float("inf"),)},
-        {"kind": "spline"},
+        ({"alpha": ()}, "from 0 to 1"),
+        ({"alpha": (0.1, 0.9)}, "from 0 to 1"),
+        ({"alpha": (0, 0.5)}, "from 0 to 1"),
+        ({"alpha": (0, -1.5, 2.5)}, "backwards"),
+        ({"alpha": (0, float("nan"))}, "finite"),
+        ({"beta": (float("inf"),)}, "finite"),
+        ({"kind": "spline"}, "spline"),
     ],
 )
-def test_what_is_no_blend_is_refused(broken) -> None:
-    with pytest.raises(InputError):
+def test_what_is_no_blend_is_refused(broken, word) -> None:
+    with pytest.raises(InputError, match=word):
         Blend(**broken)
 
 

@@ -364,17 +364,17 @@ def test_a_collision_is_refused():
 
 
 @pytest.mark.parametrize(
-    "make",
+    ("make", "word"),
     [
-        lambda: Goal(-1.0, 1.0),
-        lambda: Goal(0.0, 0.0),
-        lambda: Goal(1.0, 0.0, 0.0),
-        lambda: Goal.weighted(1.5, 1.0, 1.0),
-        lambda: Goal.weighted(0.5, 0.0, 1.0),
-        lambda: Goal.weighted(0.5, 1.0, -1.0),
-        lambda: EnergyTask(slowest=0.0),
+        (lambda: Goal(-1.0, 1.0), "weights"),
+        (lambda: Goal(0.0, 0.0), "not both zero"),
+        (lambda: Goal(1.0, 0.0, 0.0), "latest"),
+        (lambda: Goal.weighted(1.5, 1.0, 1.0), "weight"),
+        (lambda: Goal.weighted(0.5, 0.0, 1.0), "time"),
+        (lambda: Goal.weighted(0.5, 1.0, -1.0), "energy"),
+        (lambda: EnergyTask(slowest=0.0), "slowest"),
     ],
 )
-def test_what_cannot_be_wanted(make):
-    with pytest.raises(InputError):
+def test_what_cannot_be_wanted(make, word):
+    with pytest.raises(InputError, match=word):
         make()

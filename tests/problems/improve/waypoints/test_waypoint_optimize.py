@@ -271,15 +271,15 @@ def test_moves_that_cannot_be_meant(task: WaypointTask, word: str) -> None:
 
 
 def test_numbers_out_of_range() -> None:
-    for make in (
-        lambda: WaypointTask(time_weight=1.5),
-        lambda: WaypointTask(clearance=-1.0),
-        lambda: Effort(starts=0),
-        lambda: Effort(spread=0.0),
-        lambda: Box(turn=-1.0),
-        lambda: Cone(4.0),
+    for make, word in (
+        (lambda: WaypointTask(time_weight=1.5), "time_weight"),
+        (lambda: WaypointTask(clearance=-1.0), "clearance"),
+        (lambda: Effort(starts=0), "starts"),
+        (lambda: Effort(spread=0.0), "spread"),
+        (lambda: Box(turn=-1.0), "range of a Box"),
+        (lambda: Cone(4.0), "angle"),
     ):
-        with pytest.raises(InputError):
+        with pytest.raises(InputError, match=word):
             make()
 
 

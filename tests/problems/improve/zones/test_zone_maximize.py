@@ -284,7 +284,7 @@ def test_a_cell_without_the_programs_tool_is_refused():
     "wrong", [{"clearance": -1.0}, {"residual": float("nan")}, {"tolerance": 0.0}]
 )
 def test_options_out_of_range_are_refused(wrong):
-    with pytest.raises(InputError):
+    with pytest.raises(InputError, match=f"the {next(iter(wrong))}"):
         ZoneOptions(**wrong)
 
 
