@@ -105,6 +105,9 @@ WAITS = (
     "the loop only waits for what the program does not change itself: it is taken as satisfied "
     "at once"
 )
+UNMOVED = "does not move the robot, as nothing fulfils the conditions of its motion"
+STANDS = f"the program is an endless loop that {UNMOVED}: the program ends there"
+WAITS_UNMOVED = WAITS.replace("only waits", f"{UNMOVED}, and only waits")
 
 UNDECIDED_IF = Case(
     "IF <IN> THEN\n<A>\nELSE\n<B>\nENDIF\n<C>",
@@ -231,6 +234,34 @@ CASES = {
         "A",
         IDLE,
     ),
+    "LOOP whose motion nothing lets come": Case(
+        "<A>\nWHILE TRUE DO\nIF n=5 THEN\n<B>\nENDIF\nWaitTime 0.1;\nENDWHILE\n<C>",
+        "N=0\n<A>\nLOOP\nIF N==5 THEN\n<B>\nENDIF\nWAIT SEC 0.1\nENDLOOP\n<C>",
+        "<A>\nwhile True:\nif n == 5:\n<B>\nend\nsleep(0.1)\nend\n<C>",
+        "A",
+        STANDS,
+    ),
+    "a jump back over motion that nothing lets come": Case(
+        "again:\nIF n=5 THEN\n<B>\nENDIF\nGOTO again;",
+        "N=0\nAGAIN:\nIF N==5 THEN\n<B>\nENDIF\nGOTO AGAIN",
+        "while True:\nif n == 5:\n<B>\nend\nend",
+        "",
+        STANDS,
+    ),
+    "LOOP whose motion comes in a later pass": Case(
+        "WHILE TRUE DO\nn:=n+1;\nIF n=5 THEN\n<B>\nENDIF\nENDWHILE\n<C>",
+        "N=0\nLOOP\nN=N+1\nIF N==5 THEN\n<B>\nENDIF\nENDLOOP\n<C>",
+        "while True:\nn = n + 1\nif n == 5:\n<B>\nend\nend\n<C>",
+        "B",
+        ENDLESS.replace("one pass is", "5 passes are"),
+    ),
+    "WHILE that waits for its motion, too": Case(
+        "WHILE go DO\nIF n=5 THEN\n<A>\nENDIF\nENDWHILE\n<B>",
+        "N=0\nGO=TRUE\nWHILE GO\nIF N==5 THEN\n<A>\nENDIF\nENDWHILE\n<B>",
+        "while go:\nif n == 5:\n<A>\nend\nend\n<B>",
+        "B",
+        WAITS_UNMOVED,
+    ),
     "LOOP answered": replace(
         LOOP,
         driven="A A A",
@@ -259,6 +290,22 @@ CASES = {
         "while True:\n<A>\nn = n + 1\nif <IN> and n > 0:\nbreak\nend\nend\n<B>",
         "A B",
         WAY_OUT,
+    ),
+    "a way out that is taken late": Case(
+        "WHILE TRUE DO\n<A>\nn:=n+1;\nIF n>200 GOTO out;\nIF <IN> GOTO out;\nENDWHILE\n"
+        "out:\n<B>",
+        "N=0\nLOOP\n<A>\nN=N+1\nIF N>200 THEN\nEXIT\nENDIF\nIF <IN> THEN\nEXIT\nENDIF\n"
+        "ENDLOOP\n<B>",
+        "while True:\n<A>\nn = n + 1\nif n > 200:\nbreak\nend\nif <IN>:\nbreak\nend\nend\n<B>",
+        "A " * 100 + "B",
+        WAY_OUT.replace("once", "100 times"),
+    ),
+    "a condition that comes to be unknown": Case(
+        "WHILE n<3 OR <IN> DO\n<A>\nn:=n+1;\nENDWHILE\n<B>",
+        "N=0\nWHILE (N<3) OR <IN>\n<A>\nN=N+1\nENDWHILE\n<B>",
+        "while n < 3 or <IN>:\n<A>\nn = n + 1\nend\n<B>",
+        "A A A B",
+        ONCE.replace("once", "3 times"),
     ),
     "a flag set in a branch": Case(
         "WHILE go DO\n<A>\nIF <IN> THEN\ngo:=FALSE;\nENDIF\nENDWHILE\n<B>",

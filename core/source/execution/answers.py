@@ -173,9 +173,9 @@ class Course:
         """
         answer = _at(self.answers.branches, span)
         if answer is not None and answer > count:
+            there = "there is 1 branch" if count == 1 else f"there are {count} branches"
             raise InputError(
-                f"{self.answers.file}: [branches] at {span.file}:{span.line}: there are "
-                f"{count} branches, not {answer}"
+                f"{self.answers.file}: [branches] at {span.file}:{span.line}: {there}, not {answer}"
             )
         return answer
 
@@ -183,26 +183,30 @@ class Course:
         """How often the user says that the loop at a place runs."""
         return _at(self.answers.passes, span)
 
-    def passes(self, span: Span, reason: str, moving: bool, leaves: bool = False) -> int:
+    def passes(
+        self, span: Span, reason: str, moving: bool, driven: int = 0, leaves: bool = False
+    ) -> int:
         """How often a loop runs of which nobody knows when it ends.
 
         Args:
             span: of the condition.
             reason: what it depends on.
             moving: whether its body moves the robot.
+            driven: passes that have been read before that was met.
             leaves: whether it ends by a way out in its body, which follows the passes; then it has
                 been entered, and one at least is read.
         """
         answer = self.answered_passes(span)
         if answer is not None:
             return max(answer, 1) if leaves else answer
+        passes = max(driven, 1) if moving or leaves else 0
         how = "it does not move the robot and is left at once"
+        if passes:
+            how = f"its body runs {'once' if passes == 1 else f'{passes} times'}"
         if leaves:
-            how = "its body runs once, and then this way out is taken"
-        elif moving:
-            how = "its body runs once"
+            how += ", and then this way out is taken"
         self.decided(span, f"the end of the loop depends on {reason}: {how}")
-        return 1 if moving or leaves else 0
+        return passes
 
     def notes(self) -> tuple[Note, ...]:
         """What was decided without an answer, in the order in which it came up."""

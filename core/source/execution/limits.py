@@ -34,13 +34,16 @@ class Meter:
     Args:
         limits: what must not be passed.
         executed: called with every statement; None for no calls.
+
+    Attributes:
+        moves: that were executed.
     """
 
     def __init__(self, limits: ExecutionLimits, executed: Executed | None = None) -> None:
         self._limits = limits
         self._executed = executed
         self._statements = 0
-        self._moves = 0
+        self.moves = 0
         self._repeats: dict[tuple[str, int, int], int] = {}
         self._calls = 0
 
@@ -62,9 +65,9 @@ class Meter:
         Raises:
             SourceError: there are too many.
         """
-        self._moves += 1
+        self.moves += 1
         self._statements = 0
-        if self._moves > self._limits.moves:
+        if self.moves > self._limits.moves:
             raise _endless(f"{self._limits.moves} moves are executed", span)
         place = (span.file, span.line, span.column)
         repeats = self._repeats[place] = self._repeats.get(place, 0) + 1

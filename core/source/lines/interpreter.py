@@ -18,7 +18,8 @@ from ...program.move import Wait
 from ...program.program import Program
 from ..execution.analysis import Analysis
 from ..execution.answers import Course
-from ..execution.flow import Flow, Loop
+from ..execution.endings import Loop
+from ..execution.flow import Flow
 from ..execution.limits import Meter
 from ..execution.outputs import Outputs
 from ..execution.provenance import Part, Reads

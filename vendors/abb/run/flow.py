@@ -9,7 +9,9 @@ from typing import Protocol
 from ....core.errors import SourceError
 from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.answers import Course
-from ....core.source.execution.flow import Flow, Loop, Undecided
+from ....core.source.execution.endings import Loop
+from ....core.source.execution.flow import Flow
+from ....core.source.execution.host import Undecided
 from ....core.source.execution.limits import Meter
 from ..syntax.traversal import calls_in, names_in
 from ..syntax.tree import Block, Expression, For, If, Test, Truth, While

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from ....core.errors import SourceError, Span
-from ....core.source.execution import flow
-from ....core.source.execution.flow import Undecided
+from ....core.source.execution import endings, flow
+from ....core.source.execution.host import Undecided
 from ....core.source.execution.transcript import Notes
 from ..syntax.tree import (
     Block,
@@ -170,7 +170,7 @@ class Flow:
 
     def loop_(self, statement: Loop, scope: Scope) -> None:
         """``LOOP``"""
-        loop = flow.Loop(statement.body, statement.span, "LOOP", endless=True)
+        loop = endings.Loop(statement.body, statement.span, "LOOP", endless=True)
         self._rules.loop(loop, lambda: True, self._pass(scope))
 
     def for_(self, statement: For, scope: Scope) -> None:
@@ -206,7 +206,7 @@ class Flow:
         counted = frozenset({statement.counter.name})
         words = f"FOR {statement.counter.text}"
         span = statement.start.span
-        loop = flow.Loop(statement.body, span, words, reads=counted, writes=counted)
+        loop = endings.Loop(statement.body, span, words, reads=counted, writes=counted)
         self._rules.loop(loop, goes_on, run, run_pass)
 
     def _note_moved_bound(self, loop: For, stop: Value, scope: Scope) -> None:
@@ -229,9 +229,9 @@ class Flow:
         endless: bool,
         scope: Scope,
         ended: bool,
-    ) -> flow.Loop[Block]:
+    ) -> endings.Loop[Block]:
         """A loop; ``ended`` is what its condition is when it has ended."""
-        return flow.Loop(
+        return endings.Loop(
             body,
             condition.span,
             words,
@@ -285,7 +285,7 @@ class Flow:
                 return target - 1  # the label itself
             always = goto is block.statements[index]
             body = self._jumps.setdefault(id(goto), Block(block.statements[target - 1 : index + 1]))
-            loop = flow.Loop(body, goto.span, f"GOTO {goto.name.upper()}", endless=always)
+            loop = endings.Loop(body, goto.span, f"GOTO {goto.name.upper()}", endless=always)
             label = id(block.statements[target - 1])
             try:
                 stays = self._rules.jump(loop, label, id(goto), carry_out)

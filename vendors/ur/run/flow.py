@@ -5,7 +5,9 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from ....core.source.execution.flow import Flow, Loop, Undecided
+from ....core.source.execution.endings import Loop
+from ....core.source.execution.flow import Flow
+from ....core.source.execution.host import Undecided
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.transcript import Transcript
 from ..syntax.traversal import assigned, returns

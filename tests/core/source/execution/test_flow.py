@@ -11,7 +11,9 @@ import pytest
 from flyby.core.errors import SourceError, Span
 from flyby.core.source.execution.analysis import Analysis
 from flyby.core.source.execution.answers import Answers, Course
-from flyby.core.source.execution.flow import FOLLOWED, Flow, Loop, Undecided
+from flyby.core.source.execution.endings import FOLLOWED, Loop
+from flyby.core.source.execution.flow import Flow
+from flyby.core.source.execution.host import Undecided
 from flyby.core.source.execution.limits import ExecutionLimits, Meter
 from flyby.core.source.execution.outputs import Outputs
 from flyby.core.source.execution.steps import Exit, Step
@@ -188,6 +190,7 @@ class Run:
     def statement(self, statement: Statement) -> None:
         if isinstance(statement, Move):
             self.driven.append(statement.name)
+            self.meter.move(self.span(statement))
             self.place = object()
         elif isinstance(statement, Set):
             self.data[statement.name] = statement.value(self.data)
@@ -405,7 +408,7 @@ def test_answers_say_when_an_open_way_out_is_taken() -> None:
 
 def test_an_answer_that_names_no_branch_is_refused() -> None:
     run = Run(Answers(branches={"toy:1": 2}, file="io.toml"))
-    with pytest.raises(SourceError, match=r"toy:1.*there are 1 branches, not 2"):
+    with pytest.raises(SourceError, match=r"toy:1.*there is 1 branch, not 2"):
         run.execute(If(SIGNAL, block(A)))
 
 

@@ -1,0 +1,331 @@
+"""When a loop ends that nothing known ends, see `flow`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Generic
+
+from ...errors import Span
+from .analysis import Analysis
+from .branches import Branches, Skip
+from .host import Host, Snapshot
+from .steps import NOTHING, Block, Exit
+
+FOLLOWED = 100
+"""Passes of a loop without a condition that gets on and moves the robot, after which a way out is
+taken that nobody can decide."""
+FOLLOWED_UNMOVED = 1000
+"""The same where it has a condition, which may well end it, or does not move the robot."""
+_UNMOVED = "does not move the robot, as nothing fulfils the conditions of its motion"
+
+
+def _nothing() -> None:
+    pass
+
+
+@dataclass(frozen=True, slots=True)
+class Loop(Generic[Block]):
+    """A loop.
+
+    Args:
+        body: what runs again and again.
+        span: in whose line the user answers how often it runs.
+        words: what messages call it, as the text does: ``WHILE TRUE``.
+        reads: names of the data that its condition reads.
+        asks: whether routines of the program have a part in its condition.
+        writes: names of the data that the loop itself steps on.
+        endless: whether no condition ends it.
+        labels: that stand in it beside those of its body.
+        ended: gives the data that its condition reads values with which it does not let the loop
+            go on, for a loop that is left though they say that it goes on.
+    """
+
+    body: Block
+    span: Span
+    words: str
+    reads: frozenset[str] = NOTHING
+    asks: bool = False
+    writes: frozenset[str] = NOTHING
+    endless: bool = False
+    labels: frozenset[str] = NOTHING
+    ended: Callable[[], None] = _nothing
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """What had happened in a run when a loop began.
+
+    Args:
+        skips: branches that were not taken.
+        asked: see `Outputs.mark`.
+        moves: that were read.
+    """
+
+    skips: int
+    asked: int
+    moves: int
+
+
+@dataclass(slots=True)
+class Passes(Generic[Block]):
+    """One execution of a loop.
+
+    Args:
+        start: when it began.
+
+    Attributes:
+        mark: in what is asked of outputs: since when this pass runs.
+        count: passes that have been read.
+        most: passes to be read, once it is found that nobody knows.
+        watched: names of the data that decide when it ends, as far as was known before this pass.
+        written: names of the data that a pass may write.
+        skips: branches that had not been taken when ``watched`` was found.
+        looked: whether the state before this pass is known; it is not where a jump is met first.
+        snapshot, turned, asked, place, held: this state: data, answers in turn, questions for the
+            position, the position, and outputs.
+        still: all data that a pass may write, while it has not moved the robot and might.
+        left_to_others: whether outputs that its condition reads have just been left to others: it
+            is to be asked again.
+    """
+
+    loop: Loop[Block]
+    start: Start
+    mark: int = field(init=False)
+    count: int = 0
+    most: int | None = None
+    snapshot: Snapshot | None = None
+    watched: frozenset[str] | None = NOTHING
+    written: frozenset[str] = NOTHING
+    skips: int = 0
+    looked: bool = False
+    turned: int = 0
+    asked: int = 0
+    place: object = None
+    held: dict[str, bool | float] = field(default_factory=dict)
+    still: Snapshot | None = None
+    left_to_others: bool = False
+
+    def __post_init__(self) -> None:
+        self.mark = self.start.asked
+
+
+class Endings(Generic[Block]):
+    """Decides when the loops of one run end.
+
+    Args:
+        analysis: of the program's statements.
+        host: the run.
+        branches: those that were not taken.
+    """
+
+    def __init__(self, analysis: Analysis[Block], host: Host, branches: Branches[Block]) -> None:
+        self._analysis = analysis
+        self._host = host
+        self._branches = branches
+
+    def start(self) -> Start:
+        """Now."""
+        host = self._host
+        return Start(self._branches.skips, host.outputs.mark(), host.meter.moves)
+
+    def most(self, passes: Passes[Block], reason: str) -> int:
+        """How often a loop runs whose condition is not known; asked once in an execution."""
+        if passes.most is None:
+            loop = passes.loop
+            moving = self._analysis.moves(loop.body)
+            passes.most = self._host.course.passes(loop.span, reason, moving, passes.count)
+        return passes.most
+
+    def look(self, passes: Passes[Block]) -> None:
+        """A pass begins: remember what decides when the loop ends, as it is now."""
+        host, loop = self._host, passes.loop
+        passes.mark = host.outputs.mark()
+        if not passes.looked or passes.skips != self._branches.skips:
+            passes.watched = self._deciding(passes)
+            passes.written = self._analysis.written(loop.body) | loop.writes
+            passes.skips = self._branches.skips
+            passes.looked = True
+        names = None if passes.watched is None else passes.watched & passes.written
+        some = names is None or names
+        passes.snapshot = host.snapshot(names, passes.written) if some else None
+        waiting = not self._has_moved(passes) and self._analysis.moves(loop.body)
+        passes.still = host.snapshot(passes.written, passes.written) if waiting else None
+        passes.turned = host.course.turned
+        passes.asked = host.position_asked
+        passes.place = host.place
+        passes.held = host.outputs.held()
+
+    def _has_moved(self, passes: Passes[Block]) -> bool:
+        """Whether a loop has moved the robot since it began."""
+        return self._host.meter.moves != passes.start.moves
+
+    def _may_come_to_move(self, passes: Passes[Block]) -> bool:
+        """Whether a loop that has not moved the robot changes data that its motion may need."""
+        if passes.count >= FOLLOWED:
+            return False
+        return not passes.looked or (passes.still is not None and passes.still.changed())
+
+    def _deciding(self, passes: Passes[Block]) -> frozenset[str] | None:
+        if passes.loop.asks:
+            return None
+        return self._analysis.deciding(passes.loop.body, passes.loop.reads, self._left_out(passes))
+
+    def _left_out(self, passes: Passes[Block]) -> frozenset[int]:
+        """Ids of the branches in a loop that were not taken since it began."""
+        skips = self._branches.open_in(passes.loop.body, passes.start.skips)
+        return frozenset(id(skip.block) for skip in skips)
+
+    def _gets_on(self, passes: Passes[Block]) -> bool:
+        """Whether a pass has changed what decides when a loop ends."""
+        host = self._host
+        if passes.looked:
+            if host.course.turned != passes.turned:
+                return True
+            if host.position_asked != passes.asked and host.place is not passes.place:
+                return True
+        read = host.outputs.asked_since(passes.mark)
+        held = host.outputs.held()
+        if any(held.get(name) != passes.held.get(name) for name in read):
+            return True
+        if passes.looked and passes.skips == self._branches.skips:
+            return passes.snapshot is not None and passes.snapshot.changed()
+        now = self._deciding(passes)
+        if not passes.looked or now != passes.watched:  # a branch was not taken meanwhile
+            written = self._analysis.written(passes.loop.body, self._left_out(passes))
+            return now is None or not now.isdisjoint(written | passes.loop.writes)
+        return passes.snapshot is not None and passes.snapshot.changed()
+
+    def _way_out(self, passes: Passes[Block]) -> Skip[Block] | None:
+        """The first branch that was not taken and would have ended a loop."""
+        skips = [*self._branches.open_in(passes.loop.body, passes.start.skips)]
+        for skip in skips:
+            if self._leaves(skip, passes.loop):
+                return skip
+        read = self._host.outputs.asked_since(passes.mark)
+        for skip in skips:
+            outputs = self._analysis.outputs_written(skip.block)
+            if read and (outputs is None or outputs & read):
+                return skip
+            written = self._analysis.written(skip.block)
+            if written and (passes.watched is None or written & passes.watched):
+                return skip
+        return None
+
+    def _leaves(self, skip: Skip[Block], loop: Loop[Block]) -> bool:
+        """Whether a branch may leave a loop, or the program."""
+        ways = self._analysis.ways_out(skip.block)
+        if not ways or skip.routine != self._branches.standing.routine:
+            return any(how is Exit.PROGRAM for how, _ in ways)
+        for how, label in ways:
+            if how is Exit.LOOP and skip.loop != self._branches.standing.loop:
+                continue
+            if how is Exit.JUMP and label in self._analysis.marks(loop.body) | loop.labels:
+                continue
+            if how is not Exit.PASS:
+                return True
+        return False
+
+    def left(self, passes: Passes[Block], run: Callable[[Block], bool]) -> bool:
+        """Whether a loop is left after a pass though its condition lets it go on."""
+        host, loop = self._host, passes.loop
+        moving = self._analysis.moves(loop.body)
+        moved = self._has_moved(passes)
+        answer = host.course.answered_passes(loop.span)
+        if loop.endless and not self._has_way_out(loop):
+            waiting = moving and not moved and answer is None
+            if not (waiting and self._may_come_to_move(passes)):
+                self._endless(passes, moving, answer)
+            return False
+        gets_on = self._gets_on(passes)
+        skip = self._way_out(passes)
+        if skip is not None:
+            followed = FOLLOWED if moving and loop.endless else FOLLOWED_UNMOVED
+            if gets_on and answer is None and passes.count < followed:
+                return False
+            if passes.most is None:
+                passes.most = host.course.passes(
+                    loop.span, skip.reason, True, passes.count, leaves=True
+                )
+            if passes.count < passes.most:
+                return False
+            self._leave_by(skip, loop, run)
+            if not self._leaves(skip, loop):
+                loop.ended()
+            return True
+        if gets_on:
+            return False
+        if self._left_to_others(passes):
+            passes.left_to_others = True
+            passes.mark = host.outputs.mark()
+            return False
+        if moved or (answer is not None and moving):
+            self._endless(passes, moving, answer)
+            return False
+        if moving and self._may_come_to_move(passes):
+            return False
+        self._satisfy(loop, moving, run)
+        return True
+
+    def _satisfy(self, loop: Loop[Block], moving: bool, run: Callable[[Block], bool]) -> None:
+        """Leave a loop that waits for others."""
+        what = f"{_UNMOVED}, and only waits" if moving else "only waits"
+        self._host.note_once(
+            f"waits {loop.span.file}:{loop.span.start}",
+            f"the loop ({loop.words}) {what} for what the program does not change itself: it is "
+            "taken as satisfied at once",
+            loop.span,
+        )
+        way = self._known_way(loop.body) if loop.endless else None
+        if way is not None:
+            run(way)
+        loop.ended()
+
+    def _has_way_out(self, loop: Loop[Block]) -> bool:
+        inside = self._analysis.marks(loop.body) | loop.labels
+        return any(
+            how is not Exit.PASS and (how is not Exit.JUMP or label not in inside)
+            for how, label in self._analysis.ways_out(loop.body)
+        )
+
+    def _known_way(self, block: Block) -> Block | None:
+        """The first branch in a loop without a condition that leaves it."""
+        for step in self._analysis.steps(block):
+            for inner in step.inner:
+                leads = self._analysis.leads_to(inner)
+                if leads is not None and leads > (Exit.LOOP if step.loop else Exit.PASS):
+                    return inner
+                found = None if step.loop else self._known_way(inner)
+                if found is not None:
+                    return found
+        return None
+
+    def _leave_by(self, skip: Skip[Block], loop: Loop[Block], run: Callable[[Block], bool]) -> None:
+        """Carry out the way out that was not taken."""
+        if skip.routine == self._branches.standing.routine:
+            run(skip.block)
+        elif any(how is Exit.PROGRAM for how, _ in self._analysis.ways_out(skip.block)):
+            self._host.finish(f"the program is left by what depends on {skip.reason}", loop.span)
+
+    def _left_to_others(self, passes: Passes[Block]) -> bool:
+        """Whether a loop has read outputs that only others can change; they have from now on."""
+        outputs = self._host.outputs
+        asked = outputs.asked_since(passes.mark)
+        written = self._analysis.outputs_written(passes.loop.body)
+        if not asked or written is None or asked & written:
+            return False
+        outputs.forget(asked)
+        return True
+
+    def _endless(self, passes: Passes[Block], moving: bool, answer: int | None) -> None:
+        """End the program, if enough of an endless loop has been read."""
+        if passes.count < (answer or 1):
+            return
+        loop = passes.loop
+        words, what = f"({loop.words})", "the program ends there"
+        if moving and self._has_moved(passes):
+            once = passes.count == 1
+            what = "one pass is read" if once else f"{passes.count} passes are read"
+        elif moving:
+            words = f"{words} that {_UNMOVED}"
+        self._host.finish(f"the program is an endless loop {words}: {what}", loop.span)

@@ -1,0 +1,76 @@
+"""What the rules for branches and loops need of the run of a program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NoReturn, Protocol
+
+from ...errors import Span
+from .answers import Course
+from .limits import Meter
+from .outputs import Outputs
+
+
+@dataclass(frozen=True, slots=True)
+class Undecided:
+    """What a condition is that only the running controller knows.
+
+    Args:
+        reason: what it depends on.
+    """
+
+    reason: str
+
+
+class Snapshot(Protocol):
+    """Data as they were."""
+
+    def changed(self) -> bool:
+        """Whether some datum has another value now."""
+        ...
+
+
+class Host(Protocol):
+    """The run of a program, as far as branches and loops need it."""
+
+    @property
+    def course(self) -> Course:
+        """Decides, and remembers what was decided."""
+        ...
+
+    @property
+    def meter(self) -> Meter:
+        """Counts what is executed."""
+        ...
+
+    @property
+    def outputs(self) -> Outputs:
+        """What the program has set its outputs to."""
+        ...
+
+    @property
+    def position_asked(self) -> int:
+        """How often the program has asked where the robot stands."""
+        ...
+
+    @property
+    def place(self) -> object:
+        """Where the robot stands: another object after every move to another place."""
+        ...
+
+    def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
+        """Data as they are now.
+
+        Args:
+            names: of the data, found from where the program stands; None for all data.
+            written: names of the data that may be written meanwhile, by routines too.
+        """
+        ...
+
+    def note_once(self, kind: str, message: str, span: Span) -> None:
+        """A note, unless one of its kind was taken before."""
+        ...
+
+    def finish(self, message: str, span: Span) -> NoReturn:
+        """End the program here, with a note."""
+        ...
