@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..core.display import counted
 from ..tasks.catalogue import registry, vendor_of
-from ..tasks.options.texts import axis_units
 from .console import print_json, print_rich, print_table
 
 if TYPE_CHECKING:
@@ -101,24 +101,12 @@ def _robot_json(robot: Robot, vendor: Vendor) -> dict[str, Any]:
 
 
 def _print_robot(robot: Robot, vendor: Vendor) -> None:
+    from ..core.robot.joint import COLUMNS
+
     payload = "payload not known" if robot.payload is None else f"payload {robot.payload:g} kg"
-    print_rich(f"{robot.name}: {robot.arm_size} joints, {payload}")
+    print_rich(f"{robot.name}: {counted(robot.joints, 'joint')}, {payload}")
     reason = _reason(robot, vendor)
     if reason is not None:
         print_rich(f"Emulation only: {reason}")
-    columns = (
-        ("joint", "left"),
-        ("lower", "right"),
-        ("upper", "right"),
-        ("velocity /s", "right"),
-        ("acceleration /s²", "right"),
-        ("effort", "right"),
-    )
-    rows = []
-    for joint, (unit, scale) in zip(robot.joints, axis_units(robot), strict=False):
-        figures = (joint.lower, joint.upper, joint.velocity, joint.acceleration)
-        force = "N m" if unit == "°" else "N"
-        effort = "" if joint.effort is None else f"{joint.effort:g} {force}"
-        rows.append((joint.name, *(f"{value / scale:.6g} {unit}" for value in figures), effort))
-    print_table(columns, rows)
+    print_table(COLUMNS, [joint.cells() for joint in robot.joints])
     print_table((("figures", "left"), ("origin", "left")), list(robot.origins.items()))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..core.display import counted
 from ..tasks.compare import CompareOptions, compare_with
 from ..tasks.files.outputs import check_outputs, picture_kind, write_all
 from .console import print_json, print_rich, print_table, progress, warn
@@ -72,7 +73,7 @@ def _tell(found: Comparison) -> None:
         "than at the start",
         f"{len(aligned.rows)} of {len(log.t)} samples compared, every {1e3 * log.period:.3g} ms "
         f"(jitter {1e3 * log.jitter:.2g} ms); {len(log.torn)} off the path, {len(log.held)} held, "
-        f"{len(log.holes)} holes",
+        f"{counted(log.holes, 'hole')}",
     )
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from ..core.door import called
 from ..core.errors import FlybyError, Note
 from ..tasks.files.not_executed import not_executed_notes, refuse_not_executed
 from ..tasks.files.outputs import check_outputs, write_in
@@ -126,7 +127,7 @@ class OtherVendor:
             notes = [replace(note, message=f"for {robot}: {note.message}") for note in losses]
             notes.append(
                 Note(
-                    f"nothing is proven of the program for {robot}: 'flyby optimize' proves it "
+                    f"nothing is proven of the program for {robot}: {called('optimize')} proves it "
                     "with a cell of that robot"
                 )
             )

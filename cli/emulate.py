@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..core.errors import InputError
+from ..core.errors import OptionError
 from ..core.source.write.options import OpaqueStyle
 from ..tasks.emulate import EmulateOptions, emulate_with
 from ..tasks.files.outputs import check_outputs, picture_kind, write_all
@@ -65,7 +65,7 @@ def emulate(
     """Drive a program as the robot's controller would: cycle time, path, what limits each move."""
     files = _Files(csv, npz, plot, write)
     if opaque is not None and write is None:
-        raise InputError(f"--opaque {opaque} is of the program that --write writes: name its file")
+        raise OptionError(f"--opaque {opaque} is of the program that --write writes: name its file")
     if plot is not None:
         picture_kind(plot, "--plot")
     outputs = files.by_option()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..core.display import counted
 from ..tasks.experiment import ExperimentOptions, experiment_with
 from ..tasks.files.outputs import check_folder, check_outputs, write_in
 from .console import print_json, print_rich, print_table, progress, warn
@@ -27,8 +28,7 @@ def experiment(
 ) -> None:
     """Design test motions for a robot in its cell, and write programs that log themselves."""
     check_folder("--out", out)
-    named = (options.cell, options.motion)
-    inputs = [Path(file) for file in named if isinstance(file, str | Path)]
+    inputs = options.inputs()
     if out.is_dir():
         from ..tasks.results.experiments import PAGE, PICTURE
 
@@ -53,8 +53,8 @@ def _tell(found: DesignedExperiment, out: Path) -> None:
     for note in made.notes:
         warn(note)
     print_rich(
-        f"{len(made.runs)} runs for {made.robot.name}, {made.seconds / 60:.0f} min at the robot; "
-        f"{len(made.skipped)} are not possible, {len(made.unused)} had no time: see {PAGE}",
+        f"{counted(made.runs, 'run')} for {made.robot.name}, {made.seconds / 60:.0f} min at the "
+        f"robot; not possible: {len(made.skipped)}, without time: {len(made.unused)}: see {PAGE}",
         f"wrote {out}",
     )
 

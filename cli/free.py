@@ -41,8 +41,7 @@ def free(
     What is found is a sampled motion, no robot code. The exit status is 1 if it is not proven to
     keep its clearance.
     """
-    inputs = [options.cell, options.motion, options.motors]
-    _check(csv, plot, [Path(file) for file in inputs if isinstance(file, str | Path)], force)
+    _check(csv, plot, options.inputs(), force)
     with progress("reading the robot") as say:
         found = free_motion_with(start, goal, replace(options, report=say))
         written = _write(found, csv, plot)
@@ -88,10 +87,7 @@ def tune(
 
     What is found is a sampled motion, no robot code: a program has one speed a move.
     """
-    inputs = [program, *source.inputs()]
-    if isinstance(options.motors, str | Path):
-        inputs.append(Path(options.motors))
-    _check(csv, plot, inputs, force)
+    _check(csv, plot, [program, *source.inputs(), *options.inputs()], force)
     with progress("reading the program") as say:
         found = tune_with(read_with(program, source), replace(options, report=say))
         written = _write(found, csv, plot)

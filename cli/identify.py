@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..core.display import counted
 from ..core.errors import InputError
 from ..tasks.files.outputs import check_outputs, write_all
 from ..tasks.identify import IdentifyOptions, identify_with
@@ -67,7 +68,9 @@ def identify(
         print_json(_json(made.fit, list(made.outcomes), judged, list(made.scores)))
     else:
         if made.found.others:
-            warn(f"{made.found.others} runs of other robots in these folders are passed over")
+            warn(
+                f"{counted(made.found.others, 'run')} of other robots in these folders passed over"
+            )
         for note in made.notes:
             warn(note)
         _tell(made)
@@ -88,7 +91,7 @@ def _tell(made: IdentifiedModel) -> None:
     print_table(
         PARAMETER_COLUMNS,
         made.parameter_rows(),
-        f"fitted to {len(each)} runs: loss {fitted.before:.4g} → {fitted.after:.4g}",
+        f"fitted to {counted(each, 'run')}: loss {fitted.before:.4g} → {fitted.after:.4g}",
     )
     print_table(RUN_COLUMNS, made.run_rows(), "log less emulation, before → after")
     clocks = {

@@ -6,10 +6,10 @@ import logging
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
-from ..core.errors import FlybyError
-from ..tasks.options.door import command_line
+from ..core.door import command_line
+from ..core.errors import FlybyError, OptionError
 from .catalogue import robots, vendors
 from .check import check
 from .compare import compare
@@ -31,8 +31,23 @@ LONGEST_NAME = 300
 NUMBERS_MAY_BE_NEGATIVE = {"ignore_unknown_options": True}
 
 
+class Command(TyperCommand):
+    """A command whose help shows no type behind what takes no value."""
+
+    def get_params(self, ctx: Any) -> Any:
+        """All parameters."""
+        found = super().get_params(ctx)
+        for parameter in found:
+            if getattr(parameter, "is_flag", False):
+                parameter.metavar = ""
+        return found
+
+
 class Commands(TyperGroup):
-    """The commands; an error that a user can cause ends them with one message and status 1."""
+    """The commands; an error that a user can cause ends them with one message and status 1 or 2.
+
+    It is 2 where what was typed is wrong by itself, whatever the files hold.
+    """
 
     def invoke(self, ctx: Any) -> Any:
         """Run the chosen command."""
@@ -44,7 +59,7 @@ class Commands(TyperGroup):
                 return super().invoke(ctx)
         except FlybyError as error:
             fail(str(error))
-            raise typer.Exit(1) from None
+            raise typer.Exit(2 if isinstance(error, OptionError) else 1) from None
         except OSError as error:  # a name that the system does not take, a disk that fails
             if error.filename is None:
                 raise
@@ -61,23 +76,13 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-app.command()(emulate)
-app.command()(check)
-app.command()(translate)
-app.command()(record)
-app.command()(experiment)
-app.command()(compare)
-app.command()(identify)
-app.command()(zones)
-app.command()(optimize)
-app.command()(pareto)
-app.command()(free)
-app.command()(tune)
-app.command()(paint)
-app.command()(robots)
-app.command()(vendors)
-app.command(context_settings=NUMBERS_MAY_BE_NEGATIVE)(fk)
-app.command(context_settings=NUMBERS_MAY_BE_NEGATIVE)(ik)
+for command in (
+    *(emulate, check, translate, record, experiment, compare, identify, zones),
+    *(optimize, pareto, free, tune, paint, robots, vendors),
+):
+    app.command(cls=Command)(command)
+for command in (fk, ik):
+    app.command(cls=Command, context_settings=NUMBERS_MAY_BE_NEGATIVE)(command)
 
 
 def _version(wanted: bool) -> None:

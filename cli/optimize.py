@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..core.errors import InputError
+from ..core.errors import OptionError
 from ..tasks.files.outputs import check_outputs, picture_kind, write_all
 from ..tasks.files.places import FilePlaces
 from ..tasks.files.source_places import place_json, short_place
@@ -94,12 +94,12 @@ def optimize(
 
 def _check_places(out: Path | None, in_place: bool, vias: str, other: str | None) -> None:
     if in_place and vias == CHANGE:
-        raise InputError(
+        raise OptionError(
             "--in-place and --vias change: with other via points the program is written anew: name "
             "a folder by --out"
         )
     if other is not None and out is None:
-        raise InputError(
+        raise OptionError(
             f"--vendor {other}: its code goes beside the program's own: name a folder by --out"
         )
 
@@ -181,8 +181,7 @@ def _rise_and_turn(point: Moved | None) -> tuple[str, str]:
 
 
 def _zone(before: Move | None, move: Move) -> str:
-    from ..core.program.zone import Radius
-    from .zones import zone_shown
+    from ..core.program.zone import Radius, zone_shown
 
     def shown(zone: Zone) -> str:
         return f"{1e3 * zone.tcp:.5g} mm" if isinstance(zone, Radius) else zone_shown(zone)

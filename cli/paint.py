@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..core.display import counted
 from ..tasks.files.outputs import check_folder, check_outputs, write_in
 from ..tasks.files.source_places import note_json
 from ..tasks.paint import paint_with
@@ -43,8 +44,7 @@ def paint(
 
     Without --robot or --cell there is no program: curve, thickness and pictures alone.
     """
-    named = (part, footprint, options.cell, options.motion)
-    inputs = [Path(file) for file in named if isinstance(file, str | Path)]
+    inputs = [part, footprint, *options.inputs()]
     check_folder("--out", out)
     if out is not None and out.is_dir():
         check_outputs({"--out": [out / name for name in PICTURES]}, inputs, force)
@@ -75,7 +75,7 @@ def _tell(found: PaintedPart, written: Sequence[Path]) -> None:
     print_table(COLUMNS, found.rows(), f"target {painting.judge.target / MICRON:g} µm")
     if source.fit is not None:
         print_rich(
-            f"footprint fitted to {len(source.strokes)} strokes: off by "
+            f"footprint fitted to {counted(source.strokes, 'stroke')}: off by "
             f"{source.fit.rms / MICRON:.2g} µm (rms), {source.fit.largest / MICRON:.2g} µm at most"
         )
     gap = painting.speeds.duality_gap
@@ -90,10 +90,10 @@ def _tell(found: PaintedPart, written: Sequence[Path]) -> None:
         if made.certificate is not None:
             say = print_rich if made.certificate.proven else warn
             say(str(made.certificate))
-            from ..core.cell.floor import FLOOR, LIFT
+            from ..core.cell.floor import FLOOR, lifted
 
             if not made.certificate.proven and FLOOR in made.certificate.message:
-                warn(LIFT)
+                warn(lifted())
     for path in written:
         print_rich(f"wrote {path}")
 

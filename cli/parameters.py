@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -10,10 +11,12 @@ from typing import Annotated, Any, get_type_hints
 
 import typer
 
-from ..tasks.options.door import flag_of
+from ..core.door import command_line, flag_of
 from ..tasks.options.entries import Entry, TaskOptions, defaults, entries
 
 _DIGITS = 12
+_SEVERAL = 3
+"""Options of a class from which on help shows them apart."""
 
 
 def with_options(command: Callable[..., None]) -> Callable[..., None]:
@@ -62,18 +65,24 @@ def _parameter(kind: type[TaskOptions], name: str) -> inspect.Parameter:
         hint = hint | None
     elif entry.kind is float and default is not inspect.Parameter.empty:
         default = float(f"{default / entry.scale.factor:.{_DIGITS}g}")
-    option = typer.Option(
-        entry.flag or flag_of(name),
-        help=entry.help,
-        metavar=entry.metavar,
-        min=entry.extent.least if entry.ranged else None,
-    )
+    with command_line():
+        option = typer.Option(
+            entry.flag or flag_of(name), help=entry.explained, rich_help_panel=_panel(kind, name)
+        )
     return inspect.Parameter(
         name,
         inspect.Parameter.KEYWORD_ONLY,
         default=default,
         annotation=Annotated[hint, option],
     )
+
+
+def _panel(kind: type[TaskOptions], name: str) -> str | None:
+    """What the class that states an option is about, if it states several."""
+    owner = next(one for one in kind.__mro__ if name in one.__annotations__)
+    own = [o for o in entries(kind) if o in owner.__annotations__]
+    about = re.split(r"[.;:]", owner.__doc__ or "")[0]
+    return about if len(own) >= _SEVERAL else None
 
 
 def _value(kind: type[TaskOptions], name: str, typed: Any) -> Any:

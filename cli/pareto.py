@@ -44,8 +44,7 @@ def pareto(
     With --out each gets a folder: point-1 is the fastest. In a cell each is proven to keep its
     clearance, as read from its text.
     """
-    motors = [Path(options.motors)] if isinstance(options.motors, str | Path) else []
-    inputs = [program, *source.inputs(), *motors]
+    inputs = [program, *source.inputs(), *options.inputs()]
     check_folder("--out", out)
     if plot is not None:
         picture_kind(plot, "--plot")

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..core.errors import InputError
+from ..core.display import counted
+from ..core.errors import OptionError
 from ..tasks.catalogue import registry
 from ..tasks.files.outputs import check_folder, write_in
 from ..tasks.files.source_places import note_json, short_place
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from ..core.robot.model import Robot
     from ..core.translation.translate import Translation
 
-COLUMNS = (("line", "left"), ("what could not be carried over", "left"))
 LINES_WIDTH = 30
 """Characters of a row of line numbers."""
 
@@ -48,7 +48,7 @@ def translate(
     check_folder("--out", out)
     if old is None and cell is None:
         vendor = registry().reader_of(program).name
-        raise InputError(
+        raise OptionError(
             f"which robot is {program} for now? Give --from ('flyby robots {vendor}' lists those "
             f"of {vendor}) or --cell: corners and times are taken from its motion"
         )
@@ -75,10 +75,12 @@ def _tell(
     for note in made.losses:
         alike.setdefault(note.message, []).append(note)
     if alike:
-        print_table(COLUMNS, [(_lines(program, notes), what) for what, notes in alike.items()])
+        from ..core.translation.translate import LOSSES
+
+        print_table(LOSSES, [(_lines(program, notes), what) for what, notes in alike.items()])
     count = len(made.losses)
     lost = "everything was carried over" if not count else f"{count} could not be carried over"
-    print_rich(f"{len(made.program.moves)} moves for {robot.name}: {lost}")
+    print_rich(f"{counted(made.program.moves, 'move')} for {robot.name}: {lost}")
     for path in written:
         print_rich(f"wrote {path}")
     if not written:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..core.program.zone import zone_shown
 from ..tasks.files.places import FilePlaces
 from ..tasks.files.source_places import place_json, short_place
 from ..tasks.read import SourceOptions, read_with
@@ -22,7 +22,6 @@ from .solution_report import solution_json, tell_solution
 
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell
-    from ..core.program.zone import Zone
     from ..problems.improve.zones.changes import ZoneChange
     from ..problems.improve.zones.maximize import ZoneSolution
 
@@ -81,20 +80,6 @@ def _row(program: Path, change: ZoneChange) -> tuple[str, ...]:
         zone_shown(change.after),
         change.limit,
     )
-
-
-def zone_shown(zone: Zone) -> str:
-    """A zone in the units of the shop floor."""
-    from ..core.program.zone import Angle, ContourFraction, Radius
-
-    match zone:
-        case Radius(tcp):
-            return zone.name or f"{1e3 * tcp:.5g} mm"
-        case ContourFraction(fraction):
-            return f"{100 * fraction:.3g} %"
-        case Angle(angle):
-            return f"{math.degrees(angle):.4g}°"
-    return "fine"
 
 
 def _json(made: ZoneSolution, cell: Cell, written: Sequence[Path]) -> dict[str, Any]:

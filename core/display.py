@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sized
 
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
@@ -13,3 +14,25 @@ def shown(text: str) -> str:
     Line feeds and tabs stay.
     """
     return _CONTROL.sub("\ufffd", text)
+
+
+MOST = 120
+"""Characters of a value that shows itself in a line."""
+
+
+def counted(what: int | Sized, one: str, more: str | None = None) -> str:
+    """A number of things: ``no notes``, ``1 note``, ``2 axes``.
+
+    Args:
+        what: how many, or the things.
+        one: what one of them is called.
+        more: what several are called, where it is not simply that with an s.
+    """
+    count = what if isinstance(what, int) else len(what)
+    return f"{count or 'no'} {one if count == 1 else more or one + 's'}"
+
+
+def in_line(text: str) -> str:
+    """How a value shows itself: ``<text>`` in one line, cut with a sign where it is too long."""
+    line = " ".join(shown(text).split())
+    return f"<{line if len(line) <= MOST - 2 else line[: MOST - 3] + '…'}>"

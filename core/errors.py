@@ -19,6 +19,10 @@ class InputError(FlybyError):
     """A value, file or option from outside cannot be used."""
 
 
+class OptionError(InputError):
+    """An option or an argument that is wrong by itself, whatever the files hold."""
+
+
 class UnknownNameError(InputError):
     """A name that nothing answers to; the message offers the nearest known ones.
 

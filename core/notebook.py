@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from typing import TYPE_CHECKING
 
 from .display import shown
@@ -26,7 +27,7 @@ class Curve:
     """A curve of a picture.
 
     Args:
-        name: what it is.
+        name: what it is; those of one name have one colour.
         points: (P, 3) m in the world, or (P, 2) in any units.
         marks: (M, 3) or (M, 2), points of it that are marked.
     """
@@ -64,7 +65,7 @@ def picture(curves: Sequence[Curve], units: str = "m") -> str:
     import numpy as np
 
     every = np.concatenate([curve.points for curve in curves])
-    axes, names = _seen(every)
+    axes, plane = _seen(every)
     low, high = every[:, axes].min(axis=0), every[:, axes].max(axis=0)
     reach = np.maximum(high - low, 1e-9)
     size = np.array([WIDTH, HEIGHT]) - 2 * MARGIN
@@ -76,15 +77,16 @@ def picture(curves: Sequence[Curve], units: str = "m") -> str:
         at[:, 1] = HEIGHT - at[:, 1]
         return np.asarray(at)
 
+    names = dict.fromkeys(curve.name for curve in curves)
+    colours = dict(zip(names, cycle(_COLOURS)))
     drawn = [
-        _drawn(placed(_thinned(curve.points)), curve, _COLOURS[k % len(_COLOURS)], placed)
-        for k, curve in enumerate(curves)
+        _drawn(placed(_thinned(curve.points)), curve, colours[curve.name], placed)
+        for curve in curves
     ]
     legend = "; ".join(
-        f'<tspan fill="{_COLOURS[k % len(_COLOURS)]}">{_text(curve.name)}</tspan>'
-        for k, curve in enumerate(curves)
+        f'<tspan fill="{colour}">{_text(name)}</tspan>' for name, colour in colours.items()
     )
-    told = f"{names}{reach[0]:.3g} × {reach[1]:.3g} {units}"
+    told = f"{plane}{reach[0]:.3g} × {reach[1]:.3g} {units}"
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT + 16}" '
         f'viewBox="0 0 {WIDTH} {HEIGHT + 16}" font-family="sans-serif" font-size="10">'

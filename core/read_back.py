@@ -22,7 +22,7 @@ from .source.execution.answers import Answers
 from .source.execution.limits import ExecutionLimits
 from .source.patch.edits import alike
 from .source.reading import Reading, ReadOptions
-from .source.write.options import AS_COMMENTS
+from .source.write.options import as_comments
 from .spatial.pose import Pose
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ def check_alone(
             raise InputError(
                 f"program {program.name!r} cannot be written anew: its text would not be read "
                 f"again ({str(error).replace(folder, '')}); patch its own files, or make kept "
-                f"statements comments ({AS_COMMENTS})"
+                f"statements comments ({as_comments()})"
             ) from None
     _compare_moves(program, again)
     if waits:
@@ -107,7 +107,7 @@ def _refusal(program: Program, index: int, what: str) -> MotionError:
     return MotionError(
         f"written anew, the program has {what} here than it has been driven with: a statement that "
         f"is kept moves the robot, or sets what moves depend on; make kept statements comments "
-        f"({AS_COMMENTS}), or patch the program's own files",
+        f"({as_comments()}), or patch the program's own files",
         index,
         None if origin is None else origin.statement,
     )

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
+from .display import counted, in_line
 from .errors import InputError, UnknownNameError
 from .language import Language, Patcher, Reader, Recorder, Sources, Writer
 
@@ -83,7 +84,7 @@ class Vendor:
 
     def __repr__(self) -> str:
         reads = f", reads {' '.join(self.suffixes)}" if self.suffixes else ""
-        return f"<Vendor {self.name}: {len(self.robots)} robots{reads}>"
+        return in_line(f"Vendor {self.name}: {counted(self.robots, 'robot')}{reads}")
 
     def robot(self, name: str) -> Robot:
         """The robot ``name``, with or without the vendor's own name before it.

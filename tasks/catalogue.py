@@ -7,6 +7,8 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .options.kinds import refuse_others
+
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell
     from ..core.registry import Registry
@@ -33,6 +35,7 @@ def robot(name: str) -> Robot:
     Raises:
         UnknownNameError: there is none.
     """
+    refuse_others("name", name, "str")
     return registry().find_robot(name)
 
 
@@ -44,6 +47,7 @@ def robots(vendor: str | None = None) -> tuple[str, ...]:
     """
     if vendor is None:
         return registry().robot_names
+    refuse_others("vendor", vendor, "str")
     found = registry().find_vendor(vendor)
     return tuple(f"{found.name}/{model}" for model in sorted(found.robots))
 
@@ -74,4 +78,5 @@ def cell(file: str | Path) -> Cell:
     """
     from ..core.cell.file import load_cell
 
+    refuse_others("file", file, "str | Path")
     return load_cell(Path(file), registry())

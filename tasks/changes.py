@@ -7,10 +7,10 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from ..core.errors import InputError
+from ..core.door import spelt, switched
+from ..core.errors import InputError, OptionError
 from .files.not_executed import not_executed_notes
 from .options import texts
-from .options.door import spelt, switched
 from .options.entries import ANGLE, COUNT, DISTANCE, NOT_NEGATIVE, Extent, number, value
 from .setup import RobotOptions, Setup, like, start_of
 
@@ -29,10 +29,10 @@ ALL = "all"
 
 @dataclass(frozen=True, kw_only=True)
 class ChangeOptions(RobotOptions):
-    """What must stay and what must be kept, of every program that is changed in a cell."""
+    """What must stay and what must be kept; of every program that is changed in a cell."""
 
     clearance: float | None = number(
-        None, "Clearance to keep, mm; the cell's own if unset.", DISTANCE, NOT_NEGATIVE
+        None, "Clearance to keep, {unit}; the cell's own if unset.", DISTANCE, NOT_NEGATIVE
     )
     free: Sequence[int | str] = value(
         (),
@@ -63,8 +63,8 @@ class WaypointOptions(ChangeOptions):
     )
     tilt: float = number(
         0.0,
-        "Degrees by which the tool may be turned at via points; 180 for as it likes. Without it, "
-        "what the tool holds stays as it is turned.",
+        "By how much the tool may be turned at via points, {unit}; half a turn for as it likes. "
+        "Without it, what the tool holds stays as it is turned.",
         ANGLE,
         Extent(0.0, 180.0),
     )
@@ -151,7 +151,7 @@ def weight(objective: Any, name: str) -> float:
     except (TypeError, ValueError):
         found = math.nan
     if not 0.0 <= found <= 1.0:
-        raise InputError(f"{name} {objective}: time, energy or a weight between 0 and 1")
+        raise OptionError(f"{name} {objective}: time, energy or a weight between 0 and 1")
     return found
 
 
@@ -218,11 +218,11 @@ def freed_stops(program: Program, free: Sequence[int | str], kept: Collection[in
         return [i for i in passable_stops(program) if i not in kept]
     wrong = [text for text in free if not str(text).isdecimal()]
     if wrong:
-        raise InputError(f"{spelt('free')} {wrong[0]}: the number of a move, or {ALL!r}")
+        raise OptionError(f"{spelt('free')} {wrong[0]}: the number of a move, or {ALL!r}")
     freed = [move_index(program, text, "free") for text in free]
     for i in freed:
         if i in kept:
-            raise InputError(
+            raise OptionError(
                 f"{spelt('free')} {i + 1}: {spelt('keep')} has this stop stay; give one of them"
             )
     return freed
@@ -245,7 +245,7 @@ def _limits(
         elif which.isdecimal():
             by_move[move_index(program, which, "limit")] = limit
         else:
-            raise InputError(f"{spelt('limit')} {text}: {_LIMITS}")
+            raise OptionError(f"{spelt('limit')} {text}: {_LIMITS}")
     return by_move, for_all
 
 
@@ -256,9 +256,9 @@ def _limit(how: str, text: str) -> PointLimit:
     option = f"{spelt('limit')} {text}"
     numbers = texts.numbers(sizes, option) if sizes else ()
     if any(number < 0.0 for number in numbers):
-        raise InputError(f"{option}: ranges are zero or more")
+        raise OptionError(f"{option}: ranges are zero or more")
     if kind == "cone" and any(number >= 180.0 for number in numbers):
-        raise InputError(f"{option}: a cone's angle is below 180°")
+        raise OptionError(f"{option}: a cone's angle is below 180°")
     match kind, len(numbers):
         case "fixed", 0:
             return Fixed()
@@ -272,7 +272,7 @@ def _limit(how: str, text: str) -> PointLimit:
             return Box(joints=(math.radians(numbers[0]),) * _MOST_JOINTS)
         case "cone", 1:
             return Cone(math.radians(numbers[0]))
-    raise InputError(f"{option}: {_LIMITS}")
+    raise OptionError(f"{option}: {_LIMITS}")
 
 
 def _speed(program: Program, name: str) -> str:

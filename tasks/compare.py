@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core.errors import InputError
+from ..core.display import counted
+from ..core.door import called, spelt
+from ..core.errors import InputError, OptionError
 from .catalogue import registry
-from .options.door import spelt
 from .options.entries import value
 from .options.keywords import by_keywords
 from .options.texts import joint_target
@@ -37,11 +38,6 @@ class CompareOptions(SourceOptions):
         None, "Names the log's columns and their units (TOML).", kind=Path
     )
 
-    def inputs(self) -> list[Path]:
-        """All files that are named here."""
-        own = [Path(file) for file in (self.log, self.columns) if file is not None]
-        return [*super().inputs(), *own]
-
 
 def compare_with(program: Program | str | Path, options: CompareOptions) -> Comparison:
     """Hold a controller's log against the emulation of its program: in space and in time.
@@ -53,7 +49,7 @@ def compare_with(program: Program | str | Path, options: CompareOptions) -> Comp
         InputError: no log is named, it cannot be read, or is another program's.
     """
     setup, run = _load(program, options)
-    options.say(f"emulating {len(run.program.moves)} moves")
+    options.say(f"emulating {counted(run.program.moves, 'move')}")
     found, scale = _compared(setup, run, options)
     from .results.comparison import Comparison
 
@@ -85,7 +81,7 @@ def _load(program: Program | str | Path, options: CompareOptions) -> tuple[Setup
     if options.log is None:
         name = program if isinstance(program, str | Path) else program.name
         behind = "Name it behind" if spelt("log") != "log" else "Give log= for"
-        raise InputError(f"which log? {behind} {name}")
+        raise OptionError(f"which log? {behind} {name}")
     if isinstance(program, str | Path):
         program = read_with(program, options)
     setup = setup_of_program(program)
@@ -121,6 +117,7 @@ def _told(compared: Prediction, scale: TimeScale | None, turn: ArcTurn) -> list[
     if compared.turn is not None and compared.turn is not turn:
         told.append(
             f'{compared.name}: along arcs the tool turns as arc.turn = "{compared.turn}" says, '
-            f'not "{turn}" as the motion model does: so it was emulated. flyby identify writes it'
+            f'not "{turn}" as the motion model does: so it was emulated. '
+            f"{called('identify')} writes it"
         )
     return told

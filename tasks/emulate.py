@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..core.display import counted
 from .options.entries import TIME, Extent, number
 from .options.keywords import by_keywords
 from .setup import RobotOptions, start_of, with_setup
@@ -43,7 +44,7 @@ def emulate_with(program: Program, options: EmulateOptions) -> Run:
     from .results.runs import Run
 
     program, setup = with_setup(program, options)
-    options.say(f"emulating {len(program.moves)} moves")
+    options.say(f"emulating {counted(program.moves, 'move')}")
     run = Controller(setup.vendor, setup.robot).run(program, start_of(program), options.period)
     return Run.of(run, setup.robot)
 

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ..core.errors import InputError
+from ..core.door import given, spelt
+from ..core.errors import OptionError
 from .options import texts
-from .options.door import given, spelt
 from .options.entries import (
     ANGLE,
     COUNT,
@@ -35,7 +35,7 @@ class ExperimentOptions(CellOptions):
 
     tool: str | None = value(None, "Tool of the cell that is mounted; the flange if unset.")
     minutes: float = number(
-        60.0, "Time at the robot; the most informative runs that fit are chosen.", NUMBER
+        60.0, "Minutes at the robot; the most informative runs that fit are chosen.", NUMBER
     )
     overhead: float = number(60.0, "Seconds that a run takes beside its motion.", TIME)
     postures: int = number(3, "How many postures to look for.", COUNT)
@@ -43,18 +43,19 @@ class ExperimentOptions(CellOptions):
         (),
         "A posture instead: axis values in degrees; may be given several times.",
         several=True,
+        numbers="rad and m",
     )
     angles: str | Sequence[float] | None = value(
-        None, "Changes of direction at corners, degrees: 30,90,150."
+        None, "Changes of direction at corners, degrees: 30,90,150.", numbers="rad"
     )
     zones: str | Sequence[float] | None = value(
-        None, "Radii of zones, mm; by the robot's reach if unset."
+        None, "Radii of zones, mm; by the robot's reach if unset.", numbers="m"
     )
-    speeds: str | Sequence[float] | None = value(None, "Speeds of the TCP, mm/s.")
+    speeds: str | Sequence[float] | None = value(None, "Speeds of the TCP, mm/s.", numbers="m/s")
     kinds: str | Sequence[str] | None = value(
         None, "Kinds of moves, such as lines,joints; all if unset."
     )
-    margin: float = number(5.0, "Degrees that joints keep from limits.", ANGLE)
+    margin: float = number(5.0, "What joints keep from limits, {unit}.", ANGLE)
     longest: float = number(30.0, "Seconds that one run may last, about.", TIME)
     period: float | None = number(
         None, "Seconds between logged samples; what the controller takes if unset.", TIME
@@ -79,7 +80,8 @@ def experiment_with(options: ExperimentOptions) -> DesignedExperiment:
     cell = setup.surroundings(no_floor=options.no_floor)
     plan = _plan(setup.robot, options, _tool(options.tool, cell))
     made = design(setup.vendor, cell, plan, bare=setup.cell is None, say=options.say)
-    return DesignedExperiment(made, cell, None if setup.cell is None else setup.cell.file)
+    file = None if setup.cell is None else setup.cell.file
+    return DesignedExperiment(made, cell, file, options.inputs())
 
 
 experiment = by_keywords(experiment_with, ExperimentOptions)
@@ -91,7 +93,7 @@ def _tool(name: str | None, cell: Cell) -> Tool:
     if name is None:
         return FLANGE
     if cell.file is None and name not in cell.tools:
-        raise InputError(
+        raise OptionError(
             f"{given('tool', name)}: tools are declared in a cell file; give {spelt('cell')}"
         )
     return cell.tool(name)
@@ -131,5 +133,5 @@ def _kinds(given: str | Sequence[str]) -> tuple[Kind, ...]:
     words = given.replace(",", " ").split() if isinstance(given, str) else list(given)
     for word in words:
         if word not in list(Kind):
-            raise InputError(f"{spelt('kinds')} {word}: {', '.join(Kind)}")
+            raise OptionError(f"{spelt('kinds')} {word}: {', '.join(Kind)}")
     return tuple(kind for kind in Kind if kind in words)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core.errors import InputError
+from ..core.door import given, spelt
+from ..core.errors import OptionError
 from .changes import joint_indices, weight
-from .options.door import given, spelt
 from .options.entries import COUNT, POSITIVE, TIME, Extent, number, value
 from .options.keywords import by_keywords
 from .options.texts import configuration
@@ -36,6 +36,7 @@ class FreeMotionOptions(CellOptions):
         "free.",
         several=True,
         flag="--via",
+        numbers="rad and m",
     )
     tool: str | None = value(None, "Tool of the cell that is mounted; the flange if unset.")
     axes: str | Sequence[int] | None = value(
@@ -119,7 +120,7 @@ def _tool(setup: Setup, name: str | None) -> Tool:
     if name is None:
         return FLANGE
     if setup.cell is None:
-        raise InputError(
+        raise OptionError(
             f"{given('tool', name)}: tools are declared in a cell file; give {spelt('cell')}"
         )
     return setup.cell.tool(name)

@@ -9,9 +9,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..core.display import counted
+from ..core.door import given
 from ..core.errors import InputError
 from .catalogue import registry
-from .options.door import given
 from .options.entries import COUNT, Extent, number, value
 from .options.keywords import by_keywords
 from .setup import RobotOptions, setup_of
@@ -36,7 +37,6 @@ class IdentifyOptions(RobotOptions):
         "'blend.tcp.beta[0] = 0', 'time.smoothing_s[*]'. May be given several times; without it, "
         "what the vendor's figures were fitted by.",
         several=True,
-        flag="--fit",
     )
     columns: str | Path | None = value(
         None, "Names the logs' columns and their units (TOML).", kind=Path
@@ -46,16 +46,11 @@ class IdentifyOptions(RobotOptions):
         "Also list which figures earn their place, by leaving out runs of the same zone, speed, "
         "moves, posture, or each run.",
     )
-    workers: int = number(os.cpu_count() or 1, "Processes.", COUNT, Extent(1), ranged=True)
+    workers: int = number(os.cpu_count() or 1, "Processes.", COUNT, Extent(1))
     found: Callable[[tuple[Path, ...]], object] | None = field(
         default=None, repr=False, compare=False
     )
     """Called with the files of all runs before they are fitted; it may refuse."""
-
-    def inputs(self) -> list[Path]:
-        """Files that are named here."""
-        named = (self.cell, self.motion, self.columns)
-        return [Path(file) for file in named if isinstance(file, str | Path)]
 
 
 def identify_with(
@@ -91,14 +86,15 @@ def identify_with(
         options.found(found.files)
     prepared = _prepare(found.runs, owner, arm, options)
     chosen = _parameters(owner, arm, options.parameters)
-    options.say(f"fitting {chosen.size} parameters to {len(prepared)} runs")
+    options.say(f"fitting {counted(chosen.size, 'parameter')} to {counted(prepared, 'run')}")
     fitted = _fit(chosen, prepared, options)
     options.say("emulating all runs before and after")
     each = outcomes(fitted)
     judged = _judge(fitted, options)
     scores = [] if options.select is None else _select(fitted, options.select, options)
     text = _motion_file(fitted, _command(paths, arm, options), paths, owner)
-    return IdentifiedModel(fitted, tuple(each), judged, tuple(scores), text, found)
+    inputs = (*found.files, *options.inputs())
+    return IdentifiedModel(fitted, tuple(each), judged, tuple(scores), text, found, inputs)
 
 
 identify = by_keywords(identify_with, IdentifyOptions)
@@ -129,7 +125,7 @@ def _fit(parameters: ParameterSet, runs: list[PreparedRun], options: IdentifyOpt
 
     def watch(iteration: Iteration) -> None:
         options.say(
-            f"fitting {parameters.size} parameters to {len(runs)} runs: iteration "
+            f"fitting {counted(parameters.size, 'parameter')} to {counted(runs, 'run')}: iteration "
             f"{iteration.number}, loss {iteration.objective:.4g}"
         )
 
@@ -178,6 +174,6 @@ def _motion_file(fitted: Fit, command: str, logs: Sequence[Path], vendor: Vendor
     from ..identification.fit import motion_file
 
     robot = fitted.runs[0].robot
-    heading = f"How {robot.name} is driven, fitted to {len(fitted.runs)} logged runs."
+    heading = f"How {robot.name} is driven, fitted to {counted(fitted.runs, 'logged run')}."
     stated = registry().find_vendor(vendor.name).motion_of(robot)
     return motion_file(fitted, command, heading, stated, logs[0].resolve().stem)

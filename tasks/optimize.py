@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..core.errors import InputError
+from ..core.door import given
+from ..core.errors import OptionError
 from .changes import WaypointOptions, delivered, task_of, weight
 from .files.texts import ProgramTexts
-from .options.door import given
 from .options.entries import COUNT, Extent, choice, number, switch, value
 from .options.keywords import by_keywords
 from .setup import CellOptions, with_setup
@@ -53,7 +53,7 @@ class OptimizeOptions(WaypointOptions, CellOptions):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.zones_only and (self.limit or self.tilt != 0.0 or self.vias == CHANGE):
-            raise InputError(
+            raise OptionError(
                 f"{self.spelt('zones_only')} leaves every point as it is: {self.spelt('limit')}, "
                 f"{self.spelt('tilt')} and {given('vias', CHANGE)} do not go with it"
             )

@@ -53,6 +53,7 @@ def paint_with(part: str | Path, footprint: str | Path, options: PaintOptions) -
     from ..problems.paint.spray.footprint_file import load_footprint
     from .results.painted import PaintedPart
 
+    inputs = (Path(part), Path(footprint), *options.inputs())
     source = load_footprint(Path(footprint))
     gun = source.footprint
     plan = plan_of(gun, options, STEP * gun.radius)
@@ -68,10 +69,10 @@ def paint_with(part: str | Path, footprint: str | Path, options: PaintOptions) -
     )
     painting = find(shape, gun, wishes, options.say, _teller(options.say))
     if station is None:
-        return PaintedPart(source, painting, None, {})
+        return PaintedPart(source, painting, None, {}, inputs)
     options.say("the robot's way of holding the gun")
     made, sources = _executed(painting, station, drive, limits.speed, options.say)
-    return PaintedPart(source, painting, made, sources)
+    return PaintedPart(source, painting, made, sources, inputs)
 
 
 paint = by_keywords(paint_with, PaintOptions)

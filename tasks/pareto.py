@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core.errors import InputError
+from ..core.door import spelt
+from ..core.errors import InputError, OptionError
 from .changes import WaypointOptions, task_of
 from .files.texts import ProgramTexts
 from .optimize import effort_of
-from .options.door import spelt
 from .options.entries import COUNT, Extent, choice, number, value
 from .options.keywords import by_keywords
 from .setup import with_setup
@@ -67,7 +67,7 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
     if setup.cell is None:
         for name in ("free", "limit", "axes", "tilt", "clearance"):
             if getattr(options, name):
-                raise InputError(
+                raise OptionError(
                     f"{spelt(name)} needs a cell ({spelt('cell')}): without one, only speeds change"
                 )
     scope = Scope.SPEEDS if setup.cell is None else Scope(options.change)

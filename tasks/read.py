@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..core.door import spelt
 from ..core.errors import FlybyError, InputError
-from .options.door import spelt
 from .options.entries import TaskOptions, value
 from .options.keywords import by_keywords
 from .options.texts import joint_target
@@ -29,14 +29,12 @@ class TextOptions(TaskOptions):
         None,
         "Answers to what the program asks of signals and operators (TOML).",
         kind=Path,
-        flag="--io",
     )
     others: Sequence[str | Path] = value(
         (),
         "A further file of the program; may be given several times.",
         kind=Path,
         several=True,
-        flag="--with",
     )
 
     def for_robot(self, robot: str | None, cell: Path | None) -> SourceOptions:
@@ -59,12 +57,8 @@ class SourceOptions(RobotOptions, TextOptions):
         None,
         "Axis values before the first move, degrees and mm: 0,0,0,0,30,0. "
         "Without it the robot stands at the first target.",
+        numbers="rad and m",
     )
-
-    def inputs(self) -> list[Path]:
-        """All files that are named here: none of them is ever written to."""
-        given = (self.cell, self.motion, self.answers, *self.others)
-        return [Path(file) for file in given if isinstance(file, str | Path)]
 
 
 def read_with(source: str | Path, options: SourceOptions) -> Program:

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core.errors import InputError
+from ..core.door import called, given, spelt, switched
+from ..core.errors import InputError, OptionError
 from .catalogue import cell as load
 from .catalogue import registry, robots, vendor_of
-from .options.door import given, spelt, switched
 from .options.entries import TaskOptions, switch, value
 
 if TYPE_CHECKING:
@@ -26,16 +26,16 @@ NO_FLOOR = "Without a cell the plane under the robot's base is an obstacle; this
 
 @dataclass(frozen=True, kw_only=True)
 class RobotOptions(TaskOptions):
-    """Which robot, in which cell, driven how; of a program that was read, its own if unset."""
+    """The robot, its cell, how it is driven; of a program that was read, its own if unset."""
 
-    robot: str | Robot | None = value(None, "Robot, such as abb/irb6640-180-255 ('flyby robots').")
+    robot: str | Robot | None = value(None, "Robot, such as abb/irb6640-180-255 (`robots`).")
     cell: str | Path | Cell | None = value(
         None,
         "Cell file: robot, base, external axes, tools, obstacles, clearance.",
         kind=Path,
     )
     motion: str | Path | None = value(
-        None, "How the robot is driven, as 'flyby identify' writes it (TOML).", kind=Path
+        None, "How the robot is driven, as `identify` writes it (TOML).", kind=Path
     )
 
 
@@ -78,7 +78,7 @@ class Setup:
             return bare_cell(self.robot, self.vendor.name, tools, floor=not no_floor)
         if no_floor:
             where = "" if self.cell.file is None else f" {self.cell.file}"
-            raise InputError(
+            raise OptionError(
                 f"{switched('no_floor')}: what stands around is what the cell{where} says; "
                 "change it"
             )
@@ -102,9 +102,9 @@ def _stated(options: RobotOptions) -> Setup:
     name = robot if robot is None or isinstance(robot, str) else robot.name
     if cell is None:
         if robot is None or name is None:
-            known = "'flyby robots'" if spelt("robot") != "robot" else "flyby.robots()"
-            raise InputError(
-                f"which robot? Give {spelt('robot')} ({known} lists them) or {spelt('cell')}"
+            raise OptionError(
+                f"which robot? Give {spelt('robot')} ({called('robots')} lists them) or "
+                f"{spelt('cell')}"
             )
         vendor = vendor_of(name)
         return Setup(vendor, registry().find_robot(name) if isinstance(robot, str) else robot)

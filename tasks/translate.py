@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from ..core.display import counted
+from ..core.door import given
 from ..core.errors import InputError
-from .options.door import given
 from .options.entries import REQUIRED, TaskOptions, value
 from .options.keywords import by_keywords
 from .options.texts import pose
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 class TranslateOptions(TaskOptions):
     """Where a program is carried."""
 
-    robot: str = value(REQUIRED, "The new robot, such as kuka/kr30-3 ('flyby robots').")
+    robot: str = value(REQUIRED, "The new robot, such as kuka/kr30-3 (`robots`).")
     to: str | None = value(None, "The new robot's vendor, such as kuka.")
     base: str | Pose | None = value(
         None,
@@ -57,7 +58,7 @@ def translate_with(program: Program, options: TranslateOptions) -> Translation:
     """
     program, before = with_setup(program, RobotOptions())
     after = target_of(options)
-    options.say(f"translating {len(program.moves)} moves")
+    options.say(f"translating {counted(program.moves, 'move')}")
     return carried(program, before, after, options.base)
 
 

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..core.display import counted
+from ..core.door import spelt
 from ..core.errors import InputError
 from .changes import weight
 from .options import texts
-from .options.door import spelt
 from .options.entries import POSITIVE, TIME, number, switch, value
 from .options.keywords import by_keywords
 from .pareto import consumption_of
@@ -44,6 +45,7 @@ class TuneOptions(RobotOptions):
     jerk: str | Sequence[float] | None = value(
         None,
         "Jerk that no joint exceeds, one number for all or one an axis, degrees/s³ (mm/s³).",
+        numbers="rad/s³ (m/s³)",
     )
     period: float | None = number(
         None, "Seconds between samples; the controller's own if unset.", TIME, POSITIVE
@@ -76,7 +78,7 @@ def tune_with(program: Program, options: TuneOptions) -> TunedMotion:
 
     program, setup = with_setup(program, options)
     controller = Controller(setup.vendor, setup.robot)
-    options.say(f"emulating {len(program.moves)} moves")
+    options.say(f"emulating {counted(program.moves, 'move')}")
     timing = controller.stamp(program, controller.plan(program, start_of(program)))
     options.say("finding the best speeds")
     objective = Objective(

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
-from ..core.errors import InputError
+from ..core.door import spelt, switched
+from ..core.errors import InputError, OptionError
 from ..core.files.reading import read_bytes
 from ..core.source.text.files import LARGEST_FILE
 from .files.not_executed import not_executed_notes, refuse_not_executed
 from .files.outputs import check_outputs, write_all, write_in
 from .files.places import FilePlaces
 from .files.texts import OWN
-from .options.door import spelt, switched
 from .options.entries import TaskOptions, choice, switch, value
 from .options.keywords import by_keywords
 from .setup import RobotOptions, Setup, with_setup
@@ -165,7 +165,7 @@ def _read(what: object) -> list[Path]:
         reading = getattr(program, "reading", None)
         if isinstance(reading, Reading):
             found += [reading.main, *reading.files]
-    return [Path(name) for name in dict.fromkeys(found)]
+    return [*map(Path, dict.fromkeys(found)), *getattr(what, "inputs", ())]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -201,7 +201,7 @@ def patch_with(what: Program | Solution, options: PatchOptions) -> tuple[Path, .
     """
     from ..core.program.program import Program
 
-    original = what if isinstance(what, Program) else what.original
+    original = what if isinstance(what, Program) else getattr(what, "original", what)
     original, setup = with_setup(original, RobotOptions())
     places = FilePlaces(
         None if options.out is None else Path(options.out),
@@ -211,7 +211,7 @@ def patch_with(what: Program | Solution, options: PatchOptions) -> tuple[Path, .
     )
     places.check()
     if not places.anywhere:
-        raise InputError(
+        raise OptionError(
             f"where do the files go? Name a folder by {spelt('out')}, or give "
             f"{switched('in_place')}"
         )

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 class ZoneOptions(ChangeOptions, CellOptions):
     """How zones are made larger."""
 
-    keep: Sequence[int] = value(
+    keep: Sequence[int | str] = value(
         (), "A move whose zone stays; may be given several times.", kind=int, several=True
     )
     predefined: bool = switch("Choose among the vendor's predefined zones.")

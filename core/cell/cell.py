@@ -8,8 +8,15 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from ..arrays import FloatArray
+from ..display import counted, in_line
 from ..errors import Note, UnknownNameError
+from ..notebook import Curve, page, picture, table
 from ..program.tool import FLANGE, WORLD, Tool, WorkObject
+from ..robot.assembly import assemble
+from ..robot.kinematics.chain_kernels import poses
 from ..robot.model import Robot
 from .geometry import Geometry, Mesh
 
@@ -69,6 +76,28 @@ class Cell:
         object.__setattr__(self, "frames", MappingProxyType(frames))
         object.__setattr__(self, "tool_geometries", MappingProxyType({**self.tool_geometries}))
 
+    def __repr__(self) -> str:
+        name = "" if self.file is None else f" {self.file.name}"
+        return in_line(
+            f"Cell{name} with {self.robot.name}: {counted(self.obstacles, 'obstacle')}, "
+            f"{counted(len(self.tools) - 1, 'tool')}, clearance {1e3 * self.clearance:g} mm"
+        )
+
+    def _repr_html_(self) -> str:
+        at = self.robot.outline()
+        boxes = {o.name: self._box(o) for o in self.obstacles}
+        shapes = {o.name: type(o.geometry.shape).__name__ for o in self.obstacles}
+        rows = [(name, shapes[name], *_reach(box)) for name, box in boxes.items()]
+        rows.insert(0, (self.robot.name, "robot", *_reach(at)))
+        curves = [Curve("robot", at, at), *(Curve("obstacles", b[_EDGES]) for b in boxes.values())]
+        return page(repr(self)[1:-1], table(_COLUMNS, rows), picture(curves))
+
+    def _box(self, obstacle: Obstacle) -> FloatArray:
+        """Corners (8, 3) m in the world of the box round an obstacle, external axes at zero."""
+        stages = [*self.robot.frame_stages(obstacle.carried_by), obstacle.geometry.placement]
+        R, p = poses(assemble(stages), np.zeros((1, self.robot.size)))
+        return np.asarray(obstacle.geometry.corners @ R[0].T + p[0])
+
     def find_vendor(self, registry: Registry) -> Vendor:
         """The robot's vendor, who drives it as the cell says.
 
@@ -119,3 +148,20 @@ class Cell:
     def _meshes(self) -> list[Mesh]:
         geometries = (*self.tool_geometries.values(), *(o.geometry for o in self.obstacles))
         return [g.shape for g in geometries if isinstance(g.shape, Mesh)]
+
+
+def _reach(points: FloatArray) -> tuple[str, ...]:
+    """From where to where points reach along each axis, mm."""
+    ends = 1e3 * np.array([points.min(axis=0), points.max(axis=0)]) + 0.0
+    return tuple(f"{low:.0f} … {high:.0f}" for low, high in ends.T)
+
+
+_COLUMNS = (
+    ("", "left"),
+    ("shape", "left"),
+    ("x, mm", "right"),
+    ("y, mm", "right"),
+    ("z, mm", "right"),
+)
+_EDGES = [0, 1, 3, 2, 0, 4, 5, 1, 5, 7, 3, 7, 6, 2, 6, 4]
+"""A way round the corners of a box along all of its edges."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from ..door import spelt, switched
 from ..program.tool import FLANGE, Tool
 from ..robot.joint import JointKind
 from ..robot.model import Robot
@@ -19,16 +20,19 @@ from .geometry import Geometry
 
 FLOOR = "the plane under the base"
 """Name of the obstacle."""
-LIFT = (
-    "no cell file says what stands around, so the plane that the robot's base stands on counts as "
-    "a floor: --no-floor lifts it, --cell states the surroundings"
-)
-"""Advice where it is in the way."""
 _SUNK, _THICK = 1e-3, 0.1
 """m by which it lies deeper, so that what merely lies on it may be reached; m of its depth."""
 _POINT = 1e-4
 """m, radius of a TCP of whose tool no shape is known."""
 _PARALLEL = 1e-9
+
+
+def lifted() -> str:
+    """Advice where the floor is in the way."""
+    return (
+        "no cell file says what stands around, so the plane that the robot's base stands on counts "
+        f"as a floor: {switched('no_floor')} lifts it, {spelt('cell')} states the surroundings"
+    )
 
 
 def bare_cell(robot: Robot, vendor: str, tools: Iterable[Tool] = (), *, floor: bool = True) -> Cell:

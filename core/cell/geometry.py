@@ -149,6 +149,20 @@ class Geometry:
     shape: Mesh | Shape
     placement: Pose = IDENTITY
 
+    @property
+    def corners(self) -> FloatArray:
+        """(8, 3) m in the shape's own frame, of the box round it along the axes.
+
+        Raises:
+            InputError: the mesh cannot be used.
+        """
+        if isinstance(self.shape, Mesh):
+            ends = self.shape.vertices.min(axis=0), self.shape.vertices.max(axis=0)
+        else:
+            half = 0.5 * np.array(self.shape.size)
+            ends = -half, half
+        return np.array([[ends[k >> axis & 1][axis] for axis in range(3)] for k in range(8)])
+
 
 def _made(triangles: Triangles) -> Any:
     """The `trimesh.Trimesh` of triangles, nothing cleaned up."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
+from ..door import spelt
 from ..errors import FlybyError, MotionError, SourceError
 from ..motion.emulator.controller import Controller
 from ..motion.emulator.run import Run
@@ -101,7 +102,7 @@ def _failure(program: Program, error: FlybyError) -> Finding:
     if not isinstance(error, MotionError):
         return Finding(CANNOT_DRIVE, Severity.ERROR, str(error), _FIX)
     if error.move is None:
-        return Finding(CANNOT_DRIVE, Severity.ERROR, error.message, _FIX_START, None, error.span)
+        return Finding(CANNOT_DRIVE, Severity.ERROR, error.message, _elsewhere(), None, error.span)
     span = error.span
     if span is None:
         origin = program.moves[error.move].origin
@@ -110,9 +111,13 @@ def _failure(program: Program, error: FlybyError) -> Finding:
 
 
 _FIX = "correct this move; what follows it was not checked"
-_FIX_START = (
-    "let the robot begin elsewhere (--start), or correct the program; no motion was checked"
-)
+
+
+def _elsewhere() -> str:
+    return (
+        f"let the robot begin elsewhere ({spelt('start')}), or correct the program; no motion was "
+        "checked"
+    )
 
 
 def _before(program: Program, move: int) -> Program:

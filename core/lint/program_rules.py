@@ -7,6 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
+from ..door import spelt
 from ..program.move import Move, MoveJ, Opaque, Wait
 from ..program.target import JointTarget, PoseTarget
 from ..program.zone import FINE, Angle, ContourFraction, Radius, Zone
@@ -167,7 +168,8 @@ def _alike(first: PoseTarget, second: PoseTarget) -> bool:
 
 def _reader_notes(subject: ProgramSubject) -> Iterator[Hit]:
     for note in subject.program.notes:
-        yield Hit(note.message, "nothing, if meant so (--io answers)", note.move, note.span)
+        meant = f"nothing, if meant so ({spelt('answers')} answers)"
+        yield Hit(note.message, meant, note.move, note.span)
 
 
 PROGRAM_RULES = (

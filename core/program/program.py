@@ -6,12 +6,27 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
 
+from ..display import counted, in_line
 from ..errors import Note
+from ..notebook import Curve, page, picture, table
 from .move import Move, MoveC, MoveJ, MoveL, Statement
 from .target import JointTarget
+from .zone import zone_shown
 
 if TYPE_CHECKING:
+    from ..arrays import FloatArray
     from ..robot.model import Robot
+
+COLUMNS = (
+    ("#", "right"),
+    ("move", "left"),
+    ("target", "left"),
+    ("speed", "left"),
+    ("zone", "left"),
+    ("tool", "left"),
+    ("line", "right"),
+)
+"""Of a program's moves."""
 
 
 class ReadFrom(Protocol):
@@ -55,7 +70,33 @@ class Program:
 
     def __repr__(self) -> str:
         robot = "" if self.setup is None else f" for {self.setup.robot.name}"
-        return f"<Program {self.name}{robot}: {len(self.moves)} moves, {len(self.notes)} notes>"
+        told = f"{counted(self.moves, 'move')}, {counted(self.notes, 'note')}"
+        return in_line(f"Program {self.name}{robot}: {told}")
+
+    def _repr_html_(self) -> str:
+        points = self.waypoints()
+        drawn = "" if points is None else picture([Curve("waypoints", points, points)])
+        rows = [(str(k), *_cells(move)) for k, move in enumerate(self.moves, 1)]
+        return page(repr(self)[1:-1], table(COLUMNS, rows), drawn, notes=self.notes)
+
+    def waypoints(self) -> FloatArray | None:
+        """(M, 3) m in the world, where moves end; None where the robot or a frame is not known."""
+        import numpy as np
+
+        if self.setup is None or len(self.moves) < 2:
+            return None
+        robot, found = self.setup.robot, []
+        for move in self.moves:
+            target = move.target
+            if isinstance(target, JointTarget):
+                flange = robot.flange_pose(np.array([*target.joints, *target.external]))
+                pose = flange @ move.tool.tcp if move.tool.robot_held else flange
+            elif move.work_object.moved_by is not None or move.work_object.robot_held:
+                return None
+            else:
+                pose = move.work_object.pose @ target.pose
+            found.append(pose.position)
+        return np.array(found)
 
     @cached_property
     def moves(self) -> tuple[Move, ...]:
@@ -75,3 +116,15 @@ class Program:
             next(queue) if isinstance(s, MoveJ | MoveL | MoveC) else s for s in self.statements
         )
         return replace(self, statements=statements)
+
+
+def _cells(move: Move) -> tuple[str, ...]:
+    """A move in the units of the shop floor."""
+    target, speed = move.target, move.speed
+    if target.name is not None or isinstance(target, JointTarget):
+        at = target.name or "joint values"
+    else:
+        at = ", ".join(f"{1e3 * value:.1f}" for value in target.pose.position) + " mm"
+    fast = speed.name or ("" if speed.tcp is None else f"{1e3 * speed.tcp:.4g} mm/s")
+    line = "" if move.origin is None else str(move.origin.statement.line)
+    return type(move).__name__, at, fast, zone_shown(move.zone), move.tool.name, line

@@ -131,3 +131,15 @@ class SpeedFraction:
 
 Zone = Fine | Radius | ContourFraction | Angle | SpeedFraction
 FINE = Fine()
+
+
+def zone_shown(zone: Zone) -> str:
+    """A zone in the units of the shop floor."""
+    match zone:
+        case Radius(tcp):
+            return zone.name or f"{1e3 * tcp:.5g} mm"
+        case ContourFraction(fraction) | SpeedFraction(fraction):
+            return f"{100 * fraction:.3g} %"
+        case Angle(angle):
+            return f"{math.degrees(angle):.4g}°"
+    return "fine"

@@ -15,6 +15,16 @@ from ..errors import InputError
 from ..spatial.pose import Pose, Vector3
 from .inertia import Inertia
 
+COLUMNS = (
+    ("joint", "left"),
+    ("lower", "right"),
+    ("upper", "right"),
+    ("velocity /s", "right"),
+    ("acceleration /s²", "right"),
+    ("effort", "right"),
+)
+"""Of a table of joints."""
+
 
 class JointKind(StrEnum):
     """How a joint moves along its axis."""
@@ -62,6 +72,14 @@ class Joint:
             value = getattr(self, name)
             if value is not None and not 0.0 < value < math.inf:
                 raise InputError(f"joint {self.name}: {name} {value:g} must be positive")
+
+    def cells(self) -> tuple[str, ...]:
+        """Name and limits in degrees or mm, as `COLUMNS` names them."""
+        turning = self.kind is JointKind.REVOLUTE
+        unit, scale, force = ("°", math.pi / 180, "N m") if turning else ("mm", 1e-3, "N")
+        figures = (self.lower, self.upper, self.velocity, self.acceleration)
+        effort = "" if self.effort is None else f"{self.effort:g} {force}"
+        return self.name, *(f"{value / scale:.6g} {unit}" for value in figures), effort
 
     def shown(self, value: float) -> str:
         """A value in degrees or mm, for messages."""

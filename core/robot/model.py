@@ -11,13 +11,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray
+from ..display import counted, in_line
 from ..errors import InputError, UnknownNameError
+from ..notebook import Curve, page, picture, table
 from ..spatial.pose import IDENTITY, Pose, Vector3
 from .assembly import Stage, assemble
 from .dynamics import Dynamics, Tree, TreeNode
 from .inertia import Inertia
 from .inverse import InverseSolution, equivalent_turns, solve
-from .joint import ExternalAxis, ExternalRole, Joint, JointLimits
+from .joint import COLUMNS, ExternalAxis, ExternalRole, Joint, JointLimits
 from .kinematics.arm_geometry import Recognised, recognise
 from .kinematics.chain import Chain
 from .kinematics.chain_derivatives import hessians
@@ -83,6 +85,24 @@ class Robot:
         for axis in self.external_axes:
             self.frame_stages(axis.name)
         self._carrying_track()
+
+    def __repr__(self) -> str:
+        carries = "payload not known" if self.payload is None else f"payload {self.payload:g} kg"
+        axes = counted(self.external_axes, "external axis", "external axes")
+        return in_line(f"Robot {self.name}: {counted(self.joints, 'joint')}, {carries}, {axes}")
+
+    def _repr_html_(self) -> str:
+        rows = [j.cells() for j in (*self.joints, *(axis.joint for axis in self.external_axes))]
+        at = self.outline()
+        return page(repr(self)[1:-1], table(COLUMNS, rows), picture([Curve("robot", at, at)]))
+
+    def outline(self) -> FloatArray:
+        """Base, joints and flange (n + 2, 3) m in the world, all axes as near to zero as can be."""
+        q = np.clip(np.zeros((1, self.size)), self.limits.lower, self.limits.upper)
+        stages = self.flange_stages()
+        first = len(stages) - self.arm_size - 1
+        ends = range(first, len(stages) + 1)
+        return np.concatenate([poses(assemble(stages[:k]), q)[1] for k in ends])
 
     @property
     def arm_size(self) -> int:

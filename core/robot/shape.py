@@ -17,6 +17,11 @@ class Sphere:
     def __post_init__(self) -> None:
         _require_positive("sphere", self.radius)
 
+    @property
+    def size(self) -> Vector3:
+        """m along x, y, z of the box round it."""
+        return (2.0 * self.radius,) * 3
+
 
 @dataclass(frozen=True, slots=True)
 class Capsule:
@@ -28,6 +33,11 @@ class Capsule:
     def __post_init__(self) -> None:
         _require_positive("capsule", self.radius, self.length)
 
+    @property
+    def size(self) -> Vector3:
+        """m along x, y, z of the box round it."""
+        return 2.0 * self.radius, 2.0 * self.radius, self.length + 2.0 * self.radius
+
 
 @dataclass(frozen=True, slots=True)
 class Cylinder:
@@ -38,6 +48,11 @@ class Cylinder:
 
     def __post_init__(self) -> None:
         _require_positive("cylinder", self.radius, self.length)
+
+    @property
+    def size(self) -> Vector3:
+        """m along x, y, z of the box round it."""
+        return 2.0 * self.radius, 2.0 * self.radius, self.length
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
+from ..display import counted, in_line
 from .execution.answers import Answers
 from .execution.limits import Executed, ExecutionLimits
 from .text.files import SourceFile, stray_return
@@ -63,6 +64,9 @@ class Reading:
     main: str
     options: ReadOptions
     read: Callable[[Files, str, ReadOptions], Program] = field(repr=False)
+
+    def __repr__(self) -> str:
+        return in_line(f"Reading of {self.main}: {counted(self.files, 'file')}")
 
     def again(self, changed: Files) -> Program:
         """The program in the same files, of which some have another text.

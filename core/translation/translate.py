@@ -8,11 +8,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..dialect import Dialect
+from ..display import counted, in_line
 from ..errors import Note, Span
 from ..motion.emulator.controller import Controller
 from ..motion.geometry.segments import make_segments
 from ..motion.model.rules import Overlap
 from ..motion.path.path import Path, Route
+from ..notebook import Curve, page, picture, table
 from ..program.event import Event
 from ..program.move import ArcOrientation, MoveC, MoveJ, MoveL, Opaque, Statement, Wait
 from ..program.program import Program
@@ -29,6 +31,8 @@ from .losses import Losses, LossesOfPart
 from .pacing import EmulatedProgram, Pacer
 from .targets import Placer
 
+LOSSES = (("line", "left"), ("what could not be carried over", "left"))
+"""Columns of a table of losses."""
 _CUT_TOLD = 0.05
 """Share of a corner's cut from which on a difference is reported."""
 _CUT_SMALL = 5e-5
@@ -56,6 +60,20 @@ class Translation:
     losses: tuple[Note, ...]
     start: JointTarget
     original: Program = field(repr=False)
+
+    def __repr__(self) -> str:
+        lost = counted(self.losses, "loss", "losses")
+        return in_line(f"Translation: {repr(self.program)[1:-1]}, {lost}")
+
+    def _repr_html_(self) -> str:
+        points = [(name, p.waypoints()) for name, p in self._programs()]
+        curves = [Curve(name, at, at) for name, at in points if at is not None]
+        rows = [("" if n.span is None else str(n.span.line), n.message) for n in self.losses]
+        lost = table(LOSSES, rows) if rows else ""
+        return page(repr(self)[1:-1], lost, picture(curves) if curves else "")
+
+    def _programs(self) -> tuple[tuple[str, Program], ...]:
+        return ("before", self.original), ("after", self.program)
 
 
 def translate(

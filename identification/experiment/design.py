@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core.cell.cell import Cell
-from ...core.cell.floor import FLOOR, LIFT
+from ...core.cell.floor import FLOOR, lifted
 from ...core.collision.proof.certificate import certify, scenes_of
 from ...core.collision.proof.verdict import Certificate
 from ...core.collision.scene.scene import CollisionScene
@@ -102,7 +102,7 @@ class _Designer:
         runs = self._chosen(choice, period)
         if not runs:
             reasons = "; ".join(f"{s.what}: {s.reason}" for s in self.skipped[:3])
-            lift = f"; {LIFT}" if FLOOR in reasons else ""
+            lift = f"; {lifted()}" if FLOOR in reasons else ""
             raise InputError(f"no run of this experiment is possible: {reasons}{lift}")
         return Experiment(
             self.cell.robot,

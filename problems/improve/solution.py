@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core.arrays import FloatArray
+from ...core.display import in_line
 from ...core.errors import InputError, Note
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.emulator.run import Run
 from ...core.motion.timing.timing import Timing
 from ...core.notebook import Curve, page, picture, table
 from ...core.program.program import Program
-from ...core.program.target import JointTarget
 from ...core.robot.model import Robot
 from ...core.spatial.rotation import rotation_vector
 
@@ -120,7 +120,7 @@ class Solution:
         made = (
             f"{self.before.time:.3f} s → {self.after.time:.3f} s" if self.changed else "unchanged"
         )
-        return f"<Solution for {self.program.name}: {made}, {said}>"
+        return in_line(f"Solution for {self.program.name}: {made}, {said}")
 
     def _repr_html_(self) -> str:
         rows = [
@@ -138,7 +138,7 @@ class Solution:
         """The waypoints before and after; nothing where they are not all known."""
         curves = []
         for name, program in (("before", self.original), ("after", self.program)):
-            points = waypoints(program)
+            points = program.waypoints()
             if points is None:
                 return ""
             curves.append(Curve(name, points, points))
@@ -264,21 +264,3 @@ def _energy(controller: Controller, run: Run) -> FloatArray | None:
         return None
     steps = run.timing.end - run.timing.begin
     return np.asarray(0.5 * np.einsum("k,kej->j", steps, made.torque**2))
-
-
-def waypoints(program: Program) -> FloatArray | None:
-    """(M, 3) m in the world, where moves end; None where the robot or a frame is not known."""
-    if program.setup is None or len(program.moves) < 2:
-        return None
-    robot, found = program.setup.robot, []
-    for move in program.moves:
-        target = move.target
-        if isinstance(target, JointTarget):
-            flange = robot.flange_pose(np.array([*target.joints, *target.external]))
-            pose = flange @ move.tool.tcp if move.tool.robot_held else flange
-        elif move.work_object.moved_by is not None or move.work_object.robot_held:
-            return None
-        else:
-            pose = move.work_object.pose @ target.pose
-        found.append(pose.position)
-    return np.array(found)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...core.cell.floor import FLOOR, LIFT
+from ...core.cell.floor import FLOOR, lifted
 from ...core.collision.proof.certificate import SceneOf, certify
 from ...core.collision.proof.verdict import Certificate, Verdict
 from ...core.errors import MotionError
@@ -37,7 +37,7 @@ def check_start(
     overlap = _first_overlap(run, scenes)
     if overlap is not None:
         if FLOOR in overlap.names:
-            raise _error(run, overlap.move, f"the program goes {overlap.below()}; {LIFT}")
+            raise _error(run, overlap.move, f"the program goes {overlap.below()}; {lifted()}")
         cell = scenes(run.program.moves[overlap.move].tool).cell
         hints = "".join(f"; {doubt}" for doubt in cell.doubtful_units())
         raise _error(run, overlap.move, f"the program collides as it is: {overlap}{hints}")

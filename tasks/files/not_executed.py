@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from ...core.door import spelt, switched
 from ...core.errors import InputError, Note
-from ..options.door import spelt, switched
 
 if TYPE_CHECKING:
     from ...core.program.program import Program

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from ...core.errors import InputError
-from ..options.door import switched
+from ...core.door import switched
+from ...core.errors import InputError, OptionError
 
 PICTURES = (".png", ".pdf", ".svg")
 """Suffixes of pictures that can be drawn."""
@@ -65,7 +65,7 @@ def picture_kind(file: str | Path, option: str) -> str:
     """
     suffix = Path(file).suffix.lower()
     if suffix not in PICTURES:
-        raise InputError(f"{option} {file}: the name must end in {', '.join(PICTURES)}")
+        raise OptionError(f"{option} {file}: the name must end in {', '.join(PICTURES)}")
     return suffix[1:]
 
 

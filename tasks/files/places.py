@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...core.errors import InputError
-from ..options.door import spelt, switched
+from ...core.door import spelt, switched
+from ...core.errors import InputError, OptionError
 from .outputs import check_folder, check_outputs, write_all
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class FilePlaces:
         if self.out is None:
             return
         if self.in_place:
-            raise InputError(
+            raise OptionError(
                 f"{spelt('out')} and {switched('in_place')}: the files go to one place or the other"
             )
         if self.out.is_dir() and self.inputs:

@@ -11,10 +11,12 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields
 from numbers import Integral, Real
+from pathlib import Path
 from typing import Any
 
-from ...core.errors import InputError
-from .door import at_command_line, flag_of, spelt, switched
+from ...core.door import at_command_line, flag_of, spelt, switched
+from ...core.errors import InputError, OptionError
+from .kinds import listed, refuse_others
 
 Read = Callable[[Any, str], object]
 """Makes a value of what was given, text or value; the second argument names it in messages."""
@@ -25,24 +27,31 @@ class Scale:
     """What a number is said in.
 
     Args:
-        typed: at the command line.
-        si: in Python.
+        typed, typed_unit: at the command line; the unit takes the place of ``{unit}`` in helps.
+        si, si_unit: in Python.
         factor: one of the first in the second.
     """
 
     typed: str
     si: str
+    typed_unit: str = ""
+    si_unit: str = ""
     factor: float = 1.0
+
+    @property
+    def unit(self) -> str:
+        """At the door at hand."""
+        return self.typed_unit if at_command_line() else self.si_unit
 
 
 NUMBER = Scale("a number", "a number")
 COUNT = Scale("a number", "a number")
 """Of whole things."""
-LENGTH = Scale("a length in mm", "a length in m", 1e-3)
-DISTANCE = Scale("a distance in mm", "a distance in m", 1e-3)
-ANGLE = Scale("degrees", "rad", math.pi / 180)
-TIME = Scale("seconds", "seconds")
-MILLISECONDS = Scale("milliseconds", "seconds", 1e-3)
+LENGTH = Scale("a length in mm", "a length in m", "mm", "m", 1e-3)
+DISTANCE = Scale("a distance in mm", "a distance in m", "mm", "m", 1e-3)
+ANGLE = Scale("degrees", "rad", "degrees", "rad", math.pi / 180)
+TIME = Scale("seconds", "seconds", "s", "s")
+MILLISECONDS = Scale("milliseconds", "seconds", "ms", "s", 1e-3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,10 +108,8 @@ class Entry:
         read: makes what counts of a value, and refuses it; None where nothing needs to be made.
         several: whether it may be given several times.
         flag: at the command line, where it is not simply the name.
-        metavar: of its value there.
+        numbers: unit of what may be given as numbers in Python and is typed as a text.
         typed: whether the command line has it at all.
-        ranged: whether the command line's own parser refuses a number below the least one, as a
-            wrong argument (status 2).
     """
 
     help: str
@@ -113,47 +120,66 @@ class Entry:
     read: Read | None = None
     several: bool = False
     flag: str | None = None
-    metavar: str | None = None
+    numbers: str = ""
     typed: bool = True
-    ranged: bool = False
 
-    def check(self, name: str, value: object) -> None:
-        """Refuse a value that the option does not take.
+    @property
+    def explained(self) -> str:
+        """The help at the door at hand."""
+        text = self.help.replace("{unit}", self.scale.unit)
+        if not self.numbers or at_command_line():
+            return text
+        return f"{text} As numbers: {self.numbers}."
+
+    def taken(self, name: str, value: Any, hint: str) -> Any:
+        """A value as the option takes it; where it is a list, one of its entries is a list of one.
 
         Args:
             name: of the option in Python.
             value: not None.
+            hint: the type that the option is annotated with.
 
         Raises:
-            InputError: naming the option as the door at hand does.
+            OptionError: naming the option as the door at hand does.
         """
+        called = spelt(name, self.flag)
         if self.kind is bool:
             if not isinstance(value, bool):
-                raise InputError(f"{name} is True or False, not {value!r}")
-        elif self.kind in (int, float):
-            self._check_number(spelt(name, self.flag), value)
-        elif self.choices:
-            self._check_choice(spelt(name, self.flag), value)
+                raise OptionError(f"{name} is True or False, not {value!r}")
+        elif self.kind in (int, float) and not self.several:
+            self._check_number(called, value)
+        elif self.several and not isinstance(value, Mapping):
+            value = listed(value, hint.count("Sequence[") > 1)
+            for one in value:
+                refuse_others(called, one, hint.split(" | Mapping[")[0].replace("Sequence[", "", 1))
+        else:
+            if "Sequence[" in hint and isinstance(value, Real):
+                value = (value,)
+            refuse_others(called, value, hint)
+        if self.choices and value not in self.choices:
+            *most, last = self.choices
+            raise OptionError(f"{called} {value}: {', '.join(most)} or {last}")
         if self.read is not None:
-            self.read(value, spelt(name, self.flag))
+            try:
+                self.read(value, called)
+            except OptionError:
+                raise
+            except InputError as error:
+                raise OptionError(str(error)) from None
+        return value
 
     def _check_number(self, name: str, value: object) -> None:
         wanted = Integral if self.kind is int else Real
         if not isinstance(value, wanted) or isinstance(value, bool):
-            raise InputError(f"{name} {value!r}: {self._said()}")
+            raise OptionError(f"{name} {value!r}: {self._said()}")
         if not self.extent.holds(float(value), self.scale.factor):
             shown = float(value) / (self.scale.factor if at_command_line() else 1.0)
-            raise InputError(f"{name} {shown:g}: {self._said()}")
+            raise OptionError(f"{name} {shown:g}: {self._said()}")
 
     def _said(self) -> str:
         if at_command_line():
             return self.scale.typed + self.extent.said(1.0)
         return self.scale.si + self.extent.said(self.scale.factor)
-
-    def _check_choice(self, name: str, value: object) -> None:
-        if value not in self.choices:
-            *most, last = self.choices
-            raise InputError(f"{name} {value}: {', '.join(most)} or {last}")
 
 
 ENTRY = "option"
@@ -171,13 +197,21 @@ class TaskOptions:
     report: Callable[[str], object] | None = field(default=None, repr=False, compare=False)
 
     def __post_init__(self) -> None:
+        hints = {f.name: str(f.type) for f in fields(self)}
         for name, entry in entries(type(self)).items():
             value = getattr(self, name)
-            if value is None:
-                continue
-            values = value if entry.several and not isinstance(value, str | Mapping) else [value]
-            for one in values:
-                entry.check(name, one)
+            if value is not None:
+                object.__setattr__(self, name, entry.taken(name, value, hints[name]))
+
+    def inputs(self) -> tuple[Path, ...]:
+        """All files that are named here: none of them is ever written to."""
+        found: list[Any] = []
+        for name, entry in entries(type(self)).items():
+            if entry.kind is Path:
+                given = getattr(self, name)
+                found += given if entry.several else [given]
+        files = (v if isinstance(v, str | Path) else getattr(v, "file", None) for v in found)
+        return tuple(Path(file) for file in files if file)
 
     def say(self, what: str) -> None:
         """Report what is being done."""
@@ -218,11 +252,10 @@ def number(
     extent: Extent = ANY,
     *,
     flag: str | None = None,
-    ranged: bool = False,
 ) -> Any:
     """A number; default and extent are stated as they are typed."""
     kind = int if scale is COUNT else float
-    entry = Entry(help, kind, scale, extent, flag=flag, ranged=ranged)
+    entry = Entry(help, kind, scale, extent, flag=flag)
     scaled = isinstance(default, int | float) and scale.factor != 1.0
     return _field(scale.factor * default if scaled else default, entry)
 
@@ -250,11 +283,19 @@ def value(
     kind: type = str,
     several: bool = False,
     flag: str | None = None,
-    metavar: str | None = None,
+    numbers: str = "",
     typed: bool = True,
 ) -> Any:
     """Anything else: text at the command line, in Python the same text or what it stands for."""
-    entry = Entry(help, kind, read=read, several=several, flag=flag, metavar=metavar, typed=typed)
+    entry = Entry(
+        help,
+        kind,
+        read=read,
+        several=several,
+        flag=flag,
+        numbers=numbers,
+        typed=typed,
+    )
     return _field(default, entry)
 
 

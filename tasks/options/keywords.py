@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import difflib
 import inspect
+import re
 import textwrap
 from collections.abc import Callable
 from functools import wraps
 from typing import Any, Concatenate, ParamSpec, TypeVar, overload
 
-from .entries import COUNT, NUMBER, TaskOptions, defaults, entries
+from .entries import TaskOptions, defaults, entries
+from .kinds import refuse_others
 
 _P = ParamSpec("_P")
 _O = TypeVar("_O", bound=TaskOptions)
@@ -17,6 +19,8 @@ _A = TypeVar("_A")
 _B = TypeVar("_B")
 _R = TypeVar("_R")
 _WIDTH = 92
+_PLAIN = {"str", "Path", "Sequence", "float"}
+"""Types of arguments that are checked here; what takes programs says itself what it takes."""
 WITH = "_with"
 """Ends the name of a task that takes its options as one value."""
 
@@ -52,8 +56,14 @@ def by_keywords(task: Callable[..., Any], options: Callable[..., Any]) -> Callab
             near = difflib.get_close_matches(word, signature.parameters, 1)
             hint = f"; did you mean {near[0]}?" if near else ""
             raise TypeError(f"flyby.{call.__name__} has no option {word!r}{hint}")
-        bound = signature.bind(*args, **words).arguments
+        try:
+            bound = signature.bind(*args, **words).arguments
+        except TypeError as error:
+            raise TypeError(f"flyby.{call.__name__}: {error}; options go by their names") from None
         first = [bound.pop(parameter.name) for parameter in own]
+        for parameter, value in zip(own, first, strict=True):
+            if _PLAIN.issuperset(re.findall(r"\w+", parameter.annotation)):
+                refuse_others(parameter.name, value, parameter.annotation)
         return task(*first, options(**bound))
 
     call.__signature__ = signature  # type: ignore[attr-defined]
@@ -67,10 +77,9 @@ def described(options: type[TaskOptions]) -> str:
     known = defaults(options)
     lines = ["Options:"]
     for name, entry in entries(options).items():
-        in_si = "" if entry.scale in (NUMBER, COUNT) else f" As a number: {entry.scale.si}."
         usual = known.get(name)
         default = "" if usual is None or usual is False else f" Default: {usual!r}."
-        text = f"{name}: {entry.help}{in_si}{default}"
+        text = f"{name}: {entry.explained}{default}"
         lines += textwrap.wrap(text, _WIDTH, initial_indent="    ", subsequent_indent=" " * 8)
     lines.append("    report: Is called with what is being done.")
     return "\n".join(lines)

@@ -6,7 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ...core.errors import InputError
+from ...core.display import counted
+from ...core.errors import InputError, OptionError
 from ...core.files.tables import LARGEST
 
 if TYPE_CHECKING:
@@ -29,11 +30,11 @@ def numbers(text: str, name: str) -> tuple[float, ...]:
         try:
             value = float(word)
         except ValueError:
-            raise InputError(f"{name}: {word[:40]!r} is no number") from None
+            raise OptionError(f"{name}: {word[:40]!r} is no number") from None
         if not math.isfinite(value):
-            raise InputError(f"{name}: {word[:40]} is not finite")
+            raise OptionError(f"{name}: {word[:40]} is not finite")
         if abs(value) > LARGEST:
-            raise InputError(f"{name}: must lie within ±{LARGEST:g}, not {value:g}")
+            raise OptionError(f"{name}: must lie within ±{LARGEST:g}, not {value:g}")
         values.append(value)
     return tuple(values)
 
@@ -58,7 +59,7 @@ def _float(value: object, name: str) -> float:
     try:
         return float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
-        raise InputError(f"{name}: {value!r} is no number") from None
+        raise OptionError(f"{name}: {value!r} is no number") from None
 
 
 def configuration(given: str | Sequence[float], name: str, robot: Robot) -> tuple[float, ...]:
@@ -71,7 +72,7 @@ def configuration(given: str | Sequence[float], name: str, robot: Robot) -> tupl
     if len(values) != robot.size:
         raise InputError(
             f"{name}: {robot.name} has {robot.size} axes ({', '.join(robot.axis_names)}); "
-            f"{len(values)} values were given"
+            f"{counted(values, 'value')} given"
         )
     if not isinstance(given, str):
         return values
@@ -117,10 +118,10 @@ def pose(given: str | Pose, name: str) -> Pose:
     if isinstance(given, Pose):
         return given
     if not isinstance(given, str):
-        raise InputError(f"{name} is a Pose or text, not {given!r}")
+        raise OptionError(f"{name} is a Pose or text, not {given!r}")
     values = numbers(given, name)
     if len(values) not in (3, 6, 7):
-        raise InputError(
+        raise OptionError(
             f"{name}: a pose is x,y,z or x,y,z,rx,ry,rz or x,y,z,qw,qx,qy,qz "
             f"(mm, degrees), not {len(values)} numbers"
         )
@@ -128,7 +129,7 @@ def pose(given: str | Pose, name: str) -> Pose:
     if len(values) == 7:
         norm = math.hypot(*values[3:])
         if abs(norm - 1.0) > QUATERNION_SLACK:
-            raise InputError(f"{name}: the quaternion must have length 1, not {norm:.6g}")
+            raise OptionError(f"{name}: the quaternion must have length 1, not {norm:.6g}")
         w, i, j, k = (value / norm for value in values[3:])
         return Pose((x, y, z), (w, i, j, k))
     turned = Pose((x, y, z))
@@ -148,7 +149,7 @@ def direction(given: str | Sequence[float], name: str) -> tuple[float, float, fl
     """
     found = several(given, name)
     if len(found) != 3 or not any(found):
-        raise InputError(f"{name} {given}: a direction x,y,z such as 0,0,-1")
+        raise OptionError(f"{name} {given}: a direction x,y,z such as 0,0,-1")
     x, y, z = found
     return x, y, z
 

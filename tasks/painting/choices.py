@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...core.errors import InputError
+from ...core.door import given, spelt
+from ...core.errors import InputError, OptionError
 from ..options import texts
-from ..options.door import given, spelt
 from ..setup import setup_of
 from .values import box, speed_range
 
@@ -144,12 +144,12 @@ def _part_frame(cell: Cell, name: str | None, place: str | Pose | None) -> WorkO
 
     if name is not None:
         if place is not None:
-            raise InputError(
+            raise OptionError(
                 f"{spelt('frame')} and {spelt('place')} both say where the part stands: give one"
             )
         return cell.frame(name)
     if place is None:
-        raise InputError(
+        raise OptionError(
             f"where does the part stand? Give {given('place', 'POSE')} in the world, or "
             f"{spelt('frame')}"
         )

@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ...core.errors import InputError
+from ...core.errors import OptionError
 from ..options import texts
 
 if TYPE_CHECKING:
@@ -35,7 +35,10 @@ def thickness(given: str | float, name: str) -> float:
     except (TypeError, ValueError):
         pass
     if not 0.0 < value < _THICKEST:
-        raise InputError(f"{name} {given}: a thickness with its unit, such as 50um or 0.05mm")
+        bare = "" if isinstance(given, str) else "; a number is in m, below 0.01"
+        raise OptionError(
+            f"{name} {given}: a thickness with its unit, such as 50um or 0.05mm{bare}"
+        )
     return value
 
 
@@ -47,7 +50,8 @@ def box(given: str | Sequence[float], name: str) -> tuple[tuple[float, ...], tup
     """
     found = texts.several(given, name, 1e-3)
     if len(found) != 6:
-        raise InputError(f"{name} {given}: two corners of a box in mm, x,y,z,x,y,z")
+        unit = "mm" if isinstance(given, str) else "m"
+        raise OptionError(f"{name} {given}: two corners of a box in {unit}, x,y,z,x,y,z")
     sides = [sorted(pair) for pair in zip(found[:3], found[3:], strict=True)]
     low, high = zip(*sides, strict=True)
     return low, high
@@ -61,7 +65,8 @@ def speed_range(given: str | Sequence[float], name: str) -> tuple[float, float]:
     """
     found = texts.several(given, name, 1e-3)
     if len(found) != 2 or not 0.0 < found[0] < found[1]:
-        raise InputError(f"{name} {given}: least and largest in mm/s, such as 50,800")
+        wanted = "mm/s, such as 50,800" if isinstance(given, str) else "m/s, such as 0.05, 0.8"
+        raise OptionError(f"{name} {given}: least and largest in {wanted}")
     return found[0], found[1]
 
 
@@ -82,5 +87,8 @@ def coat_errors(given: str | Sequence[float] | None, name: str) -> PaintErrors:
         height, radius = 1e-3, 1e-2
     found = texts.several(given, name)
     if len(found) != 2 or not (0.0 <= found[0] < math.inf and 0.0 <= found[1] * radius < 0.5):
-        raise InputError(f"{name} {given}: height in mm and radius in %, such as 3,2")
+        wanted = "mm and radius in %, such as 3,2"
+        if not isinstance(given, str):
+            wanted = "m and radius as a share, such as 0.003, 0.02"
+        raise OptionError(f"{name} {given}: height in {wanted}")
     return PaintErrors(height * found[0], radius * found[1])

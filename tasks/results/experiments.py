@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from ...core.cell.cell import Cell
+from ...core.display import counted
 from ...core.notebook import Curve, page, picture, table
 from ...identification.experiment.page import LOG_SUFFIX, described, way
 from ...identification.experiment.page import page as make_page
@@ -39,11 +40,13 @@ class DesignedExperiment:
         experiment: the runs with what each tells, and what was passed over.
         cell: that they were designed in.
         file: of the cell; None where no file says what stands around.
+        inputs: the files that it was made from; they are not written over.
     """
 
     experiment: Experiment
     cell: Cell
     file: Path | None
+    inputs: tuple[Path, ...]
 
     @cached_property
     def files(self) -> dict[str, bytes]:
@@ -82,7 +85,7 @@ class DesignedExperiment:
     def __repr__(self) -> str:
         made = self.experiment
         return (
-            f"<Experiment for {made.robot.name}: {len(made.runs)} runs, "
+            f"<Experiment for {made.robot.name}: {counted(made.runs, 'run')}, "
             f"{made.seconds / 60:.0f} min at the robot>"
         )
 

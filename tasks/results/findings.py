@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ...core.display import counted
 from ...core.lint.finding import Finding, Severity
 from ..files.source_places import short_place
 
@@ -30,7 +31,7 @@ class Findings(tuple[Finding, ...]):
     def said(self) -> str:
         """How many there are of each severity."""
         counts = {kind: sum(f.severity is kind for f in self) for kind in Severity}
-        told = [f"{n} {kind}{'' if n == 1 else 's'}" for kind, n in counts.items() if n]
+        told = [counted(n, str(kind)) for kind, n in counts.items() if n]
         return ", ".join(told) or "nothing found"
 
     def rows(self, program: Path | None = None) -> list[tuple[str, ...]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
+from ...core.display import counted
 from ...core.notebook import Curve, page, picture, table
 from ...core.program.program import Program
 from ...core.source.patch.runnable import runnable_files
@@ -78,7 +79,7 @@ class ProgramFront(Front):
             return "<Front: no programs>"
         first, last = self.points[0], self.points[-1]
         return (
-            f"<Front: {len(self.points)} programs, {first.duration:.3f} s to "
+            f"<Front: {counted(self.points, 'program')}, {first.duration:.3f} s to "
             f"{last.duration:.3f} s, {first.energy:.4g} to {last.energy:.4g} {self.unit}>"
         )
 

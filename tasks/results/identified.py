@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
+from ...core.display import counted
 from ...core.notebook import Curve, page, picture, table
 from ...identification.fit import Fit, Judgement, Outcome
 from ...identification.fit.selection import Score
@@ -40,6 +42,7 @@ class IdentifiedModel:
         scores: which figures earn their place, if that was asked for.
         text: the motion file.
         found: the runs, and where they lie.
+        inputs: the files that it was made from; they are not written over.
     """
 
     fit: Fit
@@ -48,6 +51,7 @@ class IdentifiedModel:
     scores: tuple[Score, ...]
     text: str
     found: LoggedRuns
+    inputs: tuple[Path, ...]
 
     @property
     def better(self) -> bool:
@@ -123,10 +127,9 @@ class IdentifiedModel:
 
     def __repr__(self) -> str:
         robot = self.fit.runs[0].robot.name
-        return (
-            f"<Motion model of {robot} fitted to {len(self.outcomes)} runs: "
-            f"{len(self.fit.intervals)} figures, loss {self.fit.before:.4g} → {self.fit.after:.4g}>"
-        )
+        told = f"{counted(self.outcomes, 'run')}: {counted(self.fit.intervals, 'figure')}"
+        loss = f"loss {self.fit.before:.4g} → {self.fit.after:.4g}"
+        return f"<Motion model of {robot} fitted to {told}, {loss}>"
 
     def _repr_html_(self) -> str:
         shown = [(one.before.figures.path_max, one.after.figures.path_max) for one in self.outcomes]

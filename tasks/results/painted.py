@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -43,12 +44,14 @@ class PaintedPart:
         painting: the gun's motion and the coats without a robot.
         made: the program with its coat as emulated; None without a robot.
         texts: of the program, read back, by file name.
+        inputs: the files that it was made from; they are not written over.
     """
 
     source: FootprintSource
     painting: Painting
     made: Executable | None
     texts: Mapping[str, str]
+    inputs: tuple[Path, ...] = ()
 
     @property
     def coats(self) -> dict[str, Coat]:

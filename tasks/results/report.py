@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.arrays import FloatArray
+from ...core.display import counted, in_line
 from ...core.errors import Note, Span
 from ...core.motion.emulator.binding_limits import LimitShare, limit_shares
 from ...core.motion.emulator.move_figures import lengths_and_speeds, zone_reaches
@@ -110,6 +111,19 @@ class MoveReport:
     zone: ZoneReport
     limits: tuple[LimitShare, ...]
 
+    def __repr__(self) -> str:
+        told = (
+            ("not driven",)
+            if not self.driven
+            else (
+                f"{1e3 * self.length:.1f} mm in {self.time:.3f} s",
+                f"at most {1e3 * self.top_speed:.0f} mm/s",
+                zone_text(self.zone),
+                f"limited by {self.limited_by}",
+            )
+        )
+        return in_line(f"Move {self.number}: {self.kind} to {_target(self)}, {', '.join(told)}")
+
     @property
     def limited_by(self) -> str | None:
         """What holds the speed down for most of the move; None where it is not driven."""
@@ -123,7 +137,8 @@ class MoveTable(tuple[MoveReport, ...]):
 
     def __repr__(self) -> str:
         driven = sum(move.driven for move in self)
-        return f"<{len(self)} moves, {driven} driven, {sum(move.time for move in self):.3f} s>"
+        spent = sum(move.time for move in self)
+        return in_line(f"{counted(self, 'move')}, {driven} driven, {spent:.3f} s")
 
     def _repr_html_(self) -> str:
         return table(COLUMNS, [move_row(move) for move in self])
@@ -156,6 +171,13 @@ class Report:
     top_speed: float
     moves: MoveTable
     notes: tuple[Note, ...]
+
+    def __repr__(self) -> str:
+        return in_line(
+            f"Report of {self.program} on {self.robot}: {self.cycle_time:.3f} s, "
+            f"{1e3 * self.length:.1f} mm, {counted(self.moves, 'move')}, "
+            f"{counted(self.notes, 'note')}"
+        )
 
     @property
     def moving(self) -> float:

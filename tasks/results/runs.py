@@ -46,12 +46,6 @@ class Run(core_run.Run):
 
         return draw(self, self.robot, kind)
 
-    def __repr__(self) -> str:
-        return (
-            f"<Run of {self.program.name} on {self.robot.name}: {self.duration:.3f} s, "
-            f"{len(self.moves)} moves, {len(self.notes)} notes>"
-        )
-
     def _repr_html_(self) -> str:
         curve = Curve("path of the TCP", self.trajectory.position)
         return page(repr(self)[1:-1], self.moves._repr_html_(), picture([curve]), notes=self.notes)

@@ -151,7 +151,7 @@ def test_a_record_brings_its_program_and_log(flyby: Flyby, log: Path, tmp_path: 
 
 def test_a_program_without_a_log_is_asked_for_it(flyby: Flyby) -> None:
     result = flyby("compare", SQUARE, "--robot", ROBOT)
-    assert result.exit_code == 1 and "which log?" in result.stderr
+    assert result.exit_code == 2 and "which log?" in result.stderr
 
 
 def test_options_are_documented(flyby: Flyby) -> None:

@@ -39,7 +39,7 @@ def test_numbers_beyond_all_quantities(flyby: Flyby, small: Any, value: str) -> 
         ("ik", ROBOT, f"{value},0,0"),
     ):
         result = flyby(*words)
-        assert result.exit_code == 1
+        assert result.exit_code == 2
         assert "must lie within" in result.stderr or "is not finite" in result.stderr
 
 

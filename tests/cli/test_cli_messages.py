@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from typer.testing import Result
 
+from flyby.cli import console
 from flyby.vendors.abb.motion.configuration import AbbConfiguration
 from flyby.vendors.kuka.motion.configuration import KukaConfiguration
 from flyby.vendors.ur.motion.configuration import UrConfiguration
 
 ROBOT = "abb/irb6640-180-255"
+SQUARE = Path(__file__).parents[2] / "examples/square.mod"
 Flyby = Callable[..., Result]
 
 
@@ -46,3 +49,48 @@ def test_configurations_are_written_as_their_vendor_does() -> None:
 def test_a_name_does_not_speak_to_the_terminal(flyby: Flyby, tmp_path: Path) -> None:
     told = flyby("emulate", tmp_path / "a\x1b]0;owned\x07.mod", "--robot", ROBOT).stderr
     assert "\x1b" not in told and "a\ufffd]0;owned\ufffd.mod" in told
+
+
+@pytest.mark.parametrize("width", [40, 80, 100, 160])
+def test_tables_lose_nothing_in_narrow_terminals(
+    width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(console, "WIDE", width)
+    columns = [(f"column {k}", "right") for k in range(12)]
+    rows = [[f"{row}{k:02}.125" for k in range(12)] for row in range(3)]
+    console.print_table(columns, rows)
+    said = capsys.readouterr().out
+    assert all(cell in said for row in rows for cell in row)
+    assert all(f"column {k}" in said for k in range(12))
+    assert all(len(line) <= width for line in said.splitlines())
+    assert ("--json has it whole" in said) == (width < 150)
+
+
+def test_what_is_wrong_by_itself_ends_with_status_2(flyby: Flyby) -> None:
+    robot = "--robot", ROBOT
+    square = str(SQUARE)
+    for words in (
+        ("emulate", square),
+        ("emulate", square, *robot, "--opaque", "keep"),
+        ("emulate", square, *robot, "--period", "-1"),
+        ("emulate", square, *robot, "--plot", "a.txt"),
+        ("optimize", square, *robot, "--vias", "some"),
+        ("optimize", square, *robot, "--starts", "0"),
+        ("identify", square, *robot, "--workers", "0"),
+        ("fk", ROBOT, "a,b"),
+        ("free", "--start", "0", "--goal", "0"),
+        ("emulate", square, *robot, "--nonsense"),
+    ):
+        assert flyby(*words).exit_code == 2, words
+    for words in (
+        ("emulate", "missing.mod", *robot),
+        ("emulate", square, "--robot", "abb/none"),
+        ("zones", square, *robot, "--keep", "99"),
+    ):
+        assert flyby(*words).exit_code == 1, words
+
+
+def test_helps_show_no_type_behind_switches(flyby: Flyby) -> None:
+    said = flyby("paint", "--help").stdout
+    assert "bool" not in said and "--force" in said
+    assert "The first curve, and within what it may change" in said

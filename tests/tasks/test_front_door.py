@@ -10,15 +10,16 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 
 import pytest
 from typer.testing import CliRunner
 
 import flyby
 from flyby.cli.main import app
-from flyby.core.errors import InputError
+from flyby.core.door import command_line
+from flyby.core.errors import FlybyError, InputError
 from flyby.tasks.optimize import OptimizeOptions
-from flyby.tasks.options.door import command_line
 from flyby.tasks.options.entries import TaskOptions, entries, flag
 from flyby.tasks.painting.options import PaintOptions
 from flyby.tasks.pareto import ParetoOptions
@@ -133,7 +134,7 @@ def test_both_doors_refuse_the_same(
         kind(**options)
     assert said in str(refused.value)
     typed = CliRunner().invoke(app, [COMMANDS[kind], str(SQUARE), "--robot", ROBOT, *words])
-    assert typed.exit_code == 1
+    assert typed.exit_code == 2
     with command_line(), pytest.raises(InputError) as refused:
         kind(**options)
 
@@ -204,3 +205,112 @@ def test_only_what_has_files_is_written(tmp_path: Path) -> None:
 def test_a_misspelt_option_is_named_with_what_was_meant() -> None:
     with pytest.raises(TypeError, match=r"flyby\.read has no option 'robt'; did you mean robot\?"):
         flyby.read("a.mod", robt="abb/irb6640-180-255")  # type: ignore[call-arg]
+
+
+def test_names_are_listed_once() -> None:
+    assert dir(flyby) == sorted(set(dir(flyby)))
+
+
+@pytest.mark.parametrize(
+    "given, taken",
+    [
+        ({"keep": 99}, (99,)),
+        ({"keep": "v100"}, ("v100",)),
+        ({"keep": [1, "v100"]}, (1, "v100")),
+        ({"free": "all"}, ("all",)),
+        ({"limit": "all=fixed"}, ("all=fixed",)),
+        ({"axes": 2}, (2,)),
+        ({"others": "a.mod"}, ("a.mod",)),
+        ({"parameters": "time.smoothing_s[*]"}, ("time.smoothing_s[*]",)),
+        ({"at": [0.0] * 6}, ([0.0] * 6,)),
+        ({"vias": ("0,0,0,0,0,0", [0.1] * 6)}, ("0,0,0,0,0,0", [0.1] * 6)),
+        ({"angles": 0.5}, (0.5,)),
+    ],
+)
+def test_one_value_is_a_list_of_one(given: dict[str, object], taken: tuple[object, ...]) -> None:
+    (name,) = given
+    kinds = (kind for kind in all_options() if name in entries(kind))
+    kind = next(kind for kind in kinds if not entries(kind)[name].choices)
+    found = getattr(kind(**given), name)
+    assert list(map(_plain, found)) == list(map(_plain, taken))
+
+
+def _plain(value: object) -> object:
+    return list(value) if isinstance(value, tuple) else value
+
+
+def test_no_list_takes_what_is_none() -> None:
+    lists = 0
+    for kind in all_options():
+        for name, entry in entries(kind).items():
+            if entry.several:
+                lists += 1
+                for wrong in (object(), [1.5j], [object()], True):
+                    with pytest.raises(InputError, match=f"^{name} is .*, not "):
+                        kind(**{name: wrong})
+    assert lists > 10
+
+
+@pytest.mark.parametrize(
+    "task, said",
+    [
+        (lambda: flyby.read(5, robot=ROBOT), "source is text or a path, not 5"),
+        (lambda: flyby.read(SQUARE, robot=5), "robot is text or Robot, not 5"),
+        (lambda: flyby.read(SQUARE), r"flyby\.robots\(\) lists them"),
+        (lambda: flyby.read(SQUARE, robot="ur/ur5e"), r'flyby\.robots\("abb"\) lists them'),
+        (lambda: flyby.free_motion(5, 5, robot=ROBOT), "start is text or a list, not 5"),
+        (lambda: flyby.robot(5), "name is text, not 5"),
+        (lambda: flyby.patch(None, out="x"), "expected a program, not NoneType"),
+    ],
+)
+def test_wrong_types_are_refused_by_name(task: Callable[[], object], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        task()
+
+
+def test_a_missing_argument_says_of_which_task() -> None:
+    with pytest.raises(TypeError, match=r"flyby\.translate: missing .*'robot'"):
+        flyby.translate(flyby.read(SQUARE, robot=ROBOT))  # type: ignore[call-arg]
+
+
+def test_messages_of_the_core_name_options_as_the_door_does() -> None:
+    text = SQUARE.read_text("utf-8").replace("v1000", "unknown_speed", 1)
+    with pytest.raises(FlybyError, match=r"answer it in a file \(answers\)"):
+        flyby.read(text, robot=ROBOT)
+    with command_line(), pytest.raises(FlybyError, match=r"answer it in a file \(--io\)"):
+        flyby.read(text, robot=ROBOT)
+
+
+def test_helps_state_units_as_the_door_takes_them() -> None:
+    assert "From signal to paint, s. Default: 0.0" in str(flyby.paint.__doc__)
+    assert "Thickness wanted, with its unit: 50um. As numbers: m." in str(flyby.paint.__doc__)
+    with command_line():
+        assert entries(PaintOptions)["delay"].explained == "From signal to paint, ms."
+    for kind in all_options():
+        for name, entry in entries(kind).items():
+            assert (entry.scale.factor != 1.0) == ("{unit}" in entry.help), name
+
+
+def test_values_show_themselves_in_a_line() -> None:
+    program = flyby.read(SQUARE, robot=ROBOT)
+    run = flyby.emulate(program)
+    made = flyby.translate(program, robot="kuka/kr30-3")
+    cell = flyby.cell(two_joints())
+    path, made_of = run.path, (run.trajectory, run.timing, run.report, run.moves, run.moves[3])
+    for shown in (program, run, path, path.route, *made_of, made, cell, cell.robot):
+        line = repr(shown)
+        assert len(line) <= 120 and "\n" not in line and line[0] + line[-1] == "<>", line
+    for page in (program, made, cell, cell.robot):
+        assert all(part in page._repr_html_() for part in ("<svg", "<table>", repr(page)[1:-1]))
+    assert "notes" in repr(replace(program, notes=())) and "0 notes" not in repr(program)
+
+
+def test_what_a_result_was_made_of_is_not_written_over(tmp_path: Path) -> None:
+    class Made:
+        inputs = (tmp_path / "motion.toml",)
+        files = MappingProxyType({"motion.toml": b"new"})
+
+    Made.inputs[0].write_bytes(b"old")
+    with pytest.raises(InputError, match="would overwrite"):
+        flyby.write(Made(), tmp_path, force=True)
+    assert Made.inputs[0].read_bytes() == b"old"

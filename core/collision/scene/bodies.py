@@ -37,7 +37,7 @@ class Body:
     """A solid that is carried as a whole.
 
     Args:
-        name: for messages, unique in the scene: ``link 3``, ``gun``, ``fixture (2)``.
+        name: for messages, unique in the scene: ``J3``, ``gun``, ``fixture (2)``.
         part: what allowed pairs call it: ``base``, the joint before the link, the tool or the
             obstacle; several bodies may make one part.
         kind: what the part is.
@@ -128,12 +128,11 @@ def _links(robot: Robot) -> Iterable[Body]:
     for link in range(robot.arm_size + 1):
         shapes = [shape for shape in robot.shapes if shape.link == link]
         for number, shape in enumerate(shapes, 1):
-            name = BASE if link == 0 else f"link {link}"
             part = BASE if link == 0 else robot.joints[link - 1].name
             frame, placement = link, shape.placement
             if link == 0:
                 frame, placement = base.frame, base.placement @ shape.placement
-            full = name if len(shapes) == 1 else f"{name} ({number})"
+            full = part if len(shapes) == 1 else f"{part} ({number})"
             yield Body(full, part, Kind.LINK, frame, shape.shape, placement)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
+from ...display import counted, in_line
 from ...errors import InputError
 from ...files.arrays import read_npz
 from ...files.reading import read_text
@@ -75,6 +76,13 @@ class Trajectory:
                 raise InputError(f"a trajectory's {name} must be finite")
         if count == 0 or (np.diff(self.t) <= 0).any():
             raise InputError("a trajectory needs samples at increasing times")
+
+    def __repr__(self) -> str:
+        top = np.abs(self.dq).max()
+        return in_line(
+            f"Trajectory: {self.duration:.3f} s, {counted(self.t, 'sample')} of "
+            f"{counted(self.q.shape[1], 'axis', 'axes')}, at most {top:.3g} rad/s or m/s"
+        )
 
     @property
     def q_motor(self) -> FloatArray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ...display import counted, in_line
 from ...errors import Note
 from ...program.program import Program
 from ..command.trajectory import Trajectory
@@ -28,6 +29,12 @@ class Run:
     timing: Timing
     trajectory: Trajectory
     notes: tuple[Note, ...]
+
+    def __repr__(self) -> str:
+        return in_line(
+            f"Run of {self.program.name} on {self.path.route.robot.name}: {self.duration:.3f} s, "
+            f"{counted(self.program.moves, 'move')}, {counted(self.notes, 'note')}"
+        )
 
     @property
     def duration(self) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
+from ...display import counted, in_line
 from ...errors import MotionError, Note
 from ...program.zone import Zone
 from ...robot.kinematics.chain import Chain
@@ -68,6 +69,12 @@ class Route:
     notes: tuple[Note, ...] = ()
     left_out: tuple[int, ...] = ()
 
+    def __repr__(self) -> str:
+        return in_line(
+            f"Route of {self.robot.name}: {counted(self.moves, 'segment')}, "
+            f"{self.dwell.sum():.3f} s of waits, {counted(self.notes, 'note')}"
+        )
+
 
 @dataclass(frozen=True)
 class Path:
@@ -101,6 +108,12 @@ class Path:
     states: States
     conditioning: FloatArray
     notes: tuple[Note, ...] = ()
+
+    def __repr__(self) -> str:
+        return in_line(
+            f"Path of {self.route.robot.name}: {counted(self.route.moves, 'segment')}, "
+            f"{counted(self.sigma, 'sample')}, {counted(self.notes, 'note')}"
+        )
 
     @property
     def q(self) -> FloatArray:

@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
+from ...display import counted, in_line
 from ...errors import MotionError
 from ..model.rules import Pace
 from ..path.path import Path
@@ -77,6 +78,13 @@ class Timing:
     ramp: float = 0.0
     start: StartRamp = SUDDEN
     lag: float = 0.0
+
+    def __repr__(self) -> str:
+        moving = float((self.end - self.begin).sum())
+        return in_line(
+            f"Timing of {self.path.route.robot.name}: {self.duration:.3f} s, {moving:.3f} s of it "
+            f"in motion, {counted(self.begin, 'interval')}"
+        )
 
     @classmethod
     def of(

@@ -13,6 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Protocol
 
+from ...door import switched
 from ...errors import FlybyError, InputError, Span
 from ...program.origin import Ownership
 from ...program.program import Program
@@ -138,7 +139,7 @@ class Plan:
         if self._options.derived is Sharing.REFUSE:
             raise InputError(
                 "the program computes it, or no literal in its files states it, so there is no "
-                "number to change: have the move get its own (--own; in Python derived=own), or "
+                f"number to change: have the move get its own ({switched('own')}), or "
                 "leave it as it is"
             )
 
@@ -157,7 +158,7 @@ class Plan:
             raise InputError(
                 f"{use.origin.datum or 'the literal'} "
                 f"{who if against else 'does not state all of it'}: change them all alike, or "
-                "have the move get its own (--own; in Python shared=own)"
+                f"have the move get its own ({switched('own')})"
             )
 
     def check_executions(self, use: Use, said: Said = _value) -> None:

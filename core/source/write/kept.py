@@ -15,7 +15,7 @@ from ...errors import SourceError, Span
 from ...program.move import Opaque
 from ...program.program import Program
 from ..reading import Reading
-from .options import AS_COMMENTS
+from .options import as_comments
 
 
 def check_kept(program: Program, sources: Mapping[str, str], wording: Wording) -> None:
@@ -58,7 +58,7 @@ def check_kept(program: Program, sources: Mapping[str, str], wording: Wording) -
                 raise SourceError(
                     f"this statement is kept as it stands, and names {name!r}, which the new "
                     "program does not have as it is here: patch the program's own files, or make "
-                    f"kept statements comments ({AS_COMMENTS})",
+                    f"kept statements comments ({as_comments()})",
                     span,
                 )
 

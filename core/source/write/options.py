@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from enum import StrEnum
 from typing import Any, TypeVar
 
+from ...door import at_command_line, given
 from ...errors import InputError, UnknownNameError
 
 Options = TypeVar("Options", bound=Any)
@@ -33,8 +34,9 @@ class OpaqueStyle(StrEnum):
     counts."""
 
 
-AS_COMMENTS = f"option opaque={OpaqueStyle.COMMENT}, on the command line --opaque comment"
-"""How a user has it done, for messages."""
+def as_comments() -> str:
+    """How a user has it done, for messages."""
+    return given("opaque", OpaqueStyle.COMMENT if at_command_line() else f'"{OpaqueStyle.COMMENT}"')
 
 
 @dataclass(frozen=True, slots=True)

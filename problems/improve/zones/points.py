@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from ....core.door import spelt
 from ....core.errors import InputError, MotionError, Note
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.path.path import Route
@@ -160,7 +161,7 @@ def _nothing(moves: Sequence[Move], patterns: Collection[int], notes: Sequence[N
     if all(isinstance(move.zone, Fine) for move in moves):
         return (
             "the program stops at every point, so there is no zone to make larger: free stops that "
-            "the robot may pass (--free)"
+            f"the robot may pass ({spelt('free')})"
         )
     return "no zone can be changed: all of them are to be kept"
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ....core.door import spelt
 from ....core.errors import Note
 from ..spray.footprint import Footprint
 from ..surface.part import Part
@@ -92,6 +93,6 @@ def missed_notes(part: Part, plan: SweepPlan, sweeps: list[Sweep]) -> list[Note]
             f"{part.name}: {100.0 * missed / part.painted_area:.0f} % of what is to be painted "
             f"({missed:.3g} m²) lies round a corner or farther than a sweep width from all sweeps: "
             "paint it in a coat of its own from another view, or take it from what is painted "
-            "(--facing, --inside, --covered)"
+            f"({spelt('facing')}, {spelt('inside')}, {spelt('covered')})"
         )
     ]

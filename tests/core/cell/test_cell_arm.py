@@ -48,7 +48,7 @@ def test_shapes_stand_where_they_are_with_all_joints_at_zero(tmp_path: Path, nam
         scene = CollisionScene(cell)
         q = np.zeros((1, robot.size))
         names = [{scene.body_names[a], scene.body_names[b]} for a, b in scene.pairs]
-        index = names.index({f"link {k + 1}", "ball"})
+        index = names.index({robot.joints[k].name, "ball"})
         distance = scene.distances(q).distance[0, index]
         assert distance == pytest.approx(0.1 - 0.05 - 0.02, abs=1e-9)
 

@@ -53,10 +53,10 @@ def test_links_tool_and_obstacles_ride_on_their_carriers() -> None:
     by_name = {body.name: body for body in scene.bodies}
     assert list(by_name) == [
         "base",
-        "link 1",
-        "link 2",
-        "link 3 (1)",
-        "link 3 (2)",
+        "J1",
+        "J2",
+        "J3 (1)",
+        "J3 (2)",
         "gun",
         "spindle",
         "fixture",
@@ -67,7 +67,7 @@ def test_links_tool_and_obstacles_ride_on_their_carriers() -> None:
     assert by_name["gun"].placement.position == pytest.approx((0.0, 0.0, 0.7))
     assert by_name["spindle"].frame == WORLD
     assert by_name["fixture"].frame == frame_of_axis(robot, "table")
-    assert by_name["link 3 (2)"].part == "J3"
+    assert by_name["J3 (2)"].part == "J3"
     assert scene.body_names == tuple(by_name)
 
 
@@ -80,24 +80,24 @@ def test_every_pair_is_looked_at_or_left_out_with_a_reason() -> None:
     scene = CollisionScene(cell(obstacles=(Obstacle("ball", BALL),)), GUN)
     names = scene.body_names
     everything = {frozenset((a, b)) for a in names for b in names if a < b}
-    everything -= {frozenset(("link 3 (1)", "link 3 (2)"))}
+    everything -= {frozenset(("J3 (1)", "J3 (2)"))}
     assert pairs(scene) | set(excluded(scene)) == everything
     assert not pairs(scene) & set(excluded(scene))
     reasons = excluded(scene)
-    assert reasons[frozenset(("link 1", "link 2"))] == "adjacent links"
-    assert reasons[frozenset(("link 3 (1)", "gun"))] == "they do not move against each other"
+    assert reasons[frozenset(("J1", "J2"))] == "adjacent links"
+    assert reasons[frozenset(("J3 (1)", "gun"))] == "they do not move against each other"
     assert reasons[frozenset(("base", "ball"))] == "they do not move against each other"
     assert str(scene.exclusions[0]).endswith(scene.exclusions[0].reason)
 
 
 def test_links_that_always_overlap_are_left_out() -> None:
-    """A long shape of link 1 that reaches the elbow's."""
+    """A long shape of J1 that reaches the elbow's."""
     robot = arm()
     collar = LinkShape(1, Sphere(0.8), Pose((0.0, 0.0, 0.5)))
     knob = LinkShape(3, Sphere(0.3))
     scene = CollisionScene(cell_of(replace(robot, shapes=(collar, knob))))
     (exclusion,) = scene.exclusions
-    assert {exclusion.first, exclusion.second} == {"link 1", "link 3"}
+    assert {exclusion.first, exclusion.second} == {"J1", "J3"}
     assert "overlap at all of 512 configurations" in exclusion.reason
     assert len(scene.pairs) == 0
 
@@ -105,13 +105,13 @@ def test_links_that_always_overlap_are_left_out() -> None:
 def test_what_surrounds_the_robot_is_never_left_out_silently() -> None:
     pedestal = Obstacle("pedestal", Geometry(Box((0.5, 0.5, 0.7))))
     scene = CollisionScene(cell(obstacles=(pedestal,)), GUN)
-    assert frozenset(("link 1", "pedestal")) in pairs(scene)
+    assert frozenset(("J1", "pedestal")) in pairs(scene)
     (note,) = [n for n in scene.notes if "pedestal" in n.message]
-    assert "link 1 and pedestal overlap wherever the robot stands" in note.message
+    assert "J1 and pedestal overlap wherever the robot stands" in note.message
     assert '[allow] pairs = [["J1", "pedestal"]]' in note.message
     allowed = CollisionScene(cell(obstacles=(pedestal,), allowed=(("J1", "pedestal"),)), GUN)
     assert not any("pedestal" in n.message for n in allowed.notes)
-    reason = excluded(allowed)[frozenset(("link 1", "pedestal"))]
+    reason = excluded(allowed)[frozenset(("J1", "pedestal"))]
     assert reason == "allowed by the cell as 'J1', 'pedestal'"
 
 
@@ -120,8 +120,8 @@ def test_what_surrounds_the_robot_is_never_left_out_silently() -> None:
     [
         (("gun", "ball"), {("gun", "ball")}),
         (("ball", "gun"), {("gun", "ball")}),
-        (("J3", "ball"), {("link 3 (1)", "ball"), ("link 3 (2)", "ball")}),
-        (("base", "J3"), {("link 3 (1)", "base"), ("link 3 (2)", "base")}),
+        (("J3", "ball"), {("J3 (1)", "ball"), ("J3 (2)", "ball")}),
+        (("base", "J3"), {("J3 (1)", "base"), ("J3 (2)", "base")}),
         (("table", "gun"), {("fixture", "gun")}),
     ],
 )

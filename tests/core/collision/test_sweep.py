@@ -168,7 +168,7 @@ def test_a_plane_is_second_order_near_a_grazing_contact() -> None:
     q = np.array([0.0, 0.5, 2.3])
     at_middle = scene.distances(q[None])
     names = [set(scene.pair_names(k)) for k in range(len(scene.pairs))]
-    wall = names.index({"link 3 (1)", "wall"})
+    wall = names.index({"J3 (1)", "wall"})
     distance, normal = at_middle.distance[0, wall], at_middle.normal[0, wall]
     assert 0.0 < distance < 1.0
     lost = []

@@ -198,7 +198,7 @@ def test_without_a_cell_nothing_goes_below_the_base() -> None:
     assert all(run.way_proven is not None for run in made.runs[1:])
     assert any("the plane under the base" in note for note in made.notes)
     low = replace(plan, postures=(np.radians([0.0, 10.0, 60.0, 0.0, 50.0, 0.0]),))
-    with pytest.raises(InputError, match="--no-floor"):
+    with pytest.raises(InputError, match="no_floor=True"):
         design(find_vendor("kuka"), bare_cell(hanging, "kuka"), low, bare=True)
     assert design(find_vendor("kuka"), bare_cell(hanging, "kuka", floor=False), low, bare=True).runs
 

@@ -286,7 +286,7 @@ def test_a_literal_that_an_expression_reads_is_left_to_it() -> None:
 
 def test_what_the_program_computes_is_refused_or_gets_a_datum() -> None:
     text = module("MoveL Offs(p2,0,0,50),v100,z10,tool0;", "MoveL p2,v100,fine,tool0;")
-    with pytest.raises(MotionError, match=r"move 1: target: the program computes it.*derived=own"):
+    with pytest.raises(MotionError, match=r"move 1: target: the program computes it.*own=True"):
         patched(text, target(0, z=0.9))
     new = patched(text, target(0, z=0.9), OWN)
     assert "p2_2:=[[500,-100.5,900],[0,0,1,0],[0,-1,0,1]" in new

@@ -165,7 +165,7 @@ def test_a_literal_that_all_readers_want_alike_changes(job: Program) -> None:
 
 
 def test_a_literal_that_others_read_is_refused_or_gets_company(job: Program) -> None:
-    with pytest.raises(FlybyError, match=r"move 3: zone: .* read by moves 5, 6 .*shared=own"):
+    with pytest.raises(FlybyError, match=r"move 3: zone: .* read by moves 5, 6 .*own=True"):
         KUKA.patch(changed(job, {2: ball(4)}), ROBOT)
     src, _ = patch(job, {2: ball(4)}, OWN)
     assert src == SRC.replace(
@@ -210,7 +210,7 @@ def test_neighbours_with_settings_of_their_own_are_not_restored_between(job: Pro
 
 
 def test_what_is_computed_is_refused_or_gets_numbers(job: Program) -> None:
-    with pytest.raises(FlybyError, match=r"move 7: target: the program computes it.*derived=own"):
+    with pytest.raises(FlybyError, match=r"move 7: target: the program computes it.*own=True"):
         KUKA.patch(changed(job, {6: to(z=950)}), ROBOT)
     src, _ = patch(job, {6: to(z=950)}, OWN)
     assert "LIN {X 1200,Y 0,Z 950,A 0,B 0,C 180}\r\n" in src

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, TypeVar
 
+from ....core.door import spelt
 from ....core.errors import InputError, Note, SourceError, Span
 from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
@@ -369,6 +370,6 @@ def undeclared(kind: str, name: Name, type_: Type, scope: Scope) -> SourceError:
         known += [cell.name for cell in inner.cells.values() if cell.type == type_]
     otherwise = (
         "declare it, name the file that declares it, or put it beside this one, or answer it in a "
-        f"file (--io): [values] {name.text} = …"
+        f"file ({spelt('answers')}): [values] {name.text} = …"
     )
     return SourceError(unknown_name(kind, name.text, known, otherwise), name.span)

@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
+from ....core.door import spelt
 from ....core.errors import SourceError, Span
 from .records import Record
 
@@ -230,4 +231,4 @@ def check_type(
 def _answerable(unknown: Unknown) -> str:
     if not unknown.key:
         return ""
-    return f', or answer it in a file (--io): [values] "{unknown.key}" = …'
+    return f', or answer it in a file ({spelt("answers")}): [values] "{unknown.key}" = …'

@@ -18,7 +18,7 @@ from ....core.program.event import Event, EventAnchor
 from ....core.program.move import Move, MoveJ
 from ....core.program.target import JointTarget
 from ....core.source.write.declarations import Datum
-from ....core.source.write.options import AS_COMMENTS, OpaqueStyle
+from ....core.source.write.options import OpaqueStyle, as_comments
 from ..values.records import MM
 from .numbers import number
 from .operands import Operand, Operands
@@ -129,7 +129,7 @@ def _definition(event: Event) -> str:
     else:
         raise InputError(
             f"the event {_line(event)!r} is no output and its value, as in 'doGun,1': RAPID has "
-            f"no words for it; take it out, or have it written as a comment ({AS_COMMENTS})"
+            f"no words for it; take it out, or have it written as a comment ({as_comments()})"
         )
     start = "\\Start" if event.anchor is EventAnchor.START else ""
     distance = number(event.distance / MM)

@@ -12,7 +12,7 @@ from ....core.program.program import Program
 from ....core.robot.model import Robot
 from ....core.source.text.files import lines_of
 from ....core.source.text.names import Names
-from ....core.source.write.options import AS_COMMENTS, OpaqueStyle, chosen
+from ....core.source.write.options import OpaqueStyle, as_comments, chosen
 from ....core.source.write.statements import lines_of_statements
 from ..syntax.names import NAME_RULES
 from .declarations import Line
@@ -103,7 +103,7 @@ def _events(move: Move, style: OpaqueStyle) -> list[str]:
     if move.events and style is OpaqueStyle.KEEP:
         raise InputError(
             f"URScript has no actions along a move ({move.events[0].text!r}): take them away, or "
-            f"make them comments ({AS_COMMENTS})"
+            f"make them comments ({as_comments()})"
         )
     return [line for event in move.events for line in comment(f"on the way: {event.text}")]
 

@@ -135,7 +135,7 @@ def test_kept_statements_that_cannot_stand_alone_are_refused(name: str, tmp_path
     _, files, folded = REFUSED[name]
     vendor, robot = find_vendor(name), find_robot(ROBOTS[name])
     program = read(tmp_path / "old", files, vendor, robot)
-    with pytest.raises(SourceError, match=f"names '{folded}'.*--opaque comment"):
+    with pytest.raises(SourceError, match=f"names '{folded}'.*opaque=.comment."):
         vendor.write(program, robot)
     assert vendor.write(program, robot, {"opaque": "comment"})
 

@@ -1,4 +1,4 @@
-"""How options are spelt: ``--in-place`` at the command line, ``in_place`` in Python."""
+"""How messages name options and commands: ``--in-place`` in a shell, ``in_place`` in Python."""
 
 from __future__ import annotations
 
@@ -6,6 +6,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
+FLAGS = {"answers": "--io", "others": "--with", "parameters": "--fit"}
+"""Flags of options that are called otherwise in a shell, by their names in Python."""
+_COMMANDS = {"free_motion": "free"}
+"""Likewise of tasks."""
 _TYPED: ContextVar[bool] = ContextVar("typed", default=False)
 
 
@@ -26,7 +30,7 @@ def at_command_line() -> bool:
 
 def flag_of(name: str) -> str:
     """The flag of an option that is called as in Python, or that is a flag already."""
-    return name if name.startswith("-") else "--" + name.replace("_", "-")
+    return name if name.startswith("-") else FLAGS.get(name, "--" + name.replace("_", "-"))
 
 
 def spelt(name: str, flag: str | None = None) -> str:
@@ -34,7 +38,7 @@ def spelt(name: str, flag: str | None = None) -> str:
 
     Args:
         name: in Python.
-        flag: at the command line, where it is not simply the same.
+        flag: at the command line, where one task alone calls it otherwise.
     """
     return (flag or flag_of(name)) if at_command_line() else name
 
@@ -50,3 +54,10 @@ def given(name: str, what: str, flag: str | None = None) -> str:
     ``--out FOLDER``, ``out=FOLDER``.
     """
     return f"{spelt(name, flag)}{' ' if at_command_line() else '='}{what}"
+
+
+def called(task: str, argument: str = "") -> str:
+    """A task as messages name it: ``'flyby robots abb'``, ``flyby.robots("abb")``."""
+    if at_command_line():
+        return f"'{' '.join(filter(None, ('flyby', _COMMANDS.get(task, task), argument)))}'"
+    return f"flyby.{task}({argument and repr(argument)})".replace("'", '"')
