@@ -13,7 +13,9 @@ from .options import texts
 from .options.entries import (
     ANGLE,
     COUNT,
+    NOT_NEGATIVE,
     NUMBER,
+    POSITIVE,
     TIME,
     number,
     value,
@@ -35,9 +37,11 @@ class ExperimentOptions(CellOptions):
 
     tool: str | None = value(None, "Tool of the cell that is mounted; the flange if unset.")
     minutes: float = number(
-        60.0, "Minutes at the robot; the most informative runs that fit are chosen.", NUMBER
+        60.0, "Minutes at the robot; the most informative runs that fit are chosen.", NUMBER, POSITIVE
     )
-    overhead: float = number(60.0, "Seconds that a run takes beside its motion.", TIME)
+    overhead: float = number(
+        60.0, "Seconds that a run takes beside its motion.", TIME, NOT_NEGATIVE
+    )
     postures: int = number(3, "How many postures to look for.", COUNT)
     at: Sequence[str | Sequence[float]] = value(
         (),
@@ -56,7 +60,7 @@ class ExperimentOptions(CellOptions):
         None, "Kinds of moves, such as lines,joints; all if unset."
     )
     margin: float = number(5.0, "What joints keep from limits, {unit}.", ANGLE)
-    longest: float = number(30.0, "Seconds that one run may last, about.", TIME)
+    longest: float = number(30.0, "Seconds that one run may last, about.", TIME, POSITIVE)
     period: float | None = number(
         None, "Seconds between logged samples; what the controller takes if unset.", TIME
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from ..core.door import spelt, switched
 from ..core.errors import InputError, OptionError
@@ -201,7 +201,7 @@ def patch_with(what: Program | Solution, options: PatchOptions) -> tuple[Path, .
     """
     from ..core.program.program import Program
 
-    original = what if isinstance(what, Program) else getattr(what, "original", what)
+    original: Any = what if isinstance(what, Program) else getattr(what, "original", what)
     original, setup = with_setup(original, RobotOptions())
     places = FilePlaces(
         None if options.out is None else Path(options.out),
