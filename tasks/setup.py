@@ -160,7 +160,7 @@ def check_language(vendor: Vendor, program: Path) -> None:
     other = registry().reader_of(program)
     raise InputError(
         f"{program} is a program for {other.name}, the robot is driven by {vendor.name}; "
-        f"choose a robot of {other.name} ('flyby robots {other.name}')"
+        f"choose a robot of {other.name} ({called('robots', other.name)} lists them)"
     )
 
 
