@@ -66,13 +66,13 @@ def _parts(
 ) -> list[list[int]]:
     """Which columns stand side by side: all if they fit, else as many as do.
 
-    Each part begins with the columns by which every row can be told.
+    Each part begins with the columns that name every row.
     """
     from rich.measure import Measurement
 
     options = console.options.update(width=UNBOUNDED)
-    told = (k for k in range(1, len(columns)) if all(any(row[:k]) for row in rows))
-    key = list(range(next(told, 1)))
+    named = (k for k in range(1, len(columns)) if all(any(row[:k]) for row in rows))
+    key = list(range(next(named, 1)))
     parts = [key]
     for column in range(len(key), len(columns)):
         wider = [*parts[-1], column]

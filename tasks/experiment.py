@@ -37,7 +37,10 @@ class ExperimentOptions(CellOptions):
 
     tool: str | None = value(None, "Tool of the cell that is mounted; the flange if unset.")
     minutes: float = number(
-        60.0, "Minutes at the robot; the most informative runs that fit are chosen.", NUMBER, POSITIVE
+        60.0,
+        "Minutes at the robot; the most informative runs that fit are chosen.",
+        NUMBER,
+        POSITIVE,
     )
     overhead: float = number(
         60.0, "Seconds that a run takes beside its motion.", TIME, NOT_NEGATIVE
