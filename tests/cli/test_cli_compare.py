@@ -154,13 +154,6 @@ def test_a_program_without_a_log_is_asked_for_it(flyby: Flyby) -> None:
     assert result.exit_code == 2 and "which log?" in result.stderr
 
 
-def test_options_are_documented(flyby: Flyby) -> None:
-    text = (ROOT / "docs" / "reference" / "cli.md").read_text("utf-8")
-    section = text[text.index("## flyby compare") : text.index("## Answers")]
-    for option in ("--columns", "--start", "--plot", "--json", "--force", "--cell", "--entry"):
-        assert option in section
-
-
 def test_a_clock_or_an_override_is_found_to_explain_a_log(flyby: Flyby, log: Path) -> None:
     data = load(log)
     data[:, 0] = data[0, 0] + 1.02 * (data[:, 0] - data[0, 0])

@@ -165,17 +165,3 @@ def test_a_cell_and_a_posture_are_taken(flyby: Flyby, tmp_path: Path) -> None:
     read = vendor.read_file(source, robot=robot)
     assert read.moves[1].tool.tcp.position == pytest.approx((0.01, 0.0, 0.09))
     assert isinstance(read.moves[0], MoveJ) and isinstance(read.moves[1], MoveL)
-
-
-def test_options_are_documented() -> None:
-    text = (ROOT / "docs" / "reference" / "cli.md").read_text("utf-8")
-    section = text[text.index("## flyby experiment") : text.index("## flyby compare")]
-    import re
-
-    from typer.main import get_command
-
-    from flyby.cli.main import app
-
-    (command,) = [c for n, c in get_command(app).commands.items() if n == "experiment"]
-    options = {option for param in command.params for option in param.opts}
-    assert {o for o in options if o != "--help"} <= set(re.findall(r"--[a-z-]+", section))
