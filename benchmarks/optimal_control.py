@@ -37,9 +37,9 @@ from flyby.core.robot.inertia import carried_inertia
 from flyby.core.sqp import solve
 from flyby.problems.free_motion.optimal_control import (
     ControlLimits,
-    Effort,
+    MotionEffort,
+    MotionObjective,
     MotionTask,
-    Objective,
     Optimum,
     SchemeKind,
     Surroundings,
@@ -73,12 +73,12 @@ TOLERANCE = 1e-6
 def measure(case: str) -> Iterator[Figure]:
     """The figures of a case."""
     if case == "2dof":
-        yield from _scene_figures(case, questions(two_joints()), Effort(intervals=70))
+        yield from _scene_figures(case, questions(two_joints()), MotionEffort(intervals=70))
     elif case == "stud":
-        yield from _scene_figures(case, questions(stud_welding()), Effort(intervals=40))
+        yield from _scene_figures(case, questions(stud_welding()), MotionEffort(intervals=40))
     elif case.startswith("6dof-clutter"):
         limits = ControlLimits(torque=None if case.endswith("speeds") else TORQUE)
-        effort = Effort(intervals=60, gain=1e-3, trials=0)
+        effort = MotionEffort(intervals=60, gain=1e-3, trials=0)
         yield from _scene_figures(case, [_clutter(limits)], effort)
     else:
         weight = 0.5 if case.endswith("energy") else 1.0
@@ -107,7 +107,7 @@ def _clutter(limits: ControlLimits) -> Question:
     return task, Surroundings(scenes(scene.tool), scene.cell.clearance), [q[1:-1]]
 
 
-def _scene_figures(case: str, asked: list[Question], effort: Effort) -> Iterator[Figure]:
+def _scene_figures(case: str, asked: list[Question], effort: MotionEffort) -> Iterator[Figure]:
     # What is compiled, and the shapes' hulls, are there before it counts.
     task, around, vias = asked[0]
     optimize(task, around, replace(effort, outer=1), vias=vias)
@@ -136,7 +136,7 @@ def _beside_ipopt(case: str, weight: float) -> Iterator[Figure]:
         np.radians(FREE_START),
         np.radians(FREE_END),
         limits=ControlLimits(torque=TORQUE),
-        objective=Objective(weight),
+        objective=MotionObjective(weight),
     )
     limits, plant = MotionLimits.of(task), Plant(task)
     scheme = Scheme(SchemeKind.LINEAR)

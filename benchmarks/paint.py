@@ -42,7 +42,7 @@ from flyby.problems.paint.executable.station import Station
 from flyby.problems.paint.executable.writing import DriveOptions
 from flyby.problems.paint.initial.curve import initial_curve
 from flyby.problems.paint.initial.plan import SweepPlan
-from flyby.problems.paint.painting import Judge, Painting, Stage, Wishes, paint
+from flyby.problems.paint.painting import Judge, Painting, PaintingStage, Wishes, paint
 from flyby.problems.paint.spray.footprint import Footprint, ring
 from flyby.problems.paint.spray.trajectory import PaintTrajectory
 from flyby.problems.paint.surface.part import Part
@@ -164,7 +164,7 @@ def _fender(case: str) -> Iterator[Figure]:
     _warm()
     painting, spent = _painted_fender()
     coats = painting.coats
-    yield from _figures(case, coats[Stage.FULL], spent, "start", coats[Stage.START])
+    yield from _figures(case, coats[PaintingStage.FULL], spent, "start", coats[PaintingStage.START])
 
 
 def _emulated(case: str) -> Iterator[Figure]:
@@ -174,7 +174,7 @@ def _emulated(case: str) -> Iterator[Figure]:
     begin = _now()
     made = execute(painting, station, DriveOptions(zone=ZONE), (0.05, 0.8), prove=False)
     spent = _since(begin)
-    yield from _figures(case, made.coat, spent, "as planned", painting.coats[Stage.FULL])
+    yield from _figures(case, made.coat, spent, "as planned", painting.coats[PaintingStage.FULL])
 
 
 @cache

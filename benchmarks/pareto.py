@@ -54,26 +54,30 @@ from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_vendor
-from flyby.problems.free_motion.optimal_control import Effort as FreeEffort
+from flyby.problems.free_motion.optimal_control import (
+    MotionEffort,
+    MotionObjective,
+    Optimum,
+    energy_of,
+    optimize,
+)
 from flyby.problems.free_motion.optimal_control import MotionTask as FreeTask
-from flyby.problems.free_motion.optimal_control import Objective as FreeObjective
-from flyby.problems.free_motion.optimal_control import Optimum, energy_of, optimize
 from flyby.problems.free_motion.velocity_tuning import (
-    Drive,
     FixedPath,
-    Objective,
+    JointDrive,
     TorqueCurve,
+    TuningObjective,
     tune,
     tune_by_cones,
     tune_by_sweeps,
 )
 from flyby.problems.free_motion.velocity_tuning import TuningTask as TuningTask
 from flyby.problems.improve.energy import (
+    EnergyScope,
     EnergyTask,
     Front,
     FrontPoint,
     Goal,
-    Scope,
     optimize_energy,
     pareto,
 )
@@ -88,7 +92,7 @@ SCENES: dict[str, Callable[[], Scene]] = {"2dof": two_joints, "stud": stud_weldi
 WEIGHTS = (1.0, 0.5, 0.0)
 FRONT, TUNING = "pareto", "velocity-tuning"
 POINTS = 8
-FREE = FreeEffort(intervals=40)
+FREE = MotionEffort(intervals=40)
 ABB = find_vendor("abb")
 _TOLD = 0.005
 
@@ -153,7 +157,7 @@ def measure_scene(case: str, starts: int) -> Iterator[Figure]:
 def velocity_tuned(case: str, base: Baseline) -> Iterator[Figure]:
     """The baseline's path at the speeds that are best for each weight."""
     for weight in WEIGHTS:
-        made = tune(TuningTask(base.path, objective=Objective(weight)))
+        made = tune(TuningTask(base.path, objective=TuningObjective(weight)))
         yield Figure(case, f"tuned_time_s@{weight:g}", made.duration, "s")
         yield Figure(case, f"tuned_energy_ratio@{weight:g}", made.energy / base.energy, "")
 
@@ -209,7 +213,7 @@ def _weighed(base: Baseline, known: Optimum, weight: float) -> FreeTask:
     energy = energy_of(known.task, known.first)
     by_time = weight * known.first.duration / base.time
     by_energy = (1.0 - weight) * energy / base.energy
-    return replace(known.task, objective=FreeObjective(by_time / (by_time + by_energy)))
+    return replace(known.task, objective=MotionObjective(by_time / (by_time + by_energy)))
 
 
 def _fastest(base: Baseline, program: Program, starts: int) -> Program:
@@ -226,7 +230,7 @@ def _fastest(base: Baseline, program: Program, starts: int) -> Program:
 
 def _point(base: Baseline, program: Program, goal: Goal) -> FrontPoint:
     """The program that serves a goal best, begun at the fastest one."""
-    scope = Scope.WAYPOINTS if len(program.moves) > 1 else Scope.SPEEDS
+    scope = EnergyScope.WAYPOINTS if len(program.moves) > 1 else EnergyScope.SPEEDS
     task = EnergyTask(scope, wishes=Wishes(axes=base.scene.free, tilt=math.pi))
     cell, effort = base.scene.cell, Effort(starts=1, generations=0, workers=1)
     (point,) = optimize_energy(
@@ -266,7 +270,7 @@ def measure_front(case: str) -> Iterator[Figure]:
         assert certify(controller, run, scenes, cell.clearance).proven
         path = _unhurried(controller, point.program, base.scene.programs[0].start)
         least = tune(TuningTask(path)).duration
-        wanted = Objective(0.0, duration=max(point.duration, least))
+        wanted = TuningObjective(0.0, duration=max(point.duration, least))
         free = tune(TuningTask(path, objective=wanted))
         yield Figure(
             case,
@@ -303,7 +307,7 @@ def measure_tuning(case: str) -> Iterator[Figure]:
     path = FixedPath.of(controller, program, timing)
     assert path.rigid is not None
     most = 1.2 * np.abs(path.rigid.c).max(axis=(0, 1)) + 50.0
-    task = TuningTask(path, tuple(Drive(TorqueCurve.constant(float(v))) for v in most))
+    task = TuningTask(path, tuple(JointDrive(TorqueCurve.constant(float(v))) for v in most))
     found, spent = [], []
     for way in (tune_by_sweeps, tune_by_cones):
         way(task)

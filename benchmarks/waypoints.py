@@ -63,13 +63,13 @@ from flyby.core.sqp import NLP
 from flyby.problems.improve.solution import Solution, measure
 from flyby.problems.improve.waypoints import (
     Effort,
+    Freedom,
     ViaCount,
     WaypointTask,
     optimize_waypoints,
-    optimize_zones,
 )
 from flyby.problems.improve.zones.maximize import maximize_zones
-from flyby.problems.improve.zones.options import ZoneOptions
+from flyby.problems.improve.zones.options import ZoneTask
 from flyby.problems.improve.zones.points import passable_stops
 from flyby.validation.scenes.clutter import clutter, clutter_100
 from flyby.validation.scenes.scene import PARABOLAS, SECOND_ORDER, SECOND_ORDER_BLENDS, Scene
@@ -111,14 +111,14 @@ def measure_scene(case: str, effort: Effort) -> Iterator[Figure]:
     """Figures of one scene."""
     make, model = SCENES[case]
     scene = make()
-    zones = [_solved(optimize_zones, scene, model, program, effort) for program in scene.programs]
+    zones = [
+        _solved(scene, model, program, effort, freedom=Freedom.ZONES) for program in scene.programs
+    ]
     yield Figure(case, "stop_time_s", sum(s.before.time for s in zones), "s")
     yield Figure(case, "zones_time_s", sum(s.after.time for s in zones), "s")
-    _solved(optimize_waypoints, scene, model, scene.programs[0], ONCE)
+    _solved(scene, model, scene.programs[0], ONCE)
     begin = time.perf_counter()
-    free = [
-        _solved(optimize_waypoints, scene, model, program, effort) for program in scene.programs
-    ]
+    free = [_solved(scene, model, program, effort) for program in scene.programs]
     wall = time.perf_counter() - begin
     yield Figure(case, "optimized_time_s", sum(s.after.time for s in free), "s")
     yield _clearance(case, free)
@@ -130,12 +130,9 @@ def measure_vias(case: str, effort: Effort) -> Iterator[Figure]:
     """Figures of one scene with other numbers of via points."""
     make, model = SCENES[VIAS[case]]
     scene = make()
-    _solved(optimize_waypoints, scene, model, scene.programs[0], ONCE)
+    _solved(scene, model, scene.programs[0], ONCE)
     begin = time.process_time()
-    found = [
-        _solved(optimize_waypoints, scene, model, program, effort, ViaCount.CHANGE)
-        for program in scene.programs
-    ]
+    found = [_solved(scene, model, program, effort, ViaCount.CHANGE) for program in scene.programs]
     spent = time.process_time() - begin
     yield Figure(case, "optimized_time_s", sum(s.after.time for s in found), "s")
     yield _clearance(case, found)
@@ -157,12 +154,12 @@ def _clearance(case: str, solutions: Sequence[Solution]) -> Figure:
 
 
 def _solved(
-    solver: Callable[..., Solution],
     scene: Scene,
     model: MotionModel,
     program: Program,
     effort: Effort,
     vias: ViaCount = ViaCount.KEEP,
+    freedom: Freedom = Freedom.WAYPOINTS_AND_ZONES,
 ) -> Solution:
     """A program bettered; one without via points as it is, with its proof."""
     controller = scene.controller(model, FINE)
@@ -174,8 +171,15 @@ def _solved(
         )
         held = measure(controller, run, proof)
         return Solution(program, program, held, held, proof)
-    task = WaypointTask(axes=scene.free, tilt=math.pi, freed=freed, keep=scene.process, vias=vias)
-    return solver(controller, program, scene.cell, task, effort)
+    task = WaypointTask(
+        axes=scene.free,
+        tilt=math.pi,
+        freed=freed,
+        keep=scene.process,
+        vias=vias,
+        freedom=freedom,
+    )
+    return optimize_waypoints(controller, program, scene.cell, task, effort)
 
 
 def _energy_figures(case: str, solutions: Sequence[Solution]) -> Iterator[Figure]:
@@ -232,9 +236,9 @@ def measure_transcription(case: str) -> Iterator[Figure]:
     its, wall, callables = min(
         map(partial(_peer, solve), BARRIERS), key=lambda found: found[0].time
     )
-    _solved(optimize_waypoints, scene, SECOND_ORDER_BLENDS, program, ONCE)
+    _solved(scene, SECOND_ORDER_BLENDS, program, ONCE)
     begin = time.perf_counter()
-    ours = _solved(optimize_waypoints, scene, SECOND_ORDER_BLENDS, program, PLAIN)
+    ours = _solved(scene, SECOND_ORDER_BLENDS, program, PLAIN)
     spent = time.perf_counter() - begin
     dense = scene.controller(sampling=DENSE)
     peer = f"ipopt (casadi {version('casadi')}), transcription"
@@ -269,7 +273,7 @@ def measure_maximization(case: str) -> Iterator[Figure]:
     warm, scene = clutter(), clutter_100()
     for run in (warm, scene):
         program = run.programs[0]
-        options = ZoneOptions(freed=tuple(passable_stops(program)))
+        options = ZoneTask(freed=tuple(passable_stops(program)))
         begin = time.perf_counter()
         maximize_zones(run.controller(), program, run.cell, options)
         wall = time.perf_counter() - begin

@@ -130,7 +130,7 @@ def _rows(program: Path, made: Solution) -> list[tuple[str, ...]]:
         before = old[index] if len(old) == len(new) else None
         if before is not None and (before.target, before.zone) == (move.target, move.zone):
             continue
-        span = None if before is None or before.origin is None else before.origin.statement
+        span = None if before is None else before.statement
         rows.append(
             (
                 str(index + 1),
@@ -207,7 +207,7 @@ def _move_json(index: int, move: Move, moved: Moved | None) -> dict[str, Any]:
     target = move.target
     joints = list(target.joints) if isinstance(target, JointTarget) else None
     position = None if isinstance(target, JointTarget) else list(target.pose.position)
-    span = None if move.origin is None else move.origin.statement
+    span = move.statement
     return {
         "move": index + 1,
         "joints_rad": joints,

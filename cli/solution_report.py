@@ -11,7 +11,7 @@ from .console import print_rich, print_table, warn
 
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell
-    from ..problems.improve.solution import Row, Solution
+    from ..problems.improve.solution import FigureRow, Solution
 
 _FIGURES = (("", "left"), ("unit", "left"), ("before", "right"), ("after", "right"), ("%", "right"))
 
@@ -61,7 +61,7 @@ def _figure(value: float | None, digits: int = 4) -> str:
     return "" if value is None else f"{value:.{digits}f}"
 
 
-def percent(row: Row) -> str:
+def percent(row: FigureRow) -> str:
     """The change in percent; empty where there is none, or the value before is shown as zero."""
     if row.before is None or float(_figure(row.before)) == 0.0:
         return ""

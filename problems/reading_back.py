@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 
-from ..core.errors import FlybyError, Note, Span
+from ..core.errors import FlybyError, Note
 from ..core.program.move import Move
 from ..core.program.origin import Origin
 from ..core.program.program import Program
@@ -37,7 +37,7 @@ class Written:
         """One on each move that keeps something."""
         moves = self.program.moves
         return tuple(
-            Note(f"its {part} stays as it is: {why}", i, _statement(moves[i]))
+            Note(f"its {part} stays as it is: {why}", i, moves[i].statement)
             for (i, part), why in sorted(self.refused.items())
         )
 
@@ -116,7 +116,3 @@ def _place(move: Move, index: int, part: str) -> Hashable:
         return index
     origin: Origin = getattr(move.origin, part)
     return origin.numbers or (origin.span, move.origin.statement)
-
-
-def _statement(move: Move) -> Span | None:
-    return None if move.origin is None else move.origin.statement

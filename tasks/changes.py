@@ -250,7 +250,7 @@ def _limits(
 
 
 def _limit(how: str, text: str) -> PointLimit:
-    from ..problems.improve.waypoints import Box, Cone, Fixed, Free
+    from ..problems.improve.waypoints import Fixed, Free, PointBox, PointCone
 
     kind, _, sizes = how.partition(":")
     option = f"{spelt('limit')} {text}"
@@ -267,11 +267,11 @@ def _limit(how: str, text: str) -> PointLimit:
         case "box", 1 | 2:
             edge = 1e-3 * numbers[0]
             turn = math.radians(numbers[1]) if len(numbers) == 2 else None
-            return Box(position=(edge, edge, edge), turn=turn)
+            return PointBox(position=(edge, edge, edge), turn=turn)
         case "joints", 1:
-            return Box(joints=(math.radians(numbers[0]),) * _MOST_JOINTS)
+            return PointBox(joints=(math.radians(numbers[0]),) * _MOST_JOINTS)
         case "cone", 1:
-            return Cone(math.radians(numbers[0]))
+            return PointCone(math.radians(numbers[0]))
     raise OptionError(f"{option}: {_LIMITS}")
 
 

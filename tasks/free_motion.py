@@ -19,7 +19,7 @@ from .setup import CellOptions, Setup, setup_of
 if TYPE_CHECKING:
     from ..core.motion.model.consumption import Consumption
     from ..core.program.tool import Tool
-    from ..problems.free_motion.optimal_control import Step, Surroundings
+    from ..problems.free_motion.optimal_control import SearchStep, Surroundings
     from .results.motions import FreeMotion
 
 MOST_TRIALS = 16
@@ -54,7 +54,12 @@ class FreeMotionOptions(CellOptions):
         kind=Path,
     )
     longest: float | None = number(None, "Seconds that the motion may take.", TIME, POSITIVE)
-    intervals: int = number(60, "Of the first grid; more are finer.", COUNT, Extent(1))
+    intervals: int = number(
+        60,
+        "Pieces of time that the motion is first laid out in; more are finer, and take longer.",
+        COUNT,
+        Extent(1),
+    )
     trials: int = number(
         MOST_TRIALS,
         "Ways in which a motion that is stuck near obstacles is led on; 0 is quickest.",
@@ -81,7 +86,12 @@ def free_motion_with(
             limits was found.
     """
     from ..core.robot.inertia import carried_inertia
-    from ..problems.free_motion.optimal_control import Effort, MotionTask, Objective, optimize
+    from ..problems.free_motion.optimal_control import (
+        MotionEffort,
+        MotionObjective,
+        MotionTask,
+        optimize,
+    )
     from .results.motions import FreeMotion
 
     setup = setup_of(options)
@@ -97,13 +107,13 @@ def free_motion_with(
         joints=None if options.axes is None else joint_indices(options.axes, robot.size),
         tcp=tool.tcp,
         loads=(carried_inertia(tool) if robot.links else None,),
-        objective=Objective(
+        objective=MotionObjective(
             weight(options.objective, spelt("objective")), consumption, options.longest
         ),
     )
-    effort = Effort(intervals=options.intervals, trials=options.trials)
+    effort = MotionEffort(intervals=options.intervals, trials=options.trials)
 
-    def report(step: Step) -> None:
+    def report(step: SearchStep) -> None:
         options.say(f"{step.time:.4f} s: {step.what} (Ctrl-C ends with the best)")
 
     around = _surroundings(setup, tool, no_floor=options.no_floor)

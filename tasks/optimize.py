@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..core.door import given
@@ -15,8 +15,9 @@ from .setup import CellOptions, with_setup
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
+    from ..problems.improve.progress import Progress
     from ..problems.improve.solution import Solution
-    from ..problems.improve.waypoints import Effort, Progress
+    from ..problems.improve.waypoints import Effort
 
 CHANGE = "change"
 
@@ -74,7 +75,7 @@ def optimize_with(program: Program, options: OptimizeOptions) -> Solution:
         MotionError: the program cannot be driven, or collides as it is.
     """
     from ..core.motion.emulator.controller import Controller
-    from ..problems.improve.waypoints import optimize_waypoints, optimize_zones
+    from ..problems.improve.waypoints import Freedom, optimize_waypoints
 
     program, setup = with_setup(program, options)
     cell = setup.surroundings(program, no_floor=options.no_floor)
@@ -96,10 +97,11 @@ def optimize_with(program: Program, options: OptimizeOptions) -> Solution:
             f"{state.stage}: {state.done} of {state.total}{gained} (Ctrl-C ends with the best)"
         )
 
-    run = optimize_zones if options.zones_only else optimize_waypoints
+    if options.zones_only:
+        task = replace(task, freedom=Freedom.ZONES)
     controller = Controller(setup.vendor, setup.robot)
     effort = effort_of(options.starts, options.generations, options.seed)
-    made = run(controller, program, cell, task, effort, texts.read_back, report)
+    made = optimize_waypoints(controller, program, cell, task, effort, texts.read_back, report)
     return delivered(made, texts, setup)
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..core.motion.model.consumption import Consumption
     from ..core.program.program import Program
     from ..core.robot.model import Robot
-    from ..problems.improve.energy import Progress
+    from ..problems.improve.progress import Progress
     from .results.fronts import ProgramFront
 
 SCOPES = ("waypoints", "zones", "speeds")
@@ -60,7 +60,7 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
         MotionError: the program cannot be driven.
     """
     from ..core.motion.emulator.controller import Controller
-    from ..problems.improve.energy import EnergyTask, Scope, pareto
+    from ..problems.improve.energy import EnergyScope, EnergyTask, pareto
     from .results.fronts import ProgramFront
 
     program, setup = with_setup(program, options)
@@ -70,7 +70,7 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
                 raise OptionError(
                     f"{spelt(name)} needs a cell ({spelt('cell')}): without one, only speeds change"
                 )
-    scope = Scope.SPEEDS if setup.cell is None else Scope(options.change)
+    scope = EnergyScope.SPEEDS if setup.cell is None else EnergyScope(options.change)
     wishes = task_of(program, setup, options)
     task = EnergyTask(scope, consumption_of(options.motors, setup.robot), wishes)
     texts = ProgramTexts(setup, program, own=True, anew=True, keep=True)

@@ -69,7 +69,7 @@ def tune_with(program: Program, options: TuneOptions) -> TunedMotion:
     from ..core.motion.emulator.controller import Controller
     from ..problems.free_motion.velocity_tuning import (
         FixedPath,
-        Objective,
+        TuningObjective,
         TuningTask,
         drives_of,
         tune,
@@ -81,7 +81,7 @@ def tune_with(program: Program, options: TuneOptions) -> TunedMotion:
     options.say(f"emulating {counted(program.moves, 'move')}")
     timing = controller.stamp(program, controller.plan(program, start_of(program)))
     options.say("finding the best speeds")
-    objective = Objective(
+    objective = TuningObjective(
         weight(options.objective, spelt("objective")),
         consumption_of(options.motors, setup.robot),
         options.longest,

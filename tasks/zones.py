@@ -42,14 +42,14 @@ def zones_with(program: Program, options: ZoneOptions) -> ZoneSolution:
         MotionError: the program cannot be driven, or collides as it is.
     """
     from ..core.motion.emulator.controller import Controller
-    from ..problems.improve.zones import options as maximizing
     from ..problems.improve.zones.maximize import maximize_zones
+    from ..problems.improve.zones.options import ZoneTask
     from ..problems.improve.zones.sizes import pattern_for
 
     program, setup = with_setup(program, options)
     cell = setup.surroundings(program, no_floor=options.no_floor)
     kept = [move_index(program, number, "keep") for number in options.keep]
-    wanted = maximizing.ZoneOptions(
+    wanted = ZoneTask(
         clearance=options.clearance,
         freed=freed_stops(program, options.free, kept),
         pattern=pattern_for(setup.vendor.speaks),

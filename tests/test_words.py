@@ -56,6 +56,39 @@ def test_replaced_words_do_not_come_back(pattern: str) -> None:
     assert not found, "\n".join(found)
 
 
+def test_one_name_is_one_class() -> None:
+    """Outside of the languages, whose words are each language's own, and of the checks.
+
+    In the rooms of improvements and of free motions no class has the name of another one of the
+    package; nor have those whose names once stood for several.
+    """
+    rooms = "problems/improve", "problems/free_motion"
+    once_several = {
+        "Answers",
+        "Blend",
+        "Choice",
+        "Effort",
+        "Finding",
+        "Stage",
+        "Surroundings",
+        "ZoneOptions",
+    }
+    left_out = {"vendors", "validation", "tests", "benchmarks", "examples"}
+    places: dict[str, list[str]] = {}
+    for path, text in TEXTS.items():
+        if path.suffix == ".py" and path.parts[0] not in left_out:
+            for name in re.findall(r"^class ([A-Z]\w*)", text, re.MULTILINE):
+                places.setdefault(name, []).append(path.as_posix())
+    assert len(places) > 500
+    shared = {
+        name: found
+        for name, found in places.items()
+        if len(found) > 1
+        and (name in once_several or any(place.startswith(rooms) for place in found))
+    }
+    assert not shared
+
+
 def test_where_terms_live_exists() -> None:
     """The places that the page of terms names are there."""
     text = (ROOT / "docs" / "terms.md").read_text("utf-8")

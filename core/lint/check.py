@@ -105,8 +105,7 @@ def _failure(program: Program, error: FlybyError) -> Finding:
         return Finding(CANNOT_DRIVE, Severity.ERROR, error.message, _elsewhere(), None, error.span)
     span = error.span
     if span is None:
-        origin = program.moves[error.move].origin
-        span = None if origin is None else origin.statement
+        span = program.moves[error.move].statement
     return Finding(CANNOT_DRIVE, Severity.ERROR, error.message, _FIX, error.move, span)
 
 

@@ -48,6 +48,11 @@ class _Motion:
     events: tuple[Event, ...] = field(default=(), kw_only=True)
     origin: MoveOrigin | None = field(default=None, compare=False, repr=False, kw_only=True)
 
+    @property
+    def statement(self) -> Span | None:
+        """Where in the source it stands; None where it was not read from one."""
+        return None if self.origin is None else self.origin.statement
+
 
 @dataclass(frozen=True, slots=True)
 class MoveJ(_Motion):

@@ -82,8 +82,7 @@ def placed(error: MotionError, program: Program) -> MotionError:
     """The same error with the move's place in the source, if it is known."""
     if error.move is None or error.span is not None:
         return error
-    origin = program.moves[error.move].origin
-    return MotionError(error.message, error.move, None if origin is None else origin.statement)
+    return MotionError(error.message, error.move, program.moves[error.move].statement)
 
 
 def waypoints(route: Route, count: int, start: FloatArray | None = None) -> FloatArray:

@@ -26,8 +26,7 @@ class Losses:
             kind: of losses that a line in a loop has every time, in another size: the largest is
                 told. None for the message itself.
         """
-        origin = self._program.moves[move].origin
-        span = None if origin is None else origin.statement
+        span = self._program.moves[move].statement
         key = (kind or message, span or move)
         self._add(key, Note(message, move, span), size)
 

@@ -22,9 +22,9 @@ from flyby.core.registry import find_robot
 from flyby.core.robot.inertia import carried_inertia
 from flyby.problems.free_motion.optimal_control import (
     ControlLimits,
-    Effort,
+    MotionEffort,
+    MotionObjective,
     MotionTask,
-    Objective,
     Optimum,
     Surroundings,
     optimize,
@@ -44,9 +44,9 @@ def free_motion(weight: float) -> Optimum:
         np.radians(START),
         np.radians(END),
         limits=ControlLimits(torque=TORQUE),
-        objective=Objective(weight),
+        objective=MotionObjective(weight),
     )
-    return optimize(task, effort=Effort(intervals=60))
+    return optimize(task, effort=MotionEffort(intervals=60))
 
 
 def round_the_box() -> Optimum:
@@ -64,7 +64,7 @@ def round_the_box() -> Optimum:
         tcp=scene.tool.tcp,
         loads=(carried_inertia(scene.tool),),
     )
-    return optimize(task, around, Effort(intervals=70), vias=[q[1:-1]])
+    return optimize(task, around, MotionEffort(intervals=70), vias=[q[1:-1]])
 
 
 def draw_limits(found: list[tuple[str, Optimum]], file: Path) -> None:

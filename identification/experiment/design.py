@@ -29,7 +29,7 @@ from .checking import Refused, check
 from .information import Informer
 from .plan import CandidateRun, Designed, Experiment, Plan, Skipped, usual_radii
 from .postures import Clear, Site, find_sites, given_site, reach_of
-from .selection import Choice, Option
+from .selection import Option, RunChoice
 from .words import Words
 
 Say = Callable[[str], None]
@@ -98,7 +98,7 @@ class _Designer:
         candidates = self._candidates(sites)
         period = self._period(candidates)
         informer = Informer.of(self.vendor, self.cell.robot, period)
-        choice = Choice(self._options(candidates, informer), self.plan)
+        choice = RunChoice(self._options(candidates, informer), self.plan)
         runs = self._chosen(choice, period)
         if not runs:
             reasons = "; ".join(f"{s.what}: {s.reason}" for s in self.skipped[:3])
@@ -190,7 +190,7 @@ class _Designer:
 
     # The choice
 
-    def _chosen(self, choice: Choice, period: float) -> list[Designed]:
+    def _chosen(self, choice: RunChoice, period: float) -> list[Designed]:
         runs: list[Designed] = []
         while (option := choice.best()) is not None:
             self.say(f"proving {option.candidate.name}")
@@ -256,7 +256,7 @@ class _Designer:
         proof = self.clearance.proof(run)
         return proof is not None and proof.proven
 
-    def _notes(self, choice: Choice, sites: int) -> Iterable[str]:
+    def _notes(self, choice: RunChoice, sites: int) -> Iterable[str]:
         if isinstance(self.plan.postures, int) and sites < self.plan.postures:
             yield f"only {sites} of {self.plan.postures} postures were found"
         if not self.cell.robot.shapes:

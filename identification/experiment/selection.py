@@ -44,7 +44,7 @@ class Option:
         )
 
 
-class Choice:
+class RunChoice:
     """Chooses one run after the other.
 
     Args:

@@ -70,7 +70,7 @@ class SearchPoint(Protocol):
 P = TypeVar("P", bound=SearchPoint)
 
 
-class Model(Protocol[P]):
+class SearchModel(Protocol[P]):
     """What the search asks of a problem.
 
     Attributes:
@@ -192,7 +192,7 @@ def violation(point: SearchPoint) -> float:
 
 
 def search(
-    model: Model[P], start: P, settings: SearchEffort, memory: Memory | None = None
+    model: SearchModel[P], start: P, settings: SearchEffort, memory: Memory | None = None
 ) -> SearchResult[P]:
     """The best point found from a start.
 
@@ -222,7 +222,7 @@ def search(
     return SearchResult(best, violation(best), finished, memory)
 
 
-def _look_around(model: Model[P], state: _State[P]) -> None:
+def _look_around(model: SearchModel[P], state: _State[P]) -> None:
     """Forget what is remembered, and take gradients at points all around instead.
 
     A search gets stuck where kinks meet that it has not seen from here, or where those that it
@@ -249,7 +249,7 @@ def _better(point: SearchPoint, other: SearchPoint, feasible: float) -> bool:
     return point.objective < other.objective
 
 
-def _iterate(model: Model[P], state: _State[P], settings: SearchEffort) -> float:
+def _iterate(model: SearchModel[P], state: _State[P], settings: SearchEffort) -> float:
     """One trial; returns the fall that the model promised."""
     point = state.point
     box = state.box * model.scale
@@ -282,7 +282,7 @@ def _gain(point: SearchPoint, trial: SearchPoint, price: float) -> float:
 
 
 def _settle(
-    model: Model[P],
+    model: SearchModel[P],
     state: _State[P],
     trial: P,
     gained: float,
@@ -306,7 +306,7 @@ def _settle(
 
 
 def _step(
-    model: Model[P],
+    model: SearchModel[P],
     state: _State[P],
     jacobian: FloatArray,
     constraints: FloatArray,
@@ -322,7 +322,7 @@ def _step(
 
 
 def _subproblem(
-    model: Model[P],
+    model: SearchModel[P],
     state: _State[P],
     jacobian: FloatArray,
     constraints: FloatArray,
@@ -374,7 +374,7 @@ def _solved(qp: QuadraticProgram) -> QpSolution:
     return failed(qp)
 
 
-def _planes(model: Model[P], state: _State[P]) -> tuple[FloatArray, FloatArray]:
+def _planes(model: SearchModel[P], state: _State[P]) -> tuple[FloatArray, FloatArray]:
     """Slopes (k, n) and heights (k,) over the point's objective of its own gradient and of those
     remembered nearby, none above it."""
     point, reach = state.point, _REACH * state.box * model.scale

@@ -51,7 +51,7 @@ class Measures:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class FigureRow:
     """A line of the before/after table.
 
     Args:
@@ -165,7 +165,7 @@ class Solution:
         """Whether the new program is proven to keep its clearance."""
         return self.certificate is not None and self.certificate.proven
 
-    def table(self, joints: Sequence[str] = ()) -> tuple[Row, ...]:
+    def table(self, joints: Sequence[str] = ()) -> tuple[FigureRow, ...]:
         """Figures before and after.
 
         Args:
@@ -173,21 +173,23 @@ class Solution:
         """
         before, after = self.before, self.after
         rows = [
-            Row("cycle time", "s", before.time, after.time),
-            Row("TCP path length", "m", before.path_length, after.path_length),
-            Row("peak TCP acceleration", "m/s²", before.peak_acceleration, after.peak_acceleration),
+            FigureRow("cycle time", "s", before.time, after.time),
+            FigureRow("TCP path length", "m", before.path_length, after.path_length),
+            FigureRow(
+                "peak TCP acceleration", "m/s²", before.peak_acceleration, after.peak_acceleration
+            ),
         ]
         lowest = [None if m.lowest is None else 1e3 * m.lowest for m in (before, after)]
         if lowest[0] is not None:
-            rows.append(Row("lowest point of the TCP", "mm", *lowest))
+            rows.append(FigureRow("lowest point of the TCP", "mm", *lowest))
         if before.energy is not None and after.energy is not None:
             names = joints or [str(j + 1) for j in range(len(before.energy))]
             rows += [
-                Row(f"energy, joint {name}", "N² m² s", float(one), float(other))
+                FigureRow(f"energy, joint {name}", "N² m² s", float(one), float(other))
                 for name, one, other in zip(names, before.energy, after.energy, strict=True)
             ]
         clearances = [None if m.clearance is None else 1e3 * m.clearance for m in (before, after)]
-        rows.append(Row("proven clearance", "mm", *clearances))
+        rows.append(FigureRow("proven clearance", "mm", *clearances))
         return tuple(rows)
 
 

@@ -24,7 +24,7 @@ RESOLUTION = 1e-5
 
 
 @dataclass(frozen=True)
-class Feasibility:
+class ProgramFeasibility:
     """What a program has to stand: it can be driven, and keeps its clearance.
 
     Args:
@@ -95,7 +95,7 @@ class Improvement(Protocol):
 
 
 def solve_round_verify(
-    feasibility: Feasibility, improvement: Improvement
+    feasibility: ProgramFeasibility, improvement: Improvement
 ) -> tuple[Run, Certificate | None] | None:
     """The first program of an improvement that it accepts, driven and proven; None if none is."""
     while (program := improvement.rounded()) is not None:

@@ -52,8 +52,7 @@ def check_start(
 
 
 def _error(run: Run, move: int | None, message: str) -> MotionError:
-    origin = None if move is None else run.program.moves[move].origin
-    return MotionError(message, move, None if origin is None else origin.statement)
+    return MotionError(message, move, None if move is None else run.program.moves[move].statement)
 
 
 @dataclass(frozen=True, slots=True)

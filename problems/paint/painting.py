@@ -32,7 +32,7 @@ POINTS = 2600
 """Of the part, on which it is optimised."""
 
 
-class Stage(StrEnum):
+class PaintingStage(StrEnum):
     """What has been done to a trajectory."""
 
     START = "start"
@@ -115,8 +115,8 @@ class Painting:
     judge: Judge
     coarse: Judge
     curve: InitialCurve
-    trajectories: dict[Stage, PaintTrajectory]
-    coats: dict[Stage, Coat]
+    trajectories: dict[PaintingStage, PaintTrajectory]
+    coats: dict[PaintingStage, Coat]
     speeds: SpeedSolution
     interrupted: bool
     notes: tuple[Note, ...]
@@ -171,9 +171,9 @@ def paint(
     )
     say("judging")
     trajectories = {
-        Stage.START: start,
-        Stage.SPEED: speeds.trajectory,
-        Stage.FULL: found.trajectory,
+        PaintingStage.START: start,
+        PaintingStage.SPEED: speeds.trajectory,
+        PaintingStage.FULL: found.trajectory,
     }
     coats = {stage: judge.coat(trajectory) for stage, trajectory in trajectories.items()}
     notes = tuple(dict.fromkeys((*curve.notes, *speeds.notes)))

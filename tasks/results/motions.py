@@ -160,7 +160,7 @@ class TunedMotion:
     def __repr__(self) -> str:
         return (
             f"<Path of {self.program.name} on {self.robot.name}: {self.before:.4f} s → "
-            f"{self.duration:.4f} s, {self.tuned.way}>"
+            f"{self.duration:.4f} s, {self.tuned.way.said}>"
         )
 
     def _repr_html_(self) -> str:

@@ -203,7 +203,7 @@ def make_report(run: Run, robot: Robot) -> Report:
                 kind=type(move).__name__,
                 target=move.target.name,
                 position=_position(move),
-                span=None if move.origin is None else move.origin.statement,
+                span=move.statement,
                 driven=driven,
                 length=0.0 if k is None else float(lengths[k]),
                 begin=0.0 if k is None else float(spans.begin[k]),
@@ -271,8 +271,7 @@ def located(run: Run) -> tuple[Note, ...]:
     for note in run.notes:
         span = note.span
         if span is None and note.move is not None:
-            origin = run.program.moves[note.move].origin
-            span = None if origin is None else origin.statement
+            span = run.program.moves[note.move].statement
         found.append(Note(note.message, note.move, span))
     return tuple(dict.fromkeys(found))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from flyby.cli.solution_report import percent
-from flyby.problems.improve.solution import Row
+from flyby.problems.improve.solution import FigureRow
 
 
 @pytest.mark.parametrize(
@@ -21,4 +21,4 @@ from flyby.problems.improve.solution import Row
     ],
 )
 def test_percent_are_of_what_is_shown(before, after, shown) -> None:
-    assert percent(Row("energy", "J", before, after)) == shown
+    assert percent(FigureRow("energy", "J", before, after)) == shown

@@ -26,7 +26,13 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.inertia import carried_inertia
 from flyby.core.spatial.pose import IDENTITY
 from flyby.problems.free_motion import optimal_control as free
-from flyby.problems.free_motion.velocity_tuning import FixedPath, Objective, Tuned, TuningTask, Way
+from flyby.problems.free_motion.velocity_tuning import (
+    FixedPath,
+    Tuned,
+    TuningObjective,
+    TuningTask,
+    Way,
+)
 
 TOOL = Tool("gun", IDENTITY, Load(60.0, (0.1, 0.0, 0.2)))
 START, END = np.radians([0, -10, 0, 0, 30, 0]), np.radians([0, 45, 25, 0, 30, 0])
@@ -67,7 +73,7 @@ def test_programs_tuned_paths_and_free_motions(consumption: Consumption, joints:
     program_energy = controller.energy(program, timing, consumption)
     path = FixedPath.of(controller, program, timing)
     tuned = Tuned(
-        TuningTask(path, objective=Objective(0.5, consumption)), timing.stamp.x, Way.SWEEPS
+        TuningTask(path, objective=TuningObjective(0.5, consumption)), timing.stamp.x, Way.SWEEPS
     )
     assert tuned.energy == pytest.approx(program_energy.value, rel=1e-9)
     size = max(np.abs(tuned.energy_by_joint).sum(), abs(tuned.energy))

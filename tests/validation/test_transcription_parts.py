@@ -13,7 +13,7 @@ from flyby.core.sqp import check_derivatives
 from flyby.validation.scenes.scene import SECOND_ORDER
 from flyby.validation.transcription import Grid, Overlap, Transcription, initial_guess
 from flyby.validation.transcription.capsule_box import nearest
-from flyby.validation.transcription.curves import Blend, Line
+from flyby.validation.transcription.curves import BlendCurve, Line
 
 from .transcription_tasks import make_task
 
@@ -39,7 +39,7 @@ def test_a_blend_has_the_papers_polynomials(
         1 - r_before * (1 - p) * (1 - s) / before - r_after * p * s / after,
         r_after * p * s / after,
     ]
-    found = Blend(alpha).weights(theta(s, r_before, before, r_after, after), 0).value[0]
+    found = BlendCurve(alpha).weights(theta(s, r_before, before, r_after, after), 0).value[0]
     assert found == pytest.approx(printed, abs=1e-12)
 
 
@@ -47,7 +47,7 @@ def test_a_blend_has_the_papers_polynomials(
 def test_lines_run_into_blends_in_the_same_place_and_direction(
     law: object, a: float, b: float, c: float, before: float, after: float, seed: int
 ) -> None:
-    blend = Blend(law.alpha)  # type: ignore[attr-defined]
+    blend = BlendCurve(law.alpha)  # type: ignore[attr-defined]
     points = np.random.default_rng(seed).normal(size=(3, 2))
     entry, exit_ = a * before, b * after
     at_line = theta(1.0, c * before, before, entry, before)
@@ -65,7 +65,7 @@ def test_weights_add_up_and_follow_each_other(seed: int, order: int) -> None:
     random = np.random.default_rng(seed)
     at = np.column_stack([random.uniform(0, 1, 3), random.uniform(0.1, 0.4, (3, 4))])
     at[:, 2::2] += 0.5
-    for curve in (Line(), Blend(SECOND_ORDER.alpha)):
+    for curve in (Line(), BlendCurve(SECOND_ORDER.alpha)):
         here = curve.weights(at, order)
         assert here.value.sum(axis=1) == pytest.approx(1.0 if order == 0 else 0.0, abs=1e-9)
         if order < 2:

@@ -77,7 +77,7 @@ class Line:
         return _gather(theta, base, np.array([[-1.0], [1.0]]), value, slope, curvature)
 
 
-class Blend:
+class BlendCurve:
     """Of a blend at a via point.
 
     Args:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...core.arrays import FloatArray
-from .curves import Blend
+from .curves import BlendCurve
 from .layout import Layout
 from .task import TranscriptionTask
 from .transcription import Transcription
@@ -63,7 +63,7 @@ def _exit(task: TranscriptionTask, here: FloatArray, there: FloatArray, radius: 
     return float(0.5 * (low + high))
 
 
-def _set_timing(x: FloatArray, layout: Layout, blend: Blend, speed: float) -> None:
+def _set_timing(x: FloatArray, layout: Layout, blend: BlendCurve, speed: float) -> None:
     """Times of a motion at ``speed`` rad/s, from rest and to rest on the first and last line."""
     for segment in range(layout.segments):
         leg = segment // 2

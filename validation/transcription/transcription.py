@@ -12,7 +12,7 @@ from ...core.arrays import FloatArray, IntArray
 from ...core.sqp import NLP
 from ...core.sqp.algebra.entries import Entries
 from .capsule_box import Clearances
-from .curves import Blend, Curve, Line
+from .curves import BlendCurve, Curve, Line
 from .field_rows import AtPoints, FieldRows
 from .layout import Grid, Layout
 from .motion_rows import Acceleration, MotionRows, Nodes, StraightAcceleration, Velocity
@@ -51,7 +51,7 @@ class Transcription:
         self.pairs = tuple(chosen)
         self.grid = Grid() if grid is None else grid
         self.layout = Layout(len(task.points) - 1, len(task.free), self.grid)
-        self.blend = Blend(task.blend.alpha)
+        self.blend = BlendCurve(task.blend.alpha)
         self._blocks = self._all_rows()
         sizes = [len(block.lower) for block in self._blocks]
         self._bounds = np.cumsum([0, *sizes])

@@ -28,7 +28,7 @@ from .write.formatting import NAME_RULES
 from .write.numbers import number
 from .write.operands import ARM_AXES
 from .write.options import RapidOptions
-from .write.writer import ENTRY, SUFFIX, Surroundings, module_name, write
+from .write.writer import ENTRY, SUFFIX, TextAround, module_name, write
 
 SHORTEST_INTERRUPT = 0.1
 """s. ``ITimer`` takes no shorter time."""
@@ -70,7 +70,7 @@ def record(program: Program, options: RapidOptions, period: float) -> Mapping[st
 
 
 def _by_interrupt(program: Program, options: RapidOptions, period: str) -> Mapping[str, str]:
-    sampling = Surroundings(
+    sampling = TextAround(
         header=(
             *_header(options),
             f"! Every {period} s an interrupt of this task writes a line; while an instruction",
@@ -94,7 +94,7 @@ def _by_interrupt(program: Program, options: RapidOptions, period: str) -> Mappi
 def _by_task(program: Program, options: RapidOptions, period: str) -> Mapping[str, str]:
     module = module_name(program)
     logger = Names(NAME_RULES, [module, ENTRY]).claim(LOGGER, LOGGER)
-    driving = Surroundings(
+    driving = TextAround(
         header=(
             *_header(options),
             f"! {logger}{SUFFIX} writes the log, in a task of its own: configure (Controller /",

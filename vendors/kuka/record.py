@@ -19,7 +19,7 @@ from ...core.robot.model import Robot
 from ...core.source.write.options import OpaqueStyle
 from .write.numbers import number
 from .write.options import KrlOptions
-from .write.writer import HEADER, Surroundings, compose, source_text
+from .write.writer import HEADER, TextAround, compose, source_text
 
 SHORTEST_PERIOD = 0.012
 """s. The controller's interpolation cycle; the submit interpreter comes round no sooner."""
@@ -50,7 +50,7 @@ def record(program: Program, robot: Robot, period: float) -> dict[str, str]:
             f"KRL cannot sample every {period:g} s: ask for {number(SHORTEST_PERIOD)} s or more; "
             "the robot sensor interface (RSI) streams the axes every 4 ms"
         )
-    around = Surroundings(
+    around = TextAround(
         header=_instructions(period),
         before=(f"{LOGGER}(#FB_BEGIN)",),
         after=("WAIT SEC 0.5", f"{LOGGER}(#FB_END)"),

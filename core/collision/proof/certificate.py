@@ -19,7 +19,7 @@ from ...program.tool import Tool
 from ..deviation.bounds import Deviation, parts_of
 from ..scene.scene import CollisionScene
 from .enclosure import Enclosure, Span
-from .findings import Budget, Cause, Finding
+from .findings import Budget, Cause, UnprovenStretch
 from .subdivision import Prover
 from .verdict import CONTACT, MM, Certificate, Met, Reader, nearest_of
 
@@ -111,7 +111,7 @@ def certify_stretch(
         scene = scenes(run.program.moves[run.path.route.moves[segment]].tool)
         return reader.refused(scene, torn, None, wanted, left.used)
     met: list[Met] = []
-    findings: list[tuple[CollisionScene, Finding]] = []
+    findings: list[tuple[CollisionScene, UnprovenStretch]] = []
     for part in parts_of(run.path):
         owned = _owners(run, scenes, spans, part)
         if not owned:
@@ -168,7 +168,7 @@ def _owners(
     return list(owned.values())
 
 
-def _first_tear(run: Run, spans: Sequence[Span]) -> Finding | None:
+def _first_tear(run: Run, spans: Sequence[Span]) -> UnprovenStretch | None:
     """Where joints first jump from one piece of the path to the next, on a stretch's inside.
 
     Within pieces, enclosures hold the joints together.
@@ -181,9 +181,9 @@ def _first_tear(run: Run, spans: Sequence[Span]) -> Finding | None:
         sigma = float(path.pieces.edge[piece + 1])
         if any(first < sigma < last for first, last in spans):
             q = path.q[right[piece]]
-            return Finding(Cause.TORN, int(piece), sigma, sigma, sigma, q, None, None, 1.0)
+            return UnprovenStretch(Cause.TORN, int(piece), sigma, sigma, sigma, q, None, None, 1.0)
     return None
 
 
-def _rank(finding: Finding) -> tuple[bool, float]:
+def _rank(finding: UnprovenStretch) -> tuple[bool, float]:
     return finding.cause is not Cause.NEAR, finding.begin

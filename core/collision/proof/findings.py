@@ -27,7 +27,7 @@ class Cause(Enum):
 
 
 @dataclass(frozen=True)
-class Finding:
+class UnprovenStretch:
     """A stretch that is not proven.
 
     Args:

@@ -19,7 +19,7 @@ from ..deviation.bounds import DeviationBounds, by_interval
 from ..scene.scene import CollisionScene
 from .boxes import Boxes
 from .enclosure import Enclosure, Intervals, Span
-from .findings import Budget, Cause, Finding, Nearest
+from .findings import Budget, Cause, Nearest, UnprovenStretch
 from .items import Items, Sweeps
 from .sweep import sweep
 
@@ -59,7 +59,9 @@ class Prover:
         self.proven = math.inf
         """m, the least of what was proven so far."""
 
-    def prove(self, spans: Sequence[Span], pieces: Sequence[int], wanted: float) -> Finding | None:
+    def prove(
+        self, spans: Sequence[Span], pieces: Sequence[int], wanted: float
+    ) -> UnprovenStretch | None:
         """The first stretch on which ``wanted`` m are not kept; None if they are kept.
 
         A stretch that is too near counts before one that is merely not proven.
@@ -68,7 +70,7 @@ class Prover:
 
     def tighten(
         self, spans: Sequence[Span], pieces: Sequence[int], resolution: float
-    ) -> Finding | None:
+    ) -> UnprovenStretch | None:
         """Prove the least distance itself, to ``resolution`` m; it stands in ``proven`` then.
 
         Where that cannot be done, ``proven`` stays what it was.
@@ -109,10 +111,10 @@ class _Search:
         self._prover = prover
         self._wanted = wanted
         self._resolution = resolution
-        self._violation: Finding | None = None
-        self._unproven: Finding | None = None
+        self._violation: UnprovenStretch | None = None
+        self._unproven: UnprovenStretch | None = None
 
-    def run(self, spans: Sequence[Span], pieces: Sequence[int]) -> Finding | None:
+    def run(self, spans: Sequence[Span], pieces: Sequence[int]) -> UnprovenStretch | None:
         """The first finding."""
         prover = self._prover
         intervals = prover.enclosure.over(spans, pieces)
@@ -246,12 +248,12 @@ class _Search:
         start = self._prover.enclosure.sigma(piece, begin)
         return np.asarray(~narrow & (start < self._violation.sigma))
 
-    def _finding(self, intervals: Intervals, items: Items, k: int, cause: Cause) -> Finding:
+    def _finding(self, intervals: Intervals, items: Items, k: int, cause: Cause) -> UnprovenStretch:
         row = int(items.interval[k])
         blamed = cause not in (Cause.UNVERIFIED, Cause.EXHAUSTED)
         enclosure, piece = self._prover.enclosure, intervals.piece[row : row + 1]
         begin, end = (enclosure.sigma(piece, a[row : row + 1]) for a in intervals[1:3])
-        return Finding(
+        return UnprovenStretch(
             cause,
             int(piece[0]),
             float(begin[0]),
@@ -267,7 +269,7 @@ class _Search:
         middle = 0.5 * (intervals.begin[row : row + 1] + intervals.end[row : row + 1])
         return float(self._prover.enclosure.sigma(intervals.piece[row : row + 1], middle)[0])
 
-    def _keep(self, finding: Finding) -> None:
+    def _keep(self, finding: UnprovenStretch) -> None:
         """Remember the first of each kind along the path."""
         if finding.cause is Cause.NEAR:
             if self._violation is None or finding.sigma < self._violation.sigma:

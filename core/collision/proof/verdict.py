@@ -14,7 +14,7 @@ from ...motion.emulator.run import Run
 from ...motion.path.building import NEAR_SINGULAR
 from ..scene.scene import CollisionScene
 from .enclosure import Span
-from .findings import Cause, Finding, Nearest
+from .findings import Cause, Nearest, UnprovenStretch
 
 CONTACT = 2e-6
 """m that bodies keep at least, even where no clearance is asked for: measured distances may be
@@ -97,7 +97,7 @@ class Reader:
     def refused(
         self,
         scene: CollisionScene,
-        finding: Finding,
+        finding: UnprovenStretch,
         nearest: Met | None,
         wanted: float,
         measured: int,
@@ -153,7 +153,7 @@ class Reader:
             measured,
         )
 
-    def _reason(self, finding: Finding, pair: tuple[str, str] | None, wanted: float) -> str:
+    def _reason(self, finding: UnprovenStretch, pair: tuple[str, str] | None, wanted: float) -> str:
         bodies = "" if pair is None else f"{pair[0]} and {pair[1]}"
         distance = 0.0 if finding.distance is None else finding.distance
         match finding.cause:

@@ -26,6 +26,10 @@ from .zone_exits import first_exit, tcp_apart
 
 _NOTHING = 1e-9
 """A reach below is no zone."""
+_Reaches = tuple[tuple[Reach, Reach], ...]
+"""Of position, turning and prescribed axes, into the segment before a corner and the one after."""
+_Wanted = list[_Reaches] | dict[int, _Reaches]
+"""By corner."""
 
 
 class ZonePlanner:
@@ -86,8 +90,39 @@ class ZonePlanner:
         """
         if self._model.overlap is Overlap.HALF:
             return [room for i, zone in enumerate(zones) for room in self._halves(i, zone)]
-        wanted = [self._reaches(i, zone)[POSITION] for i, zone in enumerate(zones)]
-        return [room for k in range(len(wanted) + 1) for room in self._shares(k, wanted)]
+        wanted = [self._reaches(i, zone) for i, zone in enumerate(zones)]
+        return [
+            Room(Reach(1.0) + taken * Reach(-1.0), min(k, len(wanted) - 1))
+            for k in range(len(wanted) + 1)
+            if (taken := self._taken(k, wanted)).value != 0.0
+        ]
+
+    def share_taken(self, segment: int, zones: Sequence[Zone]) -> float:
+        """Share of a segment that the zones at its ends take together; above 1 they overlap.
+
+        Args:
+            segment: its index.
+            zones: as in `corners`; only those two count.
+        """
+        ends = range(max(segment - 1, 0), min(segment + 1, len(zones)))
+        return self._taken(segment, {i: self._reaches(i, zones[i]) for i in ends}).value
+
+    def widest(self, i: int, most: float) -> float | None:
+        """Radius (m) up to which no rule on neighbouring points cuts the zone at a corner.
+
+        Args:
+            i: index of the corner.
+            most: share of the way to a neighbour that it takes at most, whatever the rules.
+
+        Returns:
+            None where the TCP stands still on both sides, so that a radius says nothing.
+        """
+        share = min(most, self._furthest)
+        ways = [
+            way_towards_neighbour(self._segments, self._chains, segment, i, share)
+            for segment in (i, i + 1)
+        ]
+        return min((way.value for way in ways if way is not None), default=None)
 
     def _halves(self, i: int, zone: Zone) -> list[Room]:
         """Half way to each neighbour, less the radius (m)."""
@@ -97,19 +132,16 @@ class ZonePlanner:
         less = Reach(-zone.tcp, (("tcp", i, -1.0),))
         return [Room(half + less, i) for half in halves if half is not None]
 
-    def _shares(self, segment: int, wanted: Sequence[tuple[Reach, Reach]]) -> list[Room]:
-        """What two zones leave of the segment between them, as a share of it."""
-        parts = []
-        if segment > 0:
-            parts.append(wanted[segment - 1][1])
-        if segment < len(wanted):
-            parts.append(wanted[segment][0])
-        if all(part.value == 0.0 for part in parts):
-            return []
-        room = Reach(1.0)
-        for part in parts:
-            room = room + part * Reach(-1.0)
-        return [Room(room, min(segment, len(wanted) - 1))]
+    def _taken(self, segment: int, wanted: _Wanted) -> Reach:
+        """Share of a segment that the zones at its ends take together."""
+        before = wanted[segment - 1][POSITION][1] if segment > 0 else Reach(0.0)
+        after = wanted[segment][POSITION][0] if segment + 1 < len(self._chains) else Reach(0.0)
+        return before + after
+
+    @property
+    def _furthest(self) -> float:
+        """Share of the way to a neighbouring point beyond which no zone reaches."""
+        return self._model.neighbour_fraction if self._model.overlap is Overlap.HALF else 1.0
 
     def _kind(self, i: int) -> int:
         kinds = self._segments.ends.kind[i : i + 2]
@@ -123,7 +155,7 @@ class ZonePlanner:
             )
         return TCP_CORNER if same_chain and (kinds != JOINT_SEGMENT).all() else JOINT_CORNER
 
-    def _reaches(self, i: int, zone: Zone) -> tuple[tuple[Reach, Reach], ...]:
+    def _reaches(self, i: int, zone: Zone) -> _Reaches:
         """Reaches of position, turning and prescribed axes before the rules on overlap."""
         if isinstance(zone, Fine) or self._stops(i):
             return ((Reach(0.0), Reach(0.0)),) * 3
@@ -205,9 +237,7 @@ class ZonePlanner:
     def _exit(self, segment: int, corner: int, size: Reach, zone: Radius) -> Reach:
         """Share of a segment inside the sphere round the waypoint of ``corner``."""
         s = self._segments
-        limit = Reach(
-            self._model.neighbour_fraction if self._model.overlap is Overlap.HALF else 1.0
-        )
+        limit = Reach(self._furthest)
         if s.ends.kind[segment] == JOINT_SEGMENT:
             return self._joint_exit(segment, corner, size, limit)
         length = float(s.length[segment])
@@ -244,9 +274,7 @@ class ZonePlanner:
         parts.append((f"q{far}", segment, -share * pull / speed))
         return Reach(share, tuple(parts))
 
-    def _sharpened(
-        self, i: int, pairs: tuple[tuple[Reach, Reach], ...]
-    ) -> tuple[tuple[Reach, Reach], ...]:
+    def _sharpened(self, i: int, pairs: _Reaches) -> _Reaches:
         """A zone made smaller where its corner is too sharp for the speed; see `sharp_corners`."""
         model, s = self._model, self._segments
         superposed = model.tcp.kind == "arc" and model.pace is Pace.SUPERPOSED
@@ -265,13 +293,11 @@ class ZonePlanner:
         )
         return tuple((before * kept, after * kept) for before, after in pairs)
 
-    def _shrunk(
-        self, wanted: list[tuple[tuple[Reach, Reach], ...]]
-    ) -> list[tuple[tuple[Reach, Reach], ...]]:
+    def _shrunk(self, wanted: list[_Reaches]) -> list[_Reaches]:
         """Both zones on a segment shrink in proportion until they touch."""
         factors = [Reach(1.0) for _ in wanted]
         for segment in range(1, len(wanted)):
-            total = wanted[segment - 1][POSITION][1] + wanted[segment][POSITION][0]
+            total = self._taken(segment, wanted)
             if total.value > 1.0:
                 factor = total.inverse()
                 factors[segment - 1] = least(factors[segment - 1], factor)
@@ -284,14 +310,13 @@ class ZonePlanner:
             for pairs, f in zip(wanted, factors, strict=True)
         ]
 
-    def _overlapping(self, wanted: list[tuple[tuple[Reach, Reach], ...]]) -> tuple[int, ...]:
+    def _overlapping(self, wanted: list[_Reaches]) -> tuple[int, ...]:
         """Corners to leave out; no two neighbours, as leaving one out changes the other."""
         found: list[int] = []
         for segment in range(len(wanted) + 1):
-            before = wanted[segment - 1][POSITION][1].value if segment > 0 else 0.0
-            after = wanted[segment][POSITION][0].value if segment < len(wanted) else 0.0
-            outermost = segment in (0, len(wanted)) and before + after >= 1.0
-            if not (before + after > 1.0 + 1e-9 or outermost):
+            taken = self._taken(segment, wanted).value
+            outermost = segment in (0, len(wanted)) and taken >= 1.0
+            if not (taken > 1.0 + 1e-9 or outermost):
                 continue
             corner = min(segment, len(wanted) - 1)
             if found and corner - found[-1] < 2:

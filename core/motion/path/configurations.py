@@ -33,8 +33,7 @@ _REDUNDANT = 2
 
 def located(move: Move, index: int, message: str) -> MotionError:
     """An error of a move, with its place in the source."""
-    span = None if move.origin is None else move.origin.statement
-    return MotionError(message, index, span)
+    return MotionError(message, index, move.statement)
 
 
 class ConfigurationFinder:

@@ -60,7 +60,7 @@ and a move of nothing would be a stop more."""
 
 
 @dataclass
-class Stage:
+class MoveGroup:
     """Moves in a row that share one tool and one work object."""
 
     chain: Chain
@@ -173,8 +173,8 @@ class RouteFinder:
         """
         return self.chain(tool, WORLD) if tool.robot_held else self.chain(tool, work_object)
 
-    def _stages(self, moves: Sequence[Move], skipped: Collection[int]) -> list[Stage]:
-        stages: list[Stage] = []
+    def _stages(self, moves: Sequence[Move], skipped: Collection[int]) -> list[MoveGroup]:
+        stages: list[MoveGroup] = []
         for i, move in enumerate(moves):
             if i in skipped:
                 continue
@@ -183,11 +183,13 @@ class RouteFinder:
             except InputError as error:
                 raise located(move, i, str(error)) from error
             if not stages or stages[-1].chain is not chain:
-                stages.append(Stage(chain, move.tool, move.work_object, []))
+                stages.append(MoveGroup(chain, move.tool, move.work_object, []))
             stages[-1].moves.append(i)
         return stages
 
-    def _drive(self, moves: Sequence[Move], stage: Stage, q: FloatArray, legs: _Legs) -> FloatArray:
+    def _drive(
+        self, moves: Sequence[Move], stage: MoveGroup, q: FloatArray, legs: _Legs
+    ) -> FloatArray:
         """Resolve the moves of a stage from configuration q; returns where it ends."""
         ends = self._ends(moves, stage, q, legs)
         curves: TcpCurves | None = None
@@ -208,7 +210,7 @@ class RouteFinder:
         legs.moves += stage.moves
         return q
 
-    def _ends(self, moves: Sequence[Move], stage: Stage, q: FloatArray, legs: _Legs) -> Ends:
+    def _ends(self, moves: Sequence[Move], stage: MoveGroup, q: FloatArray, legs: _Legs) -> Ends:
         """Poses and prescribed axes at the ends of the stage's moves; configurations to come."""
         count, size = len(stage.moves), self._robot.size
         known = np.empty((count + 1, size))
@@ -357,8 +359,7 @@ class RouteFinder:
 
 
 def _span(program: Program, move: int | None) -> Span | None:
-    origin = None if move is None else program.moves[move].origin
-    return None if origin is None else origin.statement
+    return None if move is None else program.moves[move].statement
 
 
 def _waypoints(program: Program) -> dict[int, _Waypoint]:

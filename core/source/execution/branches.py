@@ -13,7 +13,7 @@ from .steps import Block, Exit
 
 
 @dataclass(frozen=True, slots=True)
-class Choice(Generic[Block]):
+class TakenBranch(Generic[Block]):
     """The branch that is taken.
 
     Args:
@@ -88,7 +88,7 @@ class Branches(Generic[Block]):
         blocks: Sequence[Block],
         otherwise: Block | None,
         possible: Sequence[bool] | None = None,
-    ) -> Choice[Block]:
+    ) -> TakenBranch[Block]:
         """The branch that is taken where a condition is not known.
 
         Args:
@@ -121,7 +121,7 @@ class Branches(Generic[Block]):
             self._skipped[id(block)] = Skip(
                 block, reason, self.skips, standing.routine, standing.loop
             )
-        return Choice(chosen, skipped)
+        return TakenBranch(chosen, skipped)
 
     def _rule(
         self, blocks: Sequence[Block], otherwise: Block | None, may: Sequence[bool]

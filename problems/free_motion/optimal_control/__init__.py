@@ -9,23 +9,23 @@ and 3. What it does and what it reaches stands in docs/guides/free_motion.md.
 
 from .motion.audit import Audit
 from .motion.motion import Motion
-from .motion.result import Optimum, Step, energy_by_joint, energy_of
+from .motion.result import Optimum, SearchStep, energy_by_joint, energy_of
 from .motion.scheme import SchemeKind
 from .optimize import optimize
-from .search.effort import Effort
+from .search.effort import MotionEffort
 from .search.surroundings import Surroundings
-from .task.task import ControlLimits, MotionTask, Objective, TorqueLine, Waypoint
+from .task.task import ControlLimits, MotionObjective, MotionTask, TorqueLine, Waypoint
 
 __all__ = [
     "Audit",
     "ControlLimits",
-    "Effort",
     "Motion",
+    "MotionEffort",
+    "MotionObjective",
     "MotionTask",
-    "Objective",
     "Optimum",
     "SchemeKind",
-    "Step",
+    "SearchStep",
     "Surroundings",
     "TorqueLine",
     "Waypoint",

@@ -16,9 +16,9 @@ from .motion.proof import prove
 from .motion.result import Optimum
 from .motion.scheme import Scheme
 from .refusal import check_corners, check_task
-from .search.effort import Effort
+from .search.effort import MotionEffort
 from .search.opening import opening
-from .search.search import Report, Search
+from .search.search import MotionSearch, Report
 from .search.surroundings import Surroundings
 from .task.limits import MotionLimits
 from .task.sampled import Plant
@@ -28,7 +28,7 @@ from .task.task import MotionTask
 def optimize(
     task: MotionTask,
     around: Surroundings | None = None,
-    effort: Effort | None = None,
+    effort: MotionEffort | None = None,
     vias: Sequence[ArrayLike] | None = None,
     report: Report | None = None,
 ) -> Optimum:
@@ -51,8 +51,8 @@ def optimize(
     """
     of_kind("task", task, MotionTask)
     of_kind("around", around, Surroundings | None)
-    of_kind("effort", effort, Effort | None)
-    effort = effort or Effort()
+    of_kind("effort", effort, MotionEffort | None)
+    effort = effort or MotionEffort()
     limits = MotionLimits.of(task)
     needed = limits.dynamic or task.objective.time_weight < 1.0
     plant = Plant(task) if needed else None
@@ -63,7 +63,9 @@ def optimize(
     guess = first_guess(task, limits, plant, line, scheme, effort.intervals, effort.group)
     if around is not None:
         _check_first(task, guess, around)
-    ask = partial(Search, limits=limits, plant=plant, around=around, guess=guess, report=report)
+    ask = partial(
+        MotionSearch, limits=limits, plant=plant, around=around, guess=guess, report=report
+    )
     searches = []
     if around is not None and task.objective.time_weight < 1.0:
         searches.append(ask(_hurried(task), effort=replace(effort, trials=0)))
@@ -94,7 +96,7 @@ def _check_first(task: MotionTask, guess: Guess, around: Surroundings) -> None:
         )
 
 
-def _optimum(task: MotionTask, guess: Guess, searches: Sequence[Search]) -> Optimum:
+def _optimum(task: MotionTask, guess: Guess, searches: Sequence[MotionSearch]) -> Optimum:
     """What the last search has found."""
     search = searches[-1]
     steps = tuple(step for each in searches for step in each.steps)
@@ -113,6 +115,6 @@ def _optimum(task: MotionTask, guess: Guess, searches: Sequence[Search]) -> Opti
     converged = search.converged and search.task is task
     notes = []
     if not converged:
-        notes.append(Note("the search ended before it converged: a longer one may find better"))
+        notes.append(Note("the search was ended early: a longer one may find better"))
     certificate = None if proof is None else proof.certificate
     return Optimum(task, motion, guess.motion, seen, certificate, steps, converged, tuple(notes))

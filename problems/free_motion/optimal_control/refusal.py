@@ -52,14 +52,14 @@ def _check_bounded(task: MotionTask, limits: MotionLimits, scheme: SchemeKind) -
     """What cannot be bounded between nodes."""
     if scheme is SchemeKind.CONSTANT and np.isfinite(limits.jerk).any():
         raise InputError(
-            "accelerations that are constant over intervals have no jerk to limit; take the linear "
-            "or the Hermite–Simpson scheme"
+            "accelerations that are constant from point to point have no jerk to limit; take the "
+            "linear or the Hermite–Simpson scheme"
         )
     outside = task.moving[task.moving >= task.robot.arm_size]
     if len(outside) and (limits.dynamic or np.isfinite(limits.tcp_speed)):
         raise InputError(
             f"external axis {task.robot.axis_names[outside[0]]} is to move: torques and the TCP's "
-            "speed cannot be bounded between nodes then; leave those limits out"
+            "speed cannot be shown to hold all the way then; leave those limits out"
         )
 
 
@@ -69,9 +69,7 @@ def check_corners(task: MotionTask, points: np.ndarray) -> None:
     Raises:
         InputError: there is one.
     """
-    for k, point in enumerate(points):
-        q = np.array(task.start, dtype=float)
-        q[task.moving] = point
+    for k, q in enumerate(task.whole(points)):
         _check_range(task, f"corner {k} of the path to begin with", q)
 
 

@@ -22,7 +22,7 @@ SLACK = 1e-9
 
 
 @dataclass(frozen=True)
-class End:
+class PathEnd:
     """One end of a path.
 
     Args:
@@ -61,7 +61,7 @@ def free_end(
     work_object: WorkObject,
     space: FreeSpace,
     external: tuple[float, ...],
-) -> End:
+) -> PathEnd:
     """The configurations of a target that are free; all branches and turns of a pose.
 
     Raises:
@@ -76,7 +76,7 @@ def free_end(
         found = _branches(name, robot, _flange(name, target, tool, work_object), external)
     free = tuple(q for q in found if space.keeps(q))
     if free:
-        return End(name, free)
+        return PathEnd(name, free)
     blocks = list(dict.fromkeys(_why_not(space, q) for q in found))
     if len(found) == 1:
         raise MotionError(f"the {name} is not free: {blocks[0]}")

@@ -37,9 +37,7 @@ class PlanningOptions:
         seed: the same seed gives the same path, if time does not run out.
         tries: paths planned, of which the quickest is taken.
         time_limit: s for all of them.
-        speed: of the moves; by default the robot's own limits alone count.
         zone: of the points passed on the way; the last one is a stop.
-        name: of the program.
 
     Raises:
         InputError: a number out of its range.
@@ -50,9 +48,7 @@ class PlanningOptions:
     seed: int = 0
     tries: int = 3
     time_limit: float = 20.0
-    speed: Speed = UNLIMITED
     zone: Zone = FINE
-    name: str = "planned"
 
     def __post_init__(self) -> None:
         for name in ("clearance", "margin"):
@@ -148,7 +144,7 @@ def _program(
 ) -> Program:
     zones = [*[options.zone] * (len(targets) - 2), FINE]
     moves = tuple(
-        MoveJ(target=target, speed=options.speed, zone=zone, tool=tool, work_object=work_object)
+        MoveJ(target=target, speed=UNLIMITED, zone=zone, tool=tool, work_object=work_object)
         for target, zone in zip(targets[1:], zones, strict=True)
     )
-    return Program(moves, name=options.name, start=targets[0])
+    return Program(moves, name="planned", start=targets[0])

@@ -23,7 +23,8 @@ import scipy.sparse as sp
 
 from ....core.arrays import FloatArray
 from ....core.errors import FlybyError
-from .rows import Knots, Rows, jerk_rows, kinematic_rows, torque_rows
+from .path import at_ends
+from .rows import Knots, LinearRows, jerk_rows, kinematic_rows, torque_rows
 from .task import TuningTask
 
 _MOST = 1e4
@@ -35,7 +36,7 @@ class TuningError(FlybyError):
 
 
 @dataclass(frozen=True)
-class Shares:
+class CostShares:
     """What time and energy count: ``time`` per s, ``energy`` per unit of the consumption."""
 
     time: float
@@ -56,12 +57,12 @@ class ConeProgram:
         self._knots = Knots(task.path)
         self._fixed = list(kinematic_rows(task, self._knots))
         root = np.sqrt(unit)
-        self._steps = 2.0 * task.path.limits.spacing / (root[:-1] + root[1:])
+        self._steps = task.path.steps(unit)
         # y_k + y_{k+1} in units of what it is in the known motion.
         parts = (root[:-1] / (root[:-1] + root[1:]), root[1:] / (root[:-1] + root[1:]))
         self._pace = sp.diags_array(parts, offsets=(0, 1), shape=(len(parts[0]), len(unit)))
 
-    def solve(self, shares: Shares, at: FloatArray) -> FloatArray:
+    def solve(self, shares: CostShares, at: FloatArray) -> FloatArray:
         """x (K + 1,) of the best motion within rows that are tangent at ``at``.
 
         Raises:
@@ -98,12 +99,12 @@ class ConeProgram:
         caps = np.minimum(ceiling / np.where(stops, 1.0, self._unit), _MOST)
         return np.where(stops, 0.0, caps)
 
-    def _rows(self, at: FloatArray) -> Iterable[Rows]:
+    def _rows(self, at: FloatArray) -> Iterable[LinearRows]:
         yield from self._fixed
         yield from torque_rows(self._task, self._knots, at)
         yield from jerk_rows(self._task, self._knots, at)
 
-    def _linear(self, xi: Any, eta: Any, rows: Iterable[Rows]) -> list[Any]:
+    def _linear(self, xi: Any, eta: Any, rows: Iterable[LinearRows]) -> list[Any]:
         units, roots = sp.diags_array(self._unit), sp.diags_array(np.sqrt(self._unit))
         made = []
         for part in rows:
@@ -149,8 +150,7 @@ class ConeProgram:
     def _torque(self, xi: Any, at: FloatArray, weight: FloatArray) -> list[list[Any]]:
         """Weighted torques as expressions (K,), by end and by joint; √x by its tangent."""
         torques = self._task.torques
-        ends = np.stack([at[:-1], at[1:]], -1)[..., None]
-        root = np.sqrt(ends)
+        root = np.sqrt(at_ends(at))
         slope = np.where(root > 0.0, 0.5 * torques.v / np.where(root > 0.0, root, 1.0), 0.0)
         height = torques.c + 0.5 * torques.v * root
         units = sp.diags_array(self._unit)
@@ -210,7 +210,7 @@ class ConeProgram:
     def _typical(self) -> FloatArray:
         """(K, 2, N), torques of the known motion."""
         x = self._unit
-        return self._task.torques.at(x, np.diff(x) / (2.0 * self._knots.spacing))
+        return self._task.torques.at(x, self._task.path.u(x))
 
 
 def _solve(problem: Any) -> None:
@@ -227,13 +227,15 @@ def _solve(problem: Any) -> None:
             warnings.filterwarnings("ignore", "Solution may be inaccurate")
             problem.solve(solver=cp.CLARABEL)
     except cp.SolverError as error:
-        raise TuningError(f"the convex program of the path could not be solved: {error}") from error
+        raise TuningError(
+            f"the best speeds of this path could not be worked out: {error}"
+        ) from error
     if problem.status in (cp.INFEASIBLE, cp.INFEASIBLE_INACCURATE):
         raise TuningError(
             "no motion along this path is within all limits; if its duration is bounded, allow more"
         )
     if problem.status not in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE):
         raise TuningError(
-            f"the convex program of the path ended {problem.status}; where slower is always "
-            "cheaper, bound the duration"
+            f"the best speeds of this path could not be worked out ({problem.status}); where "
+            "slower is always cheaper, bound the duration"
         )

@@ -131,7 +131,7 @@ UNLIMITED = TorqueCurve.constant(math.inf)
 
 
 @dataclass(frozen=True)
-class Drive:
+class JointDrive:
     """What moves one joint.
 
     Args:
@@ -150,11 +150,11 @@ class Drive:
     inertia: float = 0.0
 
     def __post_init__(self) -> None:
-        of_kind("Drive.torque", self.torque, TorqueCurve)
+        of_kind("JointDrive.torque", self.torque, TorqueCurve)
         for name in ("coulomb", "viscous", "inertia"):
-            not_negative(f"Drive.{name}", getattr(self, name))
+            not_negative(f"JointDrive.{name}", getattr(self, name))
 
 
-def drives_of(robot: Robot) -> tuple[Drive, ...]:
+def drives_of(robot: Robot) -> tuple[JointDrive, ...]:
     """One drive an axis with the torque limit of the robot's description, without friction."""
-    return tuple(Drive(TorqueCurve.constant(float(most))) for most in robot.limits.effort)
+    return tuple(JointDrive(TorqueCurve.constant(float(most))) for most in robot.limits.effort)

@@ -29,7 +29,7 @@ from ....core.program.program import Program
 from ....core.robot.inertia import Inertia
 from ....core.robot.model import Robot
 from ...checks import of_kind
-from .drives import Drive
+from .drives import JointDrive
 
 
 class Rigid(NamedTuple):
@@ -118,6 +118,20 @@ class FixedPath:
         """N."""
         return int(self.dq.shape[2])
 
+    def u(self, x: FloatArray) -> FloatArray:
+        """(K,), σ̈ in each interval of a motion with σ̇² = x (K + 1,) at the knots."""
+        return np.asarray(np.diff(x) / (2.0 * self.limits.spacing))
+
+    def steps(self, x: FloatArray) -> FloatArray:
+        """(K,) s, the time that each interval takes."""
+        root = np.sqrt(x)
+        return np.asarray(2.0 * self.limits.spacing / (root[:-1] + root[1:]))
+
+
+def at_ends(x: FloatArray) -> FloatArray:
+    """(K, 2, 1), values (K + 1,) at the knots at both ends of each interval."""
+    return np.stack([x[:-1], x[1:]], -1)[..., None]
+
 
 def rigid_torques(
     robot: Robot,
@@ -155,7 +169,7 @@ class Torques:
     v: FloatArray
 
     @classmethod
-    def of(cls, path: FixedPath, drives: Sequence[Drive]) -> Torques:
+    def of(cls, path: FixedPath, drives: Sequence[JointDrive]) -> Torques:
         """The motors' torques on a path.
 
         Args:
@@ -187,6 +201,6 @@ class Torques:
 
     def at(self, x: FloatArray, u: FloatArray) -> FloatArray:
         """Torques (K, 2, N) at x (K + 1,) and u (K,)."""
-        ends = np.stack([x[:-1], x[1:]], -1)[..., None]
+        ends = at_ends(x)
         out = self.a * u[:, None, None] + self.b * ends + self.c + self.v * np.sqrt(ends)
         return np.asarray(out)

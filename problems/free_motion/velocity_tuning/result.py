@@ -8,10 +8,8 @@ from enum import StrEnum
 import numpy as np
 
 from ....core.arrays import FloatArray
-from ....core.motion.emulator.controller import Controller
-from ....core.motion.timing.energy import by_load, loads_of
 from ....core.motion.timing.timing import Settling, Timing
-from ....core.program.program import Program
+from .path import at_ends
 from .task import TuningTask
 from .usage import excess, jerks, usage
 
@@ -25,6 +23,15 @@ class Way(StrEnum):
     """One second-order cone program."""
     SEQUENTIAL = "sequential"
     """A sequence of them, each within the true limits."""
+
+    @property
+    def said(self) -> str:
+        """What can be said of a motion that was found so."""
+        return {
+            Way.SWEEPS: "the fastest there is",
+            Way.CONVEX: "the best there is",
+            Way.SEQUENTIAL: "the best that was found",
+        }[self]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,13 +53,12 @@ class Tuned:
     @property
     def u(self) -> FloatArray:
         """(K,), σ̈ in each interval."""
-        return np.asarray(np.diff(self.x) / (2.0 * self.task.path.limits.spacing))
+        return self.task.path.u(self.x)
 
     @property
     def steps(self) -> FloatArray:
         """(K,) s, the time that each interval takes."""
-        root = np.sqrt(self.x)
-        return np.asarray(2.0 * self.task.path.limits.spacing / (root[:-1] + root[1:]))
+        return self.task.path.steps(self.x)
 
     @property
     def duration(self) -> float:
@@ -67,8 +73,7 @@ class Tuned:
     @property
     def rates(self) -> FloatArray:
         """(K, 2, N), joint velocities there."""
-        ends = np.stack([self.x[:-1], self.x[1:]], -1)[..., None]
-        return np.asarray(self.task.path.dq * np.sqrt(ends))
+        return np.asarray(self.task.path.dq * np.sqrt(at_ends(self.x)))
 
     @property
     def energy(self) -> float:
@@ -124,25 +129,3 @@ class Tuned:
         return Timing.of(
             timing.path, timing.limits, timing.along, timing.path_limits, stamp, Settling()
         )
-
-    def torque_between(
-        self, controller: Controller, program: Program, timing: Timing, period: float = 1e-3
-    ) -> FloatArray:
-        """(T, N) N m of the motors every ``period`` s, between knots too.
-
-        Args:
-            controller, program, timing: from which the path was made.
-            period: s.
-        """
-        own = self.timing(timing)
-        t = np.arange(0.5 * period, own.duration, period)
-        q, dq, ddq = own.states_at(t)
-        interval = np.clip(np.searchsorted(own.begin, t, "right") - 1, 0, None)
-        segment = own.interval_segments[interval]
-        torque = np.empty_like(q)
-        for load, rows in by_load(loads_of(program, timing.path), segment):
-            torque[rows] = controller.robot.inverse_dynamics(q[rows], dq[rows], ddq[rows], load)
-        for j, drive in enumerate(self.task.drives):
-            torque[:, j] += drive.inertia * ddq[:, j] + drive.viscous * dq[:, j]
-            torque[:, j] += drive.coulomb * np.sign(dq[:, j])
-        return np.asarray(torque)

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from ....core.arrays import FloatArray, IntArray
 from .drives import FallingCurve
-from .path import FixedPath
+from .path import FixedPath, at_ends
 from .task import TuningTask
 
 FLOOR = 1e-10
@@ -31,7 +31,7 @@ FLOOR = 1e-10
 
 
 @dataclass(frozen=True)
-class Rows:
+class LinearRows:
     """A_x x + A_y y ≤ h; A_y may be left out."""
 
     a_x: sp.csr_array
@@ -69,7 +69,7 @@ class Knots:
         return sp.csr_array(made)
 
 
-def kinematic_rows(task: TuningTask, knots: Knots) -> Iterator[Rows]:
+def kinematic_rows(task: TuningTask, knots: Knots) -> Iterator[LinearRows]:
     """Both sides of the rows that the path is stamped by, constant torque limits included."""
     limits = task.rows() if not _varying(task) else task.path.limits
     matrix = knots.combination(limits.a, limits.b)
@@ -79,7 +79,7 @@ def kinematic_rows(task: TuningTask, knots: Knots) -> Iterator[Rows]:
         yield _normalised(sign * matrix[live], flat[live])
 
 
-def torque_rows(task: TuningTask, knots: Knots, at: FloatArray) -> Iterator[Rows]:
+def torque_rows(task: TuningTask, knots: Knots, at: FloatArray) -> Iterator[LinearRows]:
     """Torque limits that depend on speed, or torques that do.
 
     Args:
@@ -90,8 +90,7 @@ def torque_rows(task: TuningTask, knots: Knots, at: FloatArray) -> Iterator[Rows
     if not _varying(task):
         return
     torques, path = task.torques, task.path
-    ends = np.stack([at[:-1], at[1:]], -1)[..., None]
-    root = np.sqrt(ends)
+    root = np.sqrt(at_ends(at))
     for j, drive in enumerate(task.drives):
         if not np.isfinite(drive.torque.torque[0]):
             continue
@@ -107,12 +106,12 @@ def torque_rows(task: TuningTask, knots: Knots, at: FloatArray) -> Iterator[Rows
                 a_x = knots.combination(sign * torques.a[part], x)
                 a_y = knots.combination(np.zeros_like(v), -helps)
                 scale = 1.0 / drive.torque.torque[0]
-                yield Rows(
+                yield LinearRows(
                     sp.csr_array(scale * a_x), scale * upper.ravel(), sp.csr_array(scale * a_y)
                 )
 
 
-def jerk_rows(task: TuningTask, knots: Knots, at: FloatArray) -> Iterator[Rows]:
+def jerk_rows(task: TuningTask, knots: Knots, at: FloatArray) -> Iterator[LinearRows]:
     """Jerk limits, with the intervals' times by their tangents at a motion that is known."""
     if task.jerk is None:
         return
@@ -157,7 +156,7 @@ def _time_tangents(path: FixedPath, at: FloatArray) -> tuple[FloatArray, FloatAr
     """h at zero by its tangent, and its slopes in x at both ends of each interval, (K,) each."""
     root = np.sqrt(at)
     total = root[:-1] + root[1:]
-    time = 2.0 * path.limits.spacing / total
+    time = path.steps(at)
     slopes = [_over(-time, 2.0 * total * part) for part in (root[:-1], root[1:])]
     return time - slopes[0] * at[:-1] - slopes[1] * at[1:], slopes[0], slopes[1]
 
@@ -181,7 +180,7 @@ def _varying(task: TuningTask) -> bool:
     return task.limited and any(drive.torque.falls or drive.viscous > 0.0 for drive in task.drives)
 
 
-def _normalised(matrix: sp.csr_array, upper: FloatArray) -> Rows:
+def _normalised(matrix: sp.csr_array, upper: FloatArray) -> LinearRows:
     """Rows over their bounds, where those are above zero."""
     scale = 1.0 / np.where(upper > 0.0, upper, 1.0)
-    return Rows(sp.csr_array(sp.diags_array(scale) @ matrix), scale * upper)
+    return LinearRows(sp.csr_array(sp.diags_array(scale) @ matrix), scale * upper)

@@ -13,12 +13,12 @@ from ....core.errors import InputError
 from ....core.motion.model.consumption import SQUARED_TORQUE, Consumption
 from ....core.motion.timing.stamping import StampLimits, StandingStillError
 from ...checks import all_of_kind, of_kind, positive, within
-from .drives import Drive
+from .drives import JointDrive
 from .path import FixedPath, Torques
 
 
 @dataclass(frozen=True)
-class Objective:
+class TuningObjective:
     """w T / T₀ + (1 − w) E / E₀, with T₀ and E₀ = ∫ |p| dt of the fastest motion within the same
     limits.
 
@@ -36,13 +36,13 @@ class Objective:
     duration: float | None = None
 
     def __post_init__(self) -> None:
-        within("Objective.time_weight", self.time_weight, 0.0, 1.0)
-        of_kind("Objective.consumption", self.consumption, Consumption)
+        within("TuningObjective.time_weight", self.time_weight, 0.0, 1.0)
+        of_kind("TuningObjective.consumption", self.consumption, Consumption)
         if self.duration is not None:
-            positive("Objective.duration", self.duration)
+            positive("TuningObjective.duration", self.duration)
 
 
-FASTEST = Objective()
+FASTEST = TuningObjective()
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,14 +61,14 @@ class TuningTask:
     """
 
     path: FixedPath
-    drives: tuple[Drive, ...] = ()
+    drives: tuple[JointDrive, ...] = ()
     jerk: FloatArray | None = None
-    objective: Objective = FASTEST
+    objective: TuningObjective = FASTEST
 
     def __post_init__(self) -> None:
         of_kind("TuningTask.path", self.path, FixedPath)
-        of_kind("TuningTask.objective", self.objective, Objective)
-        all_of_kind("TuningTask.drives", self.drives, Drive)
+        of_kind("TuningTask.objective", self.objective, TuningObjective)
+        all_of_kind("TuningTask.drives", self.drives, JointDrive)
         if len(self.drives) not in (0, self.path.size):
             raise InputError(
                 f"TuningTask.drives: one an axis ({', '.join(self.path.names)}), "
@@ -87,7 +87,7 @@ class TuningTask:
         Raises:
             InputError: torques are not known.
         """
-        return Torques.of(self.path, self.drives or (Drive(),) * self.path.size)
+        return Torques.of(self.path, self.drives or (JointDrive(),) * self.path.size)
 
     @property
     def limited(self) -> bool:
@@ -105,7 +105,7 @@ class TuningTask:
     @cached_property
     def standstill(self) -> FloatArray:
         """(N,) N m, the motors' limits at speed zero; inf without."""
-        drives = self.drives or (Drive(),) * self.path.size
+        drives = self.drives or (JointDrive(),) * self.path.size
         return np.array([drive.torque.torque[0] for drive in drives])
 
     def rows(self) -> StampLimits:
@@ -147,9 +147,12 @@ class TuningTask:
             return
         interval, end, joint = (int(i) for i in np.unravel_index(np.argmax(over), over.shape))
         need, most = abs(self.torques.c[interval, end, joint]), self.standstill[joint]
+        way = float(
+            self.path.limits.spacing[: interval + end].sum() / self.path.limits.spacing.sum()
+        )
         raise StandingStillError(
-            f"joint {self.path.names[joint]} needs {need:.4g} N m to hold the arm still at knot "
-            f"{interval + end} of the path, and its limit is {most:.4g} N m: no motion along this "
+            f"joint {self.path.names[joint]} needs {need:.4g} N m to hold the arm still at "
+            f"{way:.0%} of the path, and its limit is {most:.4g} N m: no motion along this "
             "path is possible; change the configuration, the load or the limit",
             interval + end,
             joint,

@@ -18,7 +18,7 @@ from ....core.arrays import FloatArray
 from ....core.errors import InputError
 from ....core.motion.timing.stamping import stamp
 from ...checks import of_kind
-from .cones import ConeProgram, Shares, TuningError
+from .cones import ConeProgram, CostShares, TuningError
 from .result import Tuned, Way
 from .rows import FLOOR
 from .task import FASTEST, TuningTask
@@ -83,7 +83,7 @@ def tune_by_cones(task: TuningTask) -> Tuned:
     _check_duration(task, fastest.duration)
     if _is_tight(task, fastest.duration):
         return Tuned(task, fastest.x, Way.SWEEPS)
-    shares = Shares(1.0) if _timely(task) else _shares(task, fastest)
+    shares = CostShares(1.0) if _timely(task) else _shares(task, fastest)
     return Tuned(task, ConeProgram(task, unit).solve(shares, unit), Way.CONVEX, 1)
 
 
@@ -95,7 +95,7 @@ def tune_in_sequence(task: TuningTask, report: Report | None = None) -> Tuned:
     """
     unit = _unit(task)
     if _timely(task) and task.objective.duration is None:
-        shares = Shares(1.0)
+        shares = CostShares(1.0)
         best = Tuned(task, _start(task, unit), Way.SEQUENTIAL)
     else:
         fastest = tune(_hurried(task), report)
@@ -103,7 +103,7 @@ def tune_in_sequence(task: TuningTask, report: Report | None = None) -> Tuned:
         _check_duration(task, fastest.duration)
         if _is_tight(task, fastest.duration):
             return best
-        shares = Shares(1.0) if _timely(task) else _shares(task, fastest)
+        shares = CostShares(1.0) if _timely(task) else _shares(task, fastest)
     program = ConeProgram(task, unit)
     for round_ in range(1, _ROUNDS + 1):
         try:
@@ -124,7 +124,7 @@ def tune_in_sequence(task: TuningTask, report: Report | None = None) -> Tuned:
 
 
 def _between(
-    task: TuningTask, shares: Shares, best: Tuned, x: FloatArray, round_: int
+    task: TuningTask, shares: CostShares, best: Tuned, x: FloatArray, round_: int
 ) -> Tuned | None:
     """The best of motions on the way to one from a solver; None where none is better.
 
@@ -141,7 +141,7 @@ def _between(
     return None
 
 
-def _cost(shares: Shares, motion: Tuned) -> float:
+def _cost(shares: CostShares, motion: Tuned) -> float:
     cost = shares.time * motion.duration
     return cost + shares.energy * motion.energy if shares.energy > 0.0 else cost
 
@@ -156,13 +156,13 @@ def _hurried(task: TuningTask) -> TuningTask:
     return replace(task, objective=replace(FASTEST, consumption=consumption))
 
 
-def _shares(task: TuningTask, fastest: Tuned) -> Shares:
+def _shares(task: TuningTask, fastest: Tuned) -> CostShares:
     """Time and energy in shares of those of the fastest motion."""
     most = fastest.flow
     if most == 0.0:
         raise InputError("the fastest motion takes no energy: there is nothing to compare with")
     weight = task.objective.time_weight
-    return Shares(weight / fastest.duration, (1.0 - weight) / most)
+    return CostShares(weight / fastest.duration, (1.0 - weight) / most)
 
 
 def _unit(task: TuningTask) -> FloatArray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ....core.arrays import FloatArray
+from .path import at_ends
 from .task import TuningTask
 
 SPEED = "speed"
@@ -19,9 +20,9 @@ def jerks(task: TuningTask, x: FloatArray) -> FloatArray:
         x: (K + 1,), σ̇² at the knots.
     """
     path = task.path
-    root = np.sqrt(x)
-    steps = 2.0 * path.limits.spacing / (root[:-1] + root[1:])
-    middle = middle_accelerations(task, x)
+    steps = path.steps(x)
+    # Means of the joints' accelerations at both ends of each interval.
+    middle = (path.dq * path.u(x)[:, None, None] + path.ddq * at_ends(x)).mean(axis=1)
     before = np.concatenate([np.zeros((1, path.size)), middle])
     after = np.concatenate([middle, np.zeros((1, path.size))])
     half = 0.5 * np.concatenate([[0.0], steps]), 0.5 * np.concatenate([steps, [0.0]])
@@ -30,14 +31,6 @@ def jerks(task: TuningTask, x: FloatArray) -> FloatArray:
     into = np.abs(before) / np.where(half[0] > 0, half[0], np.inf)[:, None]
     out = np.abs(after) / np.where(half[1] > 0, half[1], np.inf)[:, None]
     return np.asarray(np.where(stops[:, None], np.maximum(into, out), passed))
-
-
-def middle_accelerations(task: TuningTask, x: FloatArray) -> FloatArray:
-    """(K, N), the mean of the joints' accelerations at both ends of each interval."""
-    path = task.path
-    u = np.diff(x) / (2.0 * path.limits.spacing)
-    ends = np.stack([x[:-1], x[1:]], -1)[..., None]
-    return np.asarray((path.dq * u[:, None, None] + path.ddq * ends).mean(axis=1))
 
 
 def usage(task: TuningTask, x: FloatArray) -> dict[str, FloatArray]:
@@ -49,8 +42,7 @@ def usage(task: TuningTask, x: FloatArray) -> dict[str, FloatArray]:
     """
     path = task.path
     limits = path.limits
-    u = np.diff(x) / (2.0 * limits.spacing)
-    ends = np.stack([x[:-1], x[1:]], -1)[..., None]
+    u, ends = path.u(x), at_ends(x)
     value = limits.a * u[:, None, None] + limits.b * ends
     found: dict[str, FloatArray] = {}
 

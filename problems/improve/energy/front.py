@@ -18,7 +18,7 @@ from ....core.program.program import Program
 
 @dataclass(frozen=True, eq=False)
 class FrontPoint:
-    """One program.
+    """One program that was written, read back and, in a cell, proven.
 
     Args:
         program: as read back from its text.

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
 
 from ....core.errors import InputError
 from ....core.motion.model.consumption import SQUARED_TORQUE, Consumption
 from ...checks import positive, within
-from ..waypoints import Effort
 from ..waypoints import WaypointTask as Wishes
 
-__all__ = ["Effort", "EnergyTask", "Goal", "Progress", "Report", "Scope", "Wishes"]
 
-
-class Scope(StrEnum):
+class EnergyScope(StrEnum):
     """What of a program may change."""
 
     SPEEDS = "speeds"
@@ -42,7 +38,7 @@ class EnergyTask:
         InputError: a number out of its range.
     """
 
-    scope: Scope = Scope.WAYPOINTS
+    scope: EnergyScope = EnergyScope.WAYPOINTS
     consumption: Consumption = SQUARED_TORQUE
     wishes: Wishes = field(default_factory=Wishes)
     slowest: float = 0.02
@@ -91,21 +87,3 @@ class Goal:
         positive("Goal.weighted, time", time)
         positive("Goal.weighted, energy", energy)
         return cls(weight / time, (1.0 - weight) / energy)
-
-
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """How far the work has come.
-
-    Args:
-        stage: what is being done, in words.
-        done, total: parts of this stage.
-    """
-
-    stage: str
-    done: int
-    total: int
-
-
-Report = Callable[[Progress], bool | None]
-"""Called with progress; True ends the work with what has been found."""

@@ -1,4 +1,4 @@
-"""Time and energy of a program in all its numbers, as a `nonsmooth_sqp.Model`.
+"""Time and energy of a program in all its numbers, as a `nonsmooth_sqp.SearchModel`.
 
 Variables are those of its points and zones, then the logarithms of its speeds and accelerations.
 Points and zones bring their own constraints (`waypoints.evaluation`). Speeds change no geometry, so
@@ -24,17 +24,19 @@ from ....core.motion.model.consumption import Consumption
 from ....core.motion.path.path import Path
 from ....core.motion.timing.timing import Timing
 from ....core.program.program import Program
+from ..nonsmooth_sqp import violation
 from ..waypoints.block_problem import BlockProblem
-from ..waypoints.block_problem import Evaluated as Shape
+from ..waypoints.block_problem import EvaluatedBlock as Shape
 from .options import Goal
 from .pacing import Pacing
 
+_FEASIBLE = 1e-5
 _PLANES = 16
 """Gradients of the time that are remembered."""
 
 
 @dataclass(frozen=True)
-class Fixed:
+class FixedShape:
     """Points and zones that stay.
 
     Args:
@@ -47,7 +49,7 @@ class Fixed:
 
 
 @dataclass(frozen=True, eq=False)
-class Evaluated:
+class EvaluatedProgram:
     """The problem at a point.
 
     Args:
@@ -74,6 +76,12 @@ class Evaluated:
         """(m,), wanted to be zero or more: those of the shape, then the room until the latest end
         as a share of it, by the true time and by the planes remembered now."""
         return self.problem.constraints(self)
+
+    @property
+    def rank(self) -> tuple[float, float]:
+        """Smaller is better: feasible ones first."""
+        worst = violation(self)
+        return (0.0 if worst < _FEASIBLE else worst), self.objective
 
     @cached_property
     def duration_slope(self) -> FloatArray:
@@ -106,13 +114,13 @@ class PacedProblem:
         consumption: whose integral is the energy.
 
     Attributes:
-        lower, upper, scale: (n,), see `nonsmooth_sqp.Model`.
+        lower, upper, scale: (n,), see `nonsmooth_sqp.SearchModel`.
     """
 
     def __init__(
         self,
         controller: Controller,
-        geometry: BlockProblem | Fixed,
+        geometry: BlockProblem | FixedShape,
         pacing: Pacing,
         goal: Goal,
         consumption: Consumption,
@@ -134,7 +142,7 @@ class PacedProblem:
 
     # -------------------------------------------------------------------------- values
 
-    def point(self, x: FloatArray) -> Evaluated | None:
+    def point(self, x: FloatArray) -> EvaluatedProgram | None:
         """The problem at x; None where the program cannot be driven."""
         x = np.clip(x, self.lower, self.upper)
         shape: Shape | None = None
@@ -152,10 +160,10 @@ class PacedProblem:
             return None
         energy = self.controller.energy(program, timing, self._consumption).value
         objective = self._goal.time * timing.duration + self._goal.energy * energy
-        return Evaluated(x, objective, self, program, timing, timing.duration, energy, shape)
+        return EvaluatedProgram(x, objective, self, program, timing, timing.duration, energy, shape)
 
-    def constraints(self, point: Evaluated) -> FloatArray:
-        """(m,), see `Evaluated.constraints`."""
+    def constraints(self, point: EvaluatedProgram) -> FloatArray:
+        """(m,), see `EvaluatedProgram.constraints`."""
         own = np.zeros(0) if point.shape is None else point.shape.constraints
         latest = self._goal.latest
         if latest is None:
@@ -168,7 +176,7 @@ class PacedProblem:
 
     # --------------------------------------------------------------------- derivatives
 
-    def gradient(self, point: Evaluated) -> FloatArray:
+    def gradient(self, point: EvaluatedProgram) -> FloatArray:
         """∇f (n,).
 
         Raises:
@@ -185,7 +193,7 @@ class PacedProblem:
             total += goal.energy * self.slope(point, made)
         return total
 
-    def candidates(self, point: Evaluated, box: FloatArray) -> IntArray:
+    def candidates(self, point: EvaluatedProgram, box: FloatArray) -> IntArray:
         """Constraints that a step within ``box`` may violate; those of the time always."""
         found = np.zeros(0, dtype=np.int64)
         if point.shape is not None:
@@ -196,7 +204,7 @@ class PacedProblem:
         first = self._first(point)
         return np.concatenate([found, np.arange(first, first + 1 + len(self._planes))])
 
-    def jacobian(self, point: Evaluated, rows: IntArray) -> FloatArray:
+    def jacobian(self, point: EvaluatedProgram, rows: IntArray) -> FloatArray:
         """∂c/∂x of some constraints (len(rows), n)."""
         out = np.zeros((len(rows), len(point.x)))
         first = self._first(point)
@@ -210,11 +218,11 @@ class PacedProblem:
             out[~ours, : self._split] = self._geometry.jacobian(point.shape, rows[~ours])
         return out
 
-    def _first(self, point: Evaluated) -> int:
+    def _first(self, point: EvaluatedProgram) -> int:
         """Index of the first constraint of the time."""
         return 0 if point.shape is None else len(point.shape.constraints)
 
-    def slope(self, point: Evaluated, made: ProgramGradient) -> FloatArray:
+    def slope(self, point: EvaluatedProgram, made: ProgramGradient) -> FloatArray:
         """(n,), from the program's numbers to the variables."""
         paces = self._pacing.gradient(made, point.x[self._split :])
         if not isinstance(self._geometry, BlockProblem):

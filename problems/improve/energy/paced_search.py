@@ -15,21 +15,22 @@ from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
 from ....core.program.program import Program
 from ...reading_back import ReadBack
-from ..nonsmooth_sqp import Memory, SearchEffort, search, violation
-from ..solve_round_verify import Feasibility, solve_round_verify
+from ..nonsmooth_sqp import Memory, SearchEffort, search
+from ..solve_round_verify import ProgramFeasibility, solve_round_verify
+from ..waypoints import Effort
 from ..waypoints.aim import FINE, Aim, with_room
 from ..waypoints.block_problem import BlockProblem
-from ..waypoints.blocks import Block
-from ..waypoints.variables import Variables
-from .options import Effort, EnergyTask, Goal
-from .paced_problem import Evaluated, Fixed, PacedProblem
+from ..waypoints.blocks import MoveBlock
+from ..waypoints.variables import ProgramVariables
+from .front import FrontPoint
+from .options import EnergyTask, Goal
+from .paced_problem import EvaluatedProgram, FixedShape, PacedProblem
 from .pacing import Pacing
 
 _NEAR, _NEAR_BOX = 45, 0.3
 """Iterations at most and first trust box of a search that begins at a neighbour's values."""
 _REFINING, _SETTLING = SearchEffort(20, 0.2), SearchEffort(10, 0.1)
 """Of a refinement, and of one with accelerations rounded."""
-_FEASIBLE = 1e-5
 _EARLY = 2e-5
 """Share of the latest end by which a search aims to be earlier, so that rounding leaves room."""
 LATE = 1e-4
@@ -37,47 +38,6 @@ LATE = 1e-4
 _APART = 1e-7
 _HOPELESS = 0.02
 """Share by which a program ends too late where aiming earlier is no use."""
-
-
-@dataclass(frozen=True, eq=False)
-class PacedPoint:
-    """Values of the variables.
-
-    Args:
-        x: (n,).
-        duration: s.
-        energy: of the consumption.
-        violation: largest one.
-        objective: of the goal.
-    """
-
-    x: FloatArray
-    duration: float
-    energy: float
-    violation: float
-    objective: float
-
-    @property
-    def rank(self) -> tuple[float, float]:
-        """Smaller is better: feasible ones first."""
-        return (0.0 if self.violation < _FEASIBLE else self.violation), self.objective
-
-
-@dataclass(frozen=True, eq=False)
-class Finished:
-    """A program that was written, read back and, in a cell, proven.
-
-    Args:
-        run: of the program as read back.
-        duration: s.
-        energy: of the consumption.
-        certificate: None without a cell.
-    """
-
-    run: Run
-    duration: float
-    energy: float
-    certificate: Certificate | None
 
 
 @dataclass(frozen=True)
@@ -98,7 +58,7 @@ class PacedSearch:
     controller: Controller
     program: Program
     pacing: Pacing
-    variables: Variables | None
+    variables: ProgramVariables | None
     scenes: SceneOf | None
     clearance: float
     task: EnergyTask
@@ -113,7 +73,7 @@ class PacedSearch:
 
     # -------------------------------------------------------------------------- searching
 
-    def measured(self, goal: Goal, x: FloatArray) -> PacedPoint:
+    def measured(self, goal: Goal, x: FloatArray) -> EvaluatedProgram:
         """Values judged by a goal.
 
         Raises:
@@ -122,9 +82,9 @@ class PacedSearch:
         point = self._problem(goal, self.pacing).point(x)
         if point is None:
             raise MotionError("the program cannot be driven as it is", 0)
-        return _candidate(point)
+        return point
 
-    def search(self, goal: Goal, x: FloatArray) -> PacedPoint:
+    def search(self, goal: Goal, x: FloatArray) -> EvaluatedProgram:
         """The best values found from a start.
 
         Raises:
@@ -132,11 +92,11 @@ class PacedSearch:
         """
         return self._found(goal, x, SearchEffort(self.effort.iterations))
 
-    def search_near(self, goal: Goal, x: FloatArray) -> PacedPoint:
+    def search_near(self, goal: Goal, x: FloatArray) -> EvaluatedProgram:
         """The same from values that serve a goal much like this one."""
         return self._found(goal, x, SearchEffort(min(_NEAR, self.effort.iterations), _NEAR_BOX))
 
-    def _found(self, goal: Goal, x: FloatArray, settings: SearchEffort) -> PacedPoint:
+    def _found(self, goal: Goal, x: FloatArray, settings: SearchEffort) -> EvaluatedProgram:
         found = self._searched(goal, self.pacing, x, settings)
         if found is None:
             raise MotionError("the program cannot be driven as it is", 0)
@@ -149,7 +109,7 @@ class PacedSearch:
         x: FloatArray,
         settings: SearchEffort,
         aim: Aim | None = None,
-    ) -> PacedPoint | None:
+    ) -> EvaluatedProgram | None:
         """From one start; None where it cannot be driven."""
         if goal.latest is not None:
             goal = replace(goal, latest=goal.latest * (1.0 - _EARLY))
@@ -159,23 +119,25 @@ class PacedSearch:
             return None
         try:
             memory = Memory(start.x, settings.box)
-            return _candidate(search(problem, start, settings, memory).point)
+            return search(problem, start, settings, memory).point
         except MotionError:
             # A pose target is singular where the search stands: no way on.
-            return _candidate(start)
+            return start
 
     def _problem(self, goal: Goal, pacing: Pacing, aim: Aim | None = None) -> PacedProblem:
         geometry = self._geometry(aim or Aim(self.effort.margin))
         consumption = self.task.consumption
         return PacedProblem(self.controller, geometry, pacing, goal, consumption)
 
-    def _geometry(self, aim: Aim) -> BlockProblem | Fixed:
+    def _geometry(self, aim: Aim) -> BlockProblem | FixedShape:
         if self.variables is None or self.scenes is None:
             return self._fixed
         apart = self._apart
         return BlockProblem(
             self.controller,
-            Block(0, len(apart.moves) - 1, apart, Variables(apart, self.variables.parts)),
+            MoveBlock(
+                0, len(apart.moves) - 1, apart, ProgramVariables(apart, self.variables.parts)
+            ),
             self.scenes,
             replace(self.task.wishes, time_weight=1.0),
             self.clearance + aim.margin,
@@ -185,8 +147,8 @@ class PacedSearch:
         )
 
     @cached_property
-    def _fixed(self) -> Fixed:
-        return Fixed(self._apart, self.controller.plan(self._apart))
+    def _fixed(self) -> FixedShape:
+        return FixedShape(self._apart, self.controller.plan(self._apart))
 
     @cached_property
     def _apart(self) -> Program:
@@ -198,7 +160,7 @@ class PacedSearch:
 
     # -------------------------------------------------------------------------- finishing
 
-    def finish(self, goal: Goal, x: FloatArray) -> Finished | None:
+    def finish(self, goal: Goal, x: FloatArray) -> FrontPoint | None:
         """The program near x as its language says it; None where it cannot be proven.
 
         Where it ends too late, as rounded, an earlier end is aimed at; if that does not help, it
@@ -211,10 +173,10 @@ class PacedSearch:
         return refined.best
 
     @property
-    def feasibility(self) -> Feasibility:
+    def feasibility(self) -> ProgramFeasibility:
         """What the program has to stand."""
         residual = self.task.wishes.residual
-        return Feasibility(
+        return ProgramFeasibility(
             self.controller, self.scenes, self.clearance, residual, self.program.start, None
         )
 
@@ -239,12 +201,6 @@ class PacedSearch:
             return x
         y = self.pacing.released(x[self._split :], point.timing, self.controller.robot)
         return np.concatenate([x[: self._split], y])
-
-    def finished(self, run: Run, proof: Certificate | None) -> Finished:
-        """The figures of a driven program."""
-        consumption = self.task.consumption
-        energy = self.controller.energy(run.program, run.timing, consumption).value
-        return Finished(run, run.timing.duration, energy, proof)
 
     @property
     def _split(self) -> int:
@@ -304,7 +260,7 @@ class _Refined:
     aim: Aim
     nearer: Goal
     left: int
-    best: Finished | None = None
+    best: FrontPoint | None = None
 
     def rounded(self) -> Program | None:
         """The program as it is read, with the values found next."""
@@ -325,13 +281,10 @@ class _Refined:
             return self.search.variables is None
         if self.best is not None and run.timing.duration >= self.best.duration:
             return True
-        self.best = self.search.finished(run, certificate)
+        search = self.search
+        self.best = FrontPoint.of(search.controller, run, search.task.consumption, certificate)
         late = 0.0 if self.goal.latest is None else run.timing.duration / self.goal.latest - 1.0
         if self.nearer.latest is None or not LATE < late < _HOPELESS:
             return True
         self.nearer = replace(self.nearer, latest=self.nearer.latest * (1.0 - 1.5 * late))
         return False
-
-
-def _candidate(point: Evaluated) -> PacedPoint:
-    return PacedPoint(point.x, point.duration, point.energy, violation(point), point.objective)

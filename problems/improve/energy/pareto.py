@@ -20,16 +20,18 @@ from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
 from ....core.program.program import Program
 from ...reading_back import ReadBack
-from ..solve_round_verify import Feasibility
-from ..waypoints import optimize_waypoints, optimize_zones
+from ..progress import Progress, Report
+from ..solve_round_verify import ProgramFeasibility
+from ..waypoints import Effort, optimize_waypoints
 from ..waypoints.changeable import select
 from ..waypoints.freed_stops import with_freed_stops
 from ..waypoints.options import Freedom
 from ..waypoints.options import WaypointTask as Wishes
-from ..waypoints.variables import Variables, make_variables
+from ..waypoints.variables import ProgramVariables, make_variables
 from .front import Front, FrontPoint, without_dominated
-from .options import Effort, EnergyTask, Goal, Progress, Report, Scope
-from .paced_search import LATE, Finished, PacedPoint, PacedSearch
+from .options import EnergyScope, EnergyTask, Goal
+from .paced_problem import EvaluatedProgram
+from .paced_search import LATE, PacedSearch
 from .pacing import make_pacing
 
 _FASTEST = 1e-3
@@ -38,6 +40,8 @@ _WORTH = 5e-4
 """Share of the energy that a slower program must save to count."""
 _CROWDED = 2.0
 """Power of the spacing of durations: energy falls steepest at the fast end."""
+_Served = tuple[Goal, EvaluatedProgram]
+"""A goal, and what serves it best."""
 
 
 def pareto(
@@ -118,8 +122,7 @@ class _Work:
         notes: list[Note] = []
         search, given = self._prepared(program, notes)
         found = search.search(goal, search.start)
-        finished = search.finish(goal, found.x)
-        point = given if finished is None else self._point(finished)
+        point = search.finish(goal, found.x) or given
         if _rank(goal, given) <= _rank(goal, point):
             notes.append(Note("nothing better was found: this is the program as it was given"))
             point = given
@@ -136,7 +139,7 @@ class _Work:
         """All of it."""
         notes: list[Note] = []
         search, given = self._prepared(program, notes)
-        candidates: list[tuple[Goal, PacedPoint]] = []
+        candidates: list[_Served] = []
         with suppress(KeyboardInterrupt, _Ended):
             self._search(search, count, candidates)
         points: list[FrontPoint] = []
@@ -148,7 +151,7 @@ class _Work:
                         Note(f"no program of {goal.latest or candidate.duration:.4g} s was proven")
                     )
                 else:
-                    points.append(self._point(finished))
+                    points.append(finished)
                 if self._tell("writing and proving", k + 1, len(candidates)):
                     break
         return Front(
@@ -161,9 +164,7 @@ class _Work:
 
     # -------------------------------------------------------------------------- searching
 
-    def _search(
-        self, search: PacedSearch, count: int, found: list[tuple[Goal, PacedPoint]]
-    ) -> None:
+    def _search(self, search: PacedSearch, count: int, found: list[_Served]) -> None:
         """Candidates from the fastest to the most frugal, added to ``found``.
 
         Where only speeds change, the program as it is is the fastest.
@@ -191,18 +192,15 @@ class _Work:
         found.append((Goal(0.0, by_energy, max(frugal.duration, quick.duration)), frugal))
         self._back(search, found, count)
 
-    def _back(self, search: PacedSearch, found: list[tuple[Goal, PacedPoint]], count: int) -> None:
+    def _back(
+        self, search: PacedSearch, found: list[tuple[Goal, EvaluatedProgram]], count: int
+    ) -> None:
         """Each once more, from the slower one's values: where time is short routes differ."""
         for k in range(len(found) - 2, 0, -1):
             goal, known = found[k]
             other = search.search_near(goal, found[k + 1][1].x)
             found[k] = goal, min(known, other, key=lambda candidate: candidate.rank)
             self._ask("searching", 2 * count - k, 2 * count)
-
-    def _point(self, finished: Finished) -> FrontPoint:
-        return FrontPoint.of(
-            self.controller, finished.run, self.task.consumption, finished.certificate
-        )
 
     def _tell(self, stage: str, done: int, total: int) -> bool:
         return self.report is not None and bool(self.report(Progress(stage, done, total)))
@@ -215,10 +213,10 @@ class _Work:
 
     def _prepared(self, program: Program, notes: list[Note]) -> tuple[PacedSearch, FrontPoint]:
         """Where to search, and the figures of the program that was given."""
-        wishes = self.task.wishes
+        wishes = self._wishes
         program = replace(program, start=wishes.start or program.start)
         scenes = None if self.cell is None else scenes_of(self.cell)
-        feasibility = Feasibility(self.controller, scenes, self._clearance, wishes.residual)
+        feasibility = ProgramFeasibility(self.controller, scenes, self._clearance, wishes.residual)
         run, proof = feasibility.given(program)
         given = FrontPoint.of(self.controller, run, self.task.consumption, proof)
         base, wishes = self._routed(program, notes)
@@ -245,42 +243,45 @@ class _Work:
 
     @property
     def _clearance(self) -> float:
-        wanted = self.task.wishes.clearance
+        wanted = self._wishes.clearance
         if wanted is None:
             return 0.0 if self.cell is None else self.cell.clearance
         return wanted
 
     @property
+    def _wishes(self) -> Wishes:
+        """What stays, points too where only zones may change."""
+        points = self.task.scope is EnergyScope.WAYPOINTS
+        freedom = Freedom.WAYPOINTS_AND_ZONES if points else Freedom.ZONES
+        return replace(self.task.wishes, freedom=freedom)
+
+    @property
     def _shapes(self) -> bool:
         """Whether points or zones may change: only where it is known what stands around."""
-        return self.cell is not None and self.task.scope is not Scope.SPEEDS
+        return self.cell is not None and self.task.scope is not EnergyScope.SPEEDS
 
     def _routed(self, program: Program, notes: list[Note]) -> tuple[Program, Wishes]:
         """The program to begin with, the fastest one that a search from many starts finds, and
         what may still change in it."""
         if not self._shapes:
-            return program, self.task.wishes
+            return program, self._wishes
         if self.cell is not None and self.effort.starts > 1:
-            points = self.task.scope is Scope.WAYPOINTS
-            solve = optimize_waypoints if points else optimize_zones
-            wishes = replace(self.task.wishes, time_weight=1.0)
-            found = solve(self.controller, program, self.cell, wishes, self.effort)
+            wishes = replace(self._wishes, time_weight=1.0)
+            found = optimize_waypoints(self.controller, program, self.cell, wishes, self.effort)
             if found.changed:
-                return replace(found.program, start=program.start), self.task.wishes.spent()
-        wishes = self.task.wishes
+                return replace(found.program, start=program.start), self._wishes.spent()
+        wishes = self._wishes
         return with_freed_stops(self.controller, program, wishes, notes), wishes
 
     def _variables(
         self, program: Program, driven: Run, wishes: Wishes, notes: list[Note]
-    ) -> Variables | None:
+    ) -> ProgramVariables | None:
         """Points and zones that may change; None where all stay."""
         if not self._shapes:
             return None
         wishes = replace(wishes, freed=())
-        points = self.task.scope is Scope.WAYPOINTS
-        freedom = Freedom.WAYPOINTS_AND_ZONES if points else Freedom.ZONES
         robot = self.controller.robot
-        selection = select(program, driven.path, robot, wishes, freedom)
+        selection = select(program, driven.path, robot, wishes)
         notes += [Note(f"stays as it is: {why}", i) for i, why in selection.reasons.items()]
         made = make_variables(program, robot, selection, wishes)
         return made if made.size else None

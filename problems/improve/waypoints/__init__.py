@@ -1,20 +1,18 @@
-"""Via points and zones that make a program faster: `optimize_zones`, `optimize_waypoints`."""
+"""Via points and zones that make a program faster: `optimize_waypoints`."""
 
-from .multistart import Progress
-from .optimize import optimize_waypoints, optimize_zones
-from .options import Effort, ViaCount, WaypointTask
-from .point_limits import Box, Cone, Fixed, Free, PointLimit
+from .optimize import optimize_waypoints
+from .options import Effort, Freedom, ViaCount, WaypointTask
+from .point_limits import Fixed, Free, PointBox, PointCone, PointLimit
 
 __all__ = [
-    "Box",
-    "Cone",
     "Effort",
     "Fixed",
     "Free",
+    "Freedom",
+    "PointBox",
+    "PointCone",
     "PointLimit",
-    "Progress",
     "ViaCount",
     "WaypointTask",
     "optimize_waypoints",
-    "optimize_zones",
 ]

@@ -15,7 +15,7 @@ from ....core.motion.gradients.sensitivity import PathPlaces
 from ....core.motion.path.path import Path
 from ..rounding import STEP
 from .block_emulation import crowd, rooms_of
-from .variables import Variables
+from .variables import ProgramVariables
 
 COARSE, FINE = 2, 4
 """Density of places of a search and of a refinement."""
@@ -62,7 +62,7 @@ class Aim:
 
 
 def with_room(
-    x: FloatArray, variables: Variables, planned: Callable[[FloatArray], Path]
+    x: FloatArray, variables: ProgramVariables, planned: Callable[[FloatArray], Path]
 ) -> FloatArray:
     """Values with zones small enough for their neighbours when all is rounded.
 

@@ -28,9 +28,8 @@ from ....core.motion.path.path import Path
 from ....core.motion.timing.timing import Timing
 from ....core.program.program import Program
 from ....core.robot.kinematics.chain_kernels import jacobians
-from .blocks import Block
-from .oriented import OrientedPoint
-from .variables import JointPoint, PosePoint, ViaPoint
+from .blocks import MoveBlock
+from .parts import JointPoint, PosePoint, ViaPoint
 
 _STRAIGHT, _ZONE = 0.05, 16
 """rad of joint motion (or its like in m of path, see `segments`) between places on straight parts;
@@ -45,7 +44,7 @@ _REACHES = 3
 
 
 @dataclass(frozen=True)
-class Drive:
+class DrivenBlock:
     """The program at some values.
 
     Args:
@@ -94,8 +93,8 @@ class _Shifted:
 
 
 def drivable(
-    controller: Controller, path: Path, blocks: Sequence[Block], notes: list[Note]
-) -> tuple[Block, ...]:
+    controller: Controller, path: Path, blocks: Sequence[MoveBlock], notes: list[Note]
+) -> tuple[MoveBlock, ...]:
     """The blocks that are driven alone as they are in their program; notes name the others.
 
     Args:
@@ -104,7 +103,7 @@ def drivable(
         blocks: of it.
         notes: why a block stays as it is goes here.
     """
-    found: list[Block] = []
+    found: list[MoveBlock] = []
     for block in blocks:
         moves = [i - block.first for i in path.route.moves if block.first <= i <= block.last]
         why = "other waypoints are left out"
@@ -132,7 +131,11 @@ class Driver:
     """
 
     def __init__(
-        self, controller: Controller, block: Block, density: int = 1, more: PathPlaces | None = None
+        self,
+        controller: Controller,
+        block: MoveBlock,
+        density: int = 1,
+        more: PathPlaces | None = None,
     ) -> None:
         self.controller = controller
         self.variables = block.variables
@@ -147,7 +150,7 @@ class Driver:
         """Indices of the moves that are driven."""
         return self._first.route.moves
 
-    def drive(self, x: FloatArray) -> Drive | None:
+    def drive(self, x: FloatArray) -> DrivenBlock | None:
         """The program at x; None where it cannot be driven."""
         planned = self._planned(x)
         if planned is None:
@@ -157,7 +160,9 @@ class Driver:
             timing = self.controller.stamp(program, path)
         except MotionError:
             return None
-        return Drive(x, program, path, timing, rooms_of(path), configurations(path, self.places))
+        return DrivenBlock(
+            x, program, path, timing, rooms_of(path), configurations(path, self.places)
+        )
 
     def _planned(self, x: FloatArray) -> tuple[Program, Path] | None:
         """The program at x and its path, if the same moves are driven as of the one given."""
@@ -168,7 +173,7 @@ class Driver:
             return None
         return (program, path) if path.route.moves == self._first.route.moves else None
 
-    def change(self, drive: Drive, which: IntArray) -> Change:
+    def change(self, drive: DrivenBlock, which: IntArray) -> Change:
         """Derivatives at a drive, for some of the places."""
         places = PathPlaces(self.places.part[which], self.places.share[which])
         if has_tangents(drive.path):
@@ -180,7 +185,7 @@ class Driver:
 
     # ---------------------------------------------------------- paths of joint moves alone
 
-    def _by_formulas(self, drive: Drive, places: PathPlaces) -> Change:
+    def _by_formulas(self, drive: DrivenBlock, places: PathPlaces) -> Change:
         directions = self._directions(drive)
         rooms = [reach_tangent(room.left, directions) for room in drive.rooms]
         return Change(
@@ -189,7 +194,7 @@ class Driver:
             directions.waypoints,
         )
 
-    def _directions(self, drive: Drive) -> Directions:
+    def _directions(self, drive: DrivenBlock) -> Directions:
         """One direction for each variable."""
         path, variables = drive.path, self.variables
         count, axes = path.segments.ends.q.shape[0], path.segments.ends.q.shape[2]
@@ -201,7 +206,7 @@ class Driver:
         for index, part in enumerate(variables.parts):
             columns = np.arange(variables.offsets[index], variables.offsets[index + 1])
             for move in part.moves:
-                if isinstance(part, JointPoint | OrientedPoint):
+                if isinstance(part, JointPoint):
                     slope = part.slope(variables.of(index, drive.x))
                     rows = np.array(part.axes)[:, None]
                     made.waypoints[waypoint[move], rows, columns] = slope
@@ -215,7 +220,7 @@ class Driver:
 
     # ------------------------------------------------------------------- all other paths
 
-    def _by_differences(self, drive: Drive, which: IntArray) -> Change:
+    def _by_differences(self, drive: DrivenBlock, which: IntArray) -> Change:
         """Difference quotients; variables that change nothing in common are moved at once."""
         variables = self.variables
         step = _DIFFERENCE * variables.scale
@@ -243,7 +248,7 @@ class Driver:
 
     def _take(
         self,
-        drive: Drive,
+        drive: DrivenBlock,
         other: _Shifted,
         which: IntArray,
         together: IntArray,

@@ -19,8 +19,8 @@ from ....core.errors import MotionError
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.gradients.derivatives import Derivatives
 from ....core.motion.gradients.sensitivity import PathPlaces
-from .block_emulation import Drive, Driver
-from .blocks import Block
+from .block_emulation import DrivenBlock, Driver
+from .blocks import MoveBlock
 from .options import WaypointTask
 from .point_limit_rows import PointRow, point_rows
 
@@ -34,7 +34,7 @@ _FASTEST = 4.0
 
 
 @dataclass(frozen=True)
-class Watched:
+class WatchedPlaces:
     """Places that one scene looks at.
 
     Args:
@@ -51,8 +51,8 @@ class Watched:
 
 
 @dataclass(frozen=True)
-class Evaluated:
-    """The problem at a point; see `search.Point`.
+class EvaluatedBlock:
+    """The problem at a point; see `nonsmooth_sqp.SearchPoint`.
 
     Args:
         x: (n,).
@@ -65,12 +65,12 @@ class Evaluated:
     x: FloatArray
     objective: float
     constraints: FloatArray
-    drive: Drive
+    drive: DrivenBlock
     distances: tuple[Distances, ...]
 
 
 class BlockProblem:
-    """A block as a `search.Model`.
+    """A block as a `nonsmooth_sqp.SearchModel`.
 
     Args:
         controller: that drives it.
@@ -89,7 +89,7 @@ class BlockProblem:
     def __init__(
         self,
         controller: Controller,
-        block: Block,
+        block: MoveBlock,
         scenes: SceneOf,
         task: WaypointTask,
         clearance: float,
@@ -114,7 +114,7 @@ class BlockProblem:
 
     # -------------------------------------------------------------------------- values
 
-    def point(self, x: FloatArray) -> Evaluated | None:
+    def point(self, x: FloatArray) -> EvaluatedBlock | None:
         """The problem at x; None where the program cannot be driven."""
         drive = self._driver.drive(np.clip(x, self.lower, self.upper))
         if drive is None:
@@ -131,15 +131,15 @@ class BlockProblem:
             )
             for watched in self._watched
         )
-        return Evaluated(drive.x, objective, self._constraints(drive, found), drive, found)
+        return EvaluatedBlock(drive.x, objective, self._constraints(drive, found), drive, found)
 
-    def _costs(self, drive: Drive) -> tuple[float, float]:
+    def _costs(self, drive: DrivenBlock) -> tuple[float, float]:
         if self._weight == 1.0:
             return drive.timing.duration, 1.0
         made = self._controller.energy(drive.program, drive.timing)
         return drive.timing.duration, made.value
 
-    def _constraints(self, drive: Drive, found: tuple[Distances, ...]) -> FloatArray:
+    def _constraints(self, drive: DrivenBlock, found: tuple[Distances, ...]) -> FloatArray:
         parts = [
             (distances.distance - watched.wanted).ravel()
             for watched, distances in zip(self._watched, found, strict=True)
@@ -149,14 +149,14 @@ class BlockProblem:
         parts.append(np.array([row.value(drive.path) for row in self._points]))
         return np.concatenate(parts)
 
-    def _joint_rooms(self, drive: Drive) -> FloatArray:
+    def _joint_rooms(self, drive: DrivenBlock) -> FloatArray:
         """(2, N), least distance of each axis from its lower and upper limit, over all places."""
         lower, upper = self._joint_limits
         return np.stack([drive.q.min(axis=0) - lower, upper - drive.q.max(axis=0)])
 
     # --------------------------------------------------------------------- derivatives
 
-    def gradient(self, point: Evaluated) -> FloatArray:
+    def gradient(self, point: EvaluatedBlock) -> FloatArray:
         """∇f (n,).
 
         Raises:
@@ -172,7 +172,7 @@ class BlockProblem:
             total += share * variables.gradient(made.energy(), point.x)
         return total
 
-    def candidates(self, point: Evaluated, box: FloatArray) -> IntArray:
+    def candidates(self, point: EvaluatedBlock, box: FloatArray) -> IntArray:
         """Constraints that a step within ``box`` may violate, and a few more."""
         drive = point.drive
         near = point.constraints < min(_FASTEST * float(np.linalg.norm(box)), 0.999 * _WITHIN)
@@ -182,7 +182,7 @@ class BlockProblem:
         near[first - len(drive.rooms) : first] = True
         return np.flatnonzero(near)
 
-    def jacobian(self, point: Evaluated, rows: IntArray) -> FloatArray:
+    def jacobian(self, point: EvaluatedBlock, rows: IntArray) -> FloatArray:
         """∂c/∂x of some constraints (len(rows), n)."""
         drive = point.drive
         extreme = np.concatenate([drive.q.argmin(axis=0), drive.q.argmax(axis=0)])
@@ -211,7 +211,7 @@ class BlockProblem:
 
     def _rest(
         self,
-        point: Evaluated,
+        point: EvaluatedBlock,
         rows: IntArray,
         extreme: FloatArray,
         rooms: FloatArray,
@@ -231,18 +231,18 @@ class BlockProblem:
 
 
 def _watch(
-    first: Drive,
+    first: DrivenBlock,
     driver: Driver,
     scenes: SceneOf,
     clearance: float,
     least: float,
-) -> tuple[Watched, ...]:
+) -> tuple[WatchedPlaces, ...]:
     """Which scene looks at which places: by the tool of the move, in a zone of the one before."""
     count = len(first.path.segments.scale)
     part = driver.places.part
     segment = np.where(part >= count, part - count, part)
     tools = [driver.program.moves[i].tool for i in first.path.route.moves]
-    watched: list[Watched] = []
+    watched: list[WatchedPlaces] = []
     begin = 0
     for tool in dict.fromkeys(tools):
         scene = scenes(tool)
@@ -251,6 +251,6 @@ def _watch(
         stops = first.path.segments.ends.q[[0, -1], [0, 1]]
         ends = scene.distances(stops, clearance).distance.min(axis=0, initial=clearance)
         wanted = np.clip(ends, least, clearance)
-        watched.append(Watched(scene, places, begin, wanted))
+        watched.append(WatchedPlaces(scene, places, begin, wanted))
         begin += len(places) * len(wanted)
     return tuple(watched)

@@ -17,10 +17,10 @@ from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
 from ....core.program.program import Program
 from ..nonsmooth_sqp import Memory, SearchEffort, search, violation
-from ..solve_round_verify import Feasibility, solve_round_verify
+from ..solve_round_verify import ProgramFeasibility, solve_round_verify
 from .aim import FINE, Aim, with_room
 from .block_problem import BlockProblem
-from .blocks import Block
+from .blocks import MoveBlock
 from .options import Effort, WaypointTask
 
 FINE_BOX = 0.2
@@ -47,7 +47,7 @@ class Shared:
     task: WaypointTask
     effort: Effort
     clearance: float
-    blocks: tuple[Block, ...]
+    blocks: tuple[MoveBlock, ...]
 
     @cached_property
     def searching(self) -> Controller:
@@ -57,14 +57,14 @@ class Shared:
         return other
 
     @property
-    def feasibility(self) -> Feasibility:
+    def feasibility(self) -> ProgramFeasibility:
         """What a block alone has to stand."""
-        return Feasibility(
+        return ProgramFeasibility(
             self.controller, self.scenes, self.clearance, self.task.residual, resolution=None
         )
 
 
-class Stage(Enum):
+class JobStage(Enum):
     """What is to be done."""
 
     SEARCH = auto()
@@ -86,7 +86,7 @@ class Job:
     block: int
     memory: Memory
     iterations: int = _FINE_ITERATIONS
-    stage: Stage = Stage.SEARCH
+    stage: JobStage = JobStage.SEARCH
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,9 +124,9 @@ class Answer:
 def work(shared: Shared, job: Job) -> Answer:
     """Do a job."""
     margin = shared.effort.margin
-    if job.stage is Stage.SEARCH:
+    if job.stage is JobStage.SEARCH:
         return _searched(shared.searching, shared, job, SearchEffort(job.iterations), Aim(margin))
-    if job.stage is Stage.REFINE:
+    if job.stage is JobStage.REFINE:
         settings = SearchEffort(_FINE_ITERATIONS, FINE_BOX)
         return _searched(shared.controller, shared, job, settings, Aim(margin, FINE))
     if shared.task.rounding.predefined:
@@ -234,5 +234,5 @@ def _with_chosen_zones(shared: Shared, job: Job) -> tuple[Shared, Job]:
     blocks[job.block] = replace(block, variables=chosen)
     shared = replace(shared, blocks=tuple(blocks))
     x = np.clip(job.memory.x, chosen.lower, chosen.upper)
-    refined = work(shared, replace(job, memory=Memory(x, FINE_BOX), stage=Stage.REFINE))
+    refined = work(shared, replace(job, memory=Memory(x, FINE_BOX), stage=JobStage.REFINE))
     return shared, replace(job, memory=refined.memory)

@@ -15,11 +15,12 @@ from ....core.program.move import MoveC, MoveJ, MoveL, Statement
 from ....core.program.program import Program
 from ....core.program.target import JointTarget
 from ....core.program.zone import Fine
-from .variables import Part, Variables
+from .parts import ProgramPart
+from .variables import ProgramVariables
 
 
 @dataclass(frozen=True)
-class Block:
+class MoveBlock:
     """Moves from one stop to another that are optimised together.
 
     Args:
@@ -31,10 +32,12 @@ class Block:
     first: int
     last: int
     program: Program
-    variables: Variables
+    variables: ProgramVariables
 
 
-def cut(program: Program, path: Path, variables: Variables, arm_size: int) -> tuple[Block, ...]:
+def cut(
+    program: Program, path: Path, variables: ProgramVariables, arm_size: int
+) -> tuple[MoveBlock, ...]:
     """The blocks that have variables.
 
     Args:
@@ -75,15 +78,15 @@ def _merged(spans: list[list[int]]) -> list[tuple[int, int]]:
 
 
 def _block(
-    program: Program, path: Path, variables: Variables, first: int, last: int, arm_size: int
-) -> Block:
-    parts: list[Part] = []
+    program: Program, path: Path, variables: ProgramVariables, first: int, last: int, arm_size: int
+) -> MoveBlock:
+    parts: list[ProgramPart] = []
     for part in variables.parts:
         if first <= part.moves[0] and part.moves[-1] <= last:
             moves = tuple(i - first for i in part.moves)
             parts.append(replace(part, moves=moves))
     alone = _alone(program, path, first, last, arm_size)
-    return Block(first, last, alone, Variables(alone, parts))
+    return MoveBlock(first, last, alone, ProgramVariables(alone, parts))
 
 
 def _alone(program: Program, path: Path, first: int, last: int, arm_size: int) -> Program:

@@ -40,9 +40,7 @@ class Selection:
     passed: tuple[int, ...]
 
 
-def select(
-    program: Program, path: Path, robot: Robot, task: WaypointTask, freedom: Freedom
-) -> Selection:
+def select(program: Program, path: Path, robot: Robot, task: WaypointTask) -> Selection:
     """What of a driven program may change.
 
     Args:
@@ -50,7 +48,6 @@ def select(
         path: its path, which says where the robot stops.
         robot: that drives it.
         task: the user's wishes.
-        freedom: whether points may move.
 
     Raises:
         InputError: a move or speed is named that the program does not have.
@@ -71,14 +68,14 @@ def select(
             why_zone[i] = "its zone has no radius to change"
         elif reason is not None:
             why_zone[i] = reason
-        reason = reason or _why_fixed(moves, i, after[i], task, freedom)
+        reason = reason or _why_fixed(moves, i, after[i], task)
         reason = reason or _why_oriented(moves[i], i, robot, task)
         if reason is not None:
             why_point[i] = reason
     points = _groups(moves, passed, why_point, "target")
     zones = _groups(moves, passed, why_zone, "zone")
     reasons = {i: why for i, why in why_zone.items() if not any(i in g for g in zones)}
-    if freedom is not Freedom.ZONES:
+    if task.freedom is not Freedom.ZONES:
         reasons |= {i: why for i, why in why_point.items() if not any(i in g for g in points)}
     return Selection(points, zones, dict(sorted(reasons.items())), passed)
 
@@ -122,10 +119,8 @@ def _sizable(move: Move) -> bool:
     return isinstance(move.zone, Radius | ContourFraction)
 
 
-def _why_fixed(
-    moves: Sequence[Move], i: int, after: int, task: WaypointTask, freedom: Freedom
-) -> str | None:
-    if freedom is Freedom.ZONES:
+def _why_fixed(moves: Sequence[Move], i: int, after: int, task: WaypointTask) -> str | None:
+    if task.freedom is Freedom.ZONES:
         return "only zones are to change"
     if isinstance(task.limits.get(i, task.limit), Fixed):
         return "it is to stay"

@@ -11,13 +11,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from functools import partial
 
 from ....core.worker_pool import WorkerPool, worker_pool
 from ..nonsmooth_sqp import Memory
-from .block_search import FEASIBLE, FINE_BOX, Answer, Job, Shared, Stage, work
+from ..progress import Progress, Report
+from .block_search import FEASIBLE, FINE_BOX, Answer, Job, JobStage, Shared, work
 from .starts import starting_points, variations
 
 ROUNDS = ((14, 0.5), (14, 0.5))
@@ -30,47 +30,16 @@ _HOPELESS = 0.05
 """m of violation at which a searched candidate is not worth refining."""
 
 
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """How far the work has come, for a progress bar.
-
-    Args:
-        stage: what is being done, in words.
-        done, total: searches of this stage.
-        best: lowest objective of a block that is proven so far, in shares of the input's; 1 if
-            none is proven yet.
-    """
-
-    stage: str
-    done: int
-    total: int
-    best: float
-
-
-Report = Callable[[Progress], bool | None]
-"""Called with progress; True ends the work."""
-
-
-@dataclass(frozen=True)
-class Improved:
-    """What came of it.
-
-    Args:
-        best: proven values of every block; None where the input is not bettered.
-        ended: whether the user has ended the work.
-    """
-
-    best: tuple[Answer | None, ...]
-    ended: bool
-
-
-def improve(shared: Shared, report: Report | None = None) -> Improved:
-    """The best proven values of every block.
+def improve(shared: Shared, report: Report | None) -> tuple[list[Answer | None], bool]:
+    """The best proven values of every block; None where the input is not bettered.
 
     Args:
         shared: the problem.
         report: called with progress. When it, or the keyboard, ends the work, what has been found
             until then is proven, and nothing more is searched.
+
+    Returns:
+        The values, and whether the user has ended the work.
     """
     jobs = _first(shared)
     with worker_pool(partial(work, shared), shared.effort.processes, len(jobs)) as pool:
@@ -84,7 +53,7 @@ def improve(shared: Shared, report: Report | None = None) -> Improved:
             made.prove()
         except KeyboardInterrupt:
             made.over = True
-    return Improved(tuple(made.best), made.over)
+    return made.best, made.over
 
 
 class _Improvement:
@@ -135,7 +104,7 @@ class _Improvement:
         queue = sorted(self._found, key=Answer.rank)
         while queue:
             turn = {a.block: a for a in reversed(queue) if self._may_lead(a)}
-            jobs = [Job(a.block, a.memory, stage=Stage.PROVE) for a in turn.values()]
+            jobs = [Job(a.block, a.memory, stage=JobStage.PROVE) for a in turn.values()]
             self._do("proving", jobs)
             queue = [a for a in queue if a not in turn.values() and self._may_lead(a)]
 
@@ -213,5 +182,5 @@ def _finals(shared: Shared, found: Sequence[Answer], count: int) -> list[Job]:
             alike = any(abs(a.objective - answer.objective) < _ALIKE for a in chosen)
             if answer.violation < _HOPELESS and not alike and len(chosen) < count:
                 chosen.append(answer)
-        jobs += [Job(k, Memory(a.x, FINE_BOX), stage=Stage.REFINE) for a in chosen]
+        jobs += [Job(k, Memory(a.x, FINE_BOX), stage=JobStage.REFINE) for a in chosen]
     return jobs

@@ -17,15 +17,16 @@ from ....core.program.program import Program
 from ....core.program.zone import Fine
 from ...reading_back import ReadBack, read_as_written
 from ...scene_notes import scene_notes
+from ..progress import Report
 from ..rounding import Rounding
 from ..solution import Solution, measure, moved_points
-from ..solve_round_verify import Feasibility, solve_round_verify
+from ..solve_round_verify import ProgramFeasibility, solve_round_verify
 from .block_emulation import drivable
 from .block_search import Answer, Shared
-from .blocks import Block, cut
+from .blocks import MoveBlock, cut
 from .changeable import Selection, select
 from .freed_stops import with_freed_stops
-from .multistart import Report, improve
+from .multistart import improve
 from .options import Effort, Freedom, ViaCount, WaypointTask
 from .variables import make_variables
 from .via_selection import Counted, change_count, idle_points
@@ -34,7 +35,7 @@ _GAIN = 1e-6
 """Share of the objective below which nothing has been gained."""
 
 
-def optimize_zones(
+def optimize_waypoints(
     controller: Controller,
     program: Program,
     cell: Cell,
@@ -43,7 +44,9 @@ def optimize_zones(
     read_back: ReadBack = lambda program: program,
     report: Report | None = None,
 ) -> Solution:
-    """The program with the zones that make it fastest; all points stay.
+    """The program with the via points and zones, or the zones alone, that make it fastest.
+
+    What the process needs stays: stop points, and moves that it fixes.
 
     Args:
         controller: drives the program.
@@ -64,34 +67,7 @@ def optimize_zones(
         MotionError: the program collides, keeps less clearance than is asked for, or cannot be
             driven; the message names the move.
     """
-    made = _Optimization(
-        controller, cell, task or WaypointTask(), effort or Effort(), Freedom.ZONES, report
-    )
-    return made.solution(program, read_back)
-
-
-def optimize_waypoints(
-    controller: Controller,
-    program: Program,
-    cell: Cell,
-    task: WaypointTask | None = None,
-    effort: Effort | None = None,
-    read_back: ReadBack = lambda program: program,
-    report: Report | None = None,
-) -> Solution:
-    """The program with the via points and zones that make it fastest.
-
-    Tasks stay: stop points, and moves that the process fixes. Arguments, result and errors are
-    those of `optimize_zones`.
-    """
-    made = _Optimization(
-        controller,
-        cell,
-        task or WaypointTask(),
-        effort or Effort(),
-        Freedom.WAYPOINTS_AND_ZONES,
-        report,
-    )
+    made = _Optimization(controller, cell, task or WaypointTask(), effort or Effort(), report)
     return made.solution(program, read_back)
 
 
@@ -108,7 +84,6 @@ class _Optimization:
     cell: Cell
     task: WaypointTask
     effort: Effort
-    freedom: Freedom
     report: Report | None
     ended: bool = field(default=False, init=False)
     given: tuple[float, float] = field(default=(1.0, 1.0), init=False)
@@ -151,10 +126,10 @@ class _Optimization:
         return scenes_of(self.cell)
 
     @property
-    def _feasibility(self) -> Feasibility:
+    def _feasibility(self) -> ProgramFeasibility:
         """What the whole program has to stand."""
         task = self.task
-        return Feasibility(
+        return ProgramFeasibility(
             self.controller, self._scenes, self._clearance, task.residual, task.start
         )
 
@@ -168,17 +143,17 @@ class _Optimization:
         """The best proven program; None where the input is not bettered."""
         run = self.controller.run(program, task.start)
         robot = self.controller.robot
-        selection = select(program, run.path, robot, task, self.freedom)
+        selection = select(program, run.path, robot, task)
         variables = make_variables(program, robot, selection, task)
-        notes += _stays(program, selection, self.freedom)
+        notes += _stays(program, selection, task.freedom)
         cut_blocks = cut(program, run.path, variables, robot.arm_size)
         blocks = drivable(self.controller, run.path, cut_blocks, notes)
         if not blocks:
             return None
         shared = Shared(self.controller, self._scenes, task, effort, self._clearance, blocks)
-        made = improve(shared, self.report)
-        self.ended = self.ended or made.ended
-        chosen = [a if a is not None and a.objective < 1.0 - _GAIN else None for a in made.best]
+        best, ended = improve(shared, self.report)
+        self.ended = self.ended or ended
+        chosen = [a if a is not None and a.objective < 1.0 - _GAIN else None for a in best]
         whole = _Whole(program, task.rounding, blocks, chosen, notes)
         held = solve_round_verify(self._feasibility, whole)
         return None if held is None else self._judged(*held, task)
@@ -231,7 +206,7 @@ class _Optimization:
 
         def selected(counted: Counted) -> Selection:
             run, task = counted.run, counted.task
-            return select(run.program, run.path, robot, task, self.freedom)
+            return select(run.program, run.path, robot, task)
 
         robot = self.controller.robot
         return change_count(found, improved, selected, self.effort, robot.arm_size)
@@ -244,7 +219,7 @@ class _Optimization:
             return None if kept is None else kept.cost
 
         run, robot = found.run, self.controller.robot
-        selection = select(run.program, run.path, robot, found.task, self.freedom)
+        selection = select(run.program, run.path, robot, found.task)
         return [
             Note("serves nothing any more: without it the program is as fast and as safe", i)
             for i in idle_points(found, selection, judged)
@@ -277,7 +252,7 @@ class _Whole:
 
     program: Program
     rounding: Rounding
-    blocks: Sequence[Block]
+    blocks: Sequence[MoveBlock]
     chosen: list[Answer | None]
     notes: list[Note]
 
@@ -326,7 +301,8 @@ class _Whole:
 def _stays(program: Program, selection: Selection, freedom: Freedom) -> list[Note]:
     """What does not change, and why."""
     if not selection.passed:
-        stops = "stops at every point" if _all_stop(program) else "has no zone that counts"
+        all_stop = all(isinstance(move.zone, Fine) for move in program.moves)
+        stops = "stops at every point" if all_stop else "has no zone that counts"
         return [
             Note(
                 f"the program {stops}: there is no via point and no zone to change; free the "
@@ -337,7 +313,3 @@ def _stays(program: Program, selection: Selection, freedom: Freedom) -> list[Not
     if freedom is Freedom.WAYPOINTS_AND_ZONES and not selection.points:
         notes.append(Note("no via point may move: only zones are optimised"))
     return notes
-
-
-def _all_stop(program: Program) -> bool:
-    return all(isinstance(move.zone, Fine) for move in program.moves)

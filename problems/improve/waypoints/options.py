@@ -14,7 +14,7 @@ from ....core.program.target import JointTarget
 from ....core.program.zone import Radius
 from ..rounding import Rounding
 from ..zones.sizes import GRADED
-from .point_limits import FREE, Box, Cone, Fixed, Free, PointLimit
+from .point_limits import FREE, Fixed, Free, PointBox, PointCone, PointLimit
 
 _SAMPLING = Sampling()
 _ROUNDING = Rounding()
@@ -63,6 +63,7 @@ class WaypointTask:
         rounding: of new numbers, as the program's language writes them. With predefined zones
             points are refined once more when zones have been chosen.
         start: where the robot stands; None for the program's own start.
+        freedom: what may change.
 
     Raises:
         InputError: a number out of its range.
@@ -82,6 +83,7 @@ class WaypointTask:
     residual: float = 0.0
     rounding: Rounding = _ROUNDING
     start: JointTarget | None = None
+    freedom: Freedom = Freedom.WAYPOINTS_AND_ZONES
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.time_weight <= 1.0:
@@ -102,10 +104,10 @@ class WaypointTask:
     def turn_at(self, move: int) -> float | None:
         """rad by which the tool may turn at the end of a move; None where no number bounds it."""
         limit = self.limits.get(move, self.limit)
-        if isinstance(limit, Cone):
+        if isinstance(limit, PointCone):
             return None
         turn = self.tilt
-        if isinstance(limit, Box) and limit.turn is not None:
+        if isinstance(limit, PointBox) and limit.turn is not None:
             turn = limit.turn
         return None if turn >= math.pi else turn
 

@@ -9,20 +9,20 @@ shifted), with two joints whose axes are parallel one.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.errors import MotionError
-from ....core.motion.gradients.derivatives import ProgramGradient
 from ....core.program.move import Move
 from ....core.program.target import JointTarget
 from ....core.robot.kinematics.chain import Chain
 from ....core.robot.kinematics.chain_kernels import jacobian
 from ....core.spatial.rotation import rotation_vector
 from ..rounding import Rounding
+from .parts import JointPoint
 
 _STEPS, _TURNED, _LARGEST = 40, 1e-11, 0.5
 """Newton steps at most; rad of orientation that may be left; rad of a step at most."""
@@ -31,30 +31,14 @@ _FREE = 1e-6
 
 
 @dataclass(frozen=True)
-class OrientedPoint:
+class OrientedPoint(JointPoint):
     """A joint target whose tool keeps its orientation.
 
     Args:
-        moves: that read it.
-        target: as it was given.
         chain: from the robot's base to its flange.
-        axes: those of the arm's joints that may change.
-        lower, upper: (len(axes),) of their values.
-        step: change of a coordinate that matters about as much as others' do, rad.
     """
 
-    moves: tuple[int, ...]
-    target: JointTarget
     chain: Chain
-    axes: tuple[int, ...]
-    lower: FloatArray
-    upper: FloatArray
-    step: float
-
-    @property
-    def size(self) -> int:
-        """Number of variables."""
-        return int(self.plane.shape[1])
 
     @property
     def plane(self) -> FloatArray:
@@ -62,64 +46,34 @@ class OrientedPoint:
         return self._directions[0]
 
     def values(self) -> FloatArray:
-        """Those of the program that was given."""
-        return np.zeros(self.size)
+        return np.zeros(self.plane.shape[1])
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """Lower and upper ones."""
         most = np.full(self.size, float(np.linalg.norm(self.upper - self.lower)))
         return -most, most
 
-    def scale(self) -> FloatArray:
-        """Changes that matter about equally."""
-        return np.full(self.size, self.step)
-
     def along(self, change: FloatArray) -> FloatArray:
-        """The change of the variables that comes nearest to one of the joints (arm's axes,)."""
-        return np.asarray(self.plane.T @ change[list(self.axes)])
+        return np.asarray(self.plane.T @ super().along(change))
 
     def applied(self, move: Move, values: FloatArray) -> Move:
-        """A move with these values.
-
-        Raises:
-            MotionError: the tool cannot be there, so oriented.
-        """
-        return self._at(move, self._joints(values))
+        return super().applied(move, self._joints(values))
 
     def written(self, move: Move, values: FloatArray, rounding: Rounding) -> Move:
-        """A move with joints rounded; those that have not changed stay to the last digit."""
-        if not np.any(values):
-            return self._at(move, self._given[list(self.axes)])
-        made = self._joints(values)
-        rounded = [
-            rounding.angle(now, lower, upper)
-            for now, lower, upper in zip(made, self.lower, self.upper, strict=True)
-        ]
-        return self._at(move, np.array(rounded))
-
-    def gradient(self, made: ProgramGradient, values: FloatArray) -> FloatArray:
-        """From the program's parameters to the variables."""
-        by_joint = made.joints[list(self.moves)][:, list(self.axes)].sum(axis=0)
-        return np.asarray(by_joint @ self.slope(values))
+        return super().written(move, self._joints(values), rounding)
 
     def slope(self, values: FloatArray) -> FloatArray:
-        """(len(axes), size), how the joints change with the variables."""
         N, M = self._directions
         J = self._turning(self._joints(values))[1]
         return np.asarray(N - M @ np.linalg.lstsq(J @ M, J @ N, rcond=None)[0])
 
     @cached_property
-    def _given(self) -> FloatArray:
-        return np.array(self.target.joints)
-
-    @cached_property
     def _orientation(self) -> FloatArray:
-        return self._placed(self._given[list(self.axes)])[0]
+        return self._placed(self.given)[0]
 
     @cached_property
     def _directions(self) -> tuple[FloatArray, FloatArray]:
         """Those in which the tool does not turn, and those square to them."""
-        J = self._placed(self._given[list(self.axes)])[1]
+        J = self._placed(self.given)[1]
         _, sizes, rows = np.linalg.svd(J)
         rank = int((sizes > _FREE * max(1.0, sizes[0])).sum())
         return np.ascontiguousarray(rows[rank:].T), np.ascontiguousarray(rows[:rank].T)
@@ -127,7 +81,7 @@ class OrientedPoint:
     def _joints(self, values: FloatArray) -> FloatArray:
         """(len(axes),) at these values."""
         N, M = self._directions
-        joints = self._given[list(self.axes)] + N @ values
+        joints = self.given + N @ values
         for _ in range(_STEPS):
             turned, J = self._turning(joints)
             if np.abs(turned).max() < _TURNED:
@@ -149,19 +103,14 @@ class OrientedPoint:
         return rotation_vector(R @ self._orientation.T), J
 
     def _placed(self, joints: FloatArray) -> tuple[FloatArray, FloatArray]:
-        q = self._given.copy()
+        q = np.array(self.target.joints)
         q[list(self.axes)] = joints
         R, p, J = np.empty((3, 3)), np.empty(3), np.empty((6, len(q)))
         jacobian(self.chain, q, R, p, J)
         return R, J[3:, list(self.axes)]
 
-    def _at(self, move: Move, joints: FloatArray) -> Move:
-        changed = self._given.copy()
-        changed[list(self.axes)] = joints
-        return replace(move, target=replace(self.target, joints=tuple(map(float, changed))))
-
 
 def stays_oriented(target: JointTarget, chain: Chain, axes: Sequence[int]) -> bool:
     """Whether a joint target cannot move at all while its tool keeps its orientation."""
     none = np.zeros(len(axes))
-    return OrientedPoint((), target, chain, tuple(axes), none, none, 1.0).size == 0
+    return OrientedPoint((), target, tuple(axes), none, none, chain).size == 0

@@ -13,10 +13,10 @@ from ....core.motion.path.path import Path
 from ....core.robot.kinematics.chain import Chain
 from ....core.robot.kinematics.chain_kernels import jacobian, pose
 from ....core.spatial.rotation import rotation_vector, skew
-from .blocks import Block
+from .blocks import MoveBlock
 from .options import WaypointTask
-from .point_limits import Box, Cone, PointLimit
-from .variables import PosePoint, ViaPoint
+from .parts import PosePoint, ViaPoint
+from .point_limits import PointBox, PointCone, PointLimit
 
 Measure = Callable[[FloatArray, FloatArray], tuple[float, FloatArray]]
 """Position (3,) and rotation (3, 3) of the TCP in the work object → a value that is to be zero or
@@ -40,7 +40,10 @@ class PointRow:
 
     def value(self, path: Path) -> float:
         """What is to be zero or more."""
-        return self._measured(path)[0]
+        q = path.segments.ends.q[self.waypoint - 1, 1]
+        R, p = np.empty((3, 3)), np.empty(3)
+        pose(self.chain, np.ascontiguousarray(q), R, p)
+        return self.measure(p, R)[0]
 
     def slope(self, path: Path, waypoints: FloatArray) -> FloatArray:
         """Its derivative (n,).
@@ -54,14 +57,8 @@ class PointRow:
         jacobian(self.chain, np.ascontiguousarray(q), R, p, J)
         return np.asarray(self.measure(p, R)[1] @ J @ waypoints[self.waypoint])
 
-    def _measured(self, path: Path) -> tuple[float, FloatArray]:
-        q = path.segments.ends.q[self.waypoint - 1, 1]
-        R, p = np.empty((3, 3)), np.empty(3)
-        pose(self.chain, np.ascontiguousarray(q), R, p)
-        return self.measure(p, R)
 
-
-def point_rows(block: Block, path: Path, task: WaypointTask) -> tuple[PointRow, ...]:
+def point_rows(block: MoveBlock, path: Path, task: WaypointTask) -> tuple[PointRow, ...]:
     """The constraints of a block's via points.
 
     Args:
@@ -77,7 +74,7 @@ def point_rows(block: Block, path: Path, task: WaypointTask) -> tuple[PointRow, 
         for move in part.moves:
             limit = task.limits.get(block.first + move, task.limit)
             turn = task.turn_at(block.first + move)
-            if turn is None and not isinstance(limit, Box | Cone):
+            if turn is None and not isinstance(limit, PointBox | PointCone):
                 continue
             chain = path.route.chains[waypoint[move] - 1]
             q = np.ascontiguousarray(path.segments.ends.q[waypoint[move] - 1, 1])
@@ -98,12 +95,12 @@ def _measures(
     R: FloatArray,
     position_is_bounded: bool,
 ) -> Iterator[Measure]:
-    position = limit.position if isinstance(limit, Box | Cone) else None
+    position = limit.position if isinstance(limit, PointBox | PointCone) else None
     if position is not None and not position_is_bounded:
         for axis in range(3):
             yield _side(p[axis] - position[axis], axis, 1.0)
             yield _side(p[axis] + position[axis], axis, -1.0)
-    if isinstance(limit, Cone):
+    if isinstance(limit, PointCone):
         direction = np.array(limit.axis) / math.hypot(*limit.axis)
         yield _cone(R @ direction, direction, math.cos(limit.angle))
     elif turn:
@@ -122,10 +119,8 @@ def _cone(programmed: FloatArray, axis: FloatArray, cosine: float) -> Measure:
 
     def measure(p: FloatArray, R: FloatArray) -> tuple[float, FloatArray]:
         now = R @ axis
-        return float(programmed @ now) - cosine, np.concatenate([np.zeros(3), now_turn(now)])
-
-    def now_turn(now: FloatArray) -> FloatArray:
-        return np.asarray(-programmed @ skew(now))
+        slope = np.concatenate([np.zeros(3), -programmed @ skew(now)])
+        return float(programmed @ now) - cosine, slope
 
     return measure
 

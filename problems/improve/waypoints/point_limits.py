@@ -20,7 +20,7 @@ class Free:
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class PointBox:
     """Each quantity that is given stays within its range; None leaves it free.
 
     Args:
@@ -38,17 +38,17 @@ class Box:
 
     def __post_init__(self) -> None:
         turn = () if self.turn is None else (self.turn,)
-        _check("Box", *(self.position or ()), *turn, *(self.joints or ()))
+        _check("PointBox", *(self.position or ()), *turn, *(self.joints or ()))
 
 
 @dataclass(frozen=True, slots=True)
-class Cone:
+class PointCone:
     """The tool's axis stays near its programmed direction; turns about the axis are free.
 
     Args:
         angle: rad, half the cone's opening, below π.
         axis: which axis of the tool, in its own frame.
-        position: m, as in `Box`; None leaves the position free.
+        position: m, as in `PointBox`; None leaves the position free.
 
     Raises:
         InputError: a range is not finite or below zero, or the axis has no direction.
@@ -59,14 +59,14 @@ class Cone:
     position: Vector3 | None = None
 
     def __post_init__(self) -> None:
-        _check("Cone", self.angle, *(self.position or ()))
+        _check("PointCone", self.angle, *(self.position or ()))
         if not self.angle < math.pi:
-            raise InputError(f"Cone.angle is below π, not {self.angle}")
+            raise InputError(f"PointCone.angle is below π, not {self.angle}")
         if not (math.isfinite(math.hypot(*self.axis)) and math.hypot(*self.axis) > 0):
-            raise InputError(f"Cone.axis needs a direction, not {self.axis}")
+            raise InputError(f"PointCone.axis needs a direction, not {self.axis}")
 
 
-PointLimit = Fixed | Free | Box | Cone
+PointLimit = Fixed | Free | PointBox | PointCone
 FREE = Free()
 
 

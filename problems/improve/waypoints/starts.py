@@ -12,9 +12,9 @@ import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.motion.path.path import Path
-from .blocks import Block
+from .blocks import MoveBlock
 from .options import Effort
-from .variables import PosePoint, ViaPoint
+from .parts import PosePoint, ViaPoint
 
 _OWN = 0.35
 """Spread of each via point about the common one, as a share of it."""
@@ -27,7 +27,7 @@ _KINDS = (_TAUT, _OWN_WAY, _TAUT, _TOGETHER)
 """Of the variations, in turn."""
 
 
-def starting_points(block: Block, path: Path, effort: Effort) -> list[FloatArray]:
+def starting_points(block: MoveBlock, path: Path, effort: Effort) -> list[FloatArray]:
     """``effort.starts`` values of the block's variables, the program's own first.
 
     A block without via points that move has only that one: zones alone are searched from there.
@@ -41,7 +41,7 @@ def starting_points(block: Block, path: Path, effort: Effort) -> list[FloatArray
     return [block.variables.start, *(_varied(block, path, effort, k) for k in range(1, count))]
 
 
-def _varied(block: Block, path: Path, effort: Effort, number: int) -> FloatArray:
+def _varied(block: MoveBlock, path: Path, effort: Effort, number: int) -> FloatArray:
     variables = block.variables
     random = np.random.default_rng([effort.seed, block.first, number])
     kind = _KINDS[(number - 1) % len(_KINDS)]
@@ -55,11 +55,13 @@ def _varied(block: Block, path: Path, effort: Effort, number: int) -> FloatArray
         if kind == _TOGETHER and part.size in common:
             shift = common[part.size] + _OWN * shift
         common.setdefault(part.size, shift)
-        x[variables.offsets[index] : variables.offsets[index + 1]] += shift
+        x[variables.columns(index)] += shift
     return np.asarray(np.clip(x, variables.lower, variables.upper))
 
 
-def variations(block: Block, x: FloatArray, effort: Effort, generation: int) -> list[FloatArray]:
+def variations(
+    block: MoveBlock, x: FloatArray, effort: Effort, generation: int
+) -> list[FloatArray]:
     """Values near those of a good path: each via point moved by less than between starts."""
     variables = block.variables
     found = []
@@ -69,17 +71,16 @@ def variations(block: Block, x: FloatArray, effort: Effort, generation: int) -> 
         varied = x.copy()
         for index, part in enumerate(variables.parts):
             if isinstance(part, ViaPoint):
-                columns = slice(variables.offsets[index], variables.offsets[index + 1])
-                varied[columns] += spread * random.standard_normal(part.size)
+                varied[variables.columns(index)] += spread * random.standard_normal(part.size)
         found.append(np.clip(varied, variables.lower, variables.upper))
     return found
 
 
-def _movable(block: Block) -> bool:
+def _movable(block: MoveBlock) -> bool:
     return any(isinstance(part, ViaPoint) for part in block.variables.parts)
 
 
-def _taut(block: Block, path: Path, slack: float) -> FloatArray:
+def _taut(block: MoveBlock, path: Path, slack: float) -> FloatArray:
     """Via points drawn to the line between their fixed neighbours but for ``slack`` of the way."""
     variables = block.variables
     x = variables.start.copy()
@@ -99,8 +100,7 @@ def _taut(block: Block, path: Path, slack: float) -> FloatArray:
         share = (k - first) / (last - first) if last > first else 0.0
         values = position if isinstance(part, PosePoint) else q
         pull = (1.0 - slack) * ((1.0 - share) * values[first] + share * values[last] - values[k])
-        columns = slice(variables.offsets[index], variables.offsets[index + 1])
-        x[columns] += part.along(pull)
+        x[variables.columns(index)] += part.along(pull)
     return np.asarray(x)
 
 

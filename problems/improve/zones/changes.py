@@ -53,7 +53,7 @@ def changes(
                 0.0 if known is None else known.size,
                 None if known is None else known.fails,
                 _limit(known, zone, others),
-                None if move.origin is None else move.origin.statement,
+                move.statement,
             )
         )
     return tuple(sorted(rows, key=lambda row: row.move))

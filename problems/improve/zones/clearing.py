@@ -37,7 +37,7 @@ EVEN = 0.6
 
 
 @dataclass(frozen=True)
-class Cells:
+class PathCells:
     """C intervals of σ on one side of a waypoint, and the pairs of bodies that are not clear yet.
 
     Args:
@@ -52,25 +52,25 @@ class Cells:
     def __len__(self) -> int:
         return len(self.begin)
 
-    def rows(self, which: BoolArray) -> Cells:
+    def rows(self, which: BoolArray) -> PathCells:
         """Some of the cells, by (C,) bool."""
-        return Cells(self.begin[which], self.end[which], self.open[which])
+        return PathCells(self.begin[which], self.end[which], self.open[which])
 
-    def halves(self) -> Cells:
+    def halves(self) -> PathCells:
         """All cells cut in σ."""
         middle = 0.5 * (self.begin + self.end)
         begin, end = np.concatenate([self.begin, middle]), np.concatenate([middle, self.end])
-        return Cells(begin, end, np.concatenate([self.open, self.open]))
+        return PathCells(begin, end, np.concatenate([self.open, self.open]))
 
-    def clipped(self, lower: float, upper: float) -> Cells:
+    def clipped(self, lower: float, upper: float) -> PathCells:
         """The parts of the cells between two σ."""
         begin, end = np.maximum(self.begin, lower), np.minimum(self.end, upper)
-        return Cells(begin, end, self.open).rows(begin < end)
+        return PathCells(begin, end, self.open).rows(begin < end)
 
 
-def joined(parts: Sequence[Cells]) -> Cells:
+def joined(parts: Sequence[PathCells]) -> PathCells:
     """Cells of one scene together."""
-    return Cells(
+    return PathCells(
         np.concatenate([part.begin for part in parts]),
         np.concatenate([part.end for part in parts]),
         np.concatenate([part.open for part in parts]),
@@ -104,7 +104,7 @@ class Look:
         shortfall: the worst place at which a cell's middle does not keep the clearance.
     """
 
-    left: Cells
+    left: PathCells
     by_sigma: BoolArray
     shortfall: Shortfall | None
 
@@ -132,12 +132,12 @@ class Clearing:
         self._deviation = deviation if deviations else None
         self._outlines = scene.outlines
 
-    def whole(self, begin: float, end: float) -> Cells:
+    def whole(self, begin: float, end: float) -> PathCells:
         """One cell with all pairs."""
         pairs = np.ones((1, len(self._scene.pairs)), dtype=bool)
-        return Cells(np.array([begin]), np.array([end]), pairs)
+        return PathCells(np.array([begin]), np.array([end]), pairs)
 
-    def look(self, cells: Cells, paths: Sequence[CornerPath], middle: CornerPath) -> Look:
+    def look(self, cells: PathCells, paths: Sequence[CornerPath], middle: CornerPath) -> Look:
         """What is known of cells after one look.
 
         Args:
@@ -169,7 +169,7 @@ class Clearing:
         rows: BoolArray = np.asarray(left.any(axis=1))
         share = np.where(left, self._both(by_sigma), 0.0).max(axis=1, initial=0.0)
         most = np.where(left, self._both(travel), 0.0).max(axis=1, initial=0.0)
-        kept = Cells(cells.begin, cells.end, left).rows(rows)
+        kept = PathCells(cells.begin, cells.end, left).rows(rows)
         return Look(kept, (share > EVEN * most)[rows], shortfall)
 
     def _around(self, sampled: Sequence[FloatArray]) -> Placed:

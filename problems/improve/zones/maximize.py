@@ -24,17 +24,17 @@ from ....core.program.zone import Radius, Zone
 from ...reading_back import ReadBack, read_as_written
 from ...scene_notes import scene_notes
 from ..solution import Solution, measure
-from ..solve_round_verify import Feasibility, solve_round_verify
+from ..solve_round_verify import ProgramFeasibility, solve_round_verify
 from .changes import ZoneChange, changes
 from .clearing import Clearing
 from .deviation import segment_deviations
 from .neighbourhood import Neighbourhoods
-from .options import ZoneOptions
+from .options import ZoneTask
 from .points import Points, find_points
 from .predefined import choices, choose
 from .repair import Repair, is_slower
 from .rules import Rules, passable
-from .search import Asking, Search, Sides, SizeBracket
+from .search import Asking, Sides, SizeBracket, SizeSearch
 from .settling import settle, with_zones
 from .side_by_side import ZoneOf, drive
 from .sizes import Growth
@@ -61,7 +61,7 @@ def maximize_zones(
     controller: Controller,
     program: Program,
     cell: Cell,
-    options: ZoneOptions | None = None,
+    options: ZoneTask | None = None,
     read_back: ReadBack = lambda program: program,
     tell: Tell = lambda message: None,
 ) -> ZoneSolution:
@@ -79,7 +79,7 @@ def maximize_zones(
         InputError: no zone may change, or the cell does not fit the program.
         MotionError: the program cannot be driven, or does not keep the clearance as it is.
     """
-    return _Maximization(controller, program, cell, options or ZoneOptions(), tell).run(read_back)
+    return _Maximization(controller, program, cell, options or ZoneTask(), tell).run(read_back)
 
 
 class _Maximization:
@@ -90,7 +90,7 @@ class _Maximization:
     """
 
     def __init__(
-        self, controller: Controller, program: Program, cell: Cell, options: ZoneOptions, tell: Tell
+        self, controller: Controller, program: Program, cell: Cell, options: ZoneTask, tell: Tell
     ) -> None:
         self._controller = controller
         self._program = program
@@ -98,7 +98,7 @@ class _Maximization:
         self._tell = tell
         self._wanted = cell.clearance if options.clearance is None else options.clearance
         self._scenes: SceneOf = scenes_of(cell)
-        self._feasibility = Feasibility(
+        self._feasibility = ProgramFeasibility(
             controller, self._scenes, self._wanted, options.residual, options.start
         )
 
@@ -127,9 +127,6 @@ class _Maximization:
             zones=changes(points, program, repair.zones, found),
         )
 
-    def _rules(self, points: Points) -> Rules:
-        return Rules(points.route, self._controller.model)
-
     def _grown(self, points: Points, before: Run) -> tuple[dict[int, SizeBracket], dict[int, Zone]]:
         """What was found at each corner, and the zones that come of it.
 
@@ -138,11 +135,10 @@ class _Maximization:
         """
         moves = points.route.moves
         deviations = segment_deviations(self._controller, before, moves)
-        trials = Neighbourhoods(self._controller.robot, points.route, self._controller.model)
+        rules = Rules(points.route, self._controller.model)
         while True:
-            found = self._search(points, trials, deviations)
-            rules, rounding = self._rules(points), self._options.rounding
-            zones = settle(points, self._program, trials, rules, found, rounding)
+            found = self._search(points, rules, deviations)
+            zones = settle(points, self._program, rules, found, self._options.rounding)
             if _INTERRUPTED in found.values() or not deviations.any():
                 return found, zones
             program = with_zones(self._program, points, zones)
@@ -156,10 +152,10 @@ class _Maximization:
             deviations = np.where(needed > deviations, _AIM * needed, deviations)
 
     def _search(
-        self, points: Points, trials: Neighbourhoods, deviations: FloatArray
+        self, points: Points, rules: Rules, deviations: FloatArray
     ) -> dict[int, SizeBracket]:
         """Every zone for itself."""
-        rules = self._rules(points)
+        trials = Neighbourhoods(self._controller.robot, points.route, self._controller.model)
         looks = self._looks(points, deviations)
         searches: dict[int, Asking] = {}
         zones: dict[int, ZoneOf] = {}
@@ -181,7 +177,7 @@ class _Maximization:
             allowed = choices(predefined, largest)
             by_size: Mapping[float, Zone] = {zone.tcp: zone for zone in allowed}
             return choose(sides, allowed), by_size.__getitem__
-        return Search(sides, largest, self._options.tolerance).run(), growth.zone
+        return SizeSearch(sides, largest, self._options.tolerance).run(), growth.zone
 
     def _looks(self, points: Points, deviations: FloatArray) -> list[Clearing]:
         """What each segment is looked at by."""

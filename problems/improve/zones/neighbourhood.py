@@ -15,7 +15,7 @@ from numba import njit
 
 from ....core.arrays import FloatArray, IntArray
 from ....core.errors import MotionError
-from ....core.motion.geometry.corners import POSITION, STOP, Corners
+from ....core.motion.geometry.corners import STOP
 from ....core.motion.geometry.pieces import Sampling
 from ....core.motion.geometry.segments import Ends, make_segments
 from ....core.motion.geometry.zones import ZonePlanner
@@ -131,23 +131,14 @@ class Neighbourhoods:
             return [self.paths([trial])[0] for trial in trials]
         return [self._within_ranges(_part(path, k), trial) for k, trial in enumerate(trials)]
 
-    def reaches(self, trials: Sequence[tuple[int, Zone]]) -> FloatArray:
-        """Shares (K, 2) of the segments before and after that each trial's zone of the TCP takes.
-
-        Args:
-            trials: as for `paths`.
-        """
-        return np.zeros((0, 2)) if not trials else self._corners(trials).reach[::2, POSITION]
-
     def kinds(self, trials: Sequence[tuple[int, Zone]]) -> IntArray:
         """(K,), what the corner of each trial is; see `flyby.core.motion.geometry.corners`."""
-        return np.zeros(0, dtype=np.int64) if not trials else self._corners(trials).kind[::2]
-
-    def _corners(self, trials: Sequence[tuple[int, Zone]]) -> Corners:
+        if not trials:
+            return np.zeros(0, dtype=np.int64)
         route = self._chained(trials)
         segments = make_segments(route.ends)
         planner = ZonePlanner(segments, route.chains, self._model, route.moves)
-        return planner.corners(route.zones)
+        return planner.corners(route.zones).kind[::2]
 
     def _within_ranges(self, path: CornerPath, trial: tuple[int, Zone]) -> CornerPath | MotionError:
         """The path, unless a joint leaves its range in the zone."""

@@ -17,7 +17,7 @@ _ROUNDING = Rounding()
 
 
 @dataclass(frozen=True)
-class ZoneOptions:
+class ZoneTask:
     """How zones are made larger.
 
     Args:

@@ -127,22 +127,15 @@ def _check_freed(moves: Sequence[Move], freed: Collection[int]) -> None:
             )
         move = moves[index]
         if index == len(moves) - 1:
-            raise _error(move, index, "the last move ends in a stop, and cannot have a zone")
+            message = "the last move ends in a stop, and cannot have a zone"
+            raise MotionError(message, index, move.statement)
         if move.events:
-            raise _error(
-                move, index, "something is set where it ends, so it stays a stop; do not free it"
-            )
-
-
-def _error(move: Move, index: int, message: str) -> MotionError:
-    return MotionError(message, index, None if move.origin is None else move.origin.statement)
+            message = "something is set where it ends, so it stays a stop; do not free it"
+            raise MotionError(message, index, move.statement)
 
 
 def _note(moves: Sequence[Move], index: int, reason: str) -> Note:
-    origin = moves[index].origin
-    return Note(
-        f"its zone stays as it is: {reason}", index, None if origin is None else origin.statement
-    )
+    return Note(f"its zone stays as it is: {reason}", index, moves[index].statement)
 
 
 def _reason(move: Move, driven: Zone, apart: bool) -> str | None:

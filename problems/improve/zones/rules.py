@@ -10,20 +10,17 @@ fairness), and the outcome does not depend on an order.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from ....core.motion.geometry.corners import STOP
-from ....core.motion.geometry.neighbour_zones import way_towards_neighbour
-from ....core.motion.geometry.segments import Segments, make_segments
+from ....core.motion.geometry.segments import make_segments
+from ....core.motion.geometry.zones import ZonePlanner
 from ....core.motion.model.motion_model import MotionModel
 from ....core.motion.model.rules import Overlap
 from ....core.motion.path.path import Route
-from ....core.program.zone import ContourFraction, Radius
+from ....core.program.zone import ContourFraction, Radius, Zone
 from .neighbourhood import Neighbourhoods
 from .sizes import Growth
-
-Leg = int
-"""Index of the segment between two corners: leg k lies between corners k − 1 and k."""
 
 APART = 0.999
 """Share of the way to a neighbouring point, or of a leg, that zones take at most."""
@@ -31,46 +28,57 @@ _HALVINGS = 30
 
 
 class Rules:
-    """The rules for the zones of one route.
+    """The emulator's rules for the zones of one route, asked how large zones may be.
 
     Args:
         route: the program's.
         model: the vendor's rules.
+
+    Attributes:
+        shared_legs: whether neighbouring zones share their leg.
     """
 
     def __init__(self, route: Route, model: MotionModel) -> None:
-        self._route = route
-        self._segments: Segments = make_segments(route.ends)
-        self._alone = model.overlap is Overlap.HALF
-        self._share = model.neighbour_fraction if self._alone else APART
+        self._zones = route.zones
+        self._segments = make_segments(route.ends)
+        self._planner = ZonePlanner(self._segments, route.chains, model, route.moves)
         self._half = model.neighbour_fraction
-
-    @property
-    def shared_legs(self) -> bool:
-        """Whether neighbouring zones share their leg."""
-        return not self._alone
+        self.shared_legs = model.overlap is not Overlap.HALF
 
     def largest(self, corner: int, growth: Growth) -> float:
         """The largest size of the zone at a corner if its neighbours have none; 0 for no zone."""
         if isinstance(growth.pattern, ContourFraction):
             return 1.0
-        turn = self._half * max(self._turn(corner), self._turn(corner + 1))
+        turn = self._half * float(self._segments.turn[corner : corner + 2].max())
         if not isinstance(growth.pattern, Radius):
             return turn
-        sides = corner, corner + 1
-        ways = [
-            way_towards_neighbour(self._segments, self._route.chains, side, corner, self._share)
-            for side in sides
-        ]
-        known = [way.value for way in ways if way is not None]
-        if known:
-            return min(known)
+        radius = self._planner.widest(corner, APART)
+        if radius is not None:
+            return radius
         angle = growth.pattern.angle / growth.pattern.tcp
         return turn / angle if angle > 0 else 0.0
 
-    def _turn(self, segment: int) -> float:
-        """rad that the tool turns on a segment, beside the turn of an arc."""
-        return float(self._segments.turn[segment])
+    def share_legs(
+        self, growths: Mapping[int, Growth], sizes: Mapping[int, float]
+    ) -> dict[int, float]:
+        """Sizes with which neighbouring zones do not overlap, none larger than ``sizes``.
+
+        Args:
+            growths: of the zones that may be made smaller, by corner; the others are the route's.
+            sizes: theirs.
+        """
+        sharing = _Sharing(self._planner, self._zones, growths, sizes)
+        legs = {k for i in sizes for k in (i, i + 1) if sharing.taken(k) > 1.0}
+        while legs:
+            levels = {k: sharing.level(k) for k in legs}
+            # Legs fuller than their neighbours are settled; the others may gain from that.
+            settled = {
+                k for k in legs if all(levels[k] <= levels.get(n, math.inf) for n in (k - 1, k + 1))
+            }
+            for k in settled:
+                sharing.settle(k, levels[k])
+            legs = {k for k in legs - settled if sharing.taken(k) > 1.0}
+        return sharing.sizes
 
 
 def passable(
@@ -85,93 +93,49 @@ def passable(
     """
     sizes = {corner: rules.largest(corner, growth) for corner, growth in growths.items()}
     sizes = {corner: size for corner, size in sizes.items() if size > 0.0}
-    corners = list(sizes)
-    kinds = trials.kinds([(corner, growths[corner].zone(sizes[corner])) for corner in corners])
-    return {i: sizes[i] for i, kind in zip(corners, kinds, strict=True) if kind != STOP}
-
-
-def share_legs(
-    trials: Neighbourhoods,
-    growths: Mapping[int, Growth],
-    fixed: Mapping[int, Growth],
-    sizes: Mapping[int, float],
-) -> dict[int, float]:
-    """Sizes with which neighbouring zones do not overlap, none larger than ``sizes``.
-
-    Args:
-        trials: emulates single corners.
-        growths: of the zones that may be made smaller, by corner.
-        fixed: of those that may not.
-        sizes: of all zones, by corner.
-    """
-    sharing = _Sharing(trials, growths, fixed, dict(sizes))
-    legs = {k for i in growths for k in (i, i + 1) if sharing.overfull(k)}
-    while legs:
-        levels = sharing.levels(sorted(legs))
-        # Legs fuller than their neighbours are settled; the others may gain from that.
-        settled = {
-            k for k in legs if all(levels[k] <= levels.get(n, math.inf) for n in (k - 1, k + 1))
-        }
-        for k in settled:
-            sharing.settle(k, levels[k])
-        legs = {k for k in legs - settled if sharing.overfull(k)}
-    return sharing.sizes
+    kinds = trials.kinds([(corner, growths[corner].zone(size)) for corner, size in sizes.items()])
+    return {i: sizes[i] for i, kind in zip(sizes, kinds, strict=True) if kind != STOP}
 
 
 class _Sharing:
-    """Zones that grow together on their legs.
+    """Zones that grow together on their legs; leg k lies between corners k − 1 and k.
 
-    A *level* is what all of them have grown to; a zone stops at its own size.
+    A *level* is what both zones of a leg have grown to; a zone stops at its own size.
     """
 
     def __init__(
         self,
-        trials: Neighbourhoods,
+        planner: ZonePlanner,
+        zones: Sequence[Zone],
         growths: Mapping[int, Growth],
-        fixed: Mapping[int, Growth],
-        sizes: dict[int, float],
+        sizes: Mapping[int, float],
     ) -> None:
-        self.sizes = sizes
-        self._trials = trials
+        self.sizes = dict(sizes)
+        self._planner = planner
+        self._zones = list(zones)
         self._growths = growths
-        self._all = {**fixed, **growths}
 
-    def overfull(self, leg: Leg) -> bool:
-        """Whether the zones of a leg overlap."""
-        return self._taken([leg], {leg: math.inf})[leg] > 1.0
+    def taken(self, leg: int, level: float = math.inf) -> float:
+        """Share of a leg that its zones take, those that may change no larger than the level."""
+        for i in self._ends(leg):
+            self._zones[i] = self._growths[i].zone(min(self.sizes[i], level))
+        return self._planner.share_taken(leg, self._zones)
 
-    def levels(self, legs: list[Leg]) -> dict[Leg, float]:
-        """The level at which each leg is full."""
-        low = dict.fromkeys(legs, 0.0)
-        high = {
-            k: max(self.sizes.get(i, 0.0) for i in self._ends(k) if i in self._growths)
-            for k in legs
-        }
+    def level(self, leg: int) -> float:
+        """The level at which a leg is full."""
+        low, high = 0.0, max(self.sizes[i] for i in self._ends(leg))
         for _ in range(_HALVINGS):
-            middle = {k: 0.5 * (low[k] + high[k]) for k in legs}
-            taken = self._taken(legs, middle)
-            for k in legs:
-                (high if taken[k] > APART else low)[k] = middle[k]
+            middle = 0.5 * (low + high)
+            if self.taken(leg, middle) > APART:
+                high = middle
+            else:
+                low = middle
         return low
 
-    def settle(self, leg: Leg, level: float) -> None:
+    def settle(self, leg: int, level: float) -> None:
         """Give the zones of a leg the level at which it is full."""
         for i in self._ends(leg):
-            if i in self._growths:
-                self.sizes[i] = min(self.sizes[i], level)
+            self.sizes[i] = min(self.sizes[i], level)
 
-    def _ends(self, leg: Leg) -> tuple[int, ...]:
-        return tuple(i for i in (leg - 1, leg) if i in self.sizes)
-
-    def _taken(self, legs: list[Leg], level: Mapping[Leg, float]) -> dict[Leg, float]:
-        """Share of each leg that zones take, all movable ones no larger than the level."""
-        trials = []
-        for k in legs:
-            for i in self._ends(k):
-                size = self.sizes[i]
-                trials.append((k, i, min(size, level[k]) if i in self._growths else size))
-        reaches = self._trials.reaches([(i, self._all[i].zone(size)) for _, i, size in trials])
-        taken = dict.fromkeys(legs, 0.0)
-        for (k, i, _), reach in zip(trials, reaches, strict=True):
-            taken[k] += float(reach[k - i])
-        return taken
+    def _ends(self, leg: int) -> list[int]:
+        return [i for i in (leg - 1, leg) if i in self.sizes]

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 
 from ....core.errors import MotionError
 from ..rounding import SMALLEST
-from .clearing import Cells, Clearing, Shortfall, joined
+from .clearing import Clearing, PathCells, Shortfall, joined
 from .neighbourhood import CornerPath
 
 TOLERANCE = 0.005
@@ -36,7 +36,7 @@ Asking = Generator[Sequence[float], Mapping[float, Trial], "SizeBracket"]
 """Yields sizes, is sent the paths of those sizes, returns what it found."""
 Sides = tuple[Clearing, Clearing]
 """What the stretches before and behind a waypoint are looked at by."""
-Open = tuple[Cells, Cells]
+Open = tuple[PathCells, PathCells]
 """Cells before and behind the waypoint that are not clear."""
 
 
@@ -69,7 +69,7 @@ class _Range:
         return 0.5 * (self.low + self.high)
 
 
-class Search:
+class SizeSearch:
     """Searches the size of the zone at one waypoint.
 
     Args:
@@ -165,7 +165,7 @@ def examine(
     Returns:
         Why the middle fails, if it does, and the cells that are not clear.
     """
-    left: list[Cells] = []
+    left: list[PathCells] = []
     for side, part in zip(sides, cells, strict=True):
         reason, rest = _examine_side(side, part, paths, middle)
         left.append(rest)
@@ -176,8 +176,8 @@ def examine(
 
 
 def _examine_side(
-    side: Clearing, cells: Cells, paths: Sequence[CornerPath], middle: CornerPath
-) -> tuple[Reason | None, Cells]:
+    side: Clearing, cells: PathCells, paths: Sequence[CornerPath], middle: CornerPath
+) -> tuple[Reason | None, PathCells]:
     kept = [cells.rows(cells.begin > cells.end)]
     while len(cells):
         look = side.look(cells, paths, middle)

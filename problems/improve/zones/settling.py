@@ -9,11 +9,10 @@ from dataclasses import replace
 from ....core.program.program import Program
 from ....core.program.zone import Fine, Zone
 from ..rounding import SMALLEST, Rounding
-from .neighbourhood import Neighbourhoods
 from .points import Points
-from .rules import Rules, share_legs
+from .rules import Rules
 from .search import SizeBracket
-from .sizes import Growth, size_of
+from .sizes import size_of
 
 WORTH = 2e-3
 """Share by which a zone must grow to be changed."""
@@ -22,7 +21,6 @@ WORTH = 2e-3
 def settle(
     points: Points,
     program: Program,
-    trials: Neighbourhoods,
     rules: Rules,
     found: Mapping[int, SizeBracket],
     rounding: Rounding,
@@ -35,7 +33,6 @@ def settle(
     Args:
         points: of the program.
         program: as it was given.
-        trials: emulates single corners.
         rules: of the vendor.
         found: by corner; corners at which no zone has any effect are left out.
         rounding: of sizes, or to predefined zones.
@@ -43,7 +40,8 @@ def settle(
     sizes = _one_a_group(points, {corner: known.size for corner, known in found.items()})
     movable = {corner: size for corner, size in sizes.items() if size >= SMALLEST}
     if rules.shared_legs:
-        movable = _shared(points, trials, movable)
+        growths = {corner: points.growths[corner] for corner in movable}
+        movable = _one_a_group(points, rules.share_legs(growths, movable))
     zones = {corner: program.moves[points.move[corner]].zone for corner in points.growths}
     for corner, size in movable.items():
         fitting = points.growths[corner].rounded(size, rounding)
@@ -65,19 +63,6 @@ def _one_a_group(points: Points, sizes: Mapping[int, float]) -> dict[int, float]
         known = [sizes[corner] for corner in members if corner in sizes]
         least.update((corner, min(known)) for corner in members if corner in sizes)
     return least
-
-
-def _shared(points: Points, trials: Neighbourhoods, sizes: Mapping[int, float]) -> dict[int, float]:
-    """Sizes with which no zones overlap; those that do not change count as they are."""
-    fixed = {
-        corner: Growth.of(zone)
-        for corner, zone in enumerate(points.route.zones)
-        if corner not in sizes and not isinstance(zone, Fine) and size_of(zone) > 0.0
-    }
-    growing = {corner: points.growths[corner] for corner in sizes}
-    standing = {corner: size_of(growth.pattern) for corner, growth in fixed.items()}
-    shares = share_legs(trials, growing, fixed, {**standing, **sizes})
-    return _one_a_group(points, {corner: shares[corner] for corner in sizes})
 
 
 def _worth(old: Zone, new: Zone, clear: float) -> bool:

@@ -17,7 +17,7 @@ from ...reading_back import ReadBack
 from ...scene_notes import scene_notes
 from ..coating.coat import Coat
 from ..coating.deposition import Deposition
-from ..painting import Painting, Stage
+from ..painting import Painting, PaintingStage
 from ..spray.trajectory import PaintTrajectory
 from ..surface.part import Part
 from .emulated import EmulatedPainting, drive
@@ -103,7 +103,9 @@ def execute(
     driven = drive(controller, program, made.planned, station)
     finely = Deposition(judge.part.samples, judge.footprint, subpoints=1)
     found = judged(finely, driven, judge.target, judge.visible(made.planned))
-    late = lag_notes(made.planned, np.diff(driven.passed), found, painting.coats[Stage.FULL])
+    late = lag_notes(
+        made.planned, np.diff(driven.passed), found, painting.coats[PaintingStage.FULL]
+    )
     notes = (*_told(driven), *late)
     certificate = None
     if prove:

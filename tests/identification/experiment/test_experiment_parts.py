@@ -23,7 +23,7 @@ from flyby.identification.experiment.plan import (
     PlannedCorner,
     usual_radii,
 )
-from flyby.identification.experiment.selection import Choice, Option
+from flyby.identification.experiment.selection import Option, RunChoice
 from flyby.identification.experiment.star import Leg, Star
 from flyby.testing.strategies import regular_configurations
 
@@ -110,7 +110,7 @@ def option(random: np.random.Generator, number: int) -> Option:
 def test_a_choice_keeps_its_time_and_takes_what_tells_most(random, count, minutes) -> None:
     options = [option(random, k) for k in range(count)]
     plan = Plan(minutes=minutes, overhead=30.0)
-    choice, spent, had = Choice(options, plan), 0.0, set()
+    choice, spent, had = RunChoice(options, plan), 0.0, set()
     rest = list(options)
     before = np.zeros((4, 4))
     while (taken := choice.best()) is not None:

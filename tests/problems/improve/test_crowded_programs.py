@@ -19,12 +19,12 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.problems.improve.rounding import Rounding
 from flyby.problems.improve.waypoints import (
     Effort,
+    Freedom,
     WaypointTask,
     optimize_waypoints,
-    optimize_zones,
 )
 from flyby.problems.improve.zones.maximize import maximize_zones
-from flyby.problems.improve.zones.options import ZoneOptions
+from flyby.problems.improve.zones.options import ZoneTask
 from flyby.tasks.files.texts import ProgramTexts
 from flyby.tasks.setup import Setup
 from flyby.testing.strategies import crowded_programs
@@ -97,7 +97,7 @@ class Driven:
 @EVERY
 def test_zones_never_fail_and_never_cost_time(vendor: str, tmp_path_factory, data, apart) -> None:
     case = Driven(data, vendor, tmp_path_factory.mktemp("crowded"))
-    options = ZoneOptions(rounding=case.rounding, apart=apart)
+    options = ZoneTask(rounding=case.rounding, apart=apart)
     try:
         # With zones that are to part, and a text that is not to get new data, some have no place.
         made = maximize_zones(
@@ -116,7 +116,7 @@ def test_searches_never_fail_and_never_cost_time(
     vendor: str, tmp_path_factory, data, points: bool
 ) -> None:
     case = Driven(data, vendor, tmp_path_factory.mktemp("crowded"))
-    solve = optimize_waypoints if points else optimize_zones
-    task = WaypointTask(rounding=case.rounding)
-    made = solve(case.controller, case.program, case.cell, task, BRIEF, case.read_back)
+    freedom = Freedom.WAYPOINTS_AND_ZONES if points else Freedom.ZONES
+    task = WaypointTask(rounding=case.rounding, freedom=freedom)
+    made = optimize_waypoints(case.controller, case.program, case.cell, task, BRIEF, case.read_back)
     case.no_slower(made.program)

@@ -18,7 +18,7 @@ from flyby.problems.paint.executable.execute import execute
 from flyby.problems.paint.executable.station import Station
 from flyby.problems.paint.executable.writing import DriveOptions
 from flyby.problems.paint.initial.plan import SweepPlan
-from flyby.problems.paint.painting import Judge, Painting, Stage, Wishes, paint
+from flyby.problems.paint.painting import Judge, Painting, PaintingStage, Wishes, paint
 from flyby.problems.paint.spray.footprint import Footprint, ring
 from flyby.problems.paint.spray.footprint_file import load_footprint
 from flyby.problems.paint.spray.strokes import section
@@ -38,12 +38,15 @@ def painting() -> Painting:
 
 
 def test_each_stage_is_better_than_the_one_before(painting: Painting):
-    start, speed, full = (painting.coats[s].by_area for s in (Stage.START, Stage.SPEED, Stage.FULL))
+    start, speed, full = (
+        painting.coats[s].by_area
+        for s in (PaintingStage.START, PaintingStage.SPEED, PaintingStage.FULL)
+    )
     assert start.mean == pytest.approx(TARGET, rel=2e-3)
     assert full.std < 0.1 * speed.std < 0.1 * start.std
     assert full.within_10_percent == 1.0
-    assert np.ptp(painting.trajectories[Stage.START].speeds) < 1e-9
-    assert painting.best is painting.trajectories[Stage.FULL]
+    assert np.ptp(painting.trajectories[PaintingStage.START].speeds) < 1e-9
+    assert painting.best is painting.trajectories[PaintingStage.FULL]
 
 
 def test_the_coat_as_emulated_is_as_even_as_planned(painting: Painting):
@@ -51,7 +54,7 @@ def test_the_coat_as_emulated_is_as_even_as_planned(painting: Painting):
     cell = Cell(find_robot("abb/irb6640-180-255"), "abb")
     station = Station(find_vendor("abb"), cell, part_frame=place)
     made = execute(painting, station, DriveOptions(), WISHES.limits.speed)
-    full = painting.coats[Stage.FULL].by_area
+    full = painting.coats[PaintingStage.FULL].by_area
     assert made.coat.by_area.std < full.std + 0.5e-6
     assert made.certificate is not None and made.certificate.proven
 

@@ -10,7 +10,7 @@ from .elements import array_mismatch
 from .types import Foreign, RecordType, Scalar, Type, Value
 
 
-class Answers:
+class TypedAnswers:
     """The user's answers to expressions of a program."""
 
     def __init__(self, course: Course, text_of: Callable[[Span], str]) -> None:

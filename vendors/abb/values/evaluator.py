@@ -11,7 +11,7 @@ from ....core.source.execution.answers import Course
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.provenance import ELSEWHERE, Reads
 from ..syntax import tree
-from .answers import Answers, like_signals
+from .answers import TypedAnswers, like_signals
 from .data import Globals
 from .elements import (
     array_mismatch,
@@ -70,7 +70,7 @@ class Evaluator:
         self.reads = Reads()
         self.reader = ELSEWHERE
         self.outputs = Outputs()
-        self.answers = Answers(course, text_of)
+        self.answers = TypedAnswers(course, text_of)
         self._text_of = text_of
         self._host = host
         self._elsewhere: dict[str, Value] = {}

@@ -12,7 +12,7 @@ from ..syntax.cursor import Cursor
 from ..syntax.expressions import parse_expression
 from ..syntax.lexer import END, tokenize
 from ..syntax.tree import Argument, Call, Expression, Name, Routine
-from .answers import Answers
+from .answers import TypedAnswers
 from .arguments import check_count
 from .data import Globals
 from .elements import array_mismatch
@@ -29,7 +29,7 @@ class Evaluates(Protocol):
     """What functions need of the evaluator; see `Evaluator`."""
 
     data: Globals
-    answers: Answers
+    answers: TypedAnswers
     outputs: Outputs
 
     def evaluate(self, expression: Expression, scope: Scope) -> Value:

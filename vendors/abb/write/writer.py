@@ -26,7 +26,7 @@ _STEP = "  "
 
 
 @dataclass(frozen=True, slots=True)
-class Surroundings:
+class TextAround:
     """What stands in a module beside the program itself; lines without their indentation.
 
     Args:
@@ -42,7 +42,7 @@ class Surroundings:
     names: tuple[str, ...] = ()
 
 
-def write(program: Program, options: RapidOptions, around: Surroundings = Surroundings()) -> str:
+def write(program: Program, options: RapidOptions, around: TextAround = TextAround()) -> str:
     """The text of a complete module; lines end with LF.
 
     Names from the source are kept where they are legal and unique. Numbers are those that the

@@ -139,8 +139,7 @@ def stated_positions(program: Program, robot: Robot) -> dict[tuple[str | None, s
             text = e6pos(replace(target, configuration=None), robot)
             found.setdefault(_key(target, text), e6pos(target, robot))
         except InputError as error:
-            span = None if move.origin is None else move.origin.statement
-            raise MotionError(str(error), index, span) from None
+            raise MotionError(str(error), index, move.statement) from None
     return found
 
 

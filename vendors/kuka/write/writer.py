@@ -50,7 +50,7 @@ EXTERNALS = (
 
 
 @dataclass(frozen=True, slots=True)
-class Surroundings:
+class TextAround:
     """What stands round the statements of a program."""
 
     header: Sequence[str] = ()
@@ -77,11 +77,11 @@ def write(program: Program, robot: Robot, options: Mapping[str, str]) -> dict[st
         InputError: an option is unknown, or the robot is no six-axis arm.
         MotionError: KRL cannot say a move; it is named by number.
     """
-    return compose(program, robot, chosen(KrlOptions, options, "KRL writer"), Surroundings())
+    return compose(program, robot, chosen(KrlOptions, options, "KRL writer"), TextAround())
 
 
 def compose(
-    program: Program, robot: Robot, options: KrlOptions, around: Surroundings
+    program: Program, robot: Robot, options: KrlOptions, around: TextAround
 ) -> dict[str, str]:
     """As `write`, with what shall stand round the program's own statements."""
     if robot.arm_size != ARM_AXES:

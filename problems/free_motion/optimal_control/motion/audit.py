@@ -31,7 +31,6 @@ class Audit:
     Args:
         velocity, acceleration, jerk: (K, n).
         torque: (K, R), first of the joints' own limits, then of those that fall with speed.
-        sampled_torque: (K, R), the same as sampled.
         tcp_speed: (K,).
         beyond: (K, n), rad or m beyond the joints' ranges; negative within.
     """
@@ -40,7 +39,6 @@ class Audit:
     acceleration: FloatArray
     jerk: FloatArray
     torque: FloatArray
-    sampled_torque: FloatArray
     tcp_speed: FloatArray
     beyond: FloatArray
 
@@ -80,8 +78,7 @@ def audit(
         )
     )
     samples = _Samples(task, limits, plant, motion, tolerance)
-    torque, sampled = samples.torques()
-    return Audit(velocity, acceleration, jerk, torque, sampled, samples.tcp_speeds(), beyond)
+    return Audit(velocity, acceleration, jerk, samples.torques(), samples.tcp_speeds(), beyond)
 
 
 def _hull(motion: Motion, order: int) -> FloatArray:
@@ -113,12 +110,12 @@ class _Samples:
             out[:, task.moving, order] = np.abs(_hull(motion, order)).max(axis=1)
         return out
 
-    def torques(self) -> tuple[FloatArray, FloatArray]:
-        """Proven and sampled shares (K, R)."""
+    def torques(self) -> FloatArray:
+        """Proven shares (K, R)."""
         count = len(self._motion)
         proven, sampled = np.zeros((2, count, len(self._limits.torques.axis)))
         if self._plant is None or not self._limits.dynamic:
-            return proven, sampled
+            return proven
         bends = self._torque_bends()
         rows, parts = np.arange(count), _FIRST
         while len(rows) and parts <= _FINEST:
@@ -129,7 +126,7 @@ class _Samples:
             aim = np.maximum(1.0 + 0.5 * self._tolerance, sampled[rows] + 0.1 * self._tolerance)
             rows = rows[(proven[rows] > aim).any(axis=1)]
             parts *= 4
-        return proven, sampled
+        return np.asarray(proven)
 
     def _seen(self, rows: IntArray, parts: int) -> FloatArray:
         """(M, R), the largest shares at samples of some pieces, both ends included."""
@@ -140,15 +137,13 @@ class _Samples:
             self._motion.coefficients[rows],
             self._motion.leg[rows],
         )
-        q, dq, ddq = (piece.on_pieces(shares, k).reshape(-1, self._most_joints) for k in range(3))
+        q, dq, ddq = (
+            piece.on_pieces(shares, k).reshape(-1, len(self._task.moving)) for k in range(3)
+        )
         state = State(q, dq, ddq, np.repeat(piece.leg, parts + 1))
         torque, rate = self._plant.torques(state), self._plant.rates(state)
         used = np.abs(self._limits.torques.shares(torque, rate))
         return np.asarray(used.reshape(len(rows), parts + 1, -1).max(axis=1))
-
-    @property
-    def _most_joints(self) -> int:
-        return int(self._motion.coefficients.shape[2])
 
     def _torque_bends(self) -> FloatArray:
         """(K, R), bounds of the second derivatives of the shares."""
@@ -169,7 +164,9 @@ class _Samples:
         bends = BendBounds(self._task.robot, None, self._task.tcp, self._rates).tcp()
         parts = 64
         shares = np.linspace(0.0, 1.0, parts + 1)
-        q, dq = (self._motion.on_pieces(shares, k).reshape(-1, self._most_joints) for k in (0, 1))
+        q, dq = (
+            self._motion.on_pieces(shares, k).reshape(-1, len(self._task.moving)) for k in (0, 1)
+        )
         seen = np.linalg.norm(speed.velocity(q, dq), axis=1).reshape(count, -1).max(axis=1)
         between = (self._motion.durations / parts) ** 2 / 8.0 * bends
         return np.asarray((seen + between) / limit)

@@ -11,7 +11,7 @@ from ..task.limits import MotionLimits
 from ..task.sampled import Plant, State, TcpSpeed
 from ..task.task import MotionTask
 from .grid import Grid
-from .layout import Layout
+from .layout import VariableLayout
 from .motion import Motion
 from .scheme import Scheme
 
@@ -34,7 +34,7 @@ class Guess:
         x: the variables' values.
     """
 
-    layout: Layout
+    layout: VariableLayout
     scale: float
     x: FloatArray
 
@@ -92,17 +92,16 @@ def first_guess(
         group: intervals that stretch together; None for whole legs.
     """
     reach = np.diff(line.points, axis=0)
-    probe = Scheme(scheme.kind)
     times = np.array(
         [
-            _line_time(task, limits, plant, probe, a, step, int(leg))
+            _line_time(task, limits, plant, scheme, a, step, int(leg))
             for a, step, leg in zip(line.points, reach, line.leg, strict=False)
         ]
     )
     counts = np.maximum(np.round(nodes * times / times.sum()).astype(np.int64), _LEAST)
     leg = np.repeat(line.leg, counts)
     grid = Grid.even(np.repeat(times / counts, counts), leg)
-    layout = Layout(
+    layout = VariableLayout(
         grid if group is None else grid.freed(group), scheme, reach.shape[1], breaks_of(task, leg)
     )
     x = np.zeros(layout.size)
@@ -128,7 +127,7 @@ def breaks_of(task: MotionTask, leg: IntArray) -> tuple[int, ...]:
 def _profile(scheme: Scheme, count: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """From 0 to 1 in unit time over ``count`` intervals, at rest and (if continuous) without
     acceleration at both ends: position and velocity at the points, second derivatives."""
-    layout = Layout(Grid.even(np.ones(count), np.zeros(count, dtype=np.int64)), scheme, 1)
+    layout = VariableLayout(Grid.even(np.ones(count), np.zeros(count, dtype=np.int64)), scheme, 1)
     shares = scheme.shares if scheme.continuous else np.array([0.5])
     places = (np.arange(count)[:, None] + shares) / count
     e = np.zeros(layout.rises)
@@ -145,7 +144,7 @@ def _profile(scheme: Scheme, count: int) -> tuple[FloatArray, FloatArray, FloatA
 
 
 def _put_line(
-    layout: Layout,
+    layout: VariableLayout,
     x: FloatArray,
     node: int,
     count: int,

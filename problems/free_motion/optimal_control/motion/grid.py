@@ -28,15 +28,9 @@ class Grid:
     leg: IntArray
 
     @classmethod
-    def even(cls, widths: FloatArray, leg: IntArray, group: IntArray | None = None) -> Grid:
-        """A grid with these widths, scaled to a sum of 1.
-
-        Args:
-            widths: (K,), positive.
-            leg: (K,).
-            group: (K,); None for one for each leg.
-        """
-        return cls(widths / widths.sum(), leg if group is None else group, leg)
+    def even(cls, widths: FloatArray, leg: IntArray) -> Grid:
+        """A grid with these widths (K,), scaled to a sum of 1; each leg (K,) is a group."""
+        return cls(widths / widths.sum(), leg, leg)
 
     def __len__(self) -> int:
         return len(self.width)

@@ -22,7 +22,7 @@ from .scheme import Scheme
 
 
 @dataclass(frozen=True)
-class Layout:
+class VariableLayout:
     """The variables.
 
     Args:

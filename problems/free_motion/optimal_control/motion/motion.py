@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import comb
 
 import numpy as np
 
 from .....core.arrays import FloatArray, IntArray
-from .layout import Layout
+from .layout import VariableLayout
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class Motion:
     leg: IntArray
 
     @classmethod
-    def of(cls, layout: Layout, scale: float, x: FloatArray) -> Motion:
+    def of(cls, layout: VariableLayout, scale: float, x: FloatArray) -> Motion:
         """The motion that variables describe, time in units of ``scale`` s."""
         width = layout.width(x)
         e = x[layout.e][layout.rise]
@@ -67,7 +68,7 @@ class Motion:
 
     def at(self, t: FloatArray, derivative: int = 0) -> FloatArray:
         """(T, n), q or a derivative by time at times (T,); at knots, of the piece that begins."""
-        piece = np.clip(np.searchsorted(self.knots, t, side="right") - 1, 0, len(self) - 1)
+        piece = self.pieces(t)
         u = (t - self.knots[piece]) / self.durations[piece]
         coefficients = self.differentiated(derivative)[piece]
         powers = u[:, None] ** np.arange(coefficients.shape[1])
@@ -79,8 +80,6 @@ class Motion:
 
     def reversed(self) -> Motion:
         """The motion driven backwards."""
-        from math import comb
-
         count = self.coefficients.shape[1]
         table = np.array(
             [

@@ -14,7 +14,7 @@ import numpy as np
 from .....core.collision.deviation.bounds import DeviationBounds
 from .....core.collision.proof.certificate import BUDGET
 from .....core.collision.proof.enclosure import Enclosure
-from .....core.collision.proof.findings import Budget, Cause, Finding
+from .....core.collision.proof.findings import Budget, Cause, UnprovenStretch
 from .....core.collision.proof.subdivision import Prover
 from .....core.collision.proof.verdict import CONTACT, MM, Certificate, Verdict, in_words
 from .....core.collision.scene.scene import CollisionScene
@@ -30,12 +30,10 @@ class Proof:
 
     Args:
         certificate: what is proven.
-        time: s, of the configuration that is too near, or not proven; None if proven.
         pair: row of the scene's pairs; None if no pair is to blame.
     """
 
     certificate: Certificate
-    time: float | None = None
     pair: int | None = None
 
 
@@ -87,7 +85,9 @@ def enclosure_of(task: MotionTask, motion: Motion) -> Enclosure:
     return Enclosure(motion.knots, window, curves, np.arange(count))
 
 
-def _refused(scene: CollisionScene, finding: Finding, wanted: float, measured: int) -> Proof:
+def _refused(
+    scene: CollisionScene, finding: UnprovenStretch, wanted: float, measured: int
+) -> Proof:
     pair = None if finding.pair is None else scene.pair_names(finding.pair)
     violated = finding.cause is Cause.NEAR
     where = f"at {finding.sigma:.3f} s"
@@ -109,4 +109,4 @@ def _refused(scene: CollisionScene, finding: Finding, wanted: float, measured: i
         configuration=tuple(map(float, finding.q)),
         measured=measured,
     )
-    return Proof(certificate, finding.sigma, finding.pair)
+    return Proof(certificate, finding.pair)

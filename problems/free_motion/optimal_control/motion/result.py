@@ -27,7 +27,7 @@ _DENSE = 16
 
 
 @dataclass(frozen=True)
-class Step:
+class SearchStep:
     """One outer iteration.
 
     Args:
@@ -72,7 +72,7 @@ class Optimum:
     first: Motion
     audit: Audit
     certificate: Certificate | None
-    steps: tuple[Step, ...]
+    steps: tuple[SearchStep, ...]
     converged: bool
     notes: tuple[Note, ...] = ()
 

@@ -33,7 +33,7 @@ MOST_TRIALS = len(_PATTERNS) * len(_SIZES)
 """Ways to look beside a motion."""
 
 
-class Aim:
+class TangentChoice:
     """The choice of one search; it learns from what comes of it.
 
     Args:
@@ -118,6 +118,4 @@ class Aim:
         share = places.time(motion) / motion.duration
         shift = (first + (last - first) * share) * motion.duration / len(motion)
         t = np.clip(places.time(motion) + shift, 0.0, motion.duration)
-        q = np.tile(np.asarray(task.start), (len(t), 1))
-        q[:, task.moving] = motion.at(t)
-        return q
+        return task.whole(motion.at(t))

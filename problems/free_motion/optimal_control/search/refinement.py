@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from .....core.arrays import FloatArray, IntArray
 from ..motion.audit import Audit
 from ..motion.first_guess import Guess, breaks_of
-from ..motion.layout import Layout
+from ..motion.layout import VariableLayout
 from ..motion.motion import Motion
 from ..task.task import MotionTask
 from ..transcription.transcription import Margins
@@ -57,7 +57,7 @@ class PieceMargins:
         fields = (self.torque, self.tcp_speed, self.position)
         return PieceMargins(*(np.repeat(field, parts, axis=0) for field in fields))
 
-    def at_samples(self, layout: Layout) -> Margins:
+    def at_samples(self, layout: VariableLayout) -> Margins:
         """The larger of both neighbours'."""
         interval, sample, _ = layout.quadrature
         torque = np.zeros((len(layout.samples), self.torque.shape[1]))
@@ -86,7 +86,9 @@ def refined(task: MotionTask, guess: Guess, parts: IntArray) -> Guess:
     return represented(guess.motion, finer, guess.scale, float(x[0]), parts)
 
 
-def represented(motion: Motion, layout: Layout, scale: float, S: float, parts: IntArray) -> Guess:
+def represented(
+    motion: Motion, layout: VariableLayout, scale: float, S: float, parts: IntArray
+) -> Guess:
     """A motion of the layout's scheme on intervals that its pieces are cut into."""
     x = np.zeros(layout.size)
     x[0] = S

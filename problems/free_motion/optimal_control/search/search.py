@@ -15,33 +15,38 @@ from dataclasses import replace
 import numpy as np
 
 from .....core.arrays import FloatArray
-from .....core.sqp import Result, Status, solve
+from .....core.sqp import BackendKind, Result, Status, solve
 from ..motion.audit import Audit, audit
 from ..motion.first_guess import Guess
-from ..motion.layout import Layout
+from ..motion.layout import VariableLayout
 from ..motion.motion import Motion
 from ..motion.proof import Proof, prove
-from ..motion.result import Step
+from ..motion.result import SearchStep
 from ..task.limits import MotionLimits
 from ..task.sampled import Plant, TorqueField
 from ..task.task import MotionTask
-from ..transcription.rows import PlaceRows
+from ..transcription.rows import MotionRows
 from ..transcription.sample_rows import EnergyTerm
 from ..transcription.transcription import Bounds, Transcription
-from .aiming import Aim
-from .effort import Effort
+from .aiming import TangentChoice
+from .effort import MotionEffort
 from .patience import Patience
 from .refinement import PieceMargins, refined, too_coarse
 from .surroundings import Breach, Instants, Linearised, Surroundings, breaches, linearised, sags
 
-Report = Callable[[Step], bool | None]
+Report = Callable[[SearchStep], bool | None]
 
 _CORRECTIONS = 4
 _GROW, _SHRINK = 2.0, 4.0
 _SMALLEST, _LARGEST = 1e-3, 1.0
 """rad or m, of the box."""
+_PLACES, _SLOTS = 2, 3
+"""Places on each interval at which distances are linearised, and pairs of bodies at each, at
+most."""
 _LOOKED = 8
 """Places on each interval where a motion is looked at before it is proven."""
+_SOLVER_TOLERANCE = 1e-5
+"""Of the KKT conditions and of constraints."""
 _INFEASIBLE = 1e-4
 _IDLE = 1e-7
 _SOLVER_ITERATIONS, _OUTER_ITERATIONS = 60, 12
@@ -53,7 +58,7 @@ class Interrupted(Exception):
     """The user has had enough."""
 
 
-class Search:
+class MotionSearch:
     """One search; it changes as it goes.
 
     Args:
@@ -76,7 +81,7 @@ class Search:
         limits: MotionLimits,
         plant: Plant | None,
         around: Surroundings | None,
-        effort: Effort,
+        effort: MotionEffort,
         guess: Guess,
         report: Report | None = None,
         begin: Guess | None = None,
@@ -84,7 +89,7 @@ class Search:
         self.task, self.limits, self.plant = task, limits, plant
         self.around, self.effort, self.report = around, effort, report
         self.base = begin or guess
-        self.steps: list[Step] = []
+        self.steps: list[SearchStep] = []
         self.converged, self.interrupted = False, False
         self.best: tuple[float, Motion, Audit, Proof | None] | None = None
         longest = task.objective.longest
@@ -96,7 +101,7 @@ class Search:
         self._rounds = 0
         self._most_intervals = 4 * len(guess.layout.grid)
         self._warm: Result | None = None
-        self.aim = Aim(effort.trials)
+        self.aim = TangentChoice(effort.trials)
 
     def _first_energy(self, guess: Guess) -> float | None:
         if self.task.objective.time_weight == 1.0:
@@ -109,7 +114,7 @@ class Search:
     # The outer iteration
 
     def run(self) -> None:
-        """Search."""
+        """MotionSearch."""
         given = (self.task.start_velocity, self.task.end_velocity)
         if not any(np.asarray(velocity, dtype=float).any() for velocity in given):
             # The first guess is at rest at both ends.
@@ -137,14 +142,22 @@ class Search:
         previous, was_clean = self.base, self._clean
         self.base, self._clean = guess, True
         self._note_best(guess.motion, proof, after)
-        self._tell(replace(step, time=guess.motion.duration, objective=after, accepted=True))
+        self._tell(
+            replace(
+                step,
+                time=guess.motion.duration,
+                objective=after,
+                accepted=True,
+                what="a better motion",
+            )
+        )
         if self.around is None:
             return was_clean and gain < self.effort.gain and self._settled()
         self._box = min(_GROW * self._box, _LARGEST)
         little = was_clean and gain < self.effort.gain
         return self.aim.gained(previous.x, little) and self._settled()
 
-    def _failed(self, step: Step) -> bool:
+    def _failed(self, step: SearchStep) -> bool:
         """Try something else; whether nothing is left to try."""
         if self.around is None:
             return True
@@ -173,14 +186,14 @@ class Search:
 
     def _candidate(
         self, transcription: Transcription, before: float
-    ) -> tuple[tuple[Guess, Proof | None] | None, Step]:
+    ) -> tuple[tuple[Guess, Proof | None] | None, SearchStep]:
         """A better motion that is proven free, or None."""
         cuts, bounds = self._surroundings_of(transcription.layout)
         keep, sag = self._kept(cuts)
         extra = np.zeros(keep.shape)
         x, iterations = self.base.x, 0
         count = 0 if cuts is None else cuts.count
-        step = Step(self.base.motion.duration, before, np.nan, False, 0, count, self._box, "")
+        step = SearchStep(self.base.motion.duration, before, np.nan, False, 0, count, self._box, "")
         for attempt in range(1 if cuts is None else _CORRECTIONS):
             rows = None
             if cuts is not None and self.around is not None:
@@ -190,11 +203,11 @@ class Search:
             guess = Guess(transcription.layout, self.base.scale, result.x)
             step = replace(step, candidate=guess.motion.duration, iterations=iterations)
             if result.constraint_violation > _INFEASIBLE:
-                return None, replace(step, what=f"not solved: {result.message}")
+                return None, replace(step, what="this attempt broke off before all limits held")
             if self._clean and result.objective >= before - 1e-9 * abs(before):
                 if attempt == 0 and self.aim.at_base:
                     self.aim.exhaust(_touching(result, rows))
-                return None, replace(step, what="no better one that is free")
+                return None, replace(step, what="nothing better that keeps clear")
             if self.around is None or cuts is None:
                 return (guess, None), step
             proof = self._proof(guess.motion)
@@ -204,37 +217,36 @@ class Search:
                 return None, replace(step, what=str(proof.certificate))
             (cuts, extra), x = proof.blamed(cuts, extra, self.around.wanted), result.x
             keep, sag = self._kept(cuts)
-        return None, replace(step, what="too near between nodes")
+        return None, replace(step, what="too near to something on the way")
 
     def _kept(self, cuts: Linearised | None) -> tuple[FloatArray, FloatArray]:
         """Linear distances of the base at the places of cuts, and how much nearer it comes between
         them."""
         if cuts is None or self.around is None:
             return np.zeros(0), np.zeros(0)
-        motion, parts = self.base.motion, self.effort.places
+        motion = self.base.motion
         q = cuts.places.of(self.task, motion)[:, self.task.moving]
-        looked = parts * max(1, round(_LOOKED / parts))
-        return cuts.at(q), sags(self.task, self.around, motion, cuts, looked)
+        return cuts.at(q), sags(self.task, self.around, motion, cuts, _LOOKED)
 
     def _solved(
         self,
         transcription: Transcription,
         bounds: Bounds,
-        rows: PlaceRows | None,
+        rows: MotionRows | None,
         x: FloatArray,
     ) -> Result:
-        tolerance, patience = self.effort.solver_tolerance, None
+        patience = None
         if rows is not None or transcription.layout.stretches:
             beat = transcription.objective(self.base.x) if self._clean else None
             most = _SOLVER_ITERATIONS if beat is None else _OUTER_ITERATIONS
-            patience = Patience(tolerance, most, self.effort.gain, beat)
+            patience = Patience(_SOLVER_TOLERANCE, most, self.effort.gain, beat)
         result = solve(
             transcription.nlp(bounds, rows),
             x,
-            tolerance=tolerance,
+            tolerance=_SOLVER_TOLERANCE,
             max_iterations=_SOLVER_ITERATIONS,
             callback=patience,
-            qp=self.effort.qp,
+            qp=BackendKind.INTERIOR_POINT,
             warm_start=self._warm,
         )
         ended = patience is not None and patience.ended
@@ -243,7 +255,7 @@ class Search:
         self._warm = result
         return result if patience is None else patience.outcome(result)
 
-    def _transcription(self, layout: Layout) -> Transcription:
+    def _transcription(self, layout: VariableLayout) -> Transcription:
         return Transcription(
             self.task,
             self.limits,
@@ -256,15 +268,15 @@ class Search:
 
     # Surroundings
 
-    def _surroundings_of(self, layout: Layout) -> tuple[Linearised | None, Bounds]:
+    def _surroundings_of(self, layout: VariableLayout) -> tuple[Linearised | None, Bounds]:
         """Linearised distances about the base, and how far each node may move."""
         position = self._margins.at_samples(layout).position
         lower, upper = self.limits.lower + position, self.limits.upper - position
         if self.around is None:
             return None, Bounds(lower, upper)
-        places = Instants.even(len(layout.grid), self.effort.places)
+        places = Instants.even(len(layout.grid), _PLACES)
         q = self.aim.configurations(self.task, self.base, places)
-        cuts = linearised(self.task, self.around, q, places, self._box, self.effort.slots)
+        cuts = linearised(self.task, self.around, q, places, self._box, _SLOTS)
         q = self.base.x[layout.q]
         return cuts, Bounds(np.maximum(lower, q - self._box), np.minimum(upper, q + self._box))
 
@@ -277,10 +289,11 @@ class Search:
         if near is not None:
             return near
         proof = prove(self.task, motion, self.around.scene, clearance)
-        if proof.certificate.proven or proof.pair is None or proof.time is None:
+        time = proof.certificate.time
+        if proof.certificate.proven or proof.pair is None or time is None:
             return proof
-        piece = motion.pieces(np.array([proof.time]))
-        share = (proof.time - motion.knots[piece]) / motion.durations[piece]
+        piece = motion.pieces(np.array([time]))
+        share = (time - motion.knots[piece]) / motion.durations[piece]
         within = max(self.around.wanted, (proof.certificate.distance or 0.0) + 1e-5)
         near = breaches(self.task, self.around, motion, Instants(piece, share), within)
         return proof if near is None else near
@@ -302,13 +315,13 @@ class Search:
         if proof is None or proof.certificate.proven:
             self.best = (objective, motion, seen, proof)
 
-    def _tell(self, step: Step) -> None:
+    def _tell(self, step: SearchStep) -> None:
         self.steps.append(step)
         if self.report is not None and self.report(step):
             raise Interrupted
 
 
-def _touching(result: Result, rows: PlaceRows | None) -> bool:
+def _touching(result: Result, rows: MotionRows | None) -> bool:
     """Whether any linearised distance holds a motion back."""
     if rows is None:
         return False

@@ -10,11 +10,13 @@ import numpy as np
 from .....core.arrays import FloatArray, IntArray
 from .....core.collision.scene.scene import CollisionScene
 from .....core.errors import InputError
-from ..motion.layout import Layout
+from ..motion.layout import VariableLayout
 from ..motion.motion import Motion
 from ..task.task import MotionTask
-from ..transcription.rows import PlaceRows
+from ..transcription.rows import MotionRows, place_rows
 
+_MARGIN = 5e-5
+"""m beyond the clearance that are aimed at, so that the proof ends."""
 _CURVED = 1.5
 """How much nearer than the linear model says a pair may come within the box."""
 _FLAT = 1e-9
@@ -34,26 +36,22 @@ class Surroundings:
     Args:
         scene: bodies and their distances.
         clearance: m to be kept everywhere.
-        margin: m more that is aimed at, so that the proof ends.
 
     Raises:
-        InputError: a distance is negative or not finite.
+        InputError: the clearance is negative or not finite.
     """
 
     scene: CollisionScene
     clearance: float
-    margin: float = 5e-5
 
     def __post_init__(self) -> None:
-        for name in ("clearance", "margin"):
-            value = getattr(self, name)
-            if not 0.0 <= value < math.inf:
-                raise InputError(f"Surroundings.{name} is zero or more metres, not {value}")
+        if not 0.0 <= self.clearance < math.inf:
+            raise InputError(f"Surroundings.clearance is zero or more metres, not {self.clearance}")
 
     @property
     def wanted(self) -> float:
         """m that is aimed at."""
-        return self.clearance + self.margin
+        return self.clearance + _MARGIN
 
     @property
     def reach(self) -> float:
@@ -78,10 +76,7 @@ class Instants:
     def of(self, task: MotionTask, motion: Motion) -> FloatArray:
         """(M, N), all joints there."""
         powers = self.share[:, None] ** np.arange(motion.coefficients.shape[1])
-        moving = np.einsum("mc,mcn->mn", powers, motion.coefficients[self.interval])
-        q = np.tile(np.asarray(task.start), (len(moving), 1))
-        q[:, task.moving] = moving
-        return q
+        return task.whole(np.einsum("mc,mcn->mn", powers, motion.coefficients[self.interval]))
 
     def time(self, motion: Motion) -> FloatArray:
         """(M,) s."""
@@ -115,8 +110,13 @@ class Linearised:
         return int((self.pair >= 0).sum())
 
     def rows(
-        self, layout: Layout, wanted: float, keep: FloatArray, sag: FloatArray, extra: FloatArray
-    ) -> PlaceRows:
+        self,
+        layout: VariableLayout,
+        wanted: float,
+        keep: FloatArray,
+        sag: FloatArray,
+        extra: FloatArray,
+    ) -> MotionRows:
         """Constraints that say so.
 
         Args:
@@ -131,7 +131,7 @@ class Linearised:
         at = np.sum(self.normal * self.q[:, None], axis=2)
         least = at + np.minimum(wanted + sag, keep) + extra - self.distance
         least = np.where(self.pair >= 0, least, -np.inf)
-        return PlaceRows(
+        return place_rows(
             layout,
             np.repeat(self.places.interval, slots),
             np.repeat(self.places.share, slots),

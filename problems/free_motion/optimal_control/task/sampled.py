@@ -58,13 +58,12 @@ class Plant:
     def __init__(self, task: MotionTask) -> None:
         self._task = task
         self.moving, self.size = task.moving, task.robot.size
-        self._rest = np.asarray(task.start, dtype=float)
         self._dynamics = [task.robot.dynamics(task.load(leg)) for leg in range(task.legs)]
         self._unknown = self._checked_unknown()
 
     def _checked_unknown(self) -> IntArray:
         """Axes whose torques are not known; none of them moves."""
-        at = self._rest[None]
+        at = self._task.stations[:1]
         torque = self._dynamics[0].torques(at, np.zeros_like(at), np.zeros_like(at))[0]
         unknown = np.flatnonzero(~np.isfinite(torque))
         moving = np.intersect1d(unknown, self.moving)
@@ -75,19 +74,19 @@ class Plant:
             )
         return unknown
 
-    def full(self, part: FloatArray, rest: FloatArray) -> FloatArray:
-        """(Z, N) from values (Z, n) of the joints that move."""
-        whole = np.tile(rest, (len(part), 1))
+    def rates(self, state: State) -> FloatArray:
+        """(Z, N), velocities of all axes."""
+        return self._spread(state.dq)
+
+    def _spread(self, part: FloatArray) -> FloatArray:
+        """(Z, N) from derivatives (Z, n) of the joints that move."""
+        whole = np.zeros((len(part), self.size))
         whole[:, self.moving] = part
         return whole
 
-    def rates(self, state: State) -> FloatArray:
-        """(Z, N), velocities of all axes."""
-        return self.full(state.dq, np.zeros_like(self._rest))
-
     def torques(self, state: State) -> FloatArray:
         """(Z, N) N m or N."""
-        out = np.empty((len(state.q), len(self._rest)))
+        out = np.empty((len(state.q), self.size))
         for leg, rows in self._legs(state.leg):
             out[rows] = self._dynamics[leg].torques(*self._motion(state, rows))
         out[:, self._unknown] = 0.0
@@ -95,7 +94,7 @@ class Plant:
 
     def derivatives(self, state: State) -> tuple[FloatArray, FloatArray, FloatArray]:
         """∂τ/∂q, ∂τ/∂q̇, ∂τ/∂q̈, each (Z, N, n)."""
-        out = np.empty((3, len(state.q), len(self._rest), state.q.shape[1]))
+        out = np.empty((3, len(state.q), self.size, state.q.shape[1]))
         for leg, rows in self._legs(state.leg):
             parts = self._dynamics[leg].torque_derivatives(*self._motion(state, rows))
             for k, part in enumerate(parts):
@@ -104,11 +103,10 @@ class Plant:
         return out[0], out[1], out[2]
 
     def _motion(self, state: State, rows: IntArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        zero = np.zeros_like(self._rest)
         return (
-            self.full(state.q[rows], self._rest),
-            self.full(state.dq[rows], zero),
-            self.full(state.ddq[rows], zero),
+            self._task.whole(state.q[rows]),
+            self._spread(state.dq[rows]),
+            self._spread(state.ddq[rows]),
         )
 
     def _legs(self, leg: IntArray) -> list[tuple[int, IntArray]]:
@@ -125,12 +123,7 @@ class TorqueField:
 
     def __init__(self, plant: Plant, scale: float) -> None:
         self._plant = plant
-        self._scale = scale
-
-    def state(self, q: FloatArray, d: FloatArray, e: FloatArray, S: float, leg: IntArray) -> State:
-        """In time."""
-        time = self._scale * np.sqrt(S)
-        return State(q, d / time, e / time**2, leg)
+        self.scale = scale
 
     def torques(self, state: State) -> FloatArray:
         """(Z, N)."""
@@ -144,7 +137,7 @@ class TorqueField:
         """∂q̇/∂z, (Z, N, 3 n + 1)."""
         count, n = state.q.shape
         out = np.zeros((count, self._plant.size, 3 * n + 1))
-        out[:, self._plant.moving, n + np.arange(n)] = 1.0 / (self._scale * np.sqrt(S))
+        out[:, self._plant.moving, n + np.arange(n)] = 1.0 / (self.scale * np.sqrt(S))
         out[:, :, -1] = -0.5 * self._plant.rates(state) / S
         return out
 
@@ -153,21 +146,21 @@ class TorqueField:
         count, n = state.q.shape
         own = weights[:, self._plant.moving]
         H = np.zeros((count, 3 * n + 1, 3 * n + 1))
-        _edge(H, slice(n, 2 * n), 3 * n, -0.5 * own / (self._scale * np.sqrt(S)) / S)
+        _edge(H, slice(n, 2 * n), 3 * n, -0.5 * own / (self.scale * np.sqrt(S)) / S)
         H[:, -1, -1] = 0.75 * np.sum(own * state.dq, axis=1) / S**2
         return H
 
     def slopes(self, state: State, S: float) -> FloatArray:
         """∂τ/∂z, (Z, N, 3 n + 1)."""
         by_q, by_v, by_a = self._plant.derivatives(state)
-        time = self._scale * np.sqrt(S)
+        time = self.scale * np.sqrt(S)
         by_S = -(0.5 * _along(by_v, state.dq) + _along(by_a, state.ddq)) / S
         return np.concatenate([by_q, by_v / time, by_a / time**2, by_S[..., None]], axis=2)
 
     def bends(self, state: State, S: float, weights: FloatArray) -> FloatArray:
         """Σ_j weights_j ∂²τ_j/∂z², (Z, 3 n + 1, 3 n + 1), weights (Z, N)."""
         count, n = state.q.shape
-        time = self._scale * np.sqrt(S)
+        time = self.scale * np.sqrt(S)
         by_q, by_v, by_a = (
             np.einsum("zi,zij->zj", weights, part) for part in self._plant.derivatives(state)
         )
@@ -217,32 +210,24 @@ class TcpSpeed:
 
     Args:
         task: robot and TCP.
-        plant_rest: (N,) values of the joints that stand still.
         scale: T₀, s.
     """
 
     def __init__(self, task: MotionTask, scale: float) -> None:
         self._chain = work_chain(task.robot, Tool("tcp", task.tcp), WORLD)
-        self._moving = task.moving
-        self._rest = np.asarray(task.start, dtype=float)
-        self._scale = scale
+        self._task, self._moving, self._scale = task, task.moving, scale
 
     def velocity(self, q: FloatArray, dq: FloatArray) -> FloatArray:
         """(Z, 3) m/s."""
         return _along(self._jacobian(q), dq)
 
-    def _whole(self, q: FloatArray) -> FloatArray:
-        whole = np.tile(self._rest, (len(q), 1))
-        whole[:, self._moving] = q
-        return whole
-
     def _jacobian(self, q: FloatArray) -> FloatArray:
-        found = jacobians(self._chain, self._whole(q))
+        found = jacobians(self._chain, self._task.whole(q))
         return np.asarray(found[:, :3][:, :, self._moving])
 
     def _rates(self, q: FloatArray, dq: FloatArray) -> FloatArray:
         """∂ṗ/∂q, (Z, 3, n)."""
-        found = hessians(self._chain, self._whole(q))[:, :3]
+        found = hessians(self._chain, self._task.whole(q))[:, :3]
         part = found[:, :, self._moving[:, None], self._moving]
         return np.asarray(np.einsum("zijk,zj->zik", part, dq))
 

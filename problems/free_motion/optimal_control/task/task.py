@@ -74,7 +74,7 @@ class ControlLimits:
 
 
 @dataclass(frozen=True)
-class Objective:
+class MotionObjective:
     """f = w T/T₀ + (1 − w) E/E₀, with T₀ and E₀ of the first guess: E₀ is what it consumes and what
     it leaves over, ∫ |p| dt, so that it is never negative.
 
@@ -95,11 +95,11 @@ class Objective:
     smoothing: float = 0.1
 
     def __post_init__(self) -> None:
-        within("Objective.time_weight", self.time_weight, 0.0, 1.0)
-        of_kind("Objective.consumption", self.consumption, Consumption)
+        within("MotionObjective.time_weight", self.time_weight, 0.0, 1.0)
+        of_kind("MotionObjective.consumption", self.consumption, Consumption)
         if self.longest is not None:
-            positive("Objective.longest", self.longest)
-        positive("Objective.smoothing", self.smoothing)
+            positive("MotionObjective.longest", self.longest)
+        positive("MotionObjective.smoothing", self.smoothing)
 
 
 @dataclass(frozen=True)
@@ -142,7 +142,7 @@ class MotionTask:
     start_velocity: ArrayLike | None = None
     end_velocity: ArrayLike | None = None
     limits: ControlLimits = field(default_factory=ControlLimits)
-    objective: Objective = field(default_factory=Objective)
+    objective: MotionObjective = field(default_factory=MotionObjective)
     loads: tuple[Inertia | None, ...] = (None,)
     tcp: Pose = IDENTITY
     joints: Sequence[int] | None = None
@@ -150,7 +150,7 @@ class MotionTask:
     def __post_init__(self) -> None:
         of_kind("MotionTask.robot", self.robot, Robot)
         of_kind("MotionTask.limits", self.limits, ControlLimits)
-        of_kind("MotionTask.objective", self.objective, Objective)
+        of_kind("MotionTask.objective", self.objective, MotionObjective)
         of_kind("MotionTask.tcp", self.tcp, Pose)
         all_of_kind("MotionTask.waypoints", self.waypoints, Waypoint)
         all_of_kind("MotionTask.loads", self.loads, Inertia | None)
@@ -186,6 +186,12 @@ class MotionTask:
         """(n,), indices of the joints that may move."""
         assert self.joints is not None
         return np.array(self.joints, dtype=np.int64)
+
+    def whole(self, q: FloatArray) -> FloatArray:
+        """(M, N), all joints from those that move (M, n); the others stay at the start."""
+        out = np.tile(np.asarray(self.start, dtype=float), (len(q), 1))
+        out[:, self.moving] = q
+        return out
 
     def load(self, leg: int) -> Inertia | None:
         """What is carried on a leg."""

@@ -6,20 +6,24 @@ the Lagrangian's Hessian (lower and upper triangle).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 
 from .....core.arrays import FloatArray, IntArray
-from ..motion.layout import Layout
+from ..motion.layout import VariableLayout
 
 Places = tuple[IntArray, IntArray]
 """Rows and columns of entries; entries at one place add up."""
 
+Terms = tuple[IntArray, FloatArray]
+"""Columns of x, and what each is multiplied by."""
+
 NOTHING: Places = (np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
 
 
-class Rows(Protocol):
+class ConstraintRows(Protocol):
     """A block of m constraints."""
 
     @property
@@ -36,40 +40,44 @@ class Rows(Protocol):
 
 
 class MotionRows:
-    """g · q₀' terms: linear forms of interval polynomials, with their dependence on the width.
+    """Linear forms of interval polynomials, with their dependence on the interval's width w.
 
-    A row is   Σ_j a_j q_j  +  d-factor · w · d₀ (or d₁ …)  +  w^p Σ_i c_i e_i:  see `Link` and
-    `Hull` for the rows that are made of it.
+    A row is Σ a q + w Σ b d + w² Σ c e, with the columns of x that are given for each sum.
 
     Args:
         layout: the variables.
         interval: (m,), the interval of each row.
         plain: columns (m, a) and coefficients (m, a) of what does not depend on the width.
-        once: columns and coefficients (m, b) of what is multiplied by w.
+        once: columns and coefficients (m, b) of what is multiplied by w; None for nothing.
         twice: of what is multiplied by w².
+        lower, upper: bounds of the rows, (m,) or one for all.
     """
 
     def __init__(
         self,
-        layout: Layout,
+        layout: VariableLayout,
         interval: IntArray,
-        plain: tuple[IntArray, FloatArray],
-        once: tuple[IntArray, FloatArray],
-        twice: tuple[IntArray, FloatArray],
+        plain: Terms,
+        once: Terms | None = None,
+        twice: Terms | None = None,
+        lower: FloatArray | float = 0.0,
+        upper: FloatArray | float = 0.0,
     ) -> None:
+        count = len(interval)
+        nothing = np.zeros((count, 0), dtype=np.int64), np.zeros((count, 0))
         self._layout = layout
         self._interval = interval
-        self._parts = (plain, once, twice)
+        self._parts = (plain, once or nothing, twice or nothing)
         self._columns = np.concatenate([part[0] for part in self._parts], axis=1)
         self._free = bool(layout.stretches)
         self._width_column = layout.stretch[interval] if self._free else None
+        self.lower, self.upper = np.full(count, lower), np.full(count, upper)
 
     def __len__(self) -> int:
         return len(self._interval)
 
     @property
-    def places(self) -> Places:
-        """Of the Jacobian."""
+    def jacobian_places(self) -> Places:
         columns = self._columns
         if self._width_column is not None:
             columns = np.hstack([columns, self._width_column[:, None]])
@@ -114,82 +122,91 @@ class MotionRows:
         return np.concatenate([cross, cross, bend])
 
 
-def empty(count: int) -> tuple[IntArray, FloatArray]:
-    """No columns for ``count`` rows."""
-    return np.zeros((count, 0), dtype=np.int64), np.zeros((count, 0))
+class Stack:
+    """Blocks of rows one below the other."""
+
+    def __init__(self, blocks: Sequence[ConstraintRows]) -> None:
+        self._blocks = blocks
+        self._sizes = [len(block.lower) for block in blocks]
+        self.lower = np.concatenate([block.lower for block in blocks])
+        self.upper = np.concatenate([block.upper for block in blocks])
+
+    @property
+    def jacobian_places(self) -> Places:
+        starts = np.cumsum([0, *self._sizes[:-1]])
+        places = [block.jacobian_places for block in self._blocks]
+        rows = [row + start for (row, _), start in zip(places, starts, strict=True)]
+        return np.concatenate(rows), np.concatenate([column for _, column in places])
+
+    @property
+    def hessian_places(self) -> Places:
+        places = [block.hessian_places for block in self._blocks]
+        return np.concatenate([p[0] for p in places]), np.concatenate([p[1] for p in places])
+
+    def values(self, x: FloatArray) -> FloatArray:
+        return np.concatenate([block.values(x) for block in self._blocks])
+
+    def jacobian(self, x: FloatArray) -> FloatArray:
+        return np.concatenate([block.jacobian(x) for block in self._blocks])
+
+    def hessian(self, x: FloatArray, multipliers: FloatArray) -> FloatArray:
+        shares = np.split(multipliers, np.cumsum(self._sizes)[:-1])
+        pairs = zip(self._blocks, shares, strict=True)
+        return np.concatenate([block.hessian(x, share) for block, share in pairs])
 
 
-class LinkRows:
+def link_rows(layout: VariableLayout) -> Stack:
     """Position and velocity at the nodes of an interval follow from those at its beginning:
 
     q_b − q₀ − u w d₀ − w² Σ A_i(u) e_i = 0,     d_b − d₀ − w Σ B_i(u) e_i = 0.
     """
-
-    def __init__(self, layout: Layout) -> None:
-        scheme, n = layout.scheme, layout.joints
-        positions, velocities = [], []
-        for step in range(1, scheme.steps + 1):
-            share = step / scheme.steps
-            interval = np.repeat(np.arange(len(layout.grid)), n)
-            start, end = layout.first, layout.first + step
-            q = np.stack([layout.q[end].ravel(), layout.q[start].ravel()], 1)
-            d = np.stack([layout.d[end].ravel(), layout.d[start].ravel()], 1)
-            e = np.moveaxis(layout.e[layout.rise], 1, 2).reshape(len(interval), -1)
-            count = len(interval)
-            signs = np.tile([1.0, -1.0], (count, 1))
-            positions.append(
-                MotionRows(
-                    layout,
-                    interval,
-                    (q, signs),
-                    (d[:, 1:], np.full((count, 1), -share)),
-                    (e, np.tile(-scheme.position_at(share), (count, 1))),
-                )
-            )
-            velocities.append(
-                MotionRows(
-                    layout,
-                    interval,
-                    (d, signs),
-                    (e, np.tile(-scheme.velocity_at(share), (count, 1))),
-                    empty(count),
-                )
-            )
-        self._parts = [*positions, *velocities]
-        self.lower = np.zeros(sum(map(len, self._parts)))
-        self.upper = self.lower
-
-    @property
-    def jacobian_places(self) -> Places:
-        return stacked_places([(part.places, len(part)) for part in self._parts])
-
-    @property
-    def hessian_places(self) -> Places:
-        places = [part.hessian_places for part in self._parts]
-        return np.concatenate([p[0] for p in places]), np.concatenate([p[1] for p in places])
-
-    def values(self, x: FloatArray) -> FloatArray:
-        return np.concatenate([part.values(x) for part in self._parts])
-
-    def jacobian(self, x: FloatArray) -> FloatArray:
-        return np.concatenate([part.jacobian(x) for part in self._parts])
-
-    def hessian(self, x: FloatArray, multipliers: FloatArray) -> FloatArray:
-        ends = np.cumsum([len(part) for part in self._parts])[:-1]
-        shares = np.split(multipliers, ends)
-        return np.concatenate(
-            [part.hessian(x, y) for part, y in zip(self._parts, shares, strict=True)]
-        )
+    scheme, n = layout.scheme, layout.joints
+    positions, velocities = [], []
+    interval = np.repeat(np.arange(len(layout.grid)), n)
+    e = np.moveaxis(layout.e[layout.rise], 1, 2).reshape(len(interval), -1)
+    signs = np.tile([1.0, -1.0], (len(interval), 1))
+    for step in range(1, scheme.steps + 1):
+        share = step / scheme.steps
+        start, end = layout.first, layout.first + step
+        q = np.stack([layout.q[end].ravel(), layout.q[start].ravel()], 1)
+        d = np.stack([layout.d[end].ravel(), layout.d[start].ravel()], 1)
+        once = d[:, 1:], np.full((len(interval), 1), -share)
+        twice = e, np.tile(-scheme.position_at(share), (len(interval), 1))
+        positions.append(MotionRows(layout, interval, (q, signs), once, twice))
+        once = e, np.tile(-scheme.velocity_at(share), (len(interval), 1))
+        velocities.append(MotionRows(layout, interval, (d, signs), once))
+    return Stack([*positions, *velocities])
 
 
-def stacked_places(parts: list[tuple[Places, int]]) -> Places:
-    """Places of blocks of rows one below the other."""
-    start, rows, columns = 0, [], []
-    for (row, column), count in parts:
-        rows.append(row + start)
-        columns.append(column)
-        start += count
-    return np.concatenate(rows), np.concatenate(columns)
+def place_rows(
+    layout: VariableLayout,
+    interval: IntArray,
+    share: FloatArray,
+    normal: FloatArray,
+    least: FloatArray,
+) -> MotionRows:
+    """Linearised distances at places of the motion: n · q(u) ≥ least.
+
+    Args:
+        layout: the variables.
+        interval, share: (m,), where in which interval.
+        normal: (m, n).
+        least: (m,).
+    """
+    scheme, count = layout.scheme, len(interval)
+    powers = share[:, None] ** np.arange(scheme.position.shape[1])
+    weights = powers @ scheme.position.T
+    start = layout.first[interval]
+    e = layout.e[layout.rise[interval]].reshape(count, -1)
+    return MotionRows(
+        layout,
+        interval,
+        (layout.q[start], normal),
+        (layout.d[start], share[:, None] * normal),
+        (e, (weights[:, :, None] * normal[:, None, :]).reshape(count, -1)),
+        least,
+        np.inf,
+    )
 
 
 class HullRows:
@@ -206,7 +223,7 @@ class HullRows:
     def __init__(
         self,
         motion: MotionRows,
-        layout: Layout,
+        layout: VariableLayout,
         limit: FloatArray,
         power: float,
         interval: IntArray | None = None,
@@ -227,7 +244,7 @@ class HullRows:
 
     @property
     def jacobian_places(self) -> Places:
-        rows, columns = self._motion.places
+        rows, columns = self._motion.jacobian_places
         count = len(self._motion)
         own = np.arange(count)
         extra = [(own, np.zeros(count, dtype=np.int64))]
@@ -276,107 +293,61 @@ class HullRows:
         return np.concatenate([motion, [bend], cross, cross])
 
 
-def velocity_rows(layout: Layout, limit: FloatArray) -> HullRows | None:
-    """|q̇| ≤ limit (n,), everywhere."""
-    scheme = layout.scheme
+def _coefficients(
+    layout: VariableLayout, limit: FloatArray, hull: FloatArray
+) -> tuple[IntArray, IntArray, IntArray]:
+    """Interval, Bernstein coefficient and joint of every row of the limits (n,) that there are."""
     chosen = np.flatnonzero(np.isfinite(limit))
-    if not len(chosen):
-        return None
-    # The last coefficient of an interval is the first one of the next.
-    hull = scheme.velocity_hull[:-1]
     interval, which, joint = (
         index.ravel() for index in np.indices((len(layout.grid), len(hull), len(chosen)))
     )
-    joint = chosen[joint]
+    return interval, which, chosen[joint]
+
+
+def velocity_rows(layout: VariableLayout, limit: FloatArray) -> HullRows | None:
+    """|q̇| ≤ limit (n,), everywhere."""
+    # The last coefficient of an interval is the first one of the next.
+    hull = layout.scheme.velocity_hull[:-1]
+    interval, which, joint = _coefficients(layout, limit, hull)
+    if not len(joint):
+        return None
     start = layout.d[layout.first[interval], joint][:, None]
     e = layout.e[layout.rise[interval], joint[:, None]]
     ones = np.ones((len(interval), 1))
-    motion = MotionRows(layout, interval, (start, ones), (e, hull[which]), empty(len(interval)))
+    motion = MotionRows(layout, interval, (start, ones), (e, hull[which]))
     return HullRows(motion, layout, limit[joint], 0.5)
 
 
-def acceleration_rows(layout: Layout, limit: FloatArray) -> HullRows | None:
+def acceleration_rows(layout: VariableLayout, limit: FloatArray) -> HullRows | None:
     """|q̈| ≤ limit (n,), everywhere."""
-    chosen = np.flatnonzero(np.isfinite(limit))
-    if not len(chosen):
-        return None
     hull = layout.scheme.acceleration_hull
-    interval, which, joint = (
-        index.ravel() for index in np.indices((len(layout.grid), len(hull), len(chosen)))
-    )
-    # An end that is the next interval's beginning is looked at there.
-    rise = layout.rise[interval]
-    last = which == len(hull) - 1
-    shared = np.zeros(len(interval), dtype=np.bool_)
-    if len(hull) > 1:
-        follows = np.append(layout.rise[1:, 0] == layout.rise[:-1, -1], False)
-        shared = last & follows[interval]
-    keep = ~shared
-    interval, which, joint, rise = interval[keep], which[keep], chosen[joint[keep]], rise[keep]
-    e = layout.e[rise, joint[:, None]]
-    count = len(interval)
-    motion = MotionRows(layout, interval, (e, hull[which]), empty(count), empty(count))
-    return HullRows(motion, layout, limit[joint], 1.0)
-
-
-def jerk_rows(layout: Layout, limit: FloatArray) -> HullRows | None:
-    """|q⃛| ≤ limit (n,) within the intervals."""
-    chosen = np.flatnonzero(np.isfinite(limit))
-    hull = layout.scheme.jerk_hull
-    if not len(chosen) or not len(hull):
+    interval, which, joint = _coefficients(layout, limit, hull)
+    if not len(joint):
         return None
-    interval, which, joint = (
-        index.ravel() for index in np.indices((len(layout.grid), len(hull), len(chosen)))
-    )
-    joint = chosen[joint]
+    if len(hull) > 1:
+        # An end that is the next interval's beginning is looked at there.
+        follows = np.append(layout.rise[1:, 0] == layout.rise[:-1, -1], False)
+        keep = (which < len(hull) - 1) | ~follows[interval]
+        interval, which, joint = interval[keep], which[keep], joint[keep]
     e = layout.e[layout.rise[interval], joint[:, None]]
-    count = len(interval)
-    motion = MotionRows(layout, interval, (e, hull[which]), empty(count), empty(count))
+    return HullRows(MotionRows(layout, interval, (e, hull[which])), layout, limit[joint], 1.0)
+
+
+def jerk_rows(layout: VariableLayout, limit: FloatArray) -> HullRows | None:
+    """|q⃛| ≤ limit (n,) within the intervals."""
+    hull = layout.scheme.jerk_hull
+    interval, which, joint = _coefficients(layout, limit, hull)
+    if not len(joint):
+        return None
+    e = layout.e[layout.rise[interval], joint[:, None]]
+    motion = MotionRows(layout, interval, (e, hull[which]))
     return HullRows(motion, layout, limit[joint], 1.5, interval)
-
-
-class PlaceRows:
-    """Linearised distances at places of the motion: n · q(u) ≥ least.
-
-    Args:
-        layout: the variables.
-        interval, share: (m,), where in which interval.
-        normal: (m, n).
-        least: (m,).
-    """
-
-    def __init__(
-        self,
-        layout: Layout,
-        interval: IntArray,
-        share: FloatArray,
-        normal: FloatArray,
-        least: FloatArray,
-    ) -> None:
-        scheme, count = layout.scheme, len(interval)
-        powers = share[:, None] ** np.arange(scheme.position.shape[1])
-        weights = powers @ scheme.position.T
-        start = layout.first[interval]
-        e = layout.e[layout.rise[interval]].reshape(count, -1)
-        self._motion = MotionRows(
-            layout,
-            interval,
-            (layout.q[start], normal),
-            (layout.d[start], share[:, None] * normal),
-            (e, (weights[:, :, None] * normal[:, None, :]).reshape(count, -1)),
-        )
-        self.lower, self.upper = least, np.full(count, np.inf)
-        self.jacobian_places = self._motion.places
-        self.hessian_places = self._motion.hessian_places
-        self.values = self._motion.values
-        self.jacobian = self._motion.jacobian
-        self.hessian = self._motion.hessian
 
 
 class DurationRow:
     """The stretched widths sum to one."""
 
-    def __init__(self, layout: Layout) -> None:
+    def __init__(self, layout: VariableLayout) -> None:
         grid = layout.grid
         self._share = np.bincount(grid.group, grid.width, grid.groups)
         self._columns = 1 + np.arange(grid.groups)

@@ -6,7 +6,7 @@ import numpy as np
 
 from .....core.arrays import FloatArray
 from .....core.motion.model.consumption import Consumption, Rounded
-from ..motion.layout import Layout
+from ..motion.layout import VariableLayout
 from ..task.limits import TorqueLimits
 from ..task.sampled import State, TcpSpeed, TorqueField
 from .rows import Places
@@ -17,23 +17,24 @@ class SamplePlaces:
 
     Args:
         layout: the variables.
+        scale: T₀, s.
     """
 
-    def __init__(self, layout: Layout) -> None:
-        point, rise, self.leg = layout.samples.T
+    def __init__(self, layout: VariableLayout, scale: float) -> None:
+        point, rise, self._leg = layout.samples.T
         parts = [layout.q[point], layout.d[point], layout.e[rise]]
         zero = np.zeros((len(point), 1), dtype=np.int64)
         self.columns = np.hstack([*parts, zero])
-        self._joints = layout.joints
+        self._scale = scale
 
     def __len__(self) -> int:
         return len(self.columns)
 
-    def split(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, float]:
-        """q, d, e (Z, n) and S."""
-        n = self._joints
-        z = x[self.columns[:, :-1]]
-        return z[:, :n], z[:, n : 2 * n], z[:, 2 * n :], float(x[0])
+    def state(self, x: FloatArray) -> State:
+        """The samples in time."""
+        q, d, e = np.split(x[self.columns[:, :-1]], 3, axis=1)
+        time = self._scale * np.sqrt(x[0])
+        return State(q, d / time, e / time**2, self._leg)
 
     def hessian_places(self) -> Places:
         """Of a block (size, size) for every sample."""
@@ -51,8 +52,8 @@ class TorqueRows:
         limits: of the torques.
     """
 
-    def __init__(self, layout: Layout, field: TorqueField, limits: TorqueLimits) -> None:
-        self._places = SamplePlaces(layout)
+    def __init__(self, layout: VariableLayout, field: TorqueField, limits: TorqueLimits) -> None:
+        self._places = SamplePlaces(layout, field.scale)
         self._field = field
         self._limits = limits
         count = len(self._places) * len(limits.axis)
@@ -63,11 +64,8 @@ class TorqueRows:
         self.lower, self.upper = -1.0 + margin.ravel(), 1.0 - margin.ravel()
         return self
 
-    def _state(self, x: FloatArray) -> State:
-        return self._field.state(*self._places.split(x), self._places.leg)
-
     def values(self, x: FloatArray) -> FloatArray:
-        state = self._state(x)
+        state = self._places.state(x)
         return self._limits.shares(self._field.torques(state), self._field.rates(state)).ravel()
 
     @property
@@ -77,7 +75,7 @@ class TorqueRows:
         return np.repeat(np.arange(len(wide)), wide.shape[1]), wide.ravel()
 
     def jacobian(self, x: FloatArray) -> FloatArray:
-        state, S = self._state(x), float(x[0])
+        state, S = self._places.state(x), float(x[0])
         axis, most, slope = self._limits
         slopes = self._field.slopes(state, S)[:, axis]
         slopes += slope[:, None] * self._field.rate_slopes(state, S)[:, axis]
@@ -88,7 +86,7 @@ class TorqueRows:
         return self._places.hessian_places()
 
     def hessian(self, x: FloatArray, multipliers: FloatArray) -> FloatArray:
-        state, S = self._state(x), float(x[0])
+        state, S = self._places.state(x), float(x[0])
         axis, most, slope = self._limits
         y = multipliers.reshape(len(self._places), -1) / most
         driven, sped = np.zeros((2, *self._field.rates(state).shape))
@@ -130,9 +128,9 @@ class TcpSpeedRows:
         scale: T₀, s.
     """
 
-    def __init__(self, layout: Layout, speed: TcpSpeed, limit: float, scale: float) -> None:
-        self._places = SamplePlaces(layout)
-        self._speed, self._square, self._scale = speed, limit**2, scale
+    def __init__(self, layout: VariableLayout, speed: TcpSpeed, limit: float, scale: float) -> None:
+        self._places = SamplePlaces(layout, scale)
+        self._speed, self._square = speed, limit**2
         count = len(self._places)
         self.lower, self.upper = np.full(count, -np.inf), np.ones(count)
 
@@ -141,13 +139,8 @@ class TcpSpeedRows:
         self.upper = (1.0 - margin) ** 2
         return self
 
-    def _state(self, x: FloatArray) -> tuple[State, float]:
-        q, d, e, S = self._places.split(x)
-        time = self._scale * np.sqrt(S)
-        return State(q, d / time, e / time**2, self._places.leg), S
-
     def values(self, x: FloatArray) -> FloatArray:
-        return np.asarray(self._speed.squares(self._state(x)[0]).ravel() / self._square)
+        return np.asarray(self._speed.squares(self._places.state(x)).ravel() / self._square)
 
     @property
     def jacobian_places(self) -> Places:
@@ -155,7 +148,9 @@ class TcpSpeedRows:
         return np.repeat(np.arange(len(columns)), columns.shape[1]), columns.ravel()
 
     def jacobian(self, x: FloatArray) -> FloatArray:
-        return np.asarray((self._speed.slopes(*self._state(x)) / self._square).ravel())
+        return np.asarray(
+            (self._speed.slopes(self._places.state(x), float(x[0])) / self._square).ravel()
+        )
 
     @property
     def hessian_places(self) -> Places:
@@ -163,7 +158,8 @@ class TcpSpeedRows:
 
     def hessian(self, x: FloatArray, multipliers: FloatArray) -> FloatArray:
         y = multipliers[:, None] / self._square
-        return convex_part(self._speed.bends(*self._state(x), y)).ravel()
+        bends = self._speed.bends(self._places.state(x), float(x[0]), y)
+        return convex_part(bends).ravel()
 
 
 class EnergyTerm:
@@ -179,7 +175,7 @@ class EnergyTerm:
 
     def __init__(
         self,
-        layout: Layout,
+        layout: VariableLayout,
         field: TorqueField,
         consumption: Consumption,
         scale: float,
@@ -187,16 +183,13 @@ class EnergyTerm:
     ) -> None:
         self._layout, self._field, self._scale = layout, field, scale
         self._consumption, self._width = consumption, width
-        self._places = SamplePlaces(layout)
+        self._places = SamplePlaces(layout, scale)
         self._interval, self._sample, self._share = layout.quadrature
 
     def _weights(self, x: FloatArray) -> FloatArray:
         """(Z,), widths of scaled time that the samples stand for."""
         widths = self._layout.width(x)[self._interval] * self._share
         return np.asarray(np.bincount(self._sample, widths, len(self._places)), np.float64)
-
-    def _state(self, x: FloatArray) -> State:
-        return self._field.state(*self._places.split(x), self._places.leg)
 
     def _driven(self, state: State) -> tuple[FloatArray, FloatArray, Rounded]:
         """Torques and velocities (Z, N), and what they consume (Z,)."""
@@ -206,13 +199,13 @@ class EnergyTerm:
 
     def size(self, x: FloatArray) -> float:
         """∫ |p| dt: what is consumed and what is left over, added up."""
-        state = self._state(x)
+        state = self._places.state(x)
         torque, rate = self._field.torques(state), self._field.rates(state)
         flow = self._consumption.flow(self._consumption.powers(torque, rate))
         return float(self._scale * np.sqrt(x[0]) * (self._weights(x) @ flow))
 
     def value(self, x: FloatArray) -> float:
-        found = self._driven(self._state(x))[2]
+        found = self._driven(self._places.state(x))[2]
         return float(self._scale * np.sqrt(x[0]) * (self._weights(x) @ found.value))
 
     def _by_stretch(self, x: FloatArray, values: FloatArray) -> FloatArray:
@@ -222,7 +215,7 @@ class EnergyTerm:
 
     def gradient(self, x: FloatArray) -> FloatArray:
         """(size,)."""
-        state, S = self._state(x), float(x[0])
+        state, S = self._places.state(x), float(x[0])
         torque, rate, found = self._driven(state)
         by_torque, by_rate = self._consumption.power_slopes(torque, rate)
         local = np.einsum("zj,zjk->zk", by_torque, self._field.slopes(state, S))
@@ -250,7 +243,7 @@ class EnergyTerm:
         return np.concatenate([rows, own, other]), np.concatenate([columns, other, own])
 
     def hessian(self, x: FloatArray, factor: float) -> FloatArray:
-        state, S = self._state(x), float(x[0])
+        state, S = self._places.state(x), float(x[0])
         torque, rate, found = self._driven(state)
         by_torque, by_rate = self._consumption.power_slopes(torque, rate)
         J, V = self._field.slopes(state, S), self._field.rate_slopes(state, S)

@@ -16,19 +16,19 @@ from scipy import sparse
 from .....core.arrays import FloatArray
 from .....core.sqp import NLP
 from .....core.sqp.algebra.entries import Entries
-from ..motion.layout import Layout
+from ..motion.layout import VariableLayout
 from ..task.limits import MotionLimits
 from ..task.sampled import Plant, TcpSpeed, TorqueField
 from ..task.task import MotionTask
 from .rows import (
+    ConstraintRows,
     DurationRow,
     GivenVelocity,
-    LinkRows,
-    PlaceRows,
-    Rows,
+    MotionRows,
+    Stack,
     acceleration_rows,
     jerk_rows,
-    stacked_places,
+    link_rows,
     velocity_rows,
 )
 from .sample_rows import EnergyTerm, TcpSpeedRows, TorqueRows
@@ -65,7 +65,7 @@ class Bounds:
 
 
 class Transcription:
-    """Objective, constraints and derivatives.
+    """MotionObjective, constraints and derivatives.
 
     Args:
         task: what is asked.
@@ -81,7 +81,7 @@ class Transcription:
         self,
         task: MotionTask,
         limits: MotionLimits,
-        layout: Layout,
+        layout: VariableLayout,
         scale: float,
         energy_unit: float | None,
         plant: Plant | None,
@@ -90,7 +90,7 @@ class Transcription:
         self.task, self.limits, self.layout, self.scale = task, limits, layout, scale
         self._field = None if plant is None else TorqueField(plant, scale)
         self._margins = margins
-        self._blocks: list[Rows] = self._make_rows()
+        self._blocks: list[ConstraintRows] = self._make_rows()
         self._energy = None
         if energy_unit is not None:
             assert self._field is not None
@@ -99,10 +99,10 @@ class Transcription:
             self._energy = EnergyTerm(layout, self._field, consumption, scale, width)
         self._energy_unit = energy_unit or 1.0
 
-    def _make_rows(self) -> list[Rows]:
+    def _make_rows(self) -> list[ConstraintRows]:
         layout, limits, scale = self.layout, self.limits, self.scale
-        rows: list[Rows | None] = [
-            LinkRows(layout),
+        rows: list[ConstraintRows | None] = [
+            link_rows(layout),
             DurationRow(layout) if layout.stretches else None,
             velocity_rows(layout, limits.velocity * scale),
             acceleration_rows(layout, limits.acceleration * scale**2),
@@ -121,7 +121,7 @@ class Transcription:
             rows.append(tcp if self._margins is None else tcp.tightened(self._margins.tcp_speed))
         return [block for block in rows if block is not None]
 
-    # Objective
+    # MotionObjective
 
     def objective(self, x: FloatArray) -> float:
         if self._energy is None:
@@ -142,7 +142,7 @@ class Transcription:
 
     # The program
 
-    def nlp(self, bounds: Bounds, places: PlaceRows | None = None) -> NLP:
+    def nlp(self, bounds: Bounds, places: MotionRows | None = None) -> NLP:
         """The nonlinear program within bounds, with linearised distances at places."""
         return _Program(self, self._blocks + ([] if places is None else [places])).nlp(bounds)
 
@@ -183,36 +183,28 @@ class Transcription:
 class _Program:
     """The callables of one nonlinear program."""
 
-    def __init__(self, owner: Transcription, blocks: list[Rows]) -> None:
-        self._owner, self._blocks = owner, blocks
-        self._ends = np.cumsum([len(block.lower) for block in blocks])
+    def __init__(self, owner: Transcription, blocks: list[ConstraintRows]) -> None:
+        self._owner, self._rows = owner, Stack(blocks)
 
     @cached_property
     def _jacobian_entries(self) -> Entries:
-        places = [(block.jacobian_places, len(block.lower)) for block in self._blocks]
-        rows, columns = stacked_places(places)
-        return Entries(rows, columns, (int(self._ends[-1]), self._owner.layout.size))
+        shape = len(self._rows.lower), self._owner.layout.size
+        return Entries(*self._rows.jacobian_places, shape)
 
     @cached_property
     def _hessian_entries(self) -> Entries:
-        places = [block.hessian_places for block in self._blocks]
+        places = [self._rows.hessian_places]
         if self._owner._energy is not None:
             places.append(self._owner._energy.hessian_places)
         rows, columns = (np.concatenate([p[i] for p in places]) for i in (0, 1))
         size = self._owner.layout.size
         return Entries(rows, columns, (size, size))
 
-    def constraints(self, x: FloatArray) -> FloatArray:
-        return np.concatenate([block.values(x) for block in self._blocks])
-
     def jacobian(self, x: FloatArray) -> sparse.csc_array:
-        parts = [block.jacobian(x) for block in self._blocks]
-        return self._jacobian_entries.matrix(np.concatenate(parts))
+        return self._jacobian_entries.matrix(self._rows.jacobian(x))
 
     def hessian(self, x: FloatArray, factor: float, y: FloatArray) -> sparse.csc_array:
-        shares = np.split(y, self._ends[:-1])
-        parts = [block.hessian(x, share) for block, share in zip(self._blocks, shares, strict=True)]
-        owner = self._owner
+        parts, owner = [self._rows.hessian(x, y)], self._owner
         if owner._energy is not None:
             part = (1.0 - owner.task.objective.time_weight) / owner._energy_unit * factor
             parts.append(owner._energy.hessian(x, part))
@@ -222,14 +214,14 @@ class _Program:
         lower, upper = self._owner.variable_bounds(bounds)
         return NLP(
             n=self._owner.layout.size,
-            m=int(self._ends[-1]),
+            m=len(self._rows.lower),
             objective=self._owner.objective,
             gradient=self._owner.gradient,
-            constraints=self.constraints,
+            constraints=self._rows.values,
             jacobian=self.jacobian,
             hessian=self.hessian,
             x_lower=lower,
             x_upper=upper,
-            c_lower=np.concatenate([block.lower for block in self._blocks]),
-            c_upper=np.concatenate([block.upper for block in self._blocks]),
+            c_lower=self._rows.lower,
+            c_upper=self._rows.upper,
         )

@@ -21,11 +21,11 @@ from flyby.core.robot.shape import Box, LinkShape, Sphere
 from flyby.core.spatial.pose import IDENTITY, Pose
 from flyby.problems.free_motion.optimal_control import (
     ControlLimits,
-    Effort,
+    MotionEffort,
+    MotionObjective,
     MotionTask,
-    Objective,
     SchemeKind,
-    Step,
+    SearchStep,
     Surroundings,
     TorqueLine,
     Waypoint,
@@ -75,7 +75,7 @@ OVER = [np.array([[-1.0, 0.8], [1.0, 0.8]])]
 def test_no_jump_through_a_thin_wall(intervals: int, scheme: SchemeKind) -> None:
     """The straight motion's nodes stand on both sides of the wall, none in it: it would be
     quicker, and every motion that is tried may go anywhere within a metre."""
-    effort = Effort(intervals=intervals, box=1.0, scheme=scheme)
+    effort = MotionEffort(intervals=intervals, box=1.0, scheme=scheme)
     through = optimize(across(gantry()), effort=effort)
     nodes = through.motion.at(through.motion.knots)
     widest = int(np.diff(nodes[:, 0]).argmax())
@@ -83,7 +83,7 @@ def test_no_jump_through_a_thin_wall(intervals: int, scheme: SchemeKind) -> None
     task = across(around)
     free = np.array([not around.scene.collides(q) for q in nodes])
     assert free.all() and not prove(task, through.motion, around.scene, 0.005).certificate.proven
-    steps: list[Step] = []
+    steps: list[SearchStep] = []
     found = optimize(task, around, effort, vias=OVER, report=lambda step: steps.append(step))
     assert found.proven
     t = np.linspace(0.0, found.time, 5000)
@@ -102,7 +102,7 @@ def test_two_joints_round_a_box() -> None:
     q = [np.array(target.joints) for target in targets]  # type: ignore[union-attr]
     around = Surroundings(CollisionScene(scene.cell, scene.tool), scene.cell.clearance)
     task = MotionTask(scene.cell.robot, q[0], q[-1], joints=scene.free, tcp=scene.tool.tcp)
-    found = optimize(task, around, Effort(intervals=40), vias=[np.array(q[1:-1])])
+    found = optimize(task, around, MotionEffort(intervals=40), vias=[np.array(q[1:-1])])
     assert found.converged and found.proven
     assert found.time <= 1.130
     whole = found.trajectory(0.001)
@@ -126,9 +126,9 @@ def test_least_energy_does_not_keep_to_the_way_of_the_first_guess() -> None:
         joints=scene.free,
         tcp=scene.tool.tcp,
         loads=(load,),
-        objective=Objective(0.0),
+        objective=MotionObjective(0.0),
     )
-    effort, vias = Effort(intervals=16, trials=0), [np.array(q[1:-1])]
+    effort, vias = MotionEffort(intervals=16, trials=0), [np.array(q[1:-1])]
     found = optimize(task, around, effort, vias=vias)
     assert found.converged and found.proven
     assert found.energy() < 4.7e6
@@ -147,7 +147,7 @@ def test_two_joints_round_a_box_with_weak_drives() -> None:
     task = MotionTask(
         scene.cell.robot, q[0], q[-1], joints=scene.free, tcp=scene.tool.tcp, limits=limits
     )
-    found = optimize(task, around, Effort(intervals=20, trials=0), vias=[np.array(q[1:-1])])
+    found = optimize(task, around, MotionEffort(intervals=20, trials=0), vias=[np.array(q[1:-1])])
     assert found.converged and found.proven and 1.14 < found.time < 0.5 * found.first.duration
     used = np.abs(found.torque(np.linspace(0.0, found.time, 4001))) / found.limits.torque
     assert 0.999 < used.max() <= 1.001
@@ -168,10 +168,10 @@ def test_refused_stations() -> None:
 def test_a_path_is_planned_where_none_is_given() -> None:
     pytest.importorskip("ompl")
     around = gantry()
-    found = optimize(across(around), around, Effort(intervals=12, trials=0))
+    found = optimize(across(around), around, MotionEffort(intervals=12, trials=0))
     assert found.proven and found.motion.at(found.motion.knots)[:, 1].max() > 0.5
     beside = replace(across(around), end=[-0.5, 0.3])
-    assert optimize(beside, around, Effort(intervals=12)).first.leg.max() == 0
+    assert optimize(beside, around, MotionEffort(intervals=12)).first.leg.max() == 0
     with pytest.raises(MotionError, match="joint Y is to stand still: give corners"):
         optimize(replace(across(around), joints=(0,)), around)
 
@@ -202,9 +202,9 @@ def test_torque_limits_that_cannot_hold_the_arm() -> None:
 def test_missing_inertias() -> None:
     bare = replace(ARM, links=())
     with pytest.raises(InputError, match=r"abb/irb6640-180-255 need the inertias of its links"):
-        optimize(MotionTask(bare, START, END, objective=Objective(0.5)))
+        optimize(MotionTask(bare, START, END, objective=MotionObjective(0.5)))
     # Nothing is needed where only speeds and accelerations count.
-    assert optimize(MotionTask(bare, START, END), effort=Effort(intervals=8)).time > 0.0
+    assert optimize(MotionTask(bare, START, END), effort=MotionEffort(intervals=8)).time > 0.0
 
 
 @pytest.mark.parametrize(
@@ -218,7 +218,10 @@ def test_missing_inertias() -> None:
         ({"limits": ControlLimits(acceleration=[np.inf])}, "joint X has neither"),
         ({"limits": ControlLimits(velocity=[-1.0])}, "joint X: the velocity limit must be"),
         ({"waypoints": (Waypoint([99.0]),)}, "waypoint 1 cannot be reached: joint X"),
-        ({"objective": Objective(0.5, SquaredTorque((1.0, 2.0)))}, "of 2 joints; there are 1"),
+        (
+            {"objective": MotionObjective(0.5, SquaredTorque((1.0, 2.0)))},
+            "of 2 joints; there are 1",
+        ),
         ({"limits": ControlLimits(torque=[np.nan])}, "joint X: the torque limit must be"),
         (
             {"limits": ControlLimits(torque="abc")},
@@ -233,7 +236,7 @@ def test_missing_inertias() -> None:
         ({"loads": (30.0,)}, "MotionTask.loads, number 1 is of type Inertia or None, not 30.0"),
         ({"tcp": None}, "MotionTask.tcp is of type Pose, not None"),
         ({"robot": "abb/irb6640"}, "MotionTask.robot is of type Robot, not 'abb/irb6640'"),
-        ({"objective": 0.5}, "MotionTask.objective is of type Objective, not 0.5"),
+        ({"objective": 0.5}, "MotionTask.objective is of type MotionObjective, not 0.5"),
         ({"limits": {"torque": [1.0]}}, "MotionTask.limits is of type ControlLimits, not {"),
         ({"joints": 0}, "MotionTask.joints are different indices below 1, one at least, not 0"),
         ({"start": ["here"]}, r"start needs one number an axis \(X\), not"),
@@ -247,9 +250,9 @@ def test_bad_tasks(change: dict[str, object], message: str) -> None:
 
 def test_a_time_that_is_too_short_is_refused() -> None:
     """At full acceleration it takes 2 √3 s."""
-    task = MotionTask(cart(), [0.0], [3.0], objective=Objective(longest=3.4))
+    task = MotionTask(cart(), [0.0], [3.0], objective=MotionObjective(longest=3.4))
     with pytest.raises(MotionError, match=r"takes 3.4 s at most was found"):
-        optimize(task, effort=Effort(intervals=12))
+        optimize(task, effort=MotionEffort(intervals=12))
 
 
 @pytest.mark.parametrize(
@@ -257,21 +260,27 @@ def test_a_time_that_is_too_short_is_refused() -> None:
     [
         (lambda: Surroundings(gantry().scene, np.nan), "clearance is zero or more metres"),
         (lambda: Surroundings(gantry().scene, -0.001), "clearance is zero or more metres"),
-        (lambda: Effort(intervals=2.5), "intervals is a whole number, 1 or more, not 2.5"),
-        (lambda: Effort(trials=17), "trials is a whole number, from 0 to 16, not 17"),
-        (lambda: Effort(group=0), "group is a whole number, 1 or more, not 0"),
-        (lambda: Effort(scheme="rk4"), "scheme is of type SchemeKind, not 'rk4'"),
-        (lambda: Effort(gain="small"), "gain is a finite number above zero, not 'small'"),
-        (lambda: Objective("fast"), "time_weight is a number from 0 to 1, not 'fast'"),
-        (lambda: Objective(np.nan), "time_weight is a number from 0 to 1, not nan"),
-        (lambda: Objective(0.5, None), "consumption is of type Consumption, not None"),
-        (lambda: Objective(longest=-1.0), "longest is a finite number above zero, not -1.0"),
-        (lambda: Objective(smoothing=0.0), "smoothing is a finite number above zero, not 0.0"),
+        (lambda: MotionEffort(intervals=2.5), "intervals is a whole number, 1 or more, not 2.5"),
+        (lambda: MotionEffort(trials=17), "trials is a whole number, from 0 to 16, not 17"),
+        (lambda: MotionEffort(group=0), "group is a whole number, 1 or more, not 0"),
+        (lambda: MotionEffort(scheme="rk4"), "scheme is of type SchemeKind, not 'rk4'"),
+        (lambda: MotionEffort(gain="small"), "gain is a finite number above zero, not 'small'"),
+        (lambda: MotionObjective("fast"), "time_weight is a number from 0 to 1, not 'fast'"),
+        (lambda: MotionObjective(np.nan), "time_weight is a number from 0 to 1, not nan"),
+        (lambda: MotionObjective(0.5, None), "consumption is of type Consumption, not None"),
+        (lambda: MotionObjective(longest=-1.0), "longest is a finite number above zero, not -1.0"),
+        (
+            lambda: MotionObjective(smoothing=0.0),
+            "smoothing is a finite number above zero, not 0.0",
+        ),
         (lambda: ControlLimits(tcp_speed="fast"), "tcp_speed is a finite number above zero"),
         (lambda: ControlLimits(tcp_speed=np.nan), "tcp_speed is a finite number above zero"),
         (lambda: ControlLimits(curves=TorqueLine("X", 1.0, 1.0)), "curves is a tuple of Torque"),
         (lambda: TorqueLine("X", "a lot", 1.0), "torque line of X: most is a finite number"),
-        (lambda: optimize(arm_task(), effort={"intervals": 8}), "effort is of type Effort or"),
+        (
+            lambda: optimize(arm_task(), effort={"intervals": 8}),
+            "effort is of type MotionEffort or",
+        ),
         (lambda: optimize(arm_task(), "cell.toml"), "around is of type Surroundings or None"),
     ],
 )
@@ -304,7 +313,7 @@ def test_a_torque_line_of_an_axis_that_brakes_hold() -> None:
 def test_a_jerk_limit_needs_a_scheme_with_jerk() -> None:
     task = MotionTask(cart(), [0.0], [1.0], limits=ControlLimits(jerk=[5.0]))
     with pytest.raises(InputError, match="have no jerk to limit"):
-        optimize(task, effort=Effort(scheme=SchemeKind.CONSTANT))
+        optimize(task, effort=MotionEffort(scheme=SchemeKind.CONSTANT))
 
 
 def test_joints_that_stand_still_have_to_be_held() -> None:

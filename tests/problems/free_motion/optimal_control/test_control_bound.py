@@ -10,7 +10,12 @@ import pytest
 from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import Radius
-from flyby.problems.free_motion.optimal_control import Effort, MotionTask, Surroundings, optimize
+from flyby.problems.free_motion.optimal_control import (
+    MotionEffort,
+    MotionTask,
+    Surroundings,
+    optimize,
+)
 from flyby.validation.scenes.scene import PARABOLAS, with_zone
 from flyby.validation.scenes.two_joints import two_joints
 
@@ -39,7 +44,7 @@ def test_averages_keep_limits_and_come_on_top_of_the_free_time() -> None:
     q = np.array([target.joints for target in targets if isinstance(target, JointTarget)])
     around = Surroundings(CollisionScene(SCENE.cell, SCENE.tool), SCENE.cell.clearance)
     task = MotionTask(SCENE.cell.robot, q[0], q[-1], joints=SCENE.free, tcp=SCENE.tool.tcp)
-    found = optimize(task, around, Effort(intervals=40), vias=[q[1:-1]])
+    found = optimize(task, around, MotionEffort(intervals=40), vias=[q[1:-1]])
     assert found.certificate is not None
     assert found.certificate.clearance >= SCENE.cell.clearance
     assert found.time < plain.timing.duration

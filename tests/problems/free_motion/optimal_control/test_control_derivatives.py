@@ -17,8 +17,8 @@ from flyby.core.sqp import NLP
 from flyby.problems.free_motion.optimal_control import (
     ControlLimits,
     Motion,
+    MotionObjective,
     MotionTask,
-    Objective,
     SchemeKind,
     TorqueLine,
 )
@@ -49,7 +49,7 @@ def everything(scheme: SchemeKind) -> MotionTask:
     limits = ControlLimits(
         torque=TORQUE, tcp_speed=2.0, jerk=jerk, curves=(TorqueLine("J2", 5000.0, 500.0),)
     )
-    objective = Objective(0.5, Motors((1e-4,) * 6, 0.3), smoothing=0.2)
+    objective = MotionObjective(0.5, Motors((1e-4,) * 6, 0.3), smoothing=0.2)
     return arm_task(
         waypoints=(middle(),),
         loads=(None, LOAD),
@@ -103,7 +103,7 @@ def _agree(exact: object, sides: tuple[object, object], share: float = 1e-6) -> 
 
 @pytest.mark.parametrize("consumption", [SQUARED_TORQUE, Motors((1e-4,) * 6)], ids=str)
 def test_the_hessian_that_is_used_is_convex_on_a_fixed_grid(consumption: Consumption) -> None:
-    task = arm_task(objective=Objective(0.5, consumption))
+    task = arm_task(objective=MotionObjective(0.5, consumption))
     guess, nlp = program(task, SchemeKind.LINEAR, None)
     y = np.abs(np.random.default_rng(1).standard_normal(nlp.m))
     hessian = nlp.hessian(guess.x, 1.0, y).toarray()

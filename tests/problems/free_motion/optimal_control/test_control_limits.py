@@ -18,9 +18,9 @@ from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_quaternion
 from flyby.problems.free_motion.optimal_control import (
     ControlLimits,
-    Effort,
+    MotionEffort,
+    MotionObjective,
     MotionTask,
-    Objective,
     Optimum,
     SchemeKind,
     TorqueLine,
@@ -32,13 +32,13 @@ from flyby.problems.free_motion.optimal_control.task.sampled import TcpSpeed
 
 from .control_tasks import ARM, END, START, TORQUE, arm_task, cart, middle
 
-QUICK = Effort(intervals=16)
-COARSE = Effort(intervals=10)
+QUICK = MotionEffort(intervals=16)
+COARSE = MotionEffort(intervals=10)
 LOAD = Inertia(40.0, (0.0, 0.0, 0.2))
 
 
 @cache
-def quickest(effort: Effort) -> Optimum:
+def quickest(effort: MotionEffort) -> Optimum:
     """Of `arm_task` as it is."""
     return optimize(arm_task(), effort=effort)
 
@@ -90,7 +90,7 @@ def test_positions_hold_between_nodes() -> None:
     robot = cart()
     joint = replace(robot.joints[0], upper=4.05)
     task = MotionTask(replace(robot, joints=(joint,)), [4.0], [3.0], start_velocity=[0.3])
-    found = optimize(task, effort=Effort(intervals=12))
+    found = optimize(task, effort=MotionEffort(intervals=12))
     assert found.motion.at(times(found)).max() <= 4.05 + 1e-6
 
 
@@ -121,7 +121,7 @@ def test_a_load_taken_up_on_the_way_counts_from_there() -> None:
 
 
 def test_more_weight_on_energy_takes_longer_and_less() -> None:
-    slower = [optimize(arm_task(objective=Objective(w)), effort=COARSE) for w in (0.5, 0.2)]
+    slower = [optimize(arm_task(objective=MotionObjective(w)), effort=COARSE) for w in (0.5, 0.2)]
     found = [quickest(COARSE), *slower]
     assert found[0].time < found[1].time < found[2].time
     energies = [f.energy() for f in found]
@@ -131,7 +131,7 @@ def test_more_weight_on_energy_takes_longer_and_less() -> None:
 def test_motors_that_recuperate_take_less() -> None:
     copper = (1e-4,) * 6
     burnt, given_back = Motors(copper, 0.0), Motors(copper, 0.8)
-    objective = Objective(0.5, given_back)
+    objective = MotionObjective(0.5, given_back)
     found = optimize(arm_task(objective=objective), effort=COARSE)
     assert 0.0 < found.energy(given_back) < found.energy(burnt)
     assert found.time > quickest(COARSE).time
@@ -153,8 +153,8 @@ def test_scaled_limits_scale_time(seed: int, s: float) -> None:
     task = kinematic(seed)
     own = ARM.limits
     limits = ControlLimits(velocity=own.velocity * s, acceleration=own.acceleration * s**2)
-    plain = optimize(task, effort=Effort(intervals=16))
-    scaled = optimize(replace(task, limits=limits), effort=Effort(intervals=16))
+    plain = optimize(task, effort=MotionEffort(intervals=16))
+    scaled = optimize(replace(task, limits=limits), effort=MotionEffort(intervals=16))
     assert scaled.time == pytest.approx(plain.time / s, rel=1e-4)
 
 
@@ -163,7 +163,7 @@ def test_scaled_limits_scale_time(seed: int, s: float) -> None:
 def test_the_way_back_takes_as_long(seed: int) -> None:
     task = kinematic(seed)
     back = replace(task, start=task.end, end=task.start)
-    there, again = (optimize(t, effort=Effort(intervals=16)) for t in (task, back))
+    there, again = (optimize(t, effort=MotionEffort(intervals=16)) for t in (task, back))
     assert again.time == pytest.approx(there.time, rel=1e-4)
     # A motion driven backwards is one of the way back, and uses the same torques.
     turned = there.motion.reversed()

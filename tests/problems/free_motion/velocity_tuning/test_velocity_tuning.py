@@ -14,14 +14,15 @@ from scipy.integrate import solve_ivp
 
 from flyby.core.errors import InputError
 from flyby.core.motion.model.consumption import Motors, SquaredTorque
+from flyby.core.motion.timing.energy import by_load, loads_of
 from flyby.core.motion.timing.stamping import StandingStillError
 from flyby.problems.free_motion.velocity_tuning import (
-    Drive,
     FixedPath,
-    Objective,
+    JointDrive,
     Rigid,
     TorqueCurve,
     TuningError,
+    TuningObjective,
     TuningTask,
     Way,
     drives_of,
@@ -36,8 +37,8 @@ from .tuning_paths import graded, scene, slider
 SIZES = st.floats(0.2, 5.0)
 
 
-def limited(*torque: float) -> tuple[Drive, ...]:
-    return tuple(Drive(TorqueCurve.constant(value)) for value in torque)
+def limited(*torque: float) -> tuple[JointDrive, ...]:
+    return tuple(JointDrive(TorqueCurve.constant(value)) for value in torque)
 
 
 # ------------------------------------------------------------------ known answers
@@ -67,7 +68,7 @@ def test_weight_helps_one_way(distance, torque, share):
 
 def test_cubic_takes_least_squared_torque():
     """Rest to rest within T the least ∫ q̈² dt is 12 d² / T³, by a cubic in time."""
-    task = TuningTask(slider(2.0, 150, 3.0), objective=Objective(0.0, duration=1.7))
+    task = TuningTask(slider(2.0, 150, 3.0), objective=TuningObjective(0.0, duration=1.7))
     found = tune(task)
     assert found.way is Way.CONVEX
     assert found.duration == pytest.approx(1.7, rel=1e-5)
@@ -86,7 +87,7 @@ def test_viscous_friction():
     """v' = (τ − f v) / I forth, −(τ + f v) / I back, integrated beside."""
     distance, torque, friction = 2.0, 5.0, 2.5
     task = TuningTask(
-        slider(distance, 300), (Drive(TorqueCurve.constant(torque), viscous=friction),)
+        slider(distance, 300), (JointDrive(TorqueCurve.constant(torque), viscous=friction),)
     )
     found = tune(task)
     assert found.way is Way.SEQUENTIAL
@@ -98,7 +99,7 @@ def test_viscous_friction():
 def test_falling_torque():
     """v' = T(v) forth and −T(v) back, integrated beside."""
     curve = TorqueCurve((0.0, 0.5, 1.0, 2.0), (4.0, 4.0, 2.0, 1.0))
-    found = tune(TuningTask(slider(2.0, 300), (Drive(curve),)))
+    found = tune(TuningTask(slider(2.0, 300), (JointDrive(curve),)))
 
     def most(v):
         return float(curve.at(np.array(v)))
@@ -150,18 +151,18 @@ def test_a_sequence_ends_where_one_program_does():
     most = 1.3 * np.abs(path.rigid.c).max(axis=(0, 1)) + 10.0
     plain = tune(TuningTask(path, limited(*most)))
     rubbed = tune(
-        TuningTask(path, tuple(Drive(TorqueCurve.constant(v), viscous=1e-7) for v in most))
+        TuningTask(path, tuple(JointDrive(TorqueCurve.constant(v), viscous=1e-7) for v in most))
     )
     jerked = tune(TuningTask(path, limited(*most), jerk=np.full(6, 1e7)))
     for found in (rubbed, jerked):
         assert found.way is Way.SEQUENTIAL
         assert found.duration == pytest.approx(plain.duration, rel=1e-3)
-    wanted = Objective(0.4)
+    wanted = TuningObjective(0.4)
     convex = tune(TuningTask(path, limited(*most), objective=wanted))
     sequence = tune_in_sequence(
         TuningTask(
             path,
-            tuple(Drive(TorqueCurve.constant(v), viscous=1e-7) for v in most),
+            tuple(JointDrive(TorqueCurve.constant(v), viscous=1e-7) for v in most),
             objective=wanted,
         )
     )
@@ -177,7 +178,7 @@ def test_all_ways_agree_where_all_apply():
     times = [way(plain).duration for way in (tune_by_sweeps, tune_by_cones, tune_in_sequence)]
     assert times == pytest.approx([times[0]] * 3, rel=1e-3)
     for share in (0.0, 0.6, 1.0):
-        motors = Objective(0.5, Motors((1e-5,) * 6, share))
+        motors = TuningObjective(0.5, Motors((1e-5,) * 6, share))
         task = TuningTask(path, limited(*most), objective=motors)
         one, many = tune_by_cones(task), tune_in_sequence(task)
         assert (one.way, many.way) == (Way.CONVEX, Way.SEQUENTIAL)
@@ -224,7 +225,7 @@ def test_toppra_agrees():
 @settings(max_examples=4, deadline=None)
 def test_torque_and_time_scale(factor, weight):
     """All torques times s², time divided by s: the same motion."""
-    objective = Objective(weight, duration=4.0)
+    objective = TuningObjective(weight, duration=4.0)
     one = tune(TuningTask(slider(1.0, 60), limited(2.0), objective=objective))
     other = tune(
         TuningTask(
@@ -241,7 +242,9 @@ def test_more_time_never_costs_more():
     path = scene()[3]
     fastest = tune(TuningTask(path))
     energies = [
-        tune(TuningTask(path, objective=Objective(0.0, duration=share * fastest.duration))).energy
+        tune(
+            TuningTask(path, objective=TuningObjective(0.0, duration=share * fastest.duration))
+        ).energy
         for share in (1.0001, 1.02, 1.1, 1.3, 2.0, 4.0)
     ]
     assert all(b <= a * (1 + 1e-6) for a, b in pairwise(energies))
@@ -253,13 +256,13 @@ def test_no_time_to_lose():
     """Where only the fastest motion is short enough, it is the answer."""
     path = scene()[3]
     fastest = tune(TuningTask(path))
-    found = tune(TuningTask(path, objective=Objective(0.0, duration=fastest.duration)))
+    found = tune(TuningTask(path, objective=TuningObjective(0.0, duration=fastest.duration)))
     assert found.x == pytest.approx(fastest.x)
 
 
 def test_weights_order_the_motions():
     path = scene()[3]
-    found = [tune(TuningTask(path, objective=Objective(w))) for w in (1.0, 0.5, 0.0)]
+    found = [tune(TuningTask(path, objective=TuningObjective(w))) for w in (1.0, 0.5, 0.0)]
     assert found[0].duration < found[1].duration < found[2].duration
     assert found[0].energy > found[1].energy > found[2].energy
     assert all(motion.excess < 1e-6 for motion in found)
@@ -270,7 +273,7 @@ def test_recuperation_pays():
     """The more is given back, the less is taken, and the faster the best motion is."""
     path, copper = scene()[3], (1e-5,) * 6
     found = [
-        tune(TuningTask(path, objective=Objective(0.0, Motors(copper, share))))
+        tune(TuningTask(path, objective=TuningObjective(0.0, Motors(copper, share))))
         for share in (0.0, 0.3, 0.7, 1.0)
     ]
     for less, more in pairwise(found):
@@ -282,10 +285,10 @@ def test_an_energy_that_nearly_cancels_weighs_no_more_than_others():
     """What the fastest motion takes passes zero at η = 0.674; its share of the price does not."""
     path = scene()[3]
     found = [
-        tune(TuningTask(path, objective=Objective(0.5, Motors((), share))))
+        tune(TuningTask(path, objective=TuningObjective(0.5, Motors((), share))))
         for share in (0.5, 0.674, 1.0)
     ]
-    fastest = tune(TuningTask(path, objective=Objective(1.0, Motors((), 0.674))))
+    fastest = tune(TuningTask(path, objective=TuningObjective(1.0, Motors((), 0.674))))
     assert abs(fastest.energy) < 1e-2 * fastest.flow
     assert found[0].duration > found[1].duration > found[2].duration
 
@@ -295,26 +298,41 @@ def test_an_energy_that_nearly_cancels_weighs_no_more_than_others():
 def test_no_other_motion_takes_less(share, slower):
     """Neither the fastest motion slowed down nor a mean of it and the best one is better."""
     path, motors = scene()[3], Motors((1e-5,) * 6, share)
-    fastest = tune(TuningTask(path, objective=Objective(1.0, motors)))
+    fastest = tune(TuningTask(path, objective=TuningObjective(1.0, motors)))
     bound = slower * fastest.duration
-    best = tune(TuningTask(path, objective=Objective(0.0, motors, bound)))
+    best = tune(TuningTask(path, objective=TuningObjective(0.0, motors, bound)))
     room = 5e-3 * abs(fastest.energy)
     for other in (fastest.x / slower**2, 0.5 * (fastest.x + best.x)):
         assert best.energy <= replace(best, x=other).energy + room
+
+
+def _torque_between(found, controller, program, timing) -> np.ndarray:
+    """(T, N) N m of the motors every ms, between knots too."""
+    own = found.timing(timing)
+    t = np.arange(5e-4, own.duration, 1e-3)
+    q, dq, ddq = own.states_at(t)
+    interval = np.clip(np.searchsorted(own.begin, t, "right") - 1, 0, None)
+    torque = np.empty_like(q)
+    for load, rows in by_load(loads_of(program, timing.path), own.interval_segments[interval]):
+        torque[rows] = controller.robot.inverse_dynamics(q[rows], dq[rows], ddq[rows], load)
+    for j, drive in enumerate(found.task.drives):
+        torque[:, j] += drive.inertia * ddq[:, j] + drive.viscous * dq[:, j]
+        torque[:, j] += drive.coulomb * np.sign(dq[:, j])
+    return torque
 
 
 def test_torque_limits_hold_between_knots():
     controller, program, timing, path = scene()
     most = 1.2 * np.abs(path.rigid.c).max(axis=(0, 1)) + 50.0
     found = tune(TuningTask(path, limited(*most)))
-    between = np.abs(found.torque_between(controller, program, timing)) / most
+    between = np.abs(_torque_between(found, controller, program, timing)) / most
     assert between.max() < 1.001
 
 
 def test_tuned_timing_is_a_timing():
     """A tuned motion put in the place of the stamp has its duration and its energy."""
     controller, program, timing, path = scene()
-    found = tune(TuningTask(path, objective=Objective(0.3)))
+    found = tune(TuningTask(path, objective=TuningObjective(0.3)))
     own = found.timing(timing)
     assert own.duration == pytest.approx(found.duration)
     assert controller.energy(program, own).value == pytest.approx(found.energy, rel=1e-9)
@@ -329,8 +347,8 @@ def test_kinematic_optimum_is_the_emulators():
 def test_weighted_torques():
     path = scene()[3]
     only_second = SquaredTorque((0.0, 1.0, 0.0, 0.0, 0.0, 0.0))
-    found = tune(TuningTask(path, objective=Objective(0.0, only_second)))
-    plain = tune(TuningTask(path, objective=Objective(0.0)))
+    found = tune(TuningTask(path, objective=TuningObjective(0.0, only_second)))
+    plain = tune(TuningTask(path, objective=TuningObjective(0.0)))
     by_second = plain.energy_by_joint[1]
     assert found.energy <= by_second * (1 + 1e-6)
 
@@ -350,13 +368,13 @@ def test_too_short_a_time_is_refused():
     path = slider(1.0, 40, velocity=1.0)
     for weight in (1.0, 0.0):
         with pytest.raises(TuningError, match=r"s at least|within all limits"):
-            tune(TuningTask(path, objective=Objective(weight, duration=0.5)))
+            tune(TuningTask(path, objective=TuningObjective(weight, duration=0.5)))
 
 
 def test_ways_refuse_what_they_do_not_know():
     path = slider(1.0, 20)
     with pytest.raises(InputError, match="sweeps know neither"):
-        tune_by_sweeps(TuningTask(path, objective=Objective(0.5)))
+        tune_by_sweeps(TuningTask(path, objective=TuningObjective(0.5)))
     with pytest.raises(InputError, match="sequence"):
         tune_by_cones(TuningTask(path, jerk=np.ones(1)))
 
@@ -366,7 +384,7 @@ def test_unknown_inertias_are_refused():
     bare = FixedPath(path.limits, path.dq, path.ddq)
     assert tune(TuningTask(bare)).duration > 0.0
     with pytest.raises(InputError, match="inertias"):
-        tune(TuningTask(bare, objective=Objective(0.5)))
+        tune(TuningTask(bare, objective=TuningObjective(0.5)))
     hollow = path.rigid._replace(c=np.full_like(path.rigid.c, np.nan))
     with pytest.raises(InputError, match="inertia of axis J1"):
         tune(TuningTask(FixedPath(path.limits, path.dq, path.ddq, hollow), limited(1.0)))
@@ -465,10 +483,13 @@ def test_every_limit_of_an_arm_is_reported():
     [
         (lambda: TuningTask(None), "TuningTask.path is of type FixedPath, not None"),
         (
-            lambda: TuningTask(slider(1.0, 9), Drive()),
-            "TuningTask.drives is a tuple of Drive values",
+            lambda: TuningTask(slider(1.0, 9), JointDrive()),
+            "TuningTask.drives is a tuple of JointDrive values",
         ),
-        (lambda: TuningTask(slider(1.0, 9), (Drive(), Drive())), r"one an axis \(J1\), not 2"),
+        (
+            lambda: TuningTask(slider(1.0, 9), (JointDrive(), JointDrive())),
+            r"one an axis \(J1\), not 2",
+        ),
         (
             lambda: TuningTask(slider(1.0, 9), jerk="x"),
             r"TuningTask.jerk: one number above zero an axis",
@@ -479,17 +500,23 @@ def test_every_limit_of_an_arm_is_reported():
         ),
         (
             lambda: TuningTask(slider(1.0, 9), objective=0.5),
-            "TuningTask.objective is of type Objective",
+            "TuningTask.objective is of type TuningObjective",
         ),
         (
-            lambda: TuningTask(slider(1.0, 9), objective=Objective(0.5, Motors((1.0, 1.0)))),
+            lambda: TuningTask(slider(1.0, 9), objective=TuningObjective(0.5, Motors((1.0, 1.0)))),
             "Motors.copper has figures of 2 joints; there are 1",
         ),
-        (lambda: Objective("x"), "Objective.time_weight is a number from 0 to 1, not 'x'"),
-        (lambda: Objective(0.5, None), "Objective.consumption is of type Consumption"),
-        (lambda: Objective(0.5, duration=math.nan), "Objective.duration is a finite number"),
-        (lambda: Drive(5.0), "Drive.torque is of type TorqueCurve, not 5.0"),
-        (lambda: Drive(coulomb=-1.0), "Drive.coulomb is a finite number, zero or more"),
+        (
+            lambda: TuningObjective("x"),
+            "TuningObjective.time_weight is a number from 0 to 1, not 'x'",
+        ),
+        (lambda: TuningObjective(0.5, None), "TuningObjective.consumption is of type Consumption"),
+        (
+            lambda: TuningObjective(0.5, duration=math.nan),
+            "TuningObjective.duration is a finite number",
+        ),
+        (lambda: JointDrive(5.0), "JointDrive.torque is of type TorqueCurve, not 5.0"),
+        (lambda: JointDrive(coulomb=-1.0), "JointDrive.coulomb is a finite number, zero or more"),
         (lambda: TorqueCurve(0.0, 5.0), "TorqueCurve.speed is a tuple"),
     ],
 )

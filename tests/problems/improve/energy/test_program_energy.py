@@ -22,9 +22,16 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_vendor
 from flyby.core.source.patch.edits import alike
-from flyby.problems.improve.energy import EnergyTask, Front, Goal, Scope, optimize_energy, pareto
+from flyby.problems.improve.energy import (
+    EnergyScope,
+    EnergyTask,
+    Front,
+    Goal,
+    optimize_energy,
+    pareto,
+)
 from flyby.problems.improve.energy.front import FrontPoint, without_dominated
-from flyby.problems.improve.energy.paced_problem import Fixed, PacedProblem
+from flyby.problems.improve.energy.paced_problem import FixedShape, PacedProblem
 from flyby.problems.improve.energy.paced_search import LATE
 from flyby.problems.improve.energy.pacing import make_pacing
 from flyby.problems.improve.waypoints import Effort
@@ -54,7 +61,7 @@ def written(program: Program) -> Program:
 
 @cache
 def speeds_front() -> Front:
-    task = EnergyTask(Scope.SPEEDS)
+    task = EnergyTask(EnergyScope.SPEEDS)
     return pareto(controller(), zoned(), None, task, 3, QUICK, ABB.speaks, written)
 
 
@@ -127,14 +134,14 @@ def test_every_point_is_proven():
 
 def test_speeds_alone_are_proven_in_a_cell():
     goal = Goal(0.0, 1e-7)
-    task, cell = EnergyTask(Scope.SPEEDS), SCENE.cell
+    task, cell = EnergyTask(EnergyScope.SPEEDS), SCENE.cell
     found = optimize_energy(controller(), zoned(), goal, cell, task, QUICK, ABB.speaks, written)
     assert found.proven and found.points[0].certificate is not None
     assert found.points[0].energy < found.given.energy
 
 
 def test_the_same_again():
-    task = EnergyTask(Scope.SPEEDS)
+    task = EnergyTask(EnergyScope.SPEEDS)
     again = pareto(controller(), zoned(), None, task, 3, QUICK, ABB.speaks, written)
     for one, other in zip(speeds_front().points, again.points, strict=True):
         assert one.program.moves == other.program.moves
@@ -147,7 +154,7 @@ def test_units_do_not_matter(factor):
     """Weights of all torques in common scale the energies, and change nothing else."""
 
     def found(weight):
-        task = EnergyTask(Scope.SPEEDS, SquaredTorque((weight,) * 6))
+        task = EnergyTask(EnergyScope.SPEEDS, SquaredTorque((weight,) * 6))
         goal = Goal(0.0, 1e-7 / weight)
         return optimize_energy(controller(), zoned(), goal, None, task, QUICK).points[0]
 
@@ -160,7 +167,7 @@ def test_motors_with_recuperation_take_less():
     copper = (1e-5,) * 6
 
     def least(recuperation):
-        task = EnergyTask(Scope.SPEEDS, Motors(copper, recuperation))
+        task = EnergyTask(EnergyScope.SPEEDS, Motors(copper, recuperation))
         goal = Goal(0.0, 1e-3)
         return optimize_energy(controller(), zoned(), goal, None, task, QUICK).points[0]
 
@@ -175,7 +182,7 @@ def test_motors_with_recuperation_take_less():
 def test_a_bound_is_kept(share):
     given_ = speeds_front().given
     goal = Goal(0.0, 1.0 / given_.energy, share * given_.duration)
-    task = EnergyTask(Scope.SPEEDS)
+    task = EnergyTask(EnergyScope.SPEEDS)
     found = optimize_energy(controller(), zoned(), goal, None, task, QUICK, ABB.speaks, written)
     (point,) = found.points
     assert point.duration <= goal.latest * (1 + 1e-4)
@@ -185,7 +192,7 @@ def test_a_bound_is_kept(share):
 def test_a_bound_that_cannot_be_kept_is_told():
     given_ = speeds_front().given
     goal = Goal(0.0, 1.0 / given_.energy, 0.5 * given_.duration)
-    task = EnergyTask(Scope.SPEEDS)
+    task = EnergyTask(EnergyScope.SPEEDS)
     effort = replace(QUICK, iterations=4, proofs=1)
     found = optimize_energy(controller(), zoned(), goal, None, task, effort, ABB.speaks, written)
     assert any("no program that takes" in note.message for note in found.notes)
@@ -193,7 +200,7 @@ def test_a_bound_that_cannot_be_kept_is_told():
 
 def test_weights_order_programs():
     given_ = speeds_front().given
-    task = EnergyTask(Scope.SPEEDS)
+    task = EnergyTask(EnergyScope.SPEEDS)
     found = [
         optimize_energy(
             controller(),
@@ -223,7 +230,7 @@ def test_gradients_are_difference_quotients(shifts, hurry):
     assert pacing.size == 8
     x = np.clip(pacing.start + np.array(shifts) - 1e-3 * np.arange(8), pacing.lower, pacing.upper)
     base = pacing.applied(program, x)
-    fixed = Fixed(base, controller().plan(base))
+    fixed = FixedShape(base, controller().plan(base))
     goal = Goal(1.0, 0.0) if hurry else Goal(0.0, 1e-6)
     problem = PacedProblem(controller(), fixed, pacing, goal, EnergyTask().consumption)
     point = problem.point(x)
@@ -331,7 +338,15 @@ def test_ended_early_there_is_still_a_front():
         return len(seen) == 3
 
     front = pareto(
-        controller(), zoned(), None, EnergyTask(Scope.SPEEDS), 4, QUICK, ABB.speaks, written, enough
+        controller(),
+        zoned(),
+        None,
+        EnergyTask(EnergyScope.SPEEDS),
+        4,
+        QUICK,
+        ABB.speaks,
+        written,
+        enough,
     )
     assert 1 <= len(front.points) <= 4
 
@@ -347,7 +362,12 @@ def test_a_program_that_may_not_change_is_refused():
         MoveJ(m.target, Speed(tcp=1.0, duration=2.0), m.zone, m.tool) for m in program.moves
     )
     with pytest.raises(InputError, match="nothing of this program may change"):
-        pareto(controller(), program.with_moves(moves), task=EnergyTask(Scope.SPEEDS), effort=QUICK)
+        pareto(
+            controller(),
+            program.with_moves(moves),
+            task=EnergyTask(EnergyScope.SPEEDS),
+            effort=QUICK,
+        )
 
 
 def test_unknown_inertias_are_refused():

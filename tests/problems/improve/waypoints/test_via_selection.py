@@ -26,12 +26,12 @@ from flyby.core.robot.kinematics.chain_kernels import poses
 from flyby.core.robot.work_chain import work_chain
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import quaternion_from_matrix
+from flyby.problems.improve.progress import Progress
 from flyby.problems.improve.solve_round_verify import solve_round_verify
 from flyby.problems.improve.waypoints import (
-    Box,
     Effort,
     Fixed,
-    Progress,
+    PointBox,
     ViaCount,
     WaypointTask,
     optimize_waypoints,
@@ -39,14 +39,12 @@ from flyby.problems.improve.waypoints import (
 from flyby.problems.improve.waypoints import optimize as optimizing
 from flyby.problems.improve.waypoints.changeable import Selection, select
 from flyby.problems.improve.waypoints.doubling import doubled
-from flyby.problems.improve.waypoints.options import Freedom
 from flyby.problems.improve.waypoints.via_selection import Counted, change_count, idle_points
 from flyby.validation.scenes.scene import PARABOLAS, joint_target, with_zone
 from flyby.validation.scenes.two_joints import two_joints
 
 SCENE = two_joints()
 THREE = with_zone(SCENE.programs[0], Radius(0.1))
-BOTH = Freedom.WAYPOINTS_AND_ZONES
 TWO = replace(THREE, statements=tuple(THREE.statements[k] for k in (0, 2, 3)))
 ARM = 6
 BETWEEN = 50
@@ -164,16 +162,14 @@ def test_other_stretches_and_limited_points_are_left_alone() -> None:
     program = replace(THREE, statements=(*moves, again, home))
     run = controller().run(program)
     proof = certify(controller(), run, scenes_of(SCENE.cell), 0.005)
-    task = WaypointTask(axes=SCENE.free, tilt=math.pi, limits={1: Box(joints=(0.1,) * ARM)})
+    task = WaypointTask(axes=SCENE.free, tilt=math.pi, limits={1: PointBox(joints=(0.1,) * ARM)})
     asked: list[tuple[Program, WaypointTask]] = []
 
     def improved(changed: Program, own: WaypointTask, effort: Effort) -> None:
         asked.append((changed, own))
 
     def selected(counted: Counted) -> Selection:
-        return select(
-            program, run.path, SCENE.cell.robot, counted.task, Freedom.WAYPOINTS_AND_ZONES
-        )
+        return select(program, run.path, SCENE.cell.robot, counted.task)
 
     best = Counted(run, proof, 1.0, task)
     assert change_count(best, improved, selected, QUICK, ARM) is best
@@ -200,9 +196,7 @@ def test_a_point_where_something_is_switched_stays_one() -> None:
 
     def selected(counted: Counted) -> Selection:
         chosen = counted.run
-        return select(
-            chosen.program, chosen.path, SCENE.cell.robot, counted.task, Freedom.WAYPOINTS_AND_ZONES
-        )
+        return select(chosen.program, chosen.path, SCENE.cell.robot, counted.task)
 
     best = Counted(run, proof, 1.0, task)
     assert list(selected(best).points) == [(0,), (1,), (2,)]

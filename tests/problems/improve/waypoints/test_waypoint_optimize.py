@@ -25,17 +25,17 @@ from flyby.core.robot.shape import Box as BoxShape
 from flyby.core.robot.work_chain import work_chain
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import rotation_vector
+from flyby.problems.improve.progress import Progress
 from flyby.problems.improve.solution import Solution
 from flyby.problems.improve.waypoints import (
-    Box,
-    Cone,
     Effort,
     Fixed,
-    Progress,
+    Freedom,
+    PointBox,
+    PointCone,
     ViaCount,
     WaypointTask,
     optimize_waypoints,
-    optimize_zones,
 )
 from flyby.validation.scenes.scene import PARABOLAS, SECOND_ORDER_BLENDS, joint_target, with_zone
 from flyby.validation.scenes.two_joints import two_joints
@@ -167,7 +167,8 @@ def test_never_slower_never_nearer(shifts: list[float], radius: float, second_or
 
 
 def test_zones_alone_leave_all_points() -> None:
-    found = optimize_zones(controller(), PROGRAM, SCENE.cell, PLANE, QUICK)
+    task = replace(PLANE, freedom=Freedom.ZONES)
+    found = optimize_waypoints(controller(), PROGRAM, SCENE.cell, task, QUICK)
     assert found.changed and found.after.time < found.before.time
     assert [m.target for m in found.program.moves] == [m.target for m in PROGRAM.moves]
 
@@ -183,7 +184,7 @@ def test_energy_as_the_objective_saves_energy() -> None:
 
 
 def test_fixed_points_stay_and_boxes_bound() -> None:
-    task = replace(PLANE, limits={0: Fixed(), 1: Box(joints=(0.05,) * 6)})
+    task = replace(PLANE, limits={0: Fixed(), 1: PointBox(joints=(0.05,) * 6)})
     found = optimized(task=task)
     old, new = PROGRAM.moves, found.program.moves
     assert new[0].target == old[0].target
@@ -201,7 +202,7 @@ def tcp(target: object) -> tuple[FloatArray, FloatArray]:
 
 def test_boxes_of_positions_and_cones_hold_for_joint_targets() -> None:
     half, angle = (0.04, 0.04, 0.04), math.radians(5.0)
-    task = replace(PLANE, limits={1: Box(position=half), 2: Cone(angle)})
+    task = replace(PLANE, limits={1: PointBox(position=half), 2: PointCone(angle)})
     found = optimized(task=task)
     assert found.changed
     moved = np.abs(tcp(found.program.moves[1].target)[1] - tcp(PROGRAM.moves[1].target)[1])
@@ -276,8 +277,8 @@ def test_numbers_out_of_range() -> None:
         (lambda: WaypointTask(clearance=-1.0), "clearance"),
         (lambda: Effort(starts=0), "starts"),
         (lambda: Effort(spread=0.0), "spread"),
-        (lambda: Box(turn=-1.0), "range of a Box"),
-        (lambda: Cone(4.0), "angle"),
+        (lambda: PointBox(turn=-1.0), "range of a PointBox"),
+        (lambda: PointCone(4.0), "angle"),
     ):
         with pytest.raises(InputError, match=word):
             make()

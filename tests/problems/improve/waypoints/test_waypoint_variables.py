@@ -26,13 +26,14 @@ from flyby.core.robot.kinematics.chain_kernels import poses
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import quaternion_from_matrix, rotation_vector
 from flyby.problems.improve.rounding import Rounding
-from flyby.problems.improve.waypoints import Box, Fixed, WaypointTask
+from flyby.problems.improve.waypoints import Fixed, PointBox, WaypointTask
 from flyby.problems.improve.waypoints.block_emulation import Driver
 from flyby.problems.improve.waypoints.blocks import cut
 from flyby.problems.improve.waypoints.changeable import Selection, select
 from flyby.problems.improve.waypoints.options import Freedom
 from flyby.problems.improve.waypoints.oriented import OrientedPoint
-from flyby.problems.improve.waypoints.variables import JOINT_STEP, Variables, make_variables
+from flyby.problems.improve.waypoints.parts import JOINT_STEP
+from flyby.problems.improve.waypoints.variables import ProgramVariables, make_variables
 
 ROBOT = find_robot("abb/irb6640-180-255")
 CONTROLLER = Controller(find_vendor("abb"), ROBOT)
@@ -70,7 +71,8 @@ def four(*zones: Zone) -> Program:
 def selected(
     program: Program, task: WaypointTask | None = None, freedom: Freedom = BOTH
 ) -> Selection:
-    return select(program, CONTROLLER.plan(program), ROBOT, task or WaypointTask(), freedom)
+    wanted = replace(task or WaypointTask(), freedom=freedom)
+    return select(program, CONTROLLER.plan(program), ROBOT, wanted)
 
 
 SMALL = Radius(0.05)
@@ -206,7 +208,7 @@ def mixed() -> Program:
     )
 
 
-def variables_of(program: Program, task: WaypointTask | None = None) -> Variables:
+def variables_of(program: Program, task: WaypointTask | None = None) -> ProgramVariables:
     return make_variables(program, ROBOT, selected(program, task), task or WaypointTask())
 
 
@@ -286,7 +288,7 @@ def test_chosen_zones_are_predefined_ones_and_stay() -> None:
 
 
 def test_ranges_and_axes_bound_the_variables() -> None:
-    task = WaypointTask(limit=Box(joints=(0.1,) * 6), axes=[0, 1], tilt=math.pi)
+    task = WaypointTask(limit=PointBox(joints=(0.1,) * 6), axes=[0, 1], tilt=math.pi)
     variables = variables_of(four(SMALL, SMALL, SMALL, FINE), task)
     assert variables.size == 3 * (2 + 1)
     points = [k for k, part in enumerate(variables.parts) if part.size == 2]

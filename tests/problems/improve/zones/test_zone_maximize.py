@@ -30,7 +30,7 @@ from flyby.problems.improve.rounding import Rounding
 from flyby.problems.improve.zones import maximize
 from flyby.problems.improve.zones.deviation import segment_deviations
 from flyby.problems.improve.zones.maximize import ZoneSolution, maximize_zones
-from flyby.problems.improve.zones.options import ZoneOptions
+from flyby.problems.improve.zones.options import ZoneTask
 from flyby.problems.improve.zones.points import Points, find_points, passable_stops
 from flyby.problems.improve.zones.repair import Repair
 from flyby.problems.improve.zones.sizes import GRADED, size_of
@@ -147,7 +147,7 @@ def test_stops_stay_unless_they_are_freed():
     stops = SCENE.programs[0]
     with pytest.raises(InputError, match="stops at every point"):
         maximize_zones(CONTROLLER, stops, SCENE.cell)
-    made = maximize_zones(CONTROLLER, stops, SCENE.cell, ZoneOptions(freed=[1]))
+    made = maximize_zones(CONTROLLER, stops, SCENE.cell, ZoneTask(freed=[1]))
     zones = [move.zone for move in made.program.moves]
     assert [isinstance(zone, Fine) for zone in zones] == [True, False, True, True]
     assert made.proven and made.after.time < made.before.time
@@ -164,11 +164,11 @@ def test_waits_and_events_keep_their_stops():
     stop = replace(moves[0], zone=FINE, events=(Event("SetDO gun, 1"),))
     program = Program((stop, *moves[1:]), start=PROGRAM.start)
     with pytest.raises(MotionError, match="move 1: something is set"):
-        maximize_zones(CONTROLLER, program, SCENE.cell, ZoneOptions(freed=[0]))
+        maximize_zones(CONTROLLER, program, SCENE.cell, ZoneTask(freed=[0]))
     with pytest.raises(MotionError, match="move 4: the last move"):
-        maximize_zones(CONTROLLER, program, SCENE.cell, ZoneOptions(freed=[3]))
+        maximize_zones(CONTROLLER, program, SCENE.cell, ZoneTask(freed=[3]))
     with pytest.raises(InputError, match="move 10 cannot be given a zone"):
-        maximize_zones(CONTROLLER, program, SCENE.cell, ZoneOptions(freed=[9]))
+        maximize_zones(CONTROLLER, program, SCENE.cell, ZoneTask(freed=[9]))
 
 
 def test_passable_stops_are_those_without_a_reason():
@@ -178,18 +178,18 @@ def test_passable_stops_are_those_without_a_reason():
 
 
 def test_kept_zones_stay():
-    made = maximize_zones(CONTROLLER, PROGRAM, _cell(), ZoneOptions(kept=[1]))
+    made = maximize_zones(CONTROLLER, PROGRAM, _cell(), ZoneTask(kept=[1]))
     assert made.program.moves[1].zone == SMALL
     assert _sizes(made)[0] == _sizes(_with_ball())[0]
     with pytest.raises(InputError, match="to be kept"):
-        maximize_zones(CONTROLLER, PROGRAM, _cell(), ZoneOptions(kept=[0, 1, 2]))
+        maximize_zones(CONTROLLER, PROGRAM, _cell(), ZoneTask(kept=[0, 1, 2]))
 
 
 def test_predefined_zones_are_the_largest_that_fit():
     zones = find_vendor("abb").speaks.zones()
     assert [zone.name for zone in zones][:3] == ["z0", "z1", "z5"]
     made = maximize_zones(
-        CONTROLLER, PROGRAM, _cell(), ZoneOptions(rounding=Rounding(predefined=zones))
+        CONTROLLER, PROGRAM, _cell(), ZoneTask(rounding=Rounding(predefined=zones))
     )
     free = _sizes(_with_ball())
     for move, size in zip(made.program.moves[:-1], free, strict=False):
@@ -251,7 +251,7 @@ def test_shared_legs_are_shared_again_in_the_same_way():
     controller, program, cell = _ur()
     made = maximize_zones(controller, program, cell)
     assert not maximize_zones(controller, made.program, cell).changed
-    kept = maximize_zones(controller, program, cell, ZoneOptions(kept=[2]))
+    kept = maximize_zones(controller, program, cell, ZoneTask(kept=[2]))
     assert size_of(kept.program.moves[2].zone) == 0.005
     assert _sizes(kept)[1] > _sizes(made)[1]
 
@@ -268,9 +268,9 @@ def test_a_program_that_collides_names_move_bodies_and_depth():
 
 def test_a_clearance_that_the_program_does_not_have_is_refused_with_the_one_it_has():
     with pytest.raises(MotionError, match=r"this program keeps \d+\.\d+ mm") as caught:
-        maximize_zones(CONTROLLER, PROGRAM, SCENE.cell, ZoneOptions(clearance=0.3))
+        maximize_zones(CONTROLLER, PROGRAM, SCENE.cell, ZoneTask(clearance=0.3))
     kept = 1e-3 * float(str(caught.value).split("keeps ")[1].split(" mm")[0])
-    options = ZoneOptions(clearance=kept - 1e-5)
+    options = ZoneTask(clearance=kept - 1e-5)
     assert maximize_zones(CONTROLLER, PROGRAM, SCENE.cell, options).proven
 
 
@@ -285,7 +285,7 @@ def test_a_cell_without_the_programs_tool_is_refused():
 )
 def test_options_out_of_range_are_refused(wrong):
     with pytest.raises(InputError, match=f"the {next(iter(wrong))}"):
-        ZoneOptions(**wrong)
+        ZoneTask(**wrong)
 
 
 def test_what_is_certified_is_what_was_read_back():

@@ -30,7 +30,7 @@ from flyby.problems.improve.zones.maximize import maximize_zones
 from flyby.problems.improve.zones.neighbourhood import CornerPath, Neighbourhoods
 from flyby.problems.improve.zones.predefined import choose
 from flyby.problems.improve.zones.rules import Rules
-from flyby.problems.improve.zones.search import TOLERANCE, Search, SizeBracket
+from flyby.problems.improve.zones.search import TOLERANCE, SizeBracket, SizeSearch
 from flyby.problems.improve.zones.side_by_side import drive
 from flyby.problems.improve.zones.sizes import GRADED, Growth
 from flyby.validation.scenes.solids import made
@@ -129,7 +129,7 @@ def _searched(
     trials: Neighbourhoods, scene: CollisionScene, corner: int, largest: float
 ) -> SizeBracket:
     clearing = Clearing(scene, WANTED)
-    search = Search((clearing, clearing), largest).run()
+    search = SizeSearch((clearing, clearing), largest).run()
     return drive(trials, {corner: search}, {corner: GROWTH.zone})[corner]
 
 
@@ -261,7 +261,7 @@ def test_straying_joints_and_a_residual_count():
     sizes = []
     for deviation, residual in ((0.0, 0.0), (0.0, 0.002), (2e-4, 0.0)):
         clearing = Clearing(scene, WANTED, np.full(6, deviation), residual)
-        search = Search((clearing, clearing), largest).run()
+        search = SizeSearch((clearing, clearing), largest).run()
         found = drive(trials, {0: search}, {0: GROWTH.zone})[0]
         assert _clearance(scene, _path(trials, 0, found.size)) >= WANTED + residual - SLACK
         sizes.append(found.size)
@@ -292,7 +292,7 @@ def test_growth_ends_where_the_arm_cannot_follow(most):
     cell, trials, rules, _ = _joint_moves()
     clearing = Clearing(_with_obstacle(cell, Sphere(0.01), np.array([0.0, 3.0, 3.0])), WANTED)
     path = _path(trials, 0, rules.largest(0, GROWTH))
-    search = Search((clearing, clearing), 0.21).run()
+    search = SizeSearch((clearing, clearing), 0.21).run()
     asked = next(search)
     with pytest.raises(StopIteration) as end:
         while True:
