@@ -72,6 +72,10 @@ class SourceError(FlybyError):
         self.span = span
 
 
+class ParseError(SourceError):
+    """A text is not written in its language: it is wrong or cut off at a place."""
+
+
 class MotionError(FlybyError):
     """A program that reads well but that the robot cannot drive.
 

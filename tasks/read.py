@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.door import spelt
-from ..core.errors import FlybyError, InputError
+from ..core.errors import FlybyError, InputError, ParseError
 from .options.entries import TaskOptions, value
 from .options.keywords import by_keywords
 from .options.texts import joint_target
@@ -106,23 +106,38 @@ def _answers(options: SourceOptions) -> Answers | None:
 def _program_in(folder: Path, setup: Setup, options: SourceOptions) -> Path:
     """The one file in a folder that can be run by itself.
 
+    Where another cannot be parsed, it may be the program itself: then the one must hold the entry
+    that is named, or a routine ``main``.
+
     Raises:
-        InputError: there is none, or there are several.
+        InputError: there is none, there are several, or the program's file cannot be parsed.
     """
     vendor = setup.vendor
     files = sorted(f for f in folder.iterdir() if f.suffix.lower() in vendor.suffixes)
     if len(files) == 1:
         return files[0]
-    found = [file for file in files if _runs(file, setup, options)]
+    errors = {file: _error(file, setup, options, options.entry) for file in files}
+    found = [file for file, error in errors.items() if error is None]
+    broken = [(f, e) for f, e in errors.items() if isinstance(e, ParseError) and _of(e, f)]
     if len(found) == 1:
-        return found[0]
-    names = "".join(f", {file.name}" for file in found or files)
-    raise InputError(f"{folder} is a folder; name a program file in it{names.replace(',', ':', 1)}")
+        entry = options.entry or "main"
+        if not broken or _error(found[0], setup, options, entry) is None:
+            return found[0]
+    names = "".join(f", {file.name}" for file in found or files).replace(",", ":", 1)
+    why = "".join(f"; not read: {error}" for _, error in broken)
+    raise InputError(f"{folder} is a folder; name a program file in it{names}{why}")
 
 
-def _runs(file: Path, setup: Setup, options: SourceOptions) -> bool:
+def _error(
+    file: Path, setup: Setup, options: SourceOptions, entry: str | None
+) -> FlybyError | None:
+    """Why a file does not run by itself; None if it does."""
     try:
-        setup.vendor.read_file(file, options.entry, setup.robot, _answers(options), options.others)
-    except FlybyError:
-        return False
-    return True
+        setup.vendor.read_file(file, entry, setup.robot, _answers(options), options.others)
+    except FlybyError as error:
+        return error
+    return None
+
+
+def _of(error: ParseError, file: Path) -> bool:
+    return error.span is not None and error.span.file == str(file)

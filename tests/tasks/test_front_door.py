@@ -56,6 +56,39 @@ def test_importing_loads_nothing_heavy() -> None:
     assert done.stdout.strip() == "[]"
 
 
+MOVES = {
+    "abb/irb6640-180-255": "MoveAbsJ [[#,0,0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,fine,tool0;",
+    "kuka/kr30-3": "PTP {A1 #,A2 -90,A3 90,A4 0,A5 0,A6 0}",
+    "ur/ur10e": "movej([0.#,0,0,0,0,0], a=1, v=1)",
+}
+FILES = {
+    "abb/irb6640-180-255": (".mod", "MODULE NAME\nPROC NAME()\nMOVE\nENDPROC\nENDMODULE\n"),
+    "kuka/kr30-3": (".src", "DEF NAME()\nMOVE\nEND\n"),
+    "ur/ur10e": (".script", "def NAME():\nMOVE\nend\n"),
+}
+
+
+@pytest.mark.parametrize("robot", FILES)
+def test_a_folder_whose_program_cannot_be_parsed_drives_no_other(
+    tmp_path: Path, robot: str
+) -> None:
+    suffix, whole = FILES[robot]
+
+    def put(name: str, move: str) -> None:
+        text = whole.replace("NAME", name).replace("MOVE", move.replace("#", "5"))
+        (tmp_path / f"{name}{suffix}").write_text(text, "utf-8")
+
+    put("main", MOVES[robot] + " )")
+    put("other", MOVES[robot])
+    for entry in (None, "main"):
+        with pytest.raises(InputError, match=rf"not read: .*main{re.escape(suffix)}:\d+:\d+: "):
+            flyby.read(tmp_path, robot=robot, entry=entry)
+    assert len(flyby.read(tmp_path, robot=robot, entry="other").moves) == 1
+    put("main", MOVES[robot])
+    put("other", MOVES[robot] + " )")
+    assert len(flyby.read(tmp_path, robot=robot).moves) == 1
+
+
 def test_a_program_is_read_from_a_file_a_folder_and_a_text(tmp_path: Path) -> None:
     text = SQUARE.read_text("utf-8")
     (tmp_path / "square.mod").write_text(text, "utf-8")

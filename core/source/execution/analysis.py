@@ -83,6 +83,20 @@ class Analysis(Generic[Block]):
             self._written[key] = find()
         return self._written[key]
 
+    def written_apart(self, body: Block) -> list[tuple[Block, frozenset[str]]]:
+        """Names of the data that a routine's body may write, and apart from it those that each
+        routine does which is called from there."""
+        found: list[tuple[Block, frozenset[str]]] = []
+        todo, reached = [body], {id(body)}
+        for one in todo:
+            steps = [*self._all(one)]
+            found.append((one, NOTHING.union(*(step.writes for step in steps))))
+            for called in (called for step in steps for called in step.calls):
+                if id(called) not in reached:
+                    reached.add(id(called))
+                    todo.append(called)
+        return found
+
     def outputs_written(self, block: Block) -> frozenset[str] | None:
         """Names of the outputs that a block, and what it calls, may write; None for any."""
 

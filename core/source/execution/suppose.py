@@ -3,18 +3,38 @@
 A wait is taken as satisfied at once. Where its condition is about the program's own data or outputs
 (a flag that another task sets, an output that an interrupt resets), they have the values then that
 satisfy it: those that it states, else values that are not known.
+
+What an interrupt's routine writes is not known, as it may run at any time (`Shared`): only what the
+program has waited for is, until the program writes it anew.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 from .outputs import Outputs
 
 Node = TypeVar("Node")
 """An expression of the language."""
+
+
+class Shared(Protocol):
+    """A datum that something beside the program's course may write.
+
+    Attributes:
+        writer: what does, for messages: ``TRAP stop``; None if nothing does.
+        awaited: whether the program has waited for its value, and not written it since.
+    """
+
+    writer: str | None
+    awaited: bool
+
+
+def is_open(datum: Shared) -> bool:
+    """Whether nobody knows a datum's value, as something beside the program writes it."""
+    return datum.writer is not None and not datum.awaited
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +69,7 @@ class Supposing(Generic[Node]):
         equate: gives the datum or output that the first expression names the value of the second,
             or of a truth; False if it names none.
         forget: makes the data unknown that a condition names.
+        data: those that a condition names.
     """
 
     outputs: Outputs
@@ -56,6 +77,17 @@ class Supposing(Generic[Node]):
     holds: Callable[[Node], bool | None]
     equate: Callable[[Node, Node | bool], bool]
     forget: Callable[[Node], None]
+    data: Callable[[Node], Iterable[Shared]] = lambda _: ()
+
+    def wait(self, condition: Node, truth: bool = True) -> None:
+        """`suppose`; data that others write too are known afterwards if that tells their values."""
+        shared = [datum for datum in self.data(condition) if is_open(datum)]
+        for datum in shared:
+            datum.awaited = True
+        self.suppose(condition, truth)
+        if shared and (self.parts(condition).asks or self.holds(condition) is not truth):
+            for datum in shared:
+                datum.awaited = False
 
     def suppose(self, condition: Node, truth: bool = True) -> None:
         """Give data the values with which a condition that does not hold does.

@@ -8,7 +8,7 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...errors import InputError, Note, SourceError, Span
+from ...errors import InputError, Note, ParseError, SourceError, Span
 from ...files.reading import read_bytes
 
 UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
@@ -110,7 +110,7 @@ class SourceText:
 
     def error(self, message: str, start: int, end: int | None = None) -> SourceError:
         """An error at ``start``, to be raised."""
-        return SourceError(message, self.span(start, start if end is None else end))
+        return ParseError(message, self.span(start, start if end is None else end))
 
 
 def unbroken(text: str) -> str:

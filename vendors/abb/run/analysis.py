@@ -15,7 +15,8 @@ from .instructions import KEPT, MOVING
 
 _HALTING = frozenset({"stop", "systemstopaction"})
 _ENDING = frozenset({"exit", "raise"})
-_STEPPING = frozenset({"incr", "decr", "add", "clear"})
+_STEPPING = frozenset({"incr", "decr", "add", "clear", "bitset", "bitclear", "getdataval"})
+_WRITING_FUNCTIONS = frozenset({"strtoval", "getnextsym", "readdir"})
 
 
 class RapidTree:
@@ -31,11 +32,17 @@ class RapidTree:
         self._data = data
         self._home = home
         self._homes: dict[int, Home] = {}
+        self._routines: dict[int, tree.Routine] = {}
 
     def body(self, routine: tree.Routine) -> tree.Block:
         """What a routine runs."""
         self._homes[id(routine.body)] = self._data.scope_of(routine).home
+        self._routines[id(routine.body)] = routine
         return routine.body
+
+    def routine(self, body: tree.Block) -> tree.Routine:
+        """The routine of a body."""
+        return self._routines[id(body)]
 
     def called(self, expression: tree.Expression, home: Home) -> Iterator[tree.Block]:
         """Bodies of the program's own functions that an expression calls."""
@@ -62,7 +69,10 @@ class RapidTree:
         expressions = list(_evaluated(statement))
         functions = tuple(body for e in expressions for body in self.called(e, home))
         given = frozenset(
-            name for e in expressions for call in calls_in(e) for name in _given(call.arguments)
+            name
+            for e in expressions
+            for call in calls_in(e)
+            for name in self._handed(call.name, call.arguments, home)
         )
         names = frozenset[str]().union(*map(names_in, expressions))
         if inner:
@@ -87,6 +97,22 @@ class RapidTree:
             exit=Exit.ROUTINE if isinstance(statement, tree.Return) else None,
         )
 
+    def _handed(self, name: str, arguments: Sequence[tree.Argument], home: Home) -> Iterator[str]:
+        """Names of the data that a function, or a routine of the program, may write."""
+        routine = self._data.routine(name, home)
+        if routine is None:
+            yield from _given(arguments) if name in _WRITING_FUNCTIONS else ()
+            return
+        options = {p.name: p for p in routine.parameters if p.optional}
+        required = iter([p for p in routine.parameters if not p.optional])
+        for argument in arguments:
+            option = argument.option
+            parameter = next(required, None) if option is None else options.get(option)
+            if isinstance(argument.value, tree.Name) and (
+                parameter is None or parameter.mode != "in"
+            ):
+                yield argument.value.name
+
     def _invoked(
         self,
         statement: tree.Invoke | tree.LateInvoke,
@@ -110,13 +136,12 @@ class RapidTree:
         if own is not None:
             # What is handed to a routine may be an output that it writes.
             calls = (*functions, self.body(own))
-            return Step(
-                writes=handed | given, made_of=names, outputs=handed, calls=calls, asks=True
-            )
-        writes = name in _STEPPING or (name in KEPT and KEPT[name].writes)
+            writes = given.union(self._handed(name, statement.arguments, home))
+            return Step(writes=writes, made_of=names, outputs=handed, calls=calls, asks=True)
+        filled = name in _STEPPING or (name in KEPT and KEPT[name].writes)
         return Step(
             moves=name in MOVING,
-            writes=handed | given if writes else given,
+            writes=handed | given if filled else given,
             made_of=names,
             outputs=handed if name in WRITING else NOTHING,
             calls=functions,

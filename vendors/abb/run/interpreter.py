@@ -246,8 +246,7 @@ class Interpreter:
         if statement.word == "connect":
             trap = self.data.routine(statement.name, scope.home)
             if trap is not None:
-                written = self.analysis.outputs_written(self.tree.body(trap))
-                self.evaluator.outputs.share(written)
+                self._connect(trap, statement.span)
             self.out.keep(statement.span, "CONNECT", KEPT["connect"].why)
             return
         if statement.word == "placeholder":
@@ -260,6 +259,17 @@ class Interpreter:
             "trynext": "TRYNEXT stands outside an error handler",
         }
         raise SourceError(what[statement.word], statement.span)
+
+    def _connect(self, trap: tree.Routine, span: Span) -> None:
+        """What a trap routine writes is not known from now on."""
+        body = self.tree.body(trap)
+        self.evaluator.outputs.share(self.analysis.outputs_written(body))
+        for part, names in self.analysis.written_apart(body):
+            routine = self.tree.routine(part)
+            own = {d.name for d in (*routine.declarations, *routine.parameters)}
+            for name in sorted(names - own):
+                datum = tree.Name(span, name, name)
+                self.evaluator.share(datum, f"TRAP {trap.text}", self.data.scope_of(routine))
 
     # ------------------------------------------------------------------------- calls
 

@@ -37,7 +37,8 @@ def suppose(evaluator: Evaluator, condition: Expression, scope: Scope, truth: bo
         lambda part: _holds(evaluator, part, scope),
         lambda datum, other: _equate(evaluator, datum, other, scope),
         lambda part: _forget(evaluator, part, scope),
-    ).suppose(condition, truth)
+        lambda part: filter(None, map(scope.find, names_in(part))),
+    ).wait(condition, truth)
 
 
 def _parts(condition: Expression) -> Parts[Expression]:
@@ -83,7 +84,9 @@ def _give(evaluator: Evaluator, datum: Expression, value: Value, scope: Scope) -
     cell = scope.find(datum.name)
     if cell is None or cell.constant:
         return False
+    awaited = cell.awaited
     evaluator.assign(datum, value, scope)
+    cell.awaited = awaited
     return True
 
 

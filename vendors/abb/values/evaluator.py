@@ -10,6 +10,7 @@ from ....core.errors import SourceError, Span
 from ....core.source.execution.answers import Course
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.provenance import ELSEWHERE, Reads
+from ....core.source.execution.suppose import is_open
 from ..syntax import tree
 from .answers import TypedAnswers, like_signals
 from .data import Globals
@@ -74,6 +75,7 @@ class Evaluator:
         self._text_of = text_of
         self._host = host
         self._elsewhere: dict[str, Value] = {}
+        self._shared_elsewhere: set[str] = set()
         self._checked: dict[int, tuple[Value, Type]] = {}
         self._special = {**SPECIAL, **special}
 
@@ -258,6 +260,7 @@ class Evaluator:
             return
         if cell.constant:
             raise SourceError(f"{cell.name} is a constant and cannot be assigned", target.span)
+        cell.awaited = False
         if not target.path:
             if cell.pending is not None:
                 self.settle(cell)
@@ -293,10 +296,24 @@ class Evaluator:
         It keeps the value that it is given; of a part of it the type is not known.
         """
         self._host.note_undeclared(target)
-        if target.path:
+        if target.path or target.name in self._shared_elsewhere:
             self._elsewhere.pop(target.name, None)
         else:
             self._elsewhere[target.name] = value
+
+    def share(self, name: tree.Name, writer: str, scope: Scope) -> None:
+        """From now on something beside the program's course may write a datum.
+
+        Args:
+            writer: for messages: ``TRAP stop``.
+            scope: where the name is looked up.
+        """
+        cell = self.cell(name, scope)
+        if cell is None:
+            self._elsewhere.pop(name.name, None)
+            self._shared_elsewhere.add(name.name)
+        elif not cell.constant:
+            cell.writer, cell.awaited = writer, False
 
     # ------------------------------------------------------------------- names
 
@@ -334,6 +351,10 @@ class Evaluator:
             return Located(Unknown(reason, name.span, self.answers.key(name.span)), None, None)
         if not cell.present:
             raise SourceError(f"the optional argument {cell.name} was not given", name.span)
+        if is_open(cell):
+            reason = f"'{name.text}', which {cell.writer} writes"
+            unknown = Unknown(reason, name.span, self.answers.key(name.span))
+            return Located(unknown, None, cell, type=None if name.path else cell.type)
         if not name.path:
             value = self.settle(cell)
             source = None if cell.overwritten else cell.source

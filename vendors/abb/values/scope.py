@@ -31,6 +31,7 @@ class Variable:
         declared: its declaration, None for the controller's own data and parameters.
         elements: of an array: those written since it was last looked at as a whole. To make a new
             value of all for each of them would take a large array's time.
+        writer, awaited: see `core.source.execution.suppose.Shared`.
     """
 
     name: str
@@ -47,6 +48,8 @@ class Variable:
     persistent: bool = False
     declared: Declaration | None = None
     elements: dict[tuple[int, ...], Value] = field(default_factory=dict)
+    writer: str | None = None
+    awaited: bool = False
 
 
 @dataclass(eq=False, slots=True)

@@ -10,6 +10,7 @@ from ..syntax import tree
 from ..syntax.traversal import calls_in, data_in, indices_in
 from ..values.data import Data
 from ..values.elements import Names
+from ..values.functions import COMPUTED
 from ..values.predefined import OUTPUTS
 from ..values.scope import Module, Scope
 from .instructions import kept
@@ -34,6 +35,7 @@ class KrlTree:
         self._names = names
         self._scopes = scopes
         self._homes: dict[int, Module] = {}
+        self._routines: dict[int, tree.Routine] = {}
 
     def called(self, call: tree.Call, home: Module) -> tree.Block | None:
         """The body of the routine that a call means; None if it is not at hand."""
@@ -46,7 +48,13 @@ class KrlTree:
         routine, module = found
         self._data.declare_module(module)
         self._homes[id(routine.body)] = module
+        self._routines[id(routine.body)] = routine
         return routine.body
+
+    def routine(self, body: tree.Block) -> tuple[tree.Routine, Module] | None:
+        """The routine of a body, and its module; None of a block that is no routine's."""
+        routine = self._routines.get(id(body))
+        return None if routine is None else (routine, self._homes[id(body)])
 
     def outputs(self, target: tree.Name, home: Module) -> frozenset[str] | None:
         """The outputs that a name stands for; None if only the run knows which."""
@@ -89,11 +97,10 @@ class KrlTree:
         names = self.data_read(evaluated, home)
         functions = tuple(self._functions(evaluated, home))
         handed = frozenset(
-            argument.name
+            name
             for expression in evaluated
             for call in calls_in(expression)
-            for argument in call.arguments
-            if isinstance(argument, tree.Name)
+            for name in self._handed(call, home)
         )
         inner = tuple(statement.blocks)
         if inner:
@@ -144,8 +151,8 @@ class KrlTree:
         names: frozenset[str],
         handed: frozenset[str],
     ) -> Step[tree.Block]:
-        written = handed | {a.name for a in call.arguments if isinstance(a, tree.Name)}
         body = self.called(call, home)
+        written = handed.union(self._handed(call, home))
         if body is not None:
             calls = (*functions, body)
             return Step(writes=written, made_of=names, calls=calls, asks=True)
@@ -160,6 +167,17 @@ class KrlTree:
         return Step(
             writes=written, made_of=names, outputs=outputs, calls=functions, asks=bool(functions)
         )
+
+    def _handed(self, call: tree.Call, home: Module) -> Iterator[str]:
+        """Names of the data that a call may write: those that are passed by reference."""
+        body = self.called(call, home)
+        found = None if body is None else self.routine(body)
+        if found is None and call.name in COMPUTED:
+            return
+        for k, argument in enumerate(call.arguments):
+            given = found[0].parameters[k : k + 1] if found is not None else ()
+            if isinstance(argument, tree.Name) and all(p.by_reference for p in given):
+                yield argument.name
 
     def _functions(
         self, expressions: Iterable[tree.Expression], home: Module

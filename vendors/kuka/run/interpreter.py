@@ -111,7 +111,7 @@ class Interpreter:
         basis = Basis(data, evaluator, config, notes, self._system_changed)
         tree = KrlTree(data, evaluator.names, scopes)
         analysis = Analysis(tree)
-        writes = OutputWrites(data, evaluator.names, analysis)
+        writes = OutputWrites(data, evaluator.names, tree, analysis)
         self._triggers = Triggers(evaluator, transcript, writes)
         motions = MotionReader(
             data,

@@ -1,20 +1,22 @@
-"""Writes of outputs whose moment is not certain: pulses, triggers, interrupts, routines without
-their text."""
+"""Writes whose moment is not certain: of outputs by pulses, triggers, interrupts and routines
+without their text; of data by interrupts."""
 
 from __future__ import annotations
 
 import re
 
-from ....core.errors import SourceError
+from ....core.errors import SourceError, Span
 from ....core.source.execution.analysis import Analysis
 from ....core.source.text.files import SourceText
 from ..syntax.cursor import Cursor
 from ..syntax.lexer import tokenize
 from ..syntax.statements import parse_statement
-from ..syntax.tree import Assign, Block, Call, Name
+from ..syntax.tree import Assign, Block, Call, Declaration, Name, Statement
 from ..values.data import Data
 from ..values.elements import Names
+from ..values.predefined import MOTION, OUTPUTS
 from ..values.scope import Scope
+from .analysis import KrlTree
 
 _HANDLER = re.compile(r"\bDO\s+(.+)", re.IGNORECASE | re.DOTALL)
 _PRIORITY = re.compile(r"\bPRIO\s*=.*", re.IGNORECASE | re.DOTALL)
@@ -29,11 +31,13 @@ class OutputWrites:
     Args:
         data: of the program, with what its outputs hold.
         names: finds the outputs that a name stands for.
-        analysis: what statements write.
+        tree: the program's statements.
+        analysis: what they write.
     """
 
-    def __init__(self, data: Data, names: Names, analysis: Analysis[Block]) -> None:
+    def __init__(self, data: Data, names: Names, tree: KrlTree, analysis: Analysis[Block]) -> None:
         self._data = data
+        self._tree = tree
         self._names = names
         self._analysis = analysis
         self._coming: list[Written] = []
@@ -52,19 +56,33 @@ class OutputWrites:
         for written in coming:
             self._data.outputs.forget(written)
 
-    def interrupted(self, text: str, scope: Scope) -> None:
+    def interrupted(self, text: str, scope: Scope, span: Span) -> None:
         """``INTERRUPT DECL 3 WHEN … DO routine()``: its routine may run at any time."""
         handler = _HANDLER.search(text)
-        if handler is not None:
-            self._data.outputs.share(self._by_action(handler[1], scope))
+        if handler is None:
+            return
+        self._data.outputs.share(self._by_action(handler[1], scope))
+        action = Block(_statements(handler[1]) or ())
+        writer = f"the interrupt's {' '.join(_PRIORITY.sub('', handler[1]).split())}"
+        for part, names in self._analysis.written_apart(action):
+            found = self._tree.routine(part)
+            where, own = scope, frozenset[str]()
+            if found is not None:
+                routine, module = found
+                where = Scope("", module)
+                declared = (s.name for s in part.statements if isinstance(s, Declaration))
+                own = frozenset((*declared, *(p.name for p in routine.parameters)))
+            for name in sorted(names - own - MOTION - OUTPUTS.keys()):
+                datum = Name(span, name, name.upper())
+                cell = self._data.find(name, where) or self._data.implicit(datum)
+                if not cell.constant and cell.signal is None:
+                    cell.writer, cell.awaited = writer, False
 
     # -------------------------------------------------------------------- inside
 
     def _by_action(self, text: str, scope: Scope) -> Written:
-        try:
-            source = SourceText(_PRIORITY.sub("", text).strip(), "")
-            statements = parse_statement(Cursor(tokenize(source)))
-        except SourceError:
+        statements = _statements(text)
+        if statements is None:
             return None
         if len(statements) == 1 and isinstance(statements[0], Assign):
             return self._named(statements[0].target, scope)
@@ -81,3 +99,12 @@ class OutputWrites:
             return frozenset(self._names.outputs(target, scope))
         except SourceError:  # an index that only the run knows
             return None
+
+
+def _statements(text: str) -> tuple[Statement, ...] | None:
+    """What an interrupt or a trigger carries out; None if it is no statement."""
+    try:
+        source = SourceText(_PRIORITY.sub("", text).strip(), "")
+        return parse_statement(Cursor(tokenize(source)))
+    except SourceError:
+        return None

@@ -55,7 +55,8 @@ class Waited:
             lambda part: self._holds(part, scope),
             lambda datum, other: self._equate(datum, other, scope),
             lambda part: self._forget(part, scope),
-        ).suppose(condition, truth)
+            lambda part: filter(None, (self._data.find(d.name, scope) for d in data_in(part))),
+        ).wait(condition, truth)
 
     def _asks(self, condition: Expression) -> bool:
         """Whether it can only be evaluated once."""
@@ -95,7 +96,9 @@ class Waited:
         if not isinstance(datum, Name) or not self._is_own(datum, scope):
             return False
         value = other if isinstance(other, bool) else self._evaluator.evaluate(other, scope)
-        self._evaluator.assign(datum, unplaced(value), scope, datum.span)
+        cell = self._data.find(datum.name, scope)
+        awaited = cell is not None and cell.awaited
+        self._evaluator.assign(datum, unplaced(value), scope, datum.span).awaited = awaited
         return True
 
     def _forget(self, condition: Expression, scope: Scope) -> None:

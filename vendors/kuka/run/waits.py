@@ -67,7 +67,8 @@ class Waits:
         why = KEYWORDS[statement.word]
         if why is not None:
             if statement.word in ("global", "interrupt"):
-                self._writes.interrupted(self._transcript.text_of(statement.span), scope)
+                text = self._transcript.text_of(statement.span)
+                self._writes.interrupted(text, scope, statement.span)
             word = "INTERRUPT" if statement.word == "global" else statement.word.upper()
             self._keeping.keep(statement.span, word, why.why, why.stops)
 

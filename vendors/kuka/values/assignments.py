@@ -44,6 +44,7 @@ class Assignment:
             return cell
         self._names.settled(cell)
         cell.assigned = True
+        cell.awaited = False
         label = None if self._data.is_system(target.name) else spelled(cell.name, path)
         path = tuple(step for step in path if step != ())
         if not path:

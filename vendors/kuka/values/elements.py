@@ -11,6 +11,7 @@ from typing import Protocol
 
 from ....core.errors import SourceError, Span
 from ....core.source.execution.answers import Answer, Course
+from ....core.source.execution.suppose import is_open
 from ..syntax.tree import Expression, Name
 from .advance_run import AdvanceRun
 from .data import Data
@@ -72,6 +73,8 @@ class Names:
             return self._undeclared(node, self.path(node, scope))
         if cell.signal is not None:
             return self._signal(node, cell, scope)
+        if is_open(cell):
+            return self._undeclared(node, self.path(node, scope), f", which {cell.writer} writes")
         value = self.settled(cell)
         path = self.path(node, scope) if node.path else ()
         for step in path:
@@ -284,12 +287,13 @@ class Names:
             return int(answer)
         return answer
 
-    def _undeclared(self, node: Name, path: Path) -> Value:
-        """The value of what nothing declares: an answer, or not known."""
+    def _undeclared(self, node: Name, path: Path, why: str | None = None) -> Value:
+        """The value of what nothing declares, or others write: an answer, or not known."""
         answer = self._answer(node, path)
         if answer is not None:
             return answer
-        why = "" if self.data.is_system(node.name) else " (declared in no file at hand)"
+        if why is None:
+            why = "" if self.data.is_system(node.name) else " (declared in no file at hand)"
         return Unknown(f"the value of {spelled(node.text, path)}{why}", node.span)
 
 

@@ -20,6 +20,7 @@ class Variable:
         signal: what a ``SIGNAL`` stands for: one system variable, or the first and last of several.
         shipped: it stands in the configuration that comes with this package.
         assigned: the program has assigned to it.
+        writer, awaited: see `core.source.execution.suppose.Shared`.
     """
 
     name: str
@@ -29,6 +30,8 @@ class Variable:
     signal: tuple[Name, Name | None] | None = None
     shipped: bool = False
     assigned: bool = False
+    writer: str | None = None
+    awaited: bool = False
 
 
 @dataclass(eq=False)

@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections.abc import Iterable, Sequence
 from typing import Protocol
 
-from ....core.errors import SourceError, Span
+from ....core.errors import ParseError, SourceError, Span
 from ....core.source.text.files import SourceFile, SourceText
 
 
@@ -89,7 +89,7 @@ class Texts:
 
     def error(self, message: str, start: int, end: int | None = None) -> SourceError:
         """An error at ``start``, to be raised."""
-        return SourceError(message, self.span(start, start if end is None else end))
+        return ParseError(message, self.span(start, start if end is None else end))
 
     def _which(self, offset: int) -> int:
         return bisect_right(self.bases, offset) - 1 if len(self.bases) > 1 else 0
