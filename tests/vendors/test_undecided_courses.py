@@ -395,6 +395,13 @@ CASES = {
         "i = 0\nwhile i < 2:\nn = 0\nwhile n < 2:\n<A>\nn = n + 1\nend\ni = i + 1\nend\n<B>",
         "A A A A B",
     ),
+    "a jump back that an output ends": Case(
+        "SetDO do9,0;\nagain:\nIF DOutput(do9)=0 THEN\n<A>\nSetDO do9,1;\nGOTO again;\nENDIF\n<B>",
+        "$OUT[9]=FALSE\nAGAIN:\nIF NOT $OUT[9] THEN\n<A>\n$OUT[9]=TRUE\nGOTO AGAIN\nENDIF\n<B>",
+        "set_digital_out(2, False)\nwhile not get_digital_out(2):\n<A>\n"
+        "set_digital_out(2, True)\nend\n<B>",
+        "A B",
+    ),
     "two jumps back to one label": Case(
         "k:=0;\nagain:\n<A>\nn:=n+1;\nIF n<2 GOTO again;\n"
         "n:=0;\nk:=k+1;\nIF k<2 GOTO again;\n<B>",

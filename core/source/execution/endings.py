@@ -193,6 +193,8 @@ class Endings(Generic[Block]):
         now = self._deciding(passes)
         if not passes.looked or now != passes.watched:  # a branch was not taken meanwhile
             written = self._analysis.written(passes.loop.body, self._left_out(passes))
+            if not passes.looked:  # nor is it known what outputs held before
+                written |= self._analysis.outputs_written(passes.loop.body) or NOTHING
             return now is None or not now.isdisjoint(written | passes.loop.writes)
         return passes.snapshot is not None and passes.snapshot.changed()
 
