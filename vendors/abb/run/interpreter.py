@@ -266,7 +266,7 @@ class Interpreter:
         self.evaluator.outputs.share(self.analysis.outputs_written(body))
         for part, names in self.analysis.written_apart(body):
             routine = self.tree.routine(part)
-            own = {d.name for d in (*routine.declarations, *routine.parameters)}
+            own = {d.name for d in routine.declarations} | {p.name for p in routine.parameters}
             for name in sorted(names - own):
                 datum = tree.Name(span, name, name)
                 self.evaluator.share(datum, f"TRAP {trap.text}", self.data.scope_of(routine))
