@@ -4,7 +4,7 @@ A wait is taken as satisfied at once. Where its condition is about the program's
 (a flag that another task sets, an output that an interrupt resets), they have the values then that
 satisfy it: those that it states, else values that are not known.
 
-What an interrupt's routine writes is not known, as it may run at any time (`Shared`): only what the
+What an interrupt's routine writes is not known, as it may run at any time (`SharedDatum`): only what the
 program has waited for is, until the program writes it anew.
 """
 
@@ -20,7 +20,7 @@ Node = TypeVar("Node")
 """An expression of the language."""
 
 
-class Shared(Protocol):
+class SharedDatum(Protocol):
     """A datum that something beside the program's course may write.
 
     Attributes:
@@ -32,7 +32,7 @@ class Shared(Protocol):
     awaited: bool
 
 
-def is_open(datum: Shared) -> bool:
+def is_open(datum: SharedDatum) -> bool:
     """Whether nobody knows a datum's value, as something beside the program writes it."""
     return datum.writer is not None and not datum.awaited
 
@@ -77,7 +77,7 @@ class Supposing(Generic[Node]):
     holds: Callable[[Node], bool | None]
     equate: Callable[[Node, Node | bool], bool]
     forget: Callable[[Node], None]
-    data: Callable[[Node], Iterable[Shared]] = lambda _: ()
+    data: Callable[[Node], Iterable[SharedDatum]] = lambda _: ()
 
     def wait(self, condition: Node, truth: bool = True) -> None:
         """`suppose`; data that others write too are known afterwards if that tells their values."""

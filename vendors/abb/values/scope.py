@@ -31,7 +31,7 @@ class Variable:
         declared: its declaration, None for the controller's own data and parameters.
         elements: of an array: those written since it was last looked at as a whole. To make a new
             value of all for each of them would take a large array's time.
-        writer, awaited: see `core.source.execution.suppose.Shared`.
+        writer, awaited: see `core.source.execution.suppose.SharedDatum`.
     """
 
     name: str

@@ -20,7 +20,7 @@ class Variable:
         signal: what a ``SIGNAL`` stands for: one system variable, or the first and last of several.
         shipped: it stands in the configuration that comes with this package.
         assigned: the program has assigned to it.
-        writer, awaited: see `core.source.execution.suppose.Shared`.
+        writer, awaited: see `core.source.execution.suppose.SharedDatum`.
     """
 
     name: str
