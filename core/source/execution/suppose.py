@@ -4,8 +4,8 @@ A wait is taken as satisfied at once. Where its condition is about the program's
 (a flag that another task sets, an output that an interrupt resets), they have the values then that
 satisfy it: those that it states, else values that are not known.
 
-What an interrupt's routine writes is not known, as it may run at any time (`SharedDatum`): only what the
-program has waited for is, until the program writes it anew.
+What an interrupt's routine writes is not known, as it may run at any time (`SharedDatum`): only
+what the program has waited for is, until the program writes it anew.
 """
 
 from __future__ import annotations
