@@ -14,7 +14,21 @@ from numba import njit
 from ...arrays import FloatArray, IntArray
 from ...errors import InputError
 from ...robot.kinematics.chain import Chain
-from ...robot.kinematics.chain_kernels import carry, place, turned_by
+from ...robot.kinematics.chain_kernels import (
+    AXIS,
+    COLUMNS,
+    ORIGIN,
+    RISE,
+    SPEED,
+    carry,
+    place,
+    pull_acceleration,
+    pull_velocity,
+    recall,
+    turned_by,
+    walk_motion,
+    walk_speeds,
+)
 from ...robot.kinematics.lean import lean
 from ...robot.kinematics.vectors import UNTURNED, ZERO, add, cross, dot, load_row, scale, subtract
 from ...robot.model import Robot
@@ -54,17 +68,48 @@ def mass_loads(
     Raises:
         InputError: the arm has no such joint.
     """
-    size = q.shape[1]
     loads = MassLoads(*(np.zeros(q.shape) for _ in range(3)))
+    at, weight = _weights(robot, masses, key, q.shape[1])
+    if len(at):
+        states = (np.ascontiguousarray(array) for array in (q, dq, ddq))
+        _load(robot.chain, at, weight, np.array(robot.gravity), *states, *loads)
+    return loads
+
+
+def pull_mass_loads(
+    robot: Robot,
+    masses: Sequence[tuple[int, tuple[float, ...]]],
+    key: str,
+    states: tuple[FloatArray, FloatArray, FloatArray],
+    bars: MassLoads,
+    out: tuple[FloatArray, FloatArray, FloatArray],
+) -> None:
+    """Reverse of `mass_loads`.
+
+    Args:
+        robot, masses, key: as there.
+        states: q and its derivatives (M, N).
+        bars: gradient with respect to the loads.
+        out: gradients (M, N) with respect to q and its derivatives, added to.
+    """
+    at, weight = _weights(robot, masses, key, states[0].shape[1])
+    if len(at):
+        own = (np.ascontiguousarray(array) for array in states)
+        _pull(robot.chain, at, weight, np.array(robot.gravity), *own, *bars, *out)
+
+
+def _weights(
+    robot: Robot, masses: Sequence[tuple[int, tuple[float, ...]]], key: str, size: int
+) -> tuple[IntArray, FloatArray]:
+    """Joints of the chain (B,), in order, with masses on their axes, and their weights (B, N)."""
     chain = robot.chain
     weight = np.zeros((len(chain.joint), size))
     for joint, weights in masses:
-        weight[_link(robot, joint, key)] += filled(weights, size)
-    (at,) = np.nonzero(weight.any(axis=1))
-    if len(at):
-        states = (np.ascontiguousarray(array) for array in (q, dq, ddq))
-        _load(chain, at, weight[at], np.array(robot.gravity), *states, *loads)
-    return loads
+        if joint > robot.arm_size:
+            raise InputError(f"{key}: {robot.name} has {robot.arm_size} joints, no joint {joint}")
+        weight[np.flatnonzero(chain.joint == joint - 1)[0]] += filled(weights, size)
+    at = np.flatnonzero(weight.any(axis=1))
+    return at, weight[at]
 
 
 @njit(cache=True, error_model="numpy")
@@ -148,35 +193,69 @@ def _load_one(
             omega = add(omega, rate)
 
 
-def _link(robot: Robot, joint: int, key: str) -> int:
-    """Where in the chain an arm's joint is, counted from one."""
-    if joint > robot.arm_size:
-        raise InputError(f"{key}: {robot.name} has {robot.arm_size} joints, no joint {joint}")
-    return int(np.flatnonzero(robot.chain.joint == joint - 1)[0])
+@njit(cache=True, error_model="numpy")
+def _pull(
+    chain: Chain,
+    at: IntArray,
+    weight: FloatArray,
+    gravity: FloatArray,
+    q: FloatArray,
+    dq: FloatArray,
+    ddq: FloatArray,
+    along: FloatArray,
+    across: FloatArray,
+    held: FloatArray,
+    q_bar: FloatArray,
+    dq_bar: FloatArray,
+    ddq_bar: FloatArray,
+) -> None:
+    """Add the gradient of Σ_b (J u)·(J q') + (J w)·p'' + (J z)·g, each of a mass b, with u, w and
+    z the bars times its weights."""
+    rows = chain.joint.size + 1
+    own, other = np.empty((rows, COLUMNS, 3)), np.empty((rows, COLUMNS, 3))
+    force, rates = np.zeros(6), np.empty(q.shape[1])
+    for m in range(q.shape[0]):
+        walk_motion(chain, q[m], dq[m], ddq[m], own)
+        for k in range(at[-1] + 1):
+            for i in range(3):
+                other[k, AXIS, i], other[k, ORIGIN, i] = own[k, AXIS, i], own[k, ORIGIN, i]
+        for b in range(at.size):
+            end = at[b]
+            walk, moved = own[: end + 1], other[: end + 1]
+            for j in range(rates.size):
+                rates[j] = weight[b, j] * held[m, j]
+            walk_speeds(chain, rates, moved)
+            force[:3] = gravity
+            pull_velocity(chain, moved, force, q_bar[m])
+            for j in range(rates.size):
+                rates[j] = weight[b, j] * along[m, j]
+            walk_speeds(chain, rates, moved)
+            force[:3] = walk[end, SPEED]
+            pull_velocity(chain, moved, force, q_bar[m])
+            force[:3] = moved[end, SPEED]
+            pull_velocity(chain, walk, force, q_bar[m])
+            _push(chain, walk, force, dq_bar[m])
+            for j in range(rates.size):
+                rates[j] = weight[b, j] * across[m, j]
+            walk_speeds(chain, rates, moved)
+            force[:3] = walk[end, RISE]
+            pull_velocity(chain, moved, force, q_bar[m])
+            force[:3] = moved[end, SPEED]
+            pull_acceleration(chain, walk, force, q_bar[m], dq_bar[m])
+            _push(chain, walk, force, ddq_bar[m])
 
 
-def chain_to_axis(robot: Robot, joint: int, key: str) -> Chain:
-    """The chain from the world to the origin of an arm's joint, counted from one.
-
-    Args:
-        robot: the robot.
-        joint: where the chain ends.
-        key: of the figure that names the joint, for the message.
-
-    Raises:
-        InputError: the arm has no such joint.
-    """
-    chain, k = robot.chain, _link(robot, joint, key)
-    return Chain(
-        chain.rotation[:k],
-        chain.translation[:k],
-        chain.axis[:k],
-        chain.prismatic[:k],
-        chain.joint[:k],
-        chain.sign[:k],
-        np.eye(3),
-        chain.translation[k],
-    )
+@lean
+def _push(chain: Chain, walk: FloatArray, force: FloatArray, out: FloatArray) -> None:
+    """Add Jᵀ of a force at the end of a walk."""
+    last = walk.shape[0] - 1
+    pull = force[0], force[1], force[2]
+    for k in range(last):
+        lever = recall(walk, k, AXIS)
+        if not chain.prismatic[k]:
+            arm = subtract(recall(walk, last, ORIGIN), recall(walk, k, ORIGIN))
+            lever = cross(lever, arm)
+        out[chain.joint[k]] += dot(lever, pull)
 
 
 def filled(values: tuple[float, ...], size: int) -> FloatArray:

@@ -17,21 +17,15 @@ Research 4(3), 1985).
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ...arrays import FloatArray
 from ...errors import InputError
-from ...robot.kinematics.chain import Chain
-from ...robot.kinematics.chain_kernels import (
-    acceleration_gradient,
-    jacobians,
-    motions,
-    velocity_gradient,
-)
 from ...robot.model import Robot
-from ..model.point_masses import chain_to_axis, filled, mass_loads
-from ..model.torque import Borne, Torque
+from ..model.point_masses import MassLoads, filled, mass_loads, pull_mass_loads
+from ..model.torque import Torque
 from .torque_rows import Shares
+
+_CARRIED = "torque.carried"
 
 
 def torque_shares(
@@ -45,8 +39,7 @@ def torque_shares(
     count = len(torque.own)
     if count > robot.arm_size:
         raise InputError(f"torque.own_s2: {robot.name} has {robot.arm_size} joints, not {count}")
-    masses = [(mass.joint, mass.share) for mass in torque.carried]
-    loads = mass_loads(robot, masses, "torque.carried", q, dq, ddq)
+    loads = mass_loads(robot, _masses(torque), _CARRIED, q, dq, ddq)
     own, weight = np.array(torque.own), filled(torque.weight, count)
     a, b = (
         own * dq[:, :count] + loads.along[:, :count],
@@ -87,57 +80,11 @@ def pull_torque_shares(
     out[1][:, :count] += own * bar.a
     out[1][:, :count] += 2 * filled(torque.fade, count) * dq[:, :count] * bar.fade
     out[2][:, :count] += own * bar.b
-    weight, gravity = filled(torque.weight, count), np.array(robot.gravity)
-    for mass in torque.carried:
-        chain, share = _at(torque, robot, mass)
-        seeds = [np.zeros_like(q) for _ in range(3)]
-        for seed, part in zip(seeds, (bar.a, bar.b, -weight * bar.h), strict=True):
-            seed[:, :count] = share * part
-        _pull_mass(chain, q, dq, ddq, gravity, seeds[0], seeds[1], seeds[2], *out)
+    bars = MassLoads(*(np.zeros_like(q) for _ in range(3)))
+    bars.along[:, :count], bars.across[:, :count] = bar.a, bar.b
+    bars.held[:, :count] = -filled(torque.weight, count) * bar.h
+    pull_mass_loads(robot, _masses(torque), _CARRIED, (q, dq, ddq), bars, out)
 
 
-def _at(torque: Torque, robot: Robot, mass: Borne) -> tuple[Chain, FloatArray]:
-    chain = chain_to_axis(robot, mass.joint, "torque.carried")
-    return chain, filled(mass.share, len(torque.own))
-
-
-@njit(cache=True, error_model="numpy")
-def _pull_mass(
-    chain: Chain,
-    q: FloatArray,
-    dq: FloatArray,
-    ddq: FloatArray,
-    gravity: FloatArray,
-    along: FloatArray,
-    across: FloatArray,
-    held: FloatArray,
-    q_bar: FloatArray,
-    dq_bar: FloatArray,
-    ddq_bar: FloatArray,
-) -> None:
-    """Add the gradient of Σ (J along)·(J q') + (J across)·p'' + (J held)·g to that of the path."""
-    size = q.shape[1]
-    w = np.zeros(6)
-    J = jacobians(chain, q)
-    v, pull = motions(chain, q, dq, ddq)
-    for s in range(q.shape[0]):
-        w[:3] = v[s, :3]
-        velocity_gradient(chain, q[s], along[s], w, q_bar[s])
-        w[:3] = pull[s, :3]
-        velocity_gradient(chain, q[s], across[s], w, q_bar[s])
-        w[:3] = gravity
-        velocity_gradient(chain, q[s], held[s], w, q_bar[s])
-        for i in range(3):
-            w[i] = 0.0
-            for j in range(size):
-                w[i] += J[s, i, j] * along[s, j]
-        velocity_gradient(chain, q[s], dq[s], w, q_bar[s])
-        for j in range(size):
-            dq_bar[s, j] += J[s, 0, j] * w[0] + J[s, 1, j] * w[1] + J[s, 2, j] * w[2]
-        for i in range(3):
-            w[i] = 0.0
-            for j in range(size):
-                w[i] += J[s, i, j] * across[s, j]
-        acceleration_gradient(chain, q[s], dq[s], ddq[s], w, q_bar[s], dq_bar[s])
-        for j in range(size):
-            ddq_bar[s, j] += J[s, 0, j] * w[0] + J[s, 1, j] * w[1] + J[s, 2, j] * w[2]
+def _masses(torque: Torque) -> list[tuple[int, tuple[float, ...]]]:
+    return [(mass.joint, mass.share) for mass in torque.carried]

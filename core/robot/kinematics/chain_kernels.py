@@ -173,23 +173,28 @@ def motion(
     a[3], a[4], a[5] = alpha
 
 
-# Columns of the walk: signed axis, origin before the joint, and that frame's motion.
-_AXIS, _ORIGIN, _OMEGA, _ALPHA, _SPEED, _RISE, _COLUMNS = 0, 1, 2, 3, 4, 5, 6
+# Columns of a walk: signed axis, origin before the joint, and that frame's motion.
+AXIS, ORIGIN, OMEGA, ALPHA, SPEED, RISE, COLUMNS = 0, 1, 2, 3, 4, 5, 6
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _store(walk: FloatArray, k: int, column: int, value: Vector) -> None:
     walk[k, column, 0], walk[k, column, 1], walk[k, column, 2] = value
 
 
-@njit(cache=True, error_model="numpy")
-def _recall(walk: FloatArray, k: int, column: int) -> Vector:
+@lean
+def recall(walk: FloatArray, k: int, column: int) -> Vector:
     return walk[k, column, 0], walk[k, column, 1], walk[k, column, 2]
 
 
-@njit(cache=True, error_model="numpy")
-def _walk(chain: Chain, q: FloatArray, dq: FloatArray, ddq: FloatArray, walk: FloatArray) -> None:
-    """Write the motion before each joint, (K + 1, 6, 3); row K belongs to the TCP."""
+@lean
+def walk_motion(
+    chain: Chain, q: FloatArray, dq: FloatArray, ddq: FloatArray, walk: FloatArray
+) -> None:
+    """Write the motion before each joint, (K + 1, 6, 3); row K belongs to the TCP.
+
+    The first k + 1 rows are the walk of the chain that ends at the origin of joint k.
+    """
     turned, at = UNTURNED, ZERO
     omega, alpha, speed, rise = ZERO, ZERO, ZERO, ZERO
     for k in range(chain.joint.size):
@@ -197,12 +202,12 @@ def _walk(chain: Chain, q: FloatArray, dq: FloatArray, ddq: FloatArray, walk: Fl
         turned, step, axis = place(chain, k, turned)
         velocity, acceleration = carry(omega, alpha, step)
         at, speed, rise = add(at, step), add(speed, velocity), add(rise, acceleration)
-        _store(walk, k, _AXIS, axis)
-        _store(walk, k, _ORIGIN, at)
-        _store(walk, k, _OMEGA, omega)
-        _store(walk, k, _ALPHA, alpha)
-        _store(walk, k, _SPEED, speed)
-        _store(walk, k, _RISE, rise)
+        _store(walk, k, AXIS, axis)
+        _store(walk, k, ORIGIN, at)
+        _store(walk, k, OMEGA, omega)
+        _store(walk, k, ALPHA, alpha)
+        _store(walk, k, SPEED, speed)
+        _store(walk, k, RISE, rise)
         rate = scale(dq[j], axis)
         if chain.prismatic[k]:
             slide = scale(q[j], axis)
@@ -217,11 +222,11 @@ def _walk(chain: Chain, q: FloatArray, dq: FloatArray, ddq: FloatArray, walk: Fl
     last = chain.joint.size
     step = turn(turned, load(chain.end_translation))
     velocity, acceleration = carry(omega, alpha, step)
-    _store(walk, last, _ORIGIN, add(at, step))
-    _store(walk, last, _OMEGA, omega)
-    _store(walk, last, _ALPHA, alpha)
-    _store(walk, last, _SPEED, add(speed, velocity))
-    _store(walk, last, _RISE, add(rise, acceleration))
+    _store(walk, last, ORIGIN, add(at, step))
+    _store(walk, last, OMEGA, omega)
+    _store(walk, last, ALPHA, alpha)
+    _store(walk, last, SPEED, add(speed, velocity))
+    _store(walk, last, RISE, add(rise, acceleration))
 
 
 @njit(cache=True, error_model="numpy")
@@ -236,62 +241,86 @@ def velocity_gradient(
         w: (6,).
         grad_q: (N,), added to.
     """
-    size = chain.joint.size
-    walk = np.empty((size + 1, _COLUMNS, 3))
-    _walk(chain, q, dq, np.zeros_like(dq), walk)
+    walk = np.empty((chain.joint.size + 1, COLUMNS, 3))
+    walk_motion(chain, q, dq, np.zeros_like(dq), walk)
+    pull_velocity(chain, walk, w, grad_q)
+
+
+@lean
+def walk_speeds(chain: Chain, dq: FloatArray, walk: FloatArray) -> None:
+    """Write velocities at other rates (N,) into a walk whose axes and origins stand."""
+    omega, speed = ZERO, ZERO
+    last = walk.shape[0] - 1
+    for k in range(last):
+        _store(walk, k, OMEGA, omega)
+        _store(walk, k, SPEED, speed)
+        rate = scale(dq[chain.joint[k]], recall(walk, k, AXIS))
+        step = subtract(recall(walk, k + 1, ORIGIN), recall(walk, k, ORIGIN))
+        if chain.prismatic[k]:
+            speed = add(speed, rate)
+        else:
+            omega = add(omega, rate)
+        speed = add(speed, cross(omega, step))
+    _store(walk, last, OMEGA, omega)
+    _store(walk, last, SPEED, speed)
+
+
+@lean
+def pull_velocity(chain: Chain, walk: FloatArray, w: FloatArray, grad_q: FloatArray) -> None:
+    """Add the gradient of w · (velocity at the end of a walk) with respect to q; w is (6,)."""
     force, torque = (w[0], w[1], w[2]), (w[3], w[4], w[5])
-    for k in range(size):
+    for k in range(walk.shape[0] - 1):
         linear, angular = _velocity_change(chain, k, walk)
         grad_q[chain.joint[k]] += dot(force, linear) + dot(torque, angular)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _relative(walk: FloatArray, k: int) -> tuple[Vector, Vector, Vector]:
     """The TCP against the frame before joint k: place, velocity, angular velocity."""
     last = walk.shape[0] - 1
-    r = subtract(_recall(walk, last, _ORIGIN), _recall(walk, k, _ORIGIN))
-    omega = _recall(walk, k, _OMEGA)
-    velocity = subtract(_recall(walk, last, _SPEED), _recall(walk, k, _SPEED))
-    spin = subtract(_recall(walk, last, _OMEGA), omega)
+    r = subtract(recall(walk, last, ORIGIN), recall(walk, k, ORIGIN))
+    omega = recall(walk, k, OMEGA)
+    velocity = subtract(recall(walk, last, SPEED), recall(walk, k, SPEED))
+    spin = subtract(recall(walk, last, OMEGA), omega)
     return r, subtract(velocity, cross(omega, r)), spin
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _velocity_change(chain: Chain, k: int, walk: FloatArray) -> tuple[Vector, Vector]:
     """Derivative of the TCP's velocity with respect to the value of joint k.
 
     The joint turns place and relative velocity of all that follows: δr = s × r, δv = s × v_rel.
     """
-    axis, omega = _recall(walk, k, _AXIS), _recall(walk, k, _OMEGA)
+    axis, omega = recall(walk, k, AXIS), recall(walk, k, OMEGA)
     if chain.prismatic[k]:
         return cross(omega, axis), ZERO
     r, velocity, spin = _relative(walk, k)
     return add(cross(omega, cross(axis, r)), cross(axis, velocity)), cross(axis, spin)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _acceleration_change(chain: Chain, k: int, walk: FloatArray) -> tuple[Vector, Vector]:
     """Derivative of the TCP's acceleration with respect to the value of joint k."""
-    axis, omega = _recall(walk, k, _AXIS), _recall(walk, k, _OMEGA)
-    alpha = _recall(walk, k, _ALPHA)
+    axis, omega = recall(walk, k, AXIS), recall(walk, k, OMEGA)
+    alpha = recall(walk, k, ALPHA)
     if chain.prismatic[k]:
         return carry(omega, alpha, axis)[1], ZERO
     last = walk.shape[0] - 1
     r, velocity, spin = _relative(walk, k)
-    relative = subtract(_recall(walk, last, _RISE), _recall(walk, k, _RISE))
+    relative = subtract(recall(walk, last, RISE), recall(walk, k, RISE))
     relative = subtract(relative, carry(omega, alpha, r)[1])
     relative = subtract(relative, scale(2.0, cross(omega, velocity)))
     linear = add(carry(omega, alpha, cross(axis, r))[1], cross(axis, relative))
     linear = add(linear, scale(2.0, cross(omega, cross(axis, velocity))))
-    spun = subtract(_recall(walk, last, _ALPHA), alpha)
+    spun = subtract(recall(walk, last, ALPHA), alpha)
     spun = subtract(spun, cross(omega, spin))
     return linear, add(cross(omega, cross(axis, spin)), cross(axis, spun))
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _acceleration_change_with_rate(chain: Chain, k: int, walk: FloatArray) -> tuple[Vector, Vector]:
     """Derivative of the TCP's acceleration with respect to the rate of joint k."""
-    axis, omega = _recall(walk, k, _AXIS), _recall(walk, k, _OMEGA)
+    axis, omega = recall(walk, k, AXIS), recall(walk, k, OMEGA)
     linear, angular = _velocity_change(chain, k, walk)
     if chain.prismatic[k]:
         return scale(2.0, linear), ZERO
@@ -318,11 +347,18 @@ def acceleration_gradient(
         w: (6,).
         grad_q, grad_dq: (N,), added to.
     """
-    size = chain.joint.size
-    walk = np.empty((size + 1, _COLUMNS, 3))
-    _walk(chain, q, dq, ddq, walk)
+    walk = np.empty((chain.joint.size + 1, COLUMNS, 3))
+    walk_motion(chain, q, dq, ddq, walk)
+    pull_acceleration(chain, walk, w, grad_q, grad_dq)
+
+
+@lean
+def pull_acceleration(
+    chain: Chain, walk: FloatArray, w: FloatArray, grad_q: FloatArray, grad_dq: FloatArray
+) -> None:
+    """Add the gradients of w · (acceleration at the end of a walk) with respect to q and q̇."""
     force, torque = (w[0], w[1], w[2]), (w[3], w[4], w[5])
-    for k in range(size):
+    for k in range(walk.shape[0] - 1):
         linear, angular = _acceleration_change(chain, k, walk)
         grad_q[chain.joint[k]] += dot(force, linear) + dot(torque, angular)
         linear, angular = _acceleration_change_with_rate(chain, k, walk)
