@@ -22,6 +22,9 @@ _EXCESS = 1.004
 """Share of a limit from which on it is reported: between the places looked at, 1.005 at most."""
 _CLOSE = 0.8
 """Share below which peaks between the places looked at are none that pass a limit."""
+_BENT = 0.416
+"""How far a quartic is at most from the line between two of five even places, in multiples of the
+greatest second difference there: found by maximising over the place and the three differences."""
 _NEAR_SINGULAR = 0.01
 """Conditioning below which a singular configuration is what makes joints turn so unevenly."""
 _FEW, _MANY = np.linspace(0.0, 1.0, 5), np.linspace(0.05, 0.95, 10)
@@ -156,8 +159,8 @@ def _look(
     twist: FloatArray,
     share: FloatArray,
 ) -> None:
-    """Write the shares of limits at a place z in an interval; what weighs the samples' states for
-    it is (3, 6)."""
+    """Write the shares of limits at a place z in an interval, those of joints with their sign; what
+    weighs the samples' states for it is (3, 6)."""
     axes = states.q.shape[1]
     square, u = x0 + z * (x1 - x0), (x1 - x0) / (2 * h)
     pace = square**0.5
@@ -171,8 +174,8 @@ def _look(
             bend += weight[2, c] * p + weight[2, c + 1] * v + weight[2, c + 2] * a
         slope, bend = slope / h, bend / (h * h)
         state[0, j], state[1, j] = value, slope * pace
-        share[j] = abs(slope * pace) / velocity[j]
-        share[axes + 2 + j] = abs(slope * u + bend * square) / acceleration[j]
+        share[j] = slope * pace / velocity[j]
+        share[axes + 2 + j] = (slope * u + bend * square) / acceleration[j]
     share[axes] = share[axes + 1] = 0.0
     if velocity[axes] == np.inf and velocity[axes + 1] == np.inf:
         return
@@ -193,30 +196,31 @@ def _look(
 def _may_pass(share: FloatArray) -> bool:
     """Whether any row of values at a few even places may pass its limit anywhere between them.
 
-    Accelerations of joints are quartics, which five places tell; between two of them a value is
-    no more than a quarter of the greatest second difference above the greater.
+    Accelerations of joints are quartics, which five places determine: none is farther from the
+    line between two of them than `_BENT` of the greatest second difference. Speeds, which are
+    slopes times the root of a line, are taken as if they were.
     """
     for j in range(share.shape[0]):
         peak = bent = 0.0
         for m in range(share.shape[1]):
-            peak = max(peak, share[j, m])
+            peak = max(peak, abs(share[j, m]))
             if 0 < m < share.shape[1] - 1:
                 bent = max(bent, abs(share[j, m - 1] - 2.0 * share[j, m] + share[j, m + 1]))
-        if peak + 0.25 * bent > _EXCESS:
+        if peak + _BENT * bent > _EXCESS:
             return True
     return False
 
 
 @njit(cache=True, error_model="numpy")
 def _peak(share: FloatArray, j: int) -> float:
-    """The greatest of a row's values at places evenly apart, and of the parabolas through three."""
+    """The greatest of a row's shares at places evenly apart, and of the parabolas through three."""
     peak = 0.0
     for m in range(share.shape[1]):
-        peak = max(peak, share[j, m])
+        peak = max(peak, abs(share[j, m]))
     if peak < _CLOSE:
         return peak
     for m in range(1, share.shape[1] - 1):
-        before, here, behind = share[j, m - 1], share[j, m], share[j, m + 1]
+        before, here, behind = abs(share[j, m - 1]), abs(share[j, m]), abs(share[j, m + 1])
         bend = 2.0 * here - before - behind
         if here >= before and here >= behind and bend > 0.0:
             peak = max(peak, here + (behind - before) ** 2 / (8.0 * bend))
