@@ -18,7 +18,7 @@ from ..model.elasticity import RIGID, Elasticity
 from ..timing.timing import Timing
 from .elasticity import derivatives_of, lead_states, lead_step, links_of
 from .ramp import ramped
-from .smoothing import STEP, JointMotion, Smoothing, States, even_times
+from .smoothing import STEP, JointMotion, Smoothing, States, even_times, knot_step
 from .trajectory import Leads, no_leads, sample_times
 
 _STRETCH = 20.0
@@ -91,8 +91,10 @@ def stamped_motion(timing: Timing, begin: float = -np.inf, end: float = np.inf) 
         begin, end: s, what is wanted of it.
     """
     if timing.ramp > 0.0:
-        t = even_times(max(begin, 0.0), min(end, timing.duration), STEP)
-        return ramped(timing.intervals, timing.along.states, timing.start, timing.ramp, t)
+        step = knot_step(timing.ramp)
+        t = even_times(max(begin, 0.0), min(end, timing.duration), step)
+        made = ramped(timing.intervals, timing.along.states, timing.start, timing.ramp, t)
+        return JointMotion(t, *made, step)
     even = sample_times(0.0, timing.duration, STEP, (begin, end))
     edges = timing.start.driven(np.concatenate([timing.begin, timing.end]))
     edges = edges[(even[0] <= edges) & (edges <= even[-1])]

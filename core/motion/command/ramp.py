@@ -10,7 +10,8 @@ where ℓ runs unevenly.)
 
 Between samples dλ/dℓ is linear in ℓ and ℓ a parabola in time, so that λ is a quartic in time: its
 integral over any part of an interval follows from three of its values (Gauss), and with it the
-average, its two derivatives and the place on the path, all without steps in time.
+average, its rate and the place on the path, all without steps in time. Only while time comes up to
+speed (`start_ramp`) λ is of a higher degree, and the integral as good as intervals are short.
 """
 
 from __future__ import annotations
@@ -25,7 +26,6 @@ from ...robot.kinematics.lean import lean
 from ..path.tcp_samples import States
 from ..timing.interval import Intervals, joint_at, progress
 from ..timing.start_ramp import StartRamp, stamped_time
-from .smoothing import STEP, JointMotion
 
 _TURNING, _SWAYING = 0.1, 0.01
 """m that a turn of the tool, and one of the joints, by one rad counts."""
@@ -52,15 +52,18 @@ class _Way(NamedTuple):
 
 def ramped(
     intervals: Intervals, states: States, start: StartRamp, window: float, t: FloatArray
-) -> JointMotion:
-    """The motion that is at a time where the stamped one is on average over the last T seconds.
+) -> tuple[FloatArray, FloatArray]:
+    """Where the stamped motion is on average over the last while, and how fast that changes.
 
     Args:
         intervals: of the path.
         states: (S,) samples with respect to ℓ.
         start: how time comes up to speed.
-        window: T, s.
-        t: (T,) s, `STEP` apart; the knots.
+        window: s that are averaged over, above zero.
+        t: (T,) s, increasing.
+
+    Returns:
+        Positions and velocities (T, N).
     """
     shape = len(t), states.q.shape[1]
     q, dq = np.empty(shape), np.empty(shape)
@@ -78,7 +81,7 @@ def ramped(
         np.zeros(len(covered)),
     )
     _drive(part, way, start.begin, start.length, window, t, states, q, dq)
-    return JointMotion(t, q, dq, STEP)
+    return q, dq
 
 
 def way_slopes(states: States) -> FloatArray:

@@ -47,6 +47,11 @@ def window_for_jerk(jerk: float) -> float:
     return 2.0 / jerk
 
 
+def knot_step(shortest: float) -> float:
+    """s between knots of a motion whose shortest average is that long, in s."""
+    return float(np.clip(shortest / _KNOTS, _FINEST, STEP))
+
+
 @dataclass(frozen=True)
 class JointMotion:
     """A motion that rests before its first knot and after its last, cubic between knots.
@@ -112,7 +117,7 @@ class Smoothing:
         """
         if not self.widths:
             return motion.at(t)
-        step = float(np.clip(min(self.widths) / _KNOTS, _FINEST, STEP))
+        step = knot_step(min(self.widths))
         # The longest last: what the others leave is then resolved best.
         *first, last = sorted(self.widths)
         for width in first:

@@ -100,10 +100,11 @@ def test_means_over_a_ramp_are_as_near_the_mean_place_as_bounded(abb, ramp, zone
     course, averages = course_of(timing, model)
     off = averages.over_ramp()
     stamped = timing.intervals, timing.along.states, timing.start, ramp
-    motion = ramped(*stamped, even_times(0.0, timing.duration, 1e-3))
-    made = means(timing, ramp, motion.t) - motion.q
-    cell = cells_at(timing, course, motion.q)
-    nearby = int(averages.reach / np.diff(motion.t).max())
+    t = even_times(0.0, timing.duration, 1e-3)
+    q, _ = ramped(*stamped, t)
+    made = means(timing, ramp, t) - q
+    cell = cells_at(timing, course, q)
+    nearby = int(averages.reach / np.diff(t).max())
     for first in range(0, len(made) - nearby, nearby // 4):
         some = slice(first, first + nearby)
         assert (np.ptp(made[some], axis=0) <= off[cell[some]].max(axis=0) + 1e-9).all()

@@ -78,14 +78,49 @@ def test_a_ramp_is_a_mean_of_the_place_whatever_its_knots(arm, ramp, start) -> N
     controller = arm.controller(MotionModel(ramp=ramp, start_ramp=start))
     timing = controller.stamp(driven, controller.plan(driven))
     stamped = timing.intervals, timing.along.states, timing.start, ramp
-    few = ramped(*stamped, even_times(0.0, timing.duration, 8e-3))
-    many = ramped(*stamped, even_times(0.0, timing.duration, 1e-4))
-    same = many.q[::80]
-    np.testing.assert_allclose(few.q[: len(same)], same, atol=1e-9)
-    slopes = np.gradient(many.q, many.t, axis=0)
-    off = np.abs(slopes - many.dq)[1:-1]
+    few, _ = ramped(*stamped, even_times(0.0, timing.duration, 8e-3))
+    t = even_times(0.0, timing.duration, 1e-4)
+    many, rates = ramped(*stamped, t)
+    same = many[::80]
+    np.testing.assert_allclose(few[: len(same)], same, atol=1e-9)
+    off = np.abs(np.gradient(many, t, axis=0) - rates)[1:-1]
     # Where accelerations jump, a quotient is off by half of what they jump by in a step.
-    assert off.max() < 1e-4 * np.abs(np.gradient(many.dq, many.t, axis=0)).max() + 1e-9
+    assert off.max() < 1e-4 * np.abs(np.gradient(rates, t, axis=0)).max() + 1e-9
+
+
+@settings(max_examples=6, deadline=None)
+@given(ramp=st.floats(0.005, 0.08), start=st.sampled_from([0.0, 0.15]))
+def test_a_ramp_is_where_the_mean_of_the_way_is_reached(arm, ramp, start) -> None:
+    """The way that kinematics give between many instants, summed and averaged."""
+    driven = program(arm, Radius(0.2 * arm.leg), FINE, FINE)
+    controller = arm.controller(MotionModel(ramp=ramp, start_ramp=start))
+    timing = controller.stamp(driven, controller.plan(driven))
+    t = np.linspace(0.0, timing.duration, 20001)
+    q = timing.driven_at(t)[0]
+    rotation, place = arm.robot.forward(q)
+    turn = np.linalg.norm(np.diff(rotation, axis=0), axis=(1, 2)) / np.sqrt(2)
+    squares = np.sum(np.diff(place, axis=0) ** 2, axis=1) + (0.1 * turn) ** 2
+    squares += 1e-4 * np.sum(np.diff(q, axis=0) ** 2, axis=1)
+    way = np.concatenate([[0.0], np.cumsum(np.sqrt(squares))])
+    area = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(t) * (way[1:] + way[:-1]))])
+    mean = (area - np.interp(t - ramp, t, area)) / ramp
+    moving = np.concatenate([[True], np.diff(way) > 0.0])
+    expected = timing.driven_at(np.interp(mean, way[moving], t[moving]))[0]
+    made, _ = ramped(timing.intervals, timing.along.states, timing.start, ramp, t)
+    np.testing.assert_allclose(made, expected, atol=2e-5)
+
+
+@pytest.mark.parametrize("ramp", [0.004, 0.001])
+def test_a_short_ramp_is_resolved(arm, ramp) -> None:
+    """By knots as near to each other as it asks for."""
+    driven = program(arm, FINE, FINE, FINE)
+    timing = (c := arm.controller(MotionModel(ramp=ramp))).stamp(driven, c.plan(driven))
+    motion = stamped_motion(timing)
+    fine = even_times(0.0, timing.duration, 5e-5)
+    expected = ramped(timing.intervals, timing.along.states, timing.start, ramp, fine)
+    place, rate, _ = motion.at(fine)
+    np.testing.assert_allclose(place, expected[0], atol=1e-7)
+    np.testing.assert_allclose(rate, expected[1], atol=1e-3 * np.abs(rate).max())
 
 
 def test_a_run_is_at_rest_at_its_ends(arm) -> None:
