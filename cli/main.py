@@ -10,6 +10,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from ..core.door import command_line
 from ..core.errors import FlybyError, OptionError
+from ..tasks.options.shell import SHELL
 from .catalogue import robots, vendors
 from .check import check
 from .compare import compare
@@ -55,7 +56,7 @@ class Commands(TyperGroup):
         log = logging.getLogger("flyby")
         log.addHandler(logged)
         try:
-            with command_line():
+            with command_line(SHELL):
                 return super().invoke(ctx)
         except FlybyError as error:
             fail(str(error))

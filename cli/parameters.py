@@ -11,8 +11,9 @@ from typing import Annotated, Any, get_type_hints
 
 import typer
 
-from ..core.door import command_line, flag_of
-from ..tasks.options.entries import Entry, TaskOptions, defaults, entries
+from ..core.door import command_line
+from ..tasks.options.entries import Entry, TaskOptions, defaults, entries, flag
+from ..tasks.options.shell import SHELL
 
 _DIGITS = 12
 _SEVERAL = 3
@@ -65,9 +66,9 @@ def _parameter(kind: type[TaskOptions], name: str) -> inspect.Parameter:
         hint = hint | None
     elif entry.kind is float and default is not inspect.Parameter.empty:
         default = float(f"{default / entry.scale.factor:.{_DIGITS}g}")
-    with command_line():
+    with command_line(SHELL):
         option = typer.Option(
-            entry.flag or flag_of(name), help=entry.explained, rich_help_panel=_panel(kind, name)
+            flag(kind, name), help=entry.explained, rich_help_panel=_panel(kind, name)
         )
     return inspect.Parameter(
         name,

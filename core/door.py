@@ -1,36 +1,51 @@
-"""How messages name options and commands: ``--in-place`` in a shell, ``in_place`` in Python."""
+"""How messages name options and tasks: as in Python, or as they are typed in a shell.
+
+A message names the option that helps. How options are typed is known above: whoever serves a shell
+says so (`command_line`).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
+from typing import NamedTuple
 
-FLAGS = {"answers": "--io", "others": "--with", "parameters": "--fit"}
-"""Flags of options that are called otherwise in a shell, by their names in Python."""
-_COMMANDS = {"free_motion": "free"}
-"""Likewise of tasks."""
-_TYPED: ContextVar[bool] = ContextVar("typed", default=False)
+
+class Shell(NamedTuple):
+    """What is typed: ``--in-place`` for the option ``in_place``, ``free`` for a task.
+
+    Args:
+        flags: of options that are called otherwise, by their names in Python.
+        commands: for tasks that are called otherwise, likewise.
+    """
+
+    flags: Mapping[str, str]
+    commands: Mapping[str, str]
+
+    def flag_of(self, name: str) -> str:
+        """The flag of an option that is called as in Python, or that is a flag already."""
+        if name.startswith("-"):
+            return name
+        return self.flags.get(name, "--" + name.replace("_", "-"))
+
+
+_SHELL: ContextVar[Shell | None] = ContextVar("shell", default=None)
 
 
 @contextmanager
-def command_line() -> Iterator[None]:
-    """Have messages within name options, and state numbers, as they are typed in a shell."""
-    token = _TYPED.set(True)
+def command_line(shell: Shell) -> Iterator[None]:
+    """Have messages within name options, and state numbers, as they are typed."""
+    token = _SHELL.set(shell)
     try:
         yield
     finally:
-        _TYPED.reset(token)
+        _SHELL.reset(token)
 
 
 def at_command_line() -> bool:
     """Whether options are typed in a shell."""
-    return _TYPED.get()
-
-
-def flag_of(name: str) -> str:
-    """The flag of an option that is called as in Python, or that is a flag already."""
-    return name if name.startswith("-") else FLAGS.get(name, "--" + name.replace("_", "-"))
+    return _SHELL.get() is not None
 
 
 def spelt(name: str, flag: str | None = None) -> str:
@@ -40,12 +55,13 @@ def spelt(name: str, flag: str | None = None) -> str:
         name: in Python.
         flag: at the command line, where one task alone calls it otherwise.
     """
-    return (flag or flag_of(name)) if at_command_line() else name
+    shell = _SHELL.get()
+    return name if shell is None else flag or shell.flag_of(name)
 
 
 def switched(name: str) -> str:
     """A switch that is on, as messages name it: ``--force``, ``force=True``."""
-    return flag_of(name) if at_command_line() else f"{name}=True"
+    return spelt(name) if at_command_line() else f"{name}=True"
 
 
 def given(name: str, what: str, flag: str | None = None) -> str:
@@ -58,6 +74,7 @@ def given(name: str, what: str, flag: str | None = None) -> str:
 
 def called(task: str, argument: str = "") -> str:
     """A task as messages name it: ``'flyby robots abb'``, ``flyby.robots("abb")``."""
-    if at_command_line():
-        return f"'{' '.join(filter(None, ('flyby', _COMMANDS.get(task, task), argument)))}'"
+    shell = _SHELL.get()
+    if shell is not None:
+        return f"'{' '.join(filter(None, ('flyby', shell.commands.get(task, task), argument)))}'"
     return f"flyby.{task}({argument and repr(argument)})".replace("'", '"')

@@ -14,9 +14,10 @@ from numbers import Integral, Real
 from pathlib import Path
 from typing import Any
 
-from ...core.door import at_command_line, flag_of, spelt, switched
+from ...core.door import at_command_line, spelt, switched
 from ...core.errors import InputError, OptionError
 from .kinds import listed, refuse_others
+from .shell import SHELL
 
 Read = Callable[[Any, str], object]
 """Makes a value of what was given, text or value; the second argument names it in messages."""
@@ -236,7 +237,7 @@ def defaults(options: type[TaskOptions]) -> Mapping[str, object]:
 
 def flag(options: type[TaskOptions], name: str) -> str:
     """The flag of an option at the command line."""
-    return entries(options)[name].flag or flag_of(name)
+    return entries(options)[name].flag or SHELL.flag_of(name)
 
 
 # The functions that state an option. Their results are fields: `Any`, as `dataclasses.field` is.

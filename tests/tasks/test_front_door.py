@@ -21,6 +21,7 @@ from flyby.core.door import command_line
 from flyby.core.errors import FlybyError, InputError
 from flyby.tasks.optimize import OptimizeOptions
 from flyby.tasks.options.entries import TaskOptions, entries, flag
+from flyby.tasks.options.shell import SHELL
 from flyby.tasks.painting.options import PaintOptions
 from flyby.tasks.pareto import ParetoOptions
 from flyby.tasks.setup import RobotOptions
@@ -168,7 +169,7 @@ def test_both_doors_refuse_the_same(
     assert said in str(refused.value)
     typed = CliRunner().invoke(app, [COMMANDS[kind], str(SQUARE), "--robot", ROBOT, *words])
     assert typed.exit_code == 2
-    with command_line(), pytest.raises(InputError) as refused:
+    with command_line(SHELL), pytest.raises(InputError) as refused:
         kind(**options)
 
     def without_numbers(text: str) -> str:
@@ -310,14 +311,14 @@ def test_messages_of_the_core_name_options_as_the_door_does() -> None:
     text = SQUARE.read_text("utf-8").replace("v1000", "unknown_speed", 1)
     with pytest.raises(FlybyError, match=r"answer it in a file \(answers\)"):
         flyby.read(text, robot=ROBOT)
-    with command_line(), pytest.raises(FlybyError, match=r"answer it in a file \(--io\)"):
+    with command_line(SHELL), pytest.raises(FlybyError, match=r"answer it in a file \(--io\)"):
         flyby.read(text, robot=ROBOT)
 
 
 def test_helps_state_units_as_the_door_takes_them() -> None:
     assert "From signal to paint, s. Default: 0.0" in str(flyby.paint.__doc__)
     assert "Thickness wanted, with its unit: 50um. As numbers: m." in str(flyby.paint.__doc__)
-    with command_line():
+    with command_line(SHELL):
         assert entries(PaintOptions)["delay"].explained == "From signal to paint, ms."
     for kind in all_options():
         for name, entry in entries(kind).items():
