@@ -189,15 +189,16 @@ def joint_indices(given: str | Sequence[int], count: int) -> list[int]:
     """Indices of joints by their numbers from 1.
 
     Raises:
-        InputError: naming the option.
+        OptionError: it names no joints; naming the option.
+        InputError: the robot has no such joint; likewise.
     """
     text = given if isinstance(given, str) else ",".join(map(str, given))
     words = text.replace(",", " ").split()
-    if not words or not all(word.isdecimal() and 1 <= int(word) <= count for word in words):
-        raise InputError(
-            f"{spelt('axes')} {text or repr(text)}: numbers of joints from 1 to {count}, "
-            "such as 2,3"
-        )
+    said = f"{spelt('axes')} {text or repr(text)}: numbers of joints from 1 to {count}, such as 2,3"
+    if not words or not all(word.isdecimal() for word in words):
+        raise OptionError(said)
+    if not all(1 <= int(word) <= count for word in words):
+        raise InputError(said)
     return [int(word) - 1 for word in words]
 
 

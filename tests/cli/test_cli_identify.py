@@ -142,20 +142,23 @@ def test_columns_that_are_missing_or_double(
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
+    ("status", "arguments", "message"),
     [
-        (("--robot", ROBOT, "--vendor", "kuka"), "is driven by abb"),
+        (1, ("--robot", ROBOT, "--vendor", "kuka"), "is driven by abb"),
         (
+            1,
             ("--robot", ROBOT, "--fit", "time.nonsense"),
             "unknown key of a motion model",
         ),
-        (("--robot", ROBOT, "--fit", "zone.overlap"), "is not fitted"),
-        ((), "which robot"),
+        (1, ("--robot", ROBOT, "--fit", "zone.overlap"), "is not fitted"),
+        (2, (), "which robot"),
     ],
 )
-def test_refusals(flyby: Flyby, folder: Path, arguments: tuple[str, ...], message: str) -> None:
+def test_refusals(
+    flyby: Flyby, folder: Path, status: int, arguments: tuple[str, ...], message: str
+) -> None:
     result = flyby("identify", folder, *arguments)
-    assert result.exit_code in (1, 2) and message in result.stderr
+    assert result.exit_code == status and message in result.stderr
 
 
 def test_no_runs(flyby: Flyby, tmp_path: Path) -> None:
