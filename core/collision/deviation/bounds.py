@@ -1,14 +1,14 @@
 """How far smoothing in time takes the links off their path, place by place.
 
-See `motion.averaging`. What motors lead by is what elastic joints give way by, so that links are
-where smoothing leaves them; servos that lag take their links with them (`motion.elasticity`). The
+See `averaging`. What motors lead by is what elastic joints give way by, so that links are where
+smoothing leaves them; servos that lag take their links with them (`motion.command.elasticity`). The
 bounds hold for all motions within the path's limits that rest no shorter than reckoned with, so at
 every override that stays as it is where rests are always as long.
 
-Where rests end by an in-position window (`motion.rests`), slow motions rest less, and fast ones
-without rests would deviate far. So motions are told apart by how much slower they are: an override
-lowers limits of speed, or lets time run slower, or both. From `_SPEEDS` and `_TIME` on up rests are
-those where both are as low; below, no rests are reckoned with, but speeds, or speeds and
+Where rests end by an in-position window (`motion.timing.rests`), slow motions rest less, and fast
+ones without rests would deviate far. So motions are told apart by how much slower they are: an
+override lowers limits of speed, or lets time run slower, or both. From `_SPEEDS` and `_TIME` on up
+rests are those where both are as low; below, no rests are reckoned with, but speeds, or speeds and
 accelerations, are low.
 """
 
