@@ -146,12 +146,6 @@ def mixture(elasticity: Elasticity, robot: Robot, size: int) -> FloatArray:
     return out
 
 
-def held_at_rest(elasticity: Elasticity, robot: Robot, q: FloatArray) -> FloatArray:
-    """What gears hold at rest (T, N), in rad (m) of lead, at configurations (T, N)."""
-    still = np.zeros_like(q)
-    return _gears(elasticity, robot, q, still, still)[1]
-
-
 def derivatives_of(
     t: FloatArray, values: FloatArray, at: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -124,20 +124,6 @@ class Smoothing:
             motion = averaged(motion, width, step)
         return motion.averaged(last, t)
 
-    def by_width(self, motion: JointMotion, t: FloatArray) -> FloatArray:
-        """Derivative (K, T, N) of the smoothed positions with respect to each of the K widths.
-
-        With f what the other averages make of the motion, that of the mean over [t − w, t] is
-        (f(t − w) − mean) / w. A longer average also delays the command, by half of what it is
-        longer.
-        """
-        command = self.command(motion, t)[0]
-        out = np.empty((len(self.widths), *command.shape))
-        for k, width in enumerate(self.widths):
-            others = Smoothing((*self.widths[:k], *self.widths[k + 1 :]))
-            out[k] = (others.command(motion, t - width)[0] - command) / width
-        return out
-
 
 def averaged(motion: JointMotion, window: float, step: float) -> JointMotion:
     """The mean over the last ``window`` seconds of a motion, by knots ``step`` apart."""

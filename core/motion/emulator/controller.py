@@ -190,10 +190,8 @@ class Controller:
         period = self.model.period if period is None else period
         smoothing = self.smoothing(program, timing.path)
         t = sample_times(0.0, timing.duration, period)
-        path, found = (
-            timing.path,
-            commanded_motion(self.robot, self.model.elasticity, smoothing, timing, t),
-        )
+        found = commanded_motion(self.robot, self.model.elasticity, smoothing, timing, t)
+        path = timing.path
         last = len(path.route.moves) - 1
         segment = np.searchsorted(path.layout.waypoint, found.sigma, "right") - 1
         segment = np.clip(segment, 0, last)

@@ -41,10 +41,8 @@ def torque_shares(
         raise InputError(f"torque.own_s2: {robot.name} has {robot.arm_size} joints, not {count}")
     loads = mass_loads(robot, _masses(torque), _CARRIED, q, dq, ddq)
     own, weight = np.array(torque.own), filled(torque.weight, count)
-    a, b = (
-        own * dq[:, :count] + loads.along[:, :count],
-        own * ddq[:, :count] + loads.across[:, :count],
-    )
+    a = own * dq[:, :count] + loads.along[:, :count]
+    b = own * ddq[:, :count] + loads.across[:, :count]
     h = -weight * loads.held[:, :count]
     fade = filled(torque.fade, count) * dq[:, :count] ** 2
     return Shares(a, b, h, fade)

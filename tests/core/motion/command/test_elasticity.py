@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.motion.command.elasticity import held_at_rest, lead_states, leads
+from flyby.core.motion.command.elasticity import _gears, lead_states, leads
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.model.elasticity import RIGID, Carried, Coupled, Elasticity
 from flyby.core.motion.model.motion_file import load_motion_model
@@ -21,6 +21,7 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
+from flyby.core.robot.model import Robot
 from flyby.core.spatial.pose import Pose
 
 GEARS = Elasticity(
@@ -44,6 +45,11 @@ def program(arm) -> Program:
 def states(size: int, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     rng = np.random.default_rng(seed)
     return rng.uniform(-1.5, 1.5, (4, size)), *rng.normal(size=(2, 4, size))
+
+
+def held_at_rest(gears: Elasticity, robot: Robot, q: np.ndarray) -> np.ndarray:
+    """What gears hold (T, N), in rad of lead."""
+    return _gears(gears, robot, q, np.zeros_like(q), np.zeros_like(q))[1]
 
 
 @settings(max_examples=20, deadline=None)

@@ -181,23 +181,6 @@ def test_a_cascade_is_linear_and_knows_no_order_and_no_beginning(seeds, widths) 
         np.testing.assert_allclose(made, later, atol=tolerance)
 
 
-@settings(max_examples=15, deadline=None)
-@given(
-    seed=st.integers(0, 1000),
-    widths=st.lists(st.floats(0.02, 0.08), min_size=1, max_size=3).map(tuple),
-)
-def test_widths_have_exact_derivatives(seed, widths) -> None:
-    motion, h = trapezoids(seed), 1e-5
-    t = np.linspace(0.0, 1.4, 60)
-    found = Smoothing(widths).by_width(motion, t)
-    for k in range(len(widths)):
-        above, below = (
-            Smoothing((*widths[:k], widths[k] + s * h, *widths[k + 1 :])).command(motion, t)[0]
-            for s in (1, -1)
-        )
-        np.testing.assert_allclose(found[k], (above - below) / (2 * h), atol=2e-3)
-
-
 def test_an_hour_loses_no_digits() -> None:
     """The same motion at the end of an hour of rest at an angle far from zero."""
     motion, smoothing = trapezoids(7), Smoothing((0.04, 0.04, 0.04))
