@@ -43,12 +43,12 @@ class Skip(Generic[Block]):
 
 
 @dataclass(slots=True)
-class Standing:
-    """Where a run stands.
+class Nesting:
+    """Which routines and loops are under way.
 
     Attributes:
-        routine, loop: the innermost that are under way, by their numbers; 0 for none.
-        depth: how many routines are.
+        routine, loop: the innermost, by their numbers; 0 for none.
+        depth: how many routines.
     """
 
     routine: int = 0
@@ -68,16 +68,16 @@ class Branches(Generic[Block]):
     Args:
         analysis: of the program's statements.
         course: has the user's answers, and remembers what was decided.
-        standing: where the run stands.
+        nesting: of the run.
 
     Attributes:
         skips: how many branches were not taken.
     """
 
-    def __init__(self, analysis: Analysis[Block], course: Course, standing: Standing) -> None:
+    def __init__(self, analysis: Analysis[Block], course: Course, nesting: Nesting) -> None:
         self._analysis = analysis
         self._course = course
-        self.standing = standing
+        self.nesting = nesting
         self.skips = 0
         self._skipped: dict[int, Skip[Block]] = {}  # by the block's id, each with its last time
 
@@ -117,9 +117,9 @@ class Branches(Generic[Block]):
         )
         for block in skipped:
             self.skips += 1
-            standing = self.standing
+            nesting = self.nesting
             self._skipped[id(block)] = Skip(
-                block, reason, self.skips, standing.routine, standing.loop
+                block, reason, self.skips, nesting.routine, nesting.loop
             )
         return TakenBranch(chosen, skipped)
 
@@ -152,7 +152,7 @@ class Branches(Generic[Block]):
     def _leads_to(self, block: Block) -> Exit | None:
         """Where a block leads; None if the program goes on behind it, or behind a call."""
         leads = self._analysis.leads_to(block)
-        return None if leads is Exit.ROUTINE and self.standing.depth > 1 else leads
+        return None if leads is Exit.ROUTINE and self.nesting.depth > 1 else leads
 
     def open_in(self, body: Block, since: int) -> Iterator[Skip[Block]]:
         """Branches in a loop's body that were not taken since it began.

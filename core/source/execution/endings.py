@@ -217,10 +217,10 @@ class Endings(Generic[Block]):
     def _leaves(self, skip: Skip[Block], loop: Loop[Block]) -> bool:
         """Whether a branch may leave a loop, or the program."""
         ways = self._analysis.ways_out(skip.block)
-        if not ways or skip.routine != self._branches.standing.routine:
+        if not ways or skip.routine != self._branches.nesting.routine:
             return any(how is Exit.PROGRAM for how, _ in ways)
         for how, label in ways:
-            if how is Exit.LOOP and skip.loop != self._branches.standing.loop:
+            if how is Exit.LOOP and skip.loop != self._branches.nesting.loop:
                 continue
             if how is Exit.JUMP and label in self._analysis.marks(loop.body) | loop.labels:
                 continue
@@ -304,7 +304,7 @@ class Endings(Generic[Block]):
 
     def _leave_by(self, skip: Skip[Block], loop: Loop[Block], run: Callable[[Block], bool]) -> None:
         """Carry out the way out that was not taken."""
-        if skip.routine == self._branches.standing.routine:
+        if skip.routine == self._branches.nesting.routine:
             run(skip.block)
         elif any(how is Exit.PROGRAM for how, _ in self._analysis.ways_out(skip.block)):
             self._host.finish(f"the program is left by what depends on {skip.reason}", loop.span)

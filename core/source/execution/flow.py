@@ -34,7 +34,7 @@ from contextlib import contextmanager
 from typing import Generic
 
 from .analysis import Analysis
-from .branches import Branches, Standing
+from .branches import Branches, Nesting
 from .endings import Endings, Loop, Passes, Start
 from .host import Host, Undecided
 from .steps import Block
@@ -50,8 +50,8 @@ class Flow(Generic[Block]):
 
     def __init__(self, analysis: Analysis[Block], host: Host) -> None:
         self._host = host
-        self._standing = Standing()
-        self._branches: Branches[Block] = Branches(analysis, host.course, self._standing)
+        self._nesting = Nesting()
+        self._branches: Branches[Block] = Branches(analysis, host.course, self._nesting)
         self._endings = Endings(analysis, host, self._branches)
         self.choose = self._branches.choose
         self._jumps: dict[tuple[int, object, object], Passes[Block]] = {}
@@ -74,12 +74,12 @@ class Flow(Generic[Block]):
             run_pass: runs a pass likewise; None for ``run`` of the body.
             tested_first: whether the condition is asked before the first pass.
         """
-        standing = self._standing
-        outer, standing.loop = standing.loop, standing.number()
+        nesting = self._nesting
+        outer, nesting.loop = nesting.loop, nesting.number()
         try:
             self._run(loop, goes_on, run, run_pass or (lambda: run(loop.body)), tested_first)
         finally:
-            standing.loop = outer
+            nesting.loop = outer
 
     def _run(
         self,
@@ -117,9 +117,9 @@ class Flow(Generic[Block]):
         Args:
             label: its key.
         """
-        for place in [p for p in self._jumps if p[:2] == (self._standing.routine, label)]:
+        for place in [p for p in self._jumps if p[:2] == (self._nesting.routine, label)]:
             del self._jumps[place]
-        self._reached[self._standing.routine, label] = self._endings.start()
+        self._reached[self._nesting.routine, label] = self._endings.start()
 
     def jump(
         self, loop: Loop[Block], label: object, key: object, run: Callable[[Block], bool]
@@ -132,7 +132,7 @@ class Flow(Generic[Block]):
             key: of the jump.
             run: runs a block where the jump stands; False if it leaves a loop round it.
         """
-        place = self._standing.routine, label, key
+        place = self._nesting.routine, label, key
         passes = self._jumps.get(place)
         if passes is None:
             start = self._reached.get(place[:2]) or self._reached[place[0], None]
@@ -154,16 +154,16 @@ class Flow(Generic[Block]):
     @contextmanager
     def routine(self) -> Iterator[None]:
         """Inside a routine: jumps and ways out of others do not count."""
-        standing = self._standing
-        outer = standing.routine, standing.loop
-        standing.routine, standing.loop = standing.number(), 0
+        nesting = self._nesting
+        outer = nesting.routine, nesting.loop
+        nesting.routine, nesting.loop = nesting.number(), 0
         self.label(None)  # where the routine begins
-        standing.depth += 1
+        nesting.depth += 1
         try:
             yield
         finally:
-            standing.depth -= 1
-            own = standing.routine
+            nesting.depth -= 1
+            own = nesting.routine
             self._jumps = {p: found for p, found in self._jumps.items() if p[0] != own}
             self._reached = {r: found for r, found in self._reached.items() if r[0] != own}
-            standing.routine, standing.loop = outer
+            nesting.routine, nesting.loop = outer
