@@ -94,7 +94,7 @@ def _check_zones(run: Run) -> None:
     if run.path.route.left_out:
         raise Refused("a waypoint would be left out", longer_legs_help=True)
     if run.path.model.overlap is Overlap.SKIP:
-        return  # Zones are whole, or smaller because their corner is too sharp for the speed.
+        return  # Zones are whole, or smaller because of the speed that they are entered with.
     for reach, move in zip(zone_reaches(run.path), run.path.route.moves, strict=True):
         zone = run.program.moves[move].zone
         if zone == FINE:

@@ -37,6 +37,8 @@ class Corners:
         reach: (M − 1, 3, 2) of position, turning and prescribed axes; into the segment before
             and the one after the waypoint.
         sources: the same with derivatives.
+        kept: what share of its radius a blend that was made smaller keeps, by corner; see
+            `smaller_blends`.
         overlapping: corners to be left out under `Overlap.SKIP`, because their zones overlap.
         notes: zones cut short and refused.
     """
@@ -44,6 +46,7 @@ class Corners:
     kind: NDArray[np.int64]
     reach: FloatArray
     sources: list[tuple[tuple[Reach, Reach], ...]]
+    kept: dict[int, Reach] = field(default_factory=dict)
     overlapping: tuple[int, ...] = ()
     notes: list[Note] = field(default_factory=list)
 

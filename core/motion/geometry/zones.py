@@ -21,7 +21,7 @@ from .corners import JOINT_CORNER, POSITION, TCP_CORNER, Corners, Room
 from .neighbour_zones import STILL, way_towards_neighbour
 from .reach import Part, Reach, least
 from .segments import ARC_SEGMENT, JOINT_SEGMENT, Segments
-from .sharp_corners import share_kept
+from .smaller_blends import share_kept
 from .zone_exits import first_exit, tcp_apart
 
 _NOTHING = 1e-9
@@ -54,6 +54,7 @@ class ZonePlanner:
         self._model = model
         self._moves = moves
         self._notes: list[Note] = []
+        self._kept: dict[int, Reach] = {}
 
     def corners(self, zones: Sequence[Zone]) -> Corners:
         """The corners at the inner waypoints.
@@ -64,21 +65,21 @@ class ZonePlanner:
         Raises:
             MotionError: a kind of zone that cannot be emulated, naming the move.
         """
-        self._notes = []
+        self._notes, self._kept = [], {}
         wanted = [self._reaches(i, zone) for i, zone in enumerate(zones)]
         overlapping: tuple[int, ...] = ()
         if self._model.overlap is Overlap.SHRINK:
             wanted = self._shrunk(wanted)
         elif self._model.overlap is Overlap.SKIP:
             overlapping = self._overlapping(wanted)
-        wanted = [self._sharpened(i, pairs) for i, pairs in enumerate(wanted)]
+        wanted = [self._lessened(i, pairs) for i, pairs in enumerate(wanted)]
         kind = np.zeros(len(zones), dtype=np.int64)
         reach = np.zeros((len(zones), 3, 2))
         for i, pairs in enumerate(wanted):
             reach[i] = [[pair[0].value, pair[1].value] for pair in pairs]
             if reach[i, POSITION].min() > _NOTHING:
                 kind[i] = self._kind(i)
-        return Corners(kind, reach, wanted, overlapping, self._notes)
+        return Corners(kind, reach, wanted, self._kept, overlapping, self._notes)
 
     def rooms(self, zones: Sequence[Zone]) -> list[Room]:
         """What room the vendor's rules on neighbouring zones leave.
@@ -274,22 +275,24 @@ class ZonePlanner:
         parts.append((f"q{far}", segment, -share * pull / speed))
         return Reach(share, tuple(parts))
 
-    def _sharpened(self, i: int, pairs: _Reaches) -> _Reaches:
-        """A zone made smaller where its corner is too sharp for the speed; see `sharp_corners`."""
+    def _lessened(self, i: int, pairs: _Reaches) -> _Reaches:
+        """A zone made smaller where legs arrive at another speed than its arc's; see
+        `smaller_blends`."""
         model, s = self._model, self._segments
         superposed = model.tcp.kind == "arc" and model.pace is Pace.SUPERPOSED
         if not superposed or model.centripetal is None or pairs[POSITION][0].value <= _NOTHING:
             return pairs
         if self._kind(i) != TCP_CORNER:
             return pairs
-        kept = share_kept(s, i, pairs[POSITION][0], model.tcp_acceleration, model.centripetal)
-        if kept is None:
+        found = share_kept(s, i, pairs[POSITION][0], model.tcp_acceleration, model.centripetal)
+        if found is None:
             return pairs
+        kept, why = found
+        self._kept[i] = kept
         radius = 1e3 * pairs[POSITION][0].value * s.length[i]
         self._note(
             i,
-            f"blend of {radius:.4g} mm made {kept.value * radius:.4g} mm: its corner is too sharp "
-            "for the speed",
+            f"blend of {radius:.4g} mm made {kept.value * radius:.4g} mm: {why}",
         )
         return tuple((before * kept, after * kept) for before, after in pairs)
 

@@ -141,7 +141,7 @@ class Derivatives:
         pull_rests(timing, seeds)
         bar = stamp_adjoint(timing.stamp, seeds.x, seeds.t)
         bar.spacing[:] += seeds.spacing
-        shares_bar, turning_bar = pull_path_limits(
+        shares_bar, turning_bar, kept_bar = pull_path_limits(
             timing.along.states,
             path.pieces,
             timing.limits,
@@ -163,7 +163,8 @@ class Derivatives:
             path.pieces, path.sigma, path.states, seeds.states, bar.spacing, sigma_bar
         )
         turn_bar = pull_turning(path.segments, turning_bar)
-        return self._gather(pull_path(path, states_bar, sigma_bar, turn_bar), speeds)
+        route_bar = pull_path(path, states_bar, sigma_bar, turn_bar, kept_bar)
+        return self._gather(route_bar, speeds)
 
     def _gather(self, route_bar: RouteGradient, speeds: SpeedGradient) -> ProgramGradient:
         """From segments and waypoints to the moves of the program."""

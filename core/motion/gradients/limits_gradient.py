@@ -150,17 +150,19 @@ def pull_path_limits(
     bar: StampGradient,
     states_bar: States,
     speeds_bar: SpeedGradient,
-) -> tuple[Shares | None, FloatArray]:
+) -> tuple[Shares | None, FloatArray, FloatArray]:
     """Reverse of `path_limits`; adds to the gradients of states, speeds and, in ``bar``, spacing.
 
     Returns:
-        The gradients of the shares of torque, None without, and of the segments' `turning` (M,).
+        The gradients of the shares of torque, None without, of the segments' `turning` (M,) and
+        of what corners keep of their blends (M − 1,).
     """
     velocity_bar = np.zeros_like(limits.velocity)
     acceleration_bar = np.zeros_like(limits.acceleration)
     torque_bar = np.zeros_like(limits.torque)
     shape = (len(made.rows.spacing), 2, limits.acceleration.shape[1])
     a_bar, b_bar, bound_bar = (np.zeros(shape) for _ in range(3))
+    planned_bar = np.zeros_like(made.zones.planned)
     plain, indices = len(made.limited), pieces.indices
     a_bar[:, :, made.limited] = bar.a[:, :, :plain]
     b_bar[:, :, made.limited] = bar.b[:, :, :plain]
@@ -188,6 +190,7 @@ def pull_path_limits(
         states_bar,
         bar.spacing,
         acceleration_bar,
+        planned_bar,
     )
     _pull_fill(
         states,
@@ -213,7 +216,8 @@ def pull_path_limits(
     turning_bar = _pull_segment_limits(
         limits, velocity_bar, acceleration_bar, torque_bar, speeds_bar
     )
-    return shares_bar, turning_bar
+    kept_bar = made.zones.pull_planned(planned_bar, len(limits.velocity) - 1)
+    return shares_bar, turning_bar, kept_bar
 
 
 def pull_turning(segments: Segments, turning_bar: FloatArray) -> tuple[FloatArray, FloatArray]:

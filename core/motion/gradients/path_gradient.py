@@ -36,6 +36,7 @@ def pull_path(
     states_bar: States,
     sigma_bar: FloatArray,
     turn_bar: tuple[FloatArray, FloatArray],
+    kept_bar: FloatArray,
 ) -> RouteGradient:
     """Carry a gradient with respect to the samples back to the route.
 
@@ -46,6 +47,8 @@ def pull_path(
             spacing of intervals); added to.
         turn_bar: (M, 3) each, gradients with respect to the turns a and b of segments where they
             enter directly (limits of their parts).
+        kept_bar: (M − 1,), gradient with respect to what corners keep of their blends where that
+            enters directly (speeds of arcs).
     """
     route, layout, pieces = path.route, path.layout, path.pieces
     model = path.model
@@ -124,7 +127,7 @@ def pull_path(
         gradient.orientation,
     )
     reach_bar += pull_layout(layout, layout_bar, segments_bar)
-    pull_corners(layout.corners, reach_bar, segments_bar, gradient.ends, gradient.zones)
+    pull_corners(layout.corners, reach_bar, kept_bar, segments_bar, gradient.ends, gradient.zones)
     pull_segments(layout.segments, segments_bar, gradient.ends)
     return gradient
 
@@ -132,11 +135,13 @@ def pull_path(
 def pull_corners(
     corners: Corners,
     reach_bar: FloatArray,
+    kept_bar: FloatArray,
     segments_bar: SegmentsGradient,
     ends_bar: EndsGradient,
     zones_bar: ZoneGradient,
 ) -> None:
-    """Reverse of `ZonePlanner.corners`: carry the gradient (M − 1, 3, 2) of the reaches back."""
+    """Reverse of `ZonePlanner.corners`: carry the gradients (M − 1, 3, 2) of the reaches and
+    (M − 1,) of what is kept of them back."""
     targets: dict[str, FloatArray] = {
         "length": segments_bar.length,
         "angle": zones_bar.angle,
@@ -152,6 +157,9 @@ def pull_corners(
         "speed": ends_bar.speed,
         "acceleration": ends_bar.acceleration,
     }
+    for i, kept in corners.kept.items():
+        for name, index, part in kept.parts:
+            targets[name][index] += kept_bar[i] * part
     for i, pairs in enumerate(corners.sources):
         if corners.kind[i] == STOP:
             continue

@@ -30,7 +30,7 @@ from . import stamping
 from .between_samples import lower_between
 from .rates import rates, sideways
 from .stamping_kernels import Rows
-from .superposed_legs import lower_ceilings, room_along
+from .superposed_legs import SuperposedZones, lower_ceilings, room_along
 from .torque_rows import Shares, torque_rows
 
 _TOGETHER = 20_000
@@ -214,7 +214,7 @@ class PathLimits:
         limited: (R − 2 L,), which of the N + 2 accelerations the others are of, rising: those that
             are limited somewhere.
         shares: (S, L), what the rows of torque are made of; None where torque limits nothing.
-        zones: (Z, 4), zones that legs drive superposed; see `superposed_legs`.
+        zones: those that legs drive superposed.
         binding: (K + 1, 3), at each knot the sample, the row and the segment whose velocity
             limit is the ceiling; `CENTRIPETAL` in the place of the row where that is; `ZONE` with
             the zone in the place of the segment where a zone is; a code from `BETWEEN` on where
@@ -224,7 +224,7 @@ class PathLimits:
     rows: stamping.StampLimits
     limited: IntArray
     shares: Shares | None
-    zones: IntArray
+    zones: SuperposedZones
     binding: IntArray
 
 
@@ -233,7 +233,7 @@ def path_limits(
     spacing: FloatArray,
     pieces: Pieces,
     limits: SegmentLimits,
-    zones: IntArray,
+    zones: SuperposedZones,
     shares: Shares | None = None,
     known: PathLimits | None = None,
 ) -> PathLimits:
@@ -244,7 +244,7 @@ def path_limits(
         spacing: (K,), of the intervals in that parameter.
         pieces: the path's pieces.
         limits: of the segments.
-        zones: (Z, 4), zones that legs drive superposed.
+        zones: those that legs drive superposed.
         shares: (S, L), what share of its torque's limit each joint takes; None if none is limited.
         known: of the same path with the same limits but of velocities; its rows are taken.
     """

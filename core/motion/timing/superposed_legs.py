@@ -7,7 +7,8 @@ with a next leg that accelerates over its first e₁ in the same time,
     x_wp + (x_entry − x_wp) (1 − t/T)² + (x_exit − x_wp) (t/T)²,
 
 it drives the blend with α = s and β = 0 at an even ds/dt: σ̇² goes from (2 e₀ / T)² to (2 e₁ / T)²,
-linear in σ. A tangent arc entered at that speed is driven at it. Here this is a ceiling on σ̇², with
+linear in σ. A tangent arc entered at that speed is driven at it, and one that was made smaller
+(`geometry.smaller_blends`) at the speed of the whole zone. Here this is a ceiling on σ̇², with
 the longer T, or the lower speed, of those that both legs ask for. A is the greatest acceleration of
 a leg, from rest, within the limits of its segment where it meets the zone.
 
@@ -19,6 +20,8 @@ show it, and that corners of joint moves are not.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -36,19 +39,50 @@ ZONE = -2
 """What stands for a row in `limits.PathLimits.binding` where the ceiling is a zone's."""
 
 
-def superposed_zones(layout: Layout, pieces: Pieces, position: Curves) -> IntArray:
-    """(Z, 4), first piece, first behind the waypoint and last piece of each zone of the TCP, and
-    whether it is a tangent arc: those that are driven so where legs are superposed."""
-    corners = np.flatnonzero(layout.corners.kind == TCP_CORNER)
-    zones = pieces.around(layout.waypoint[corners + 1], layout.extent[corners, POSITION])
-    arc = position.kind[pieces.curve[zones[:, 0], POSITION]] == ARC
-    return np.column_stack([zones, arc]).astype(np.int64)
+class SuperposedZones(NamedTuple):
+    """Zones of the TCP that are driven so.
+
+    Args:
+        at: (Z, 4), first piece, first behind the waypoint and last piece, and whether it is a
+            tangent arc.
+        planned: (Z,), the extent that the speed is planned with, in extents of the blend: more
+            than one where that was made smaller.
+        corner: (Z,), index of the corner.
+    """
+
+    at: IntArray
+    planned: FloatArray
+    corner: IntArray
+
+    @classmethod
+    def of(cls, layout: Layout, pieces: Pieces, position: Curves) -> SuperposedZones:
+        """Those of a path whose legs are superposed."""
+        corners = np.flatnonzero(layout.corners.kind == TCP_CORNER)
+        zones = pieces.around(layout.waypoint[corners + 1], layout.extent[corners, POSITION])
+        arc = position.kind[pieces.curve[zones[:, 0], POSITION]] == ARC
+        kept = layout.corners.kept
+        planned = np.ones(len(corners))
+        for z, i in enumerate(map(int, corners)):
+            if i in kept and arc[z]:
+                planned[z] = 1.0 / kept[i].value
+        return cls(np.column_stack([zones, arc]).astype(np.int64), planned, corners)
+
+    @classmethod
+    def none(cls) -> SuperposedZones:
+        """Of a path whose legs are driven one after the other."""
+        return cls(np.zeros((0, 4), np.int64), np.zeros(0), np.zeros(0, np.int64))
+
+    def pull_planned(self, bar: FloatArray, corners: int) -> FloatArray:
+        """Gradient (M − 1,) of what corners keep from that (Z,) of ``planned``."""
+        kept_bar = np.zeros(corners)
+        kept_bar[self.corner] = -bar * self.planned**2
+        return kept_bar
 
 
-def room_along(zones: IntArray, pieces: Pieces) -> FloatArray:
+def room_along(zones: SuperposedZones, pieces: Pieces) -> FloatArray:
     """(P,), what limits of acceleration along the path are multiplied by in each piece."""
     room = np.ones(len(pieces.segment))
-    for first, _, last, arc in zones:
+    for first, _, last, arc in zones.at:
         if not arc:
             room[first : last + 1] = 2.0
     return room
@@ -99,6 +133,7 @@ def _asked(
     owners: tuple[int, int],
     extents: tuple[float, float],
     arc: int,
+    planned: float,
     acceleration: FloatArray,
     rate: FloatArray,
     bend: FloatArray,
@@ -111,7 +146,7 @@ def _asked(
     for end in range(2):
         A, j = _brakes(states, samples[end], acceleration[owners[end]], rate, bend)
         e = extents[end]
-        square = 2.0 * A * e * _speed(states, samples[end]) if arc else 2.0 * A / e
+        square = 2.0 * A * e * planned * _speed(states, samples[end]) if arc else 2.0 * A / e
         if square < least:
             least, side, most, row = square, end, A, j
     return least, side, most, row
@@ -123,7 +158,7 @@ def lower_ceilings(
     spacing: FloatArray,
     pieces: PieceIndices,
     acceleration: FloatArray,
-    zones: IntArray,
+    zones: SuperposedZones,
     ceiling: FloatArray,
     binding: IntArray,
 ) -> None:
@@ -134,22 +169,24 @@ def lower_ceilings(
         spacing: (K,) of the intervals.
         pieces: of the path.
         acceleration: (M, N + 2), limits of the segments.
-        zones: (Z, 4), see `superposed_zones`.
+        zones: those that are driven so.
         ceiling: lowered.
         binding: (K + 1, 3), becomes (`ZONE`, `ZONE`, index of the zone).
     """
     first_sample, first_interval, _ = pieces
     rate, bend = np.empty(acceleration.shape[1]), np.empty(acceleration.shape[1])
-    for z in range(zones.shape[0]):
-        samples, owners, extents = _ends(spacing, pieces, zones[z])
-        arc = zones[z, 3]
-        square, side, _, _ = _asked(states, samples, owners, extents, arc, acceleration, rate, bend)
+    for z in range(zones.at.shape[0]):
+        samples, owners, extents = _ends(spacing, pieces, zones.at[z])
+        arc, planned = zones.at[z, 3], zones.planned[z]
+        square, side, _, _ = _asked(
+            states, samples, owners, extents, arc, planned, acceleration, rate, bend
+        )
         if side < 0:
             continue
         before, after = extents
         begin, end = square * before * before, square * after * after
         way = 0.0
-        for p in range(zones[z, 0], zones[z, 2] + 1):
+        for p in range(zones.at[z, 0], zones.at[z, 2] + 1):
             for i in range(first_interval[p + 1] - first_interval[p] + 1):
                 knot = first_interval[p] + i
                 if i > 0:
@@ -169,30 +206,31 @@ def pull_ceilings(
     spacing: FloatArray,
     pieces: PieceIndices,
     acceleration: FloatArray,
-    zones: IntArray,
+    zones: SuperposedZones,
     binding: IntArray,
     ceiling_bar: FloatArray,
     states_bar: States,
     spacing_bar: FloatArray,
     acceleration_bar: FloatArray,
+    planned_bar: FloatArray,
 ) -> None:
-    """Reverse of `lower_ceilings`: adds to the last three."""
+    """Reverse of `lower_ceilings`: adds to the last four."""
     first_interval = pieces.first_interval
     size = acceleration.shape[1]
     rate, bend = np.empty(size), np.empty(size)
     rate_bar, bend_bar = np.zeros(size), np.zeros(size)
-    for z in range(zones.shape[0]):
-        samples, owners, extents = _ends(spacing, pieces, zones[z])
-        arc = zones[z, 3]
+    for z in range(zones.at.shape[0]):
+        samples, owners, extents = _ends(spacing, pieces, zones.at[z])
+        arc, planned = zones.at[z, 3], zones.planned[z]
         square, side, A, row = _asked(
-            states, samples, owners, extents, arc, acceleration, rate, bend
+            states, samples, owners, extents, arc, planned, acceleration, rate, bend
         )
         if side < 0:
             continue
         before, after = extents
         whole = before + after
-        begin, behind = first_interval[zones[z, 0]], first_interval[zones[z, 1]]
-        end = first_interval[zones[z, 2] + 1]
+        begin, behind = first_interval[zones.at[z, 0]], first_interval[zones.at[z, 1]]
+        end = first_interval[zones.at[z, 2] + 1]
         square_bar = before_bar = after_bar = 0.0
         # Of what is before each knot, backwards: way_bar belongs to the intervals passed so far.
         way, way_bar = whole, 0.0
@@ -222,9 +260,11 @@ def pull_ceilings(
         e, k, owner = extents[side], samples[side], owners[side]
         if arc:
             speed = _speed(states, k)
-            A_bar, e_bar = square_bar * 2.0 * e * speed, square_bar * 2.0 * A * speed
+            A_bar = square_bar * 2.0 * e * planned * speed
+            e_bar = square_bar * 2.0 * A * planned * speed
+            planned_bar[z] += square_bar * 2.0 * A * e * speed
             for i in range(3):
-                states_bar.v[k, i] += square_bar * 2.0 * A * e * 2.0 * states.v[k, i]
+                states_bar.v[k, i] += square_bar * 2.0 * A * e * planned * 2.0 * states.v[k, i]
         else:
             A_bar, e_bar = square_bar * 2.0 / e, -square_bar * 2.0 * A / e**2
         if side == 0:

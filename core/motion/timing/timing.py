@@ -19,7 +19,7 @@ from .limits import PathLimits, SegmentLimits, path_limits
 from .rests import InPosition, Rests
 from .stamping import Stamp, StampingError, stamp
 from .start_ramp import SUDDEN, StartRamp
-from .superposed_legs import superposed_zones
+from .superposed_legs import SuperposedZones
 from .torque_rows import Shares
 
 _ROUNDING = 1e-12
@@ -265,9 +265,9 @@ def stamp_path(
     Raises:
         MotionError: the limits leave a move no speed.
     """
-    zones = np.zeros((0, 4), dtype=np.int64)
+    zones = SuperposedZones.none()
     if path.model.pace is Pace.SUPERPOSED:
-        zones = superposed_zones(path.layout, path.pieces, path.tcp.curves.position)
+        zones = SuperposedZones.of(path.layout, path.pieces, path.tcp.curves.position)
     made = path_limits(along.states, along.spacing, path.pieces, limits, zones, shares, known)
     try:
         found = stamp(made.rows)

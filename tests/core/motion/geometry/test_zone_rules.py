@@ -179,7 +179,7 @@ def test_the_reverse_of_the_reaches_is_the_gradient(abb, model) -> None:
         EndsGradient.zeros(ends),
         ZoneGradient.zeros(5),
     )
-    pull_corners(corners, weights, bar, out, by_zone)
+    pull_corners(corners, weights, np.zeros(5), bar, out, by_zone)
     h = 1e-6
     zones = list(route.zones)
     for i, name in ((0, "tcp"), (3, "tcp"), (4, "tcp"), (0, "reorientation"), (2, "angle")):
