@@ -159,7 +159,7 @@ class Vendor:
         """The program as source files for ``robot``; see `Writer.write`.
 
         A start that the program states and does not drive to is its first move
-        (`core.approach`). The texts are read again without any other file (`core.written`).
+        (`core.source.write.approach`). The texts are read again without any other file.
 
         Raises:
             InputError: the vendor has no writer, its language does not drive the robot, or the

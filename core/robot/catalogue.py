@@ -37,7 +37,7 @@ An origin starts with one of published, identified, measured, computed, assumed,
     xyz_mm = [200, 0, 0]
     rpy_deg = [0, 90, 0]
 
-An orientation is ``quat_wxyz``, ``rpy_deg``, ``abc_deg`` or ``rotvec_rad`` (`core.pose_table`);
+An orientation is ``quat_wxyz``, ``rpy_deg``, ``abc_deg`` or ``rotvec_rad`` (`pose_table`);
 only one of them, none for no turn.
 
 Instead of placements and axes, the geometry may be given in standard Denavit–Hartenberg form, one
