@@ -26,7 +26,7 @@ Without an answer waits are satisfied at once, and branches and loops are decide
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -60,6 +60,17 @@ class Answers:
     passes: Mapping[str, int] = field(default_factory=dict)
     skipped: frozenset[str] = frozenset()
     file: str = ""
+
+    def names(self, table: str) -> Iterable[str]:
+        """What a table of the file has answers to, in their order."""
+        own: Mapping[str, Iterable[str]] = {
+            "values": self.values,
+            "sequences": self.sequences,
+            "branches": self.branches,
+            "passes": self.passes,
+            "calls": sorted(self.skipped),
+        }
+        return own[table]
 
 
 def load_answers(path: str | Path) -> Answers:
@@ -139,12 +150,14 @@ class Course:
 
     answers: Answers = field(default_factory=Answers)
     turned: int = 0
+    _asked: set[tuple[str, str]] = field(default_factory=set)
     _turns: dict[str, int] = field(default_factory=dict)
     _decided: dict[tuple[str, int, str], tuple[Note, int]] = field(default_factory=dict)
 
     def value(self, text: str) -> Answer | None:
         """The answer to a name or call as it stands in the program; None if there is none."""
         name = key(text)
+        self._asked |= {("values", name), ("sequences", name)}
         turns = self.answers.sequences.get(name)
         if turns is not None:
             turn = self._turns.get(name, 0)
@@ -155,10 +168,12 @@ class Course:
 
     def changing(self, text: str) -> bool:
         """Whether a name or call has one answer after the other."""
+        self._asked.add(("sequences", key(text)))
         return key(text) in self.answers.sequences
 
     def skips(self, routine: str) -> bool:
         """Whether the user says that a routine which is not at hand moves nothing."""
+        self._asked.add(("calls", key(routine)))
         return key(routine) in self.answers.skipped
 
     def answered_branch(self, span: Span, count: int) -> int | None:
@@ -171,7 +186,7 @@ class Course:
         Raises:
             InputError: there is no such branch.
         """
-        answer = _at(self.answers.branches, span)
+        answer = self._at("branches", self.answers.branches, span)
         if answer is not None and answer > count:
             there = "there is 1 branch" if count == 1 else f"there are {count} branches"
             raise InputError(
@@ -181,7 +196,7 @@ class Course:
 
     def answered_passes(self, span: Span) -> int | None:
         """How often the user says that the loop at a place runs."""
-        return _at(self.answers.passes, span)
+        return self._at("passes", self.answers.passes, span)
 
     def passes(
         self, span: Span, reason: str, moving: bool, driven: int = 0, leaves: bool = False
@@ -209,11 +224,38 @@ class Course:
         return passes
 
     def notes(self) -> tuple[Note, ...]:
-        """What was decided without an answer, in the order in which it came up."""
-        return tuple(
+        """What was decided without an answer, in the order in which it came up.
+
+        Then which answers nothing asked for: their names or lines may be mistyped.
+        """
+        told = [
             Note(note.message + (f" ({count} times)" if count > 1 else ""), span=note.span)
             for note, count in self._decided.values()
-        )
+        ]
+        unasked = [
+            f"{name} in [{table}]"
+            for table in _TABLES
+            for name in self.answers.names(table)
+            if (table, name) not in self._asked
+        ]
+        if unasked:
+            told.append(
+                Note(
+                    f"{self.answers.file or 'answers'}: the program, as far as it ran, did not ask "
+                    f"for {', '.join(unasked)}"
+                )
+            )
+        return tuple(told)
+
+    def _at(self, table: str, entries: Mapping[str, int], span: Span) -> int | None:
+        """The entry for a place, by the file's path or its name alone."""
+        file = _place(span.file)
+        for name in (file, file.rpartition("/")[2]):
+            place = f"{name}:{span.line}"
+            self._asked.add((table, place))
+            if place in entries:
+                return entries[place]
+        return None
 
     def decided(self, span: Span, message: str) -> None:
         """Note what was decided without an answer; how often is counted."""
@@ -225,13 +267,3 @@ class Course:
 def _place(text: str) -> str:
     """How a file, or a line of it, is looked up."""
     return text.replace("\\", "/").casefold()
-
-
-def _at(table: Mapping[str, int], span: Span) -> int | None:
-    """The entry for a place, by the file's path or its name alone."""
-    file = _place(span.file)
-    for name in (file, file.rpartition("/")[2]):
-        found = table.get(f"{name}:{span.line}")
-        if found is not None:
-            return found
-    return None

@@ -49,8 +49,16 @@ def test_a_file_of_answers_is_read(tmp_path: Path) -> None:
     course = Course(answers)
     assert course.answered_branch(span(12), 2) == 1
     assert course.passes(span(20), "x", False) == 3
-    assert course.notes() == ()
     assert course.skips("RGRIPPEROPEN") and not course.skips("rGripper")
+    assert [course.value(one) for one in ("DI_PART", "get_digital_in(1)")] == [True, False]
+    (unasked,) = course.notes()
+    assert unasked.message == (
+        f"{tmp_path / 'answers.toml'}: the program, as far as it ran, did not ask for $in[3] in "
+        "[values], count in [values], place in [values]"
+    )
+    for one in ("$IN[3]", "Count", "place"):
+        course.value(one)
+    assert course.notes() == ()
 
 
 @pytest.mark.parametrize(
