@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 UNBOUNDED = 10_000
-WIDE = 160
+WIDE = 180
 """Columns of a table that goes into a file or a pipe."""
 
 

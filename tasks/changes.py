@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from ..core.door import spelt, switched
+from ..core.door import at_command_line, spelt, switched
 from ..core.errors import InputError, OptionError
 from .files.not_executed import not_executed_notes
 from .options import texts
@@ -219,7 +219,8 @@ def freed_stops(program: Program, free: Sequence[int | str], kept: Collection[in
         return [i for i in passable_stops(program) if i not in kept]
     wrong = [text for text in free if not str(text).isdecimal()]
     if wrong:
-        raise OptionError(f"{spelt('free')} {wrong[0]}: the number of a move, or {ALL!r}")
+        once = "; once for each move" if at_command_line() and "," in str(wrong[0]) else ""
+        raise OptionError(f"{spelt('free')} {wrong[0]}: the number of a move, or {ALL!r}{once}")
     freed = [move_index(program, text, "free") for text in free]
     for i in freed:
         if i in kept:

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from ..core.program.program import Program
     from .results.runs import Run
 
-LEAST_PERIOD = 1e-5
-"""s. A cycle of a minute then makes six million samples."""
+PERIODS = Extent(1e-5, 1.0)
+"""s. At the least a cycle of a minute makes six million samples; beyond 1 it was meant in ms."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,7 +26,7 @@ class EmulateOptions(RobotOptions):
         None,
         "Seconds between samples; the controller's own if unset.",
         TIME,
-        Extent(LEAST_PERIOD),
+        PERIODS,
     )
 
 

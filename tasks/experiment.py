@@ -21,6 +21,7 @@ from .options.entries import (
     value,
 )
 from .options.keywords import by_keywords
+from .record import PERIODS
 from .setup import CellOptions, setup_of
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ class ExperimentOptions(CellOptions):
     margin: float = number(5.0, "What joints keep from limits, {unit}.", ANGLE)
     longest: float = number(30.0, "Seconds that one run may last, about.", TIME, POSITIVE)
     period: float | None = number(
-        None, "Seconds between logged samples; what the controller takes if unset.", TIME
+        None, "Seconds between logged samples; what the controller takes if unset.", TIME, PERIODS
     )
     seed: int = number(1, "Another one gives another design.", COUNT)
 

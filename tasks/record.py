@@ -14,15 +14,15 @@ from .write import texts_as_files
 if TYPE_CHECKING:
     from ..core.program.program import Program
 
-LEAST_PERIOD = 1e-3
-"""s. No controller logs its own joints faster."""
+PERIODS = Extent(1e-3, 1.0)
+"""s. No controller logs its own joints faster; beyond 1 it was meant in ms."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RecordOptions(RobotOptions):
     """How a program logs itself."""
 
-    period: float = number(0.012, "Seconds between logged samples.", TIME, Extent(LEAST_PERIOD))
+    period: float = number(0.012, "Seconds between logged samples.", TIME, PERIODS)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ..core.display import counted
 from ..core.door import spelt
-from ..core.errors import InputError
+from ..core.errors import InputError, OptionError
 from .changes import weight
 from .options import texts
 from .options.entries import POSITIVE, TIME, number, switch, value
@@ -103,7 +103,8 @@ def _jerk(given: str | Sequence[float], robot: Robot) -> FloatArray:
     name = spelt("jerk")
     found = texts.several(given, name)
     if len(found) not in (1, robot.size) or min(found, default=0.0) <= 0.0:
-        raise InputError(
+        kind = OptionError if min(found, default=0.0) <= 0.0 else InputError
+        raise kind(
             f"{name} {given}: one number above zero, or one an axis ({', '.join(robot.axis_names)})"
         )
     every = np.broadcast_to(np.array(found), robot.size)

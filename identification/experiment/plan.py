@@ -11,7 +11,8 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.collision.proof.verdict import Certificate
-from ...core.errors import InputError
+from ...core.door import spelt
+from ...core.errors import InputError, OptionError
 from ...core.language import Sources
 from ...core.motion.emulator.run import Run
 from ...core.program.program import Program
@@ -104,21 +105,21 @@ class Plan:
     seed: int = 1
 
     def __post_init__(self) -> None:
-        _check("corner angles", self.turns, math.pi, math.degrees, "°")
+        _check("angles", self.turns, math.pi, math.degrees, "°")
         _check("zones", self.radii or (1e-3,), 1.0, lambda value: 1e3 * value, " mm")
         _check("speeds", self.speeds, 10.0, lambda value: 1e3 * value, " mm/s")
         for name in ("longest", "margin"):
             if not 0 < getattr(self, name) < math.inf:
-                raise InputError(f"an experiment's {name} must be above zero and finite")
+                raise OptionError(f"{spelt(name)}: must be above zero and finite")
         if not 0 <= self.overhead < math.inf:
-            raise InputError("an experiment's overhead must be zero or more seconds")
+            raise OptionError(f"{spelt('overhead')}: must be zero or more seconds")
         if self.minutes is not None and not 0 < self.minutes < math.inf:
-            raise InputError("an experiment needs a time above zero")
+            raise OptionError(f"{spelt('minutes')}: must be above zero and finite")
         if not self.kinds:
-            raise InputError("an experiment needs at least one kind of moves")
+            raise OptionError(f"{spelt('kinds')}: an experiment needs at least one")
         count = self.postures if isinstance(self.postures, int) else len(self.postures)
         if not 1 <= count <= 99:
-            raise InputError(f"an experiment has 1 to 99 postures, not {count}")
+            raise OptionError(f"{spelt('postures')}: an experiment has 1 to 99, not {count}")
         if not self.tool.robot_held:
             raise InputError(
                 f"the tool {self.tool.name} stands still: records of runs know tools that the "
@@ -134,15 +135,15 @@ def _check(
     unit: str,
 ) -> None:
     if not values:
-        raise InputError(f"an experiment needs {what}")
+        raise OptionError(f"{spelt(what)}: an experiment needs at least one")
     for value in values:
         if not 0 < value < below:
-            raise InputError(
-                f"{what} of an experiment lie between 0 and {shown(below):.4g}{unit}, not at "
-                f"{shown(value):.4g}{unit}"
+            raise OptionError(
+                f"{spelt(what)}: {shown(value):.4g}{unit} does not lie between 0 and "
+                f"{shown(below):.4g}{unit}"
             )
     if len(set(values)) != len(values):
-        raise InputError(f"{what} of an experiment: one is given twice")
+        raise OptionError(f"{spelt(what)}: one is given twice")
 
 
 def usual_radii(reach: float) -> tuple[float, ...]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...core.errors import InputError
+from ...core.errors import InputError, OptionError
 from ..catalogue import registry
 
 if TYPE_CHECKING:
@@ -67,6 +67,8 @@ def find_runs(
             log = _log_beside(file) if record is None else record.log
             logs += [] if log is None else [log]
             runs.append(_read(file, record, vendor, robot, columns))
+    if not paths:
+        raise OptionError("which logs? Name records of runs, programs with a log, or folders")
     if not runs:
         where = ", ".join(map(str, paths))
         raise InputError(
@@ -113,6 +115,8 @@ def _read(
         return run
     log = _log_beside(file)
     if log is None:
+        if not file.exists():
+            raise InputError(f"{file}: there is no such file or folder")
         raise InputError(f"{file}: there is no log of the same name beside it ({', '.join(LOGS)})")
     program = vendor.read_file(file, robot=robot)
     samples = read_samples(log, robot, columns)

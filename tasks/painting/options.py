@@ -37,7 +37,9 @@ class SurfaceOptions(CellOptions):
     target: str | float = value(
         REQUIRED, "Thickness wanted, with its unit: 50um.", thickness, numbers="m"
     )
-    units: str | None = value(None, "Of the part's numbers: m, cm, mm, in; as the file says.")
+    units: str | None = choice(
+        None, "Of the part's numbers: m, cm, mm, in; as the file says.", ("m", "cm", "mm", "in")
+    )
     view: str | Sequence[float] | None = value(
         None, "Direction in which the gun looks at the part, such as 0,0,-1.", texts.direction
     )

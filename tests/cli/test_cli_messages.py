@@ -77,6 +77,10 @@ def test_what_is_wrong_by_itself_ends_with_status_2(flyby: Flyby) -> None:
         ("optimize", square, *robot, "--vias", "some"),
         ("optimize", square, *robot, "--starts", "0"),
         ("identify", square, *robot, "--workers", "0"),
+        ("experiment", *robot, "--out", "new", "--angles", "0"),
+        ("tune", square, *robot, "--jerk", "-1"),
+        ("record", square, *robot, "--out", "new", "--period", "12"),
+        ("paint", "part.stl", "--footprint", "f.toml", "--target", "5um", "--units", "ft"),
         ("fk", ROBOT, "a,b"),
         ("free", "--start", "0", "--goal", "0"),
         ("emulate", square, *robot, "--nonsense"),
@@ -86,8 +90,16 @@ def test_what_is_wrong_by_itself_ends_with_status_2(flyby: Flyby) -> None:
         ("emulate", "missing.mod", *robot),
         ("emulate", square, "--robot", "abb/none"),
         ("zones", square, *robot, "--keep", "99"),
+        ("tune", square, *robot, "--jerk", "1,2"),
+        ("identify", "missing.mod", *robot),
     ):
         assert flyby(*words).exit_code == 1, words
+
+
+def test_a_share_of_time_is_not_torn_apart(flyby: Flyby) -> None:
+    said = flyby("emulate", SQUARE.with_name("deburring.mod"), "--robot", ROBOT).stdout
+    rows = [line.split() for line in said.splitlines() if " Move" in line]
+    assert len(rows) == 98 and all(row[-1] in ("%)", "driven") for row in rows)
 
 
 def test_helps_show_no_type_behind_switches(flyby: Flyby) -> None:

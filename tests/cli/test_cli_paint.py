@@ -105,7 +105,7 @@ def test_millimetres_taken_for_metres(flyby: Flyby, panel: tuple[Path, Path]):
     part, footprint = panel
     result = flyby("paint", part, "--footprint", footprint, "--target", "50um")
     assert result.exit_code == 1
-    assert "probably mm, and were taken for m" in result.output
+    assert "probably mm, and were taken for m: read it with --units mm" in result.output
 
 
 def test_a_part_without_triangles(flyby: Flyby, panel: tuple[Path, Path]):

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from ....core.arrays import FloatArray, IntArray
 from ....core.cell.geometry import MESH_UNITS
 from ....core.cell.mesh_file import check_extent, read_scene
+from ....core.door import given
 from ....core.errors import InputError, Note
 from .mesh_repair import find_edges, repair
 from .part import Part
@@ -133,7 +134,7 @@ def _size_notes(name: str, vertices: FloatArray) -> tuple[Note, ...]:
         return (
             Note(
                 f"{name}: the part is {size:.4g} m long; its numbers are probably {likely}, and "
-                f"were taken for m: read it with units 'mm' for {size:.4g} mm"
+                f"were taken for m: read it with {given('units', 'mm')} for {size:.4g} mm"
             ),
         )
     if size < least:
