@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..problems.improve.solution import figure_shown
 from ..tasks.files.source_places import note_json
 from .console import print_rich, print_table, warn
 
@@ -19,7 +20,7 @@ _FIGURES = (("", "left"), ("unit", "left"), ("before", "right"), ("after", "righ
 def tell_solution(program: Path, made: Solution, cell: Cell, written: Sequence[Path]) -> None:
     """Print figures before and after, notes, the proof and what was written."""
     rows = [
-        (row.what, row.unit, _figure(row.before), _figure(row.after), percent(row))
+        (row.what, row.unit, figure_shown(row.before), figure_shown(row.after), percent(row))
         for row in made.table(cell.robot.axis_names)
     ]
     print_table(_FIGURES, rows)
@@ -57,13 +58,9 @@ def _allowed(cell: Cell) -> Sequence[tuple[str, str]]:
     return () if cell.file is None else cell.allowed
 
 
-def _figure(value: float | None, digits: int = 4) -> str:
-    return "" if value is None else f"{value:.{digits}f}"
-
-
 def percent(row: FigureRow) -> str:
     """The change in percent; empty where there is none, or the value before is shown as zero."""
-    if row.before is None or float(_figure(row.before)) == 0.0:
+    if row.before is None or row.change is None or float(figure_shown(row.before)) == 0.0:
         return ""
-    shown = _figure(row.change, 1)
+    shown = f"{row.change:.1f}"
     return "0.0" if shown == "-0.0" else shown

@@ -20,6 +20,8 @@ MOST_ROWS = 40
 _MOST_POINTS = 400
 _COLOURS = ("#1f4e9c", "#e08a1e", "#3a8a4d", "#b3261e")
 _CELL = "padding:1px 8px;text-align:"
+_UNBROKEN = 32
+"""Characters of a cell that stays in one line; longer ones are prose."""
 
 
 @dataclass(frozen=True)
@@ -127,9 +129,13 @@ def _drawn(at: FloatArray, curve: Curve, colour: str, placed: object) -> str:
 
 def _cells(row: Sequence[str], sides: Sequence[str]) -> str:
     return "".join(
-        f'<td style="{_CELL}{side}">{_text(cell)}</td>'
+        f'<td style="{_CELL}{side}{_kept(cell)}">{_text(cell)}</td>'
         for cell, side in zip(row, sides, strict=True)
     )
+
+
+def _kept(cell: str) -> str:
+    return ";white-space:nowrap" if len(cell) <= _UNBROKEN else ""
 
 
 def _text(value: object) -> str:

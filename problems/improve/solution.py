@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from ...core.source.reading import Files
 
 
+_LARGE = 1e5
+"""From which on a figure's decimals are left out."""
 _STILL = 1e-9
 """m and rad below which a point has not been moved."""
 
@@ -71,6 +73,13 @@ class FigureRow:
         if self.before is None or self.after is None or self.before == 0.0:
             return None
         return 100.0 * (self.after - self.before) / self.before
+
+
+def figure_shown(value: float | None) -> str:
+    """A figure as tables show it; empty where it is not known."""
+    if value is None:
+        return ""
+    return f"{value:.4f}" if abs(value) < _LARGE else f"{value:.5g}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +136,8 @@ class Solution:
             (
                 row.what,
                 row.unit,
-                *("" if v is None else f"{v:.4f}" for v in (row.before, row.after)),
+                figure_shown(row.before),
+                figure_shown(row.after),
             )
             for row in self.table()
         ]
