@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..core.display import in_line
 from ..core.door import called, given, spelt, switched
 from ..core.errors import InputError, OptionError
 from .catalogue import cell as load
@@ -46,7 +47,7 @@ class CellOptions(RobotOptions):
     no_floor: bool = switch(NO_FLOOR)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Setup:
     """A robot with who drives it and what stands around it.
 
@@ -59,6 +60,11 @@ class Setup:
     vendor: Vendor
     robot: Robot
     cell: Cell | None = None
+
+    def __repr__(self) -> str:
+        file = None if self.cell is None else self.cell.file
+        around = ("no cell" if self.cell is None else "cell") + (f" {file.name}" if file else "")
+        return in_line(f"Setup: {self.robot.name}, driven by {self.vendor.name}, {around}")
 
     def surroundings(self, program: Program | None = None, *, no_floor: bool = False) -> Cell:
         """What stands around: what the cell file says, or nothing but a floor.

@@ -6,13 +6,14 @@ import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from ..display import in_line
 from ..errors import InputError, Span
 from .event import Event
 from .origin import MoveOrigin
-from .speed import Speed
-from .target import PoseTarget, Target
+from .speed import Speed, speed_shown
+from .target import PoseTarget, Target, target_shown
 from .tool import FLANGE, WORLD, Load, Tool, WorkObject
-from .zone import FINE, Zone
+from .zone import FINE, Zone, zone_shown
 
 
 class ArcOrientation(StrEnum):
@@ -24,7 +25,7 @@ class ArcOrientation(StrEnum):
     """Interpolated from start to end in the work object (URScript mode 0, KRL ``#BASE``)."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class _Motion:
     """What every move has.
 
@@ -46,7 +47,19 @@ class _Motion:
     work_object: WorkObject = WORLD
     load: Load | None = None
     events: tuple[Event, ...] = field(default=(), kw_only=True)
-    origin: MoveOrigin | None = field(default=None, compare=False, repr=False, kw_only=True)
+    origin: MoveOrigin | None = field(default=None, compare=False, kw_only=True)
+
+    def __repr__(self) -> str:
+        span = None if self.origin is None else self.origin.statement
+        line = "" if span is None else f", line {span.line}"
+        told = (speed_shown(self.speed), zone_shown(self.zone), self.tool.name)
+        return in_line(
+            f"{type(self).__name__} {self._way}, {', '.join(told)}, {self.work_object.name}{line}"
+        )
+
+    @property
+    def _way(self) -> str:
+        return f"to {target_shown(self.target)}"
 
     @property
     def statement(self) -> Span | None:
@@ -54,17 +67,17 @@ class _Motion:
         return None if self.origin is None else self.origin.statement
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class MoveJ(_Motion):
     """All joints linear in one parameter (``MoveJ``, ``MoveAbsJ``, ``PTP``, ``movej``)."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class MoveL(_Motion):
     """The TCP on a line, orientation on the shortest great arc (``MoveL``, ``LIN``, ``movel``)."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class MoveC(_Motion):
     """The TCP on the arc from the point before through ``via`` to the target.
 
@@ -76,6 +89,10 @@ class MoveC(_Motion):
 
     via: PoseTarget = field(kw_only=True)
     orientation: ArcOrientation = field(default=ArcOrientation.FOLLOWS_ARC, kw_only=True)
+
+    @property
+    def _way(self) -> str:
+        return f"through {target_shown(self.via)} to {target_shown(self.target)}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -56,3 +56,16 @@ class Speed:
                 raise InputError(f"Speed.{field.name} must be above zero, not {value}")
             if "fraction" in field.name and value > 1:
                 raise InputError(f"Speed.{field.name} is at most 1, not {value}")
+
+
+def speed_shown(speed: Speed) -> str:
+    """The limit that is programmed, in the units of the shop floor."""
+    if speed.duration is not None:
+        return f"in {speed.duration:.4g} s"
+    if speed.name is not None:
+        return speed.name
+    if speed.tcp is not None:
+        return f"{1e3 * speed.tcp:.5g} mm/s"
+    if speed.joint is not None:
+        return f"{math.degrees(speed.joint):.4g}°/s"
+    return f"{100 * speed.joint_fraction:.3g} % of the joints' speed"

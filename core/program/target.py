@@ -73,3 +73,12 @@ class JointTarget:
 
 
 Target = PoseTarget | JointTarget
+
+
+def target_shown(target: Target) -> str:
+    """A target by its name; one without by its position in mm, or its values in rad and m."""
+    if target.name is not None:
+        return target.name
+    if isinstance(target, PoseTarget):
+        return f"{', '.join(f'{1e3 * x:z.1f}' for x in target.pose.position)} mm"
+    return f"joints {', '.join(f'{q:z.4g}' for q in (*target.joints, *target.external))}"

@@ -21,6 +21,8 @@ _R = TypeVar("_R")
 _WIDTH = 92
 _PLAIN = {"str", "Path", "Sequence", "float"}
 """Types of arguments that are checked here; what takes programs says itself what it takes."""
+_OF_FILES = ("out", "write", "force")
+"""Options of commands that write what a task hands back."""
 WITH = "_with"
 """Ends the name of a task that takes its options as one value."""
 
@@ -55,6 +57,8 @@ def by_keywords(task: Callable[..., Any], options: Callable[..., Any]) -> Callab
         for word in words.keys() - signature.parameters.keys():
             near = difflib.get_close_matches(word, signature.parameters, 1)
             hint = f"; did you mean {near[0]}?" if near else ""
+            if word in _OF_FILES:
+                hint = "; flyby.write(result, folder) writes its files"
             raise TypeError(f"flyby.{call.__name__} has no option {word!r}{hint}")
         try:
             bound = signature.bind(*args, **words).arguments

@@ -19,12 +19,17 @@ import flyby
 from flyby.cli.main import app
 from flyby.core.door import command_line
 from flyby.core.errors import FlybyError, InputError
+from flyby.core.notebook import table
+from flyby.core.program.move import MoveJ, MoveL
+from flyby.core.program.speed import Speed
+from flyby.core.program.target import JointTarget
+from flyby.problems.improve.solution import figure_shown
 from flyby.tasks.optimize import OptimizeOptions
 from flyby.tasks.options.entries import TaskOptions, entries, flag
 from flyby.tasks.options.shell import SHELL
 from flyby.tasks.painting.options import PaintOptions
 from flyby.tasks.pareto import ParetoOptions
-from flyby.tasks.setup import RobotOptions
+from flyby.tasks.setup import RobotOptions, named_robot
 
 ROOT = Path(__file__).parents[2]
 ROBOT = "abb/irb6640-180-255"
@@ -331,12 +336,70 @@ def test_values_show_themselves_in_a_line() -> None:
     made = flyby.translate(program, robot="kuka/kr30-3")
     cell = flyby.cell(two_joints())
     path, made_of = run.path, (run.trajectory, run.timing, run.report, run.moves, run.moves[3])
-    for shown in (program, run, path, path.route, *made_of, made, cell, cell.robot):
+    motions = [named_robot(name) for name in flyby.robots()]
+    models = [one.vendor.motion_of(one.robot) for one in motions]
+    moves = [*program.moves, *made.program.moves, program.setup, *motions, *models]
+    for shown in (program, run, path, path.route, *made_of, made, cell, cell.robot, *moves):
         line = repr(shown)
         assert len(line) <= 120 and "\n" not in line and line[0] + line[-1] == "<>", line
     for page in (program, made, cell, cell.robot):
         assert all(part in page._repr_html_() for part in ("<svg", "<table>", repr(page)[1:-1]))
     assert "notes" in repr(replace(program, notes=())) and "0 notes" not in repr(program)
+
+
+def test_moves_setups_and_motion_models_tell_what_matters() -> None:
+    program = flyby.read(ROOT / "examples/deburring.mod", robot=ROBOT)
+    assert repr(program.moves[0]) == "<MoveJ to jHome, v1000, fine, tool0, wobj0, line 83>"
+    assert " 310.0, 95.5, 232.3 mm, v1500, z40, tGripper, wobjConv, " in repr(program.moves[2])
+    assert repr(program.moves[17]).startswith("<MoveC through pC25 to pC30, vDeburr, zCorner, ")
+    picking = flyby.read(ROOT / "examples/pick.script", robot="ur/ur5e").moves[1]
+    assert repr(picking) == (
+        "<MoveJ to -450.0, -250.0, 270.0 mm, 60.16°/s, 30 mm, tcp, wobj0, line 14>"
+    )
+    assert repr(MoveJ(JointTarget((0.5, -1.0)), Speed(duration=2.0))) == (
+        "<MoveJ to joints 0.5, -1, in 2 s, fine, tool0, wobj0>"
+    )
+    assert repr(MoveL(program.moves[2].target, Speed(tcp=0.3))).count(", 300 mm/s, fine") == 1
+    assert "% of the joints' speed" in repr(MoveJ(JointTarget((0.0,)), Speed(joint_fraction=0.3)))
+    assert repr(program.setup) == f"<Setup: {ROBOT}, driven by abb, no cell>"
+    stood = flyby.read(ROOT / "examples/cell/two_joints.mod", cell=two_joints()).setup
+    assert repr(stood) == f"<Setup: {ROBOT}, driven by abb, cell two_joints.toml>"
+    model = named_robot("kuka/kr30-3").vendor.motion_of(flyby.robot("kuka/kr30-3"))
+    stated = len(model.figures)
+    line = f"<Motion model: period 12 ms, zones half, smoothing none, {stated} figures: "
+    assert repr(model).startswith(line)
+    counts = [int(n) for n in re.findall(r"(\d+) (?:assumed|fitted|published)", repr(model))]
+    assert sum(counts) == stated
+
+
+def test_options_of_files_are_those_of_write() -> None:
+    program = flyby.read(SQUARE, robot=ROBOT)
+    with pytest.raises(TypeError, match=r"no option 'out'; flyby\.write\(result, folder\)"):
+        flyby.record(program, out="new")  # type: ignore[call-arg]
+
+
+def test_logs_that_are_not_there_are_told_so(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="which logs"):
+        flyby.identify([], robot=ROBOT)
+    with pytest.raises(InputError, match=r"absent\.mod: there is no such file or folder"):
+        flyby.identify(tmp_path / "absent.mod", robot=ROBOT)
+
+
+def test_an_answer_that_nothing_asks_for_is_noted(tmp_path: Path) -> None:
+    file = tmp_path / "answers.toml"
+    file.write_text('[values]\ndi_prat = 1\n[passes]\n"square.mod:1" = 2\n', "utf-8")
+    (note,) = flyby.read(SQUARE, robot=ROBOT, answers=file).notes
+    asked = "did not ask for di_prat in [values], square.mod:1 in [passes]"
+    assert str(note).endswith(asked) and str(note).startswith(str(file))
+
+
+def test_short_cells_of_a_notebook_are_not_broken() -> None:
+    page = table((("limited by", "left"),), [("J2 torque (100 %)",), ("a sentence " * 9,)])
+    assert 'white-space:nowrap">J2 torque (100 %)<' in page and page.count("nowrap") == 1
+
+
+def test_large_figures_have_no_decimals() -> None:
+    assert [figure_shown(x) for x in (None, 1.60547, -3.085e7)] == ["", "1.6055", "-3.085e+07"]
 
 
 def test_what_a_result_was_made_of_is_not_written_over(tmp_path: Path) -> None:

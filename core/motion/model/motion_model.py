@@ -6,9 +6,11 @@ Each figure is stated once, as a field (`figures`); files state what of them dif
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from ...display import counted, in_line
 from .blend import PARABOLA, Blend
 from .elasticity import RIGID, Elasticity
 from .figures import Figure, Fit, Stage, check_figures, figure, figures_of, part
@@ -21,7 +23,7 @@ _WAIT = Range(0.0, 10.0)
 """s, or rad or m: far beyond any average, ramp or wait of a controller."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class MotionModel:
     """How a controller drives.
 
@@ -226,6 +228,17 @@ class MotionModel:
 
     def __post_init__(self) -> None:
         check_figures(self)
+
+    def __repr__(self) -> str:
+        averages = " + ".join(f"{1e3 * window:.4g}" for window in self.smoothing)
+        stated = self.figures
+        origins = Counter(self.provenance[key].status for key in stated & self.provenance.keys())
+        known = ", ".join(f"{count} {status}" for status, count in sorted(origins.items()))
+        return in_line(
+            f"Motion model: period {1e3 * self.period:.4g} ms, zones {self.overlap}, "
+            f"smoothing {f'{averages} ms' if averages else 'none'}, "
+            f"{counted(stated, 'figure')}{f': {known}' if known else ''}"
+        )
 
     def ramp_at(self, jerk_fraction: float) -> float:
         """The `ramp` where a share of the jerk is programmed."""
