@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.door import spelt
-from ..core.errors import FlybyError, InputError, ParseError
+from ..core.errors import FlybyError, InputError, OptionError, ParseError
 from .options.entries import TaskOptions, value
 from .options.keywords import by_keywords
 from .options.texts import joint_target
@@ -82,6 +82,8 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
         name = f"program{vendor.suffixes[0] if vendor.suffixes else ''}"
         program = vendor.read(source, name, options.entry, robot, _answers(options), start)
     else:
+        if not str(source):
+            raise OptionError("source is empty: name a file or a folder, or give a program's text")
         file = Path(source)
         if file.is_dir():
             file = _program_in(file, setup, options)
@@ -116,6 +118,9 @@ def _program_in(folder: Path, setup: Setup, options: SourceOptions) -> Path:
     files = sorted(f for f in folder.iterdir() if f.suffix.lower() in vendor.suffixes)
     if len(files) == 1:
         return files[0]
+    if not files:
+        known = ", ".join(vendor.suffixes)
+        raise InputError(f"{folder} is a folder without a program of {vendor.name} ({known})")
     errors = {file: _error(file, setup, options, options.entry) for file in files}
     found = [file for file, error in errors.items() if error is None]
     broken = [(f, e) for f, e in errors.items() if isinstance(e, ParseError) and _of(e, f)]

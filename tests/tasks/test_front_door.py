@@ -372,6 +372,18 @@ def test_moves_setups_and_motion_models_tell_what_matters() -> None:
     assert sum(counts) == stated
 
 
+def test_a_source_that_holds_no_program_is_told_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "notes.txt").write_text("nothing", "utf-8")
+    with pytest.raises(InputError, match=r"is a folder without a program of kuka \(\.src\)"):
+        flyby.read(tmp_path, robot="kuka/kr30-3")
+    (tmp_path / "square.mod").write_text(SQUARE.read_text("utf-8"), "utf-8")
+    monkeypatch.chdir(tmp_path)  # an empty path is this folder
+    with pytest.raises(InputError, match="source is empty"):
+        flyby.read("", robot=ROBOT)
+
+
 def test_options_of_files_are_those_of_write() -> None:
     program = flyby.read(SQUARE, robot=ROBOT)
     with pytest.raises(TypeError, match=r"no option 'out'; flyby\.write\(result, folder\)"):
