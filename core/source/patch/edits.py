@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from itertools import pairwise
 
+from ...display import counted
 from ...errors import InputError, Span
 from ...program.move import Move
 from ...program.program import Program
@@ -175,7 +176,7 @@ def _same_pose(one: Pose, other: Pose, tolerance: float) -> bool:
 def listed(moves: Sequence[int]) -> str:
     """Moves by number, for messages: "moves 1, 2 and 3 others"."""
     numbers = ", ".join(str(move + 1) for move in moves[:_SHOWN])
-    more = f" and {len(moves) - _SHOWN} others" if len(moves) > _SHOWN else ""
+    more = f" and {counted(len(moves) - _SHOWN, 'other')}" if len(moves) > _SHOWN else ""
     return f"move{'s' if len(moves) > 1 else ''} {numbers}{more}"
 
 

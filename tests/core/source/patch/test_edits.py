@@ -246,3 +246,4 @@ def test_moves_are_listed_by_number() -> None:
     assert listed([2]) == "move 3"
     assert listed([0, 4]) == "moves 1, 5"
     assert listed(range(9)) == "moves 1, 2, 3, 4, 5, 6 and 3 others"
+    assert listed(range(7)) == "moves 1, 2, 3, 4, 5, 6 and 1 other"
