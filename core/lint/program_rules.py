@@ -168,7 +168,7 @@ def _alike(first: PoseTarget, second: PoseTarget) -> bool:
 
 def _reader_notes(subject: ProgramSubject) -> Iterator[Hit]:
     for note in subject.program.notes:
-        meant = f"nothing, if meant so ({spelt('answers')} answers)"
+        meant = f"nothing, if meant so; else answer what is open by {spelt('answers')}"
         yield Hit(note.message, meant, note.move, note.span)
 
 

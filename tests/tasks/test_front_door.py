@@ -320,6 +320,13 @@ def test_messages_of_the_core_name_options_as_the_door_does() -> None:
         flyby.read(text, robot=ROBOT)
 
 
+def test_remedies_of_findings_name_options_as_the_door_does() -> None:
+    program = flyby.read(SQUARE.with_name("deburring.mod"), robot=ROBOT)
+    assert any(f.fix.endswith("answer what is open by answers") for f in flyby.check(program))
+    with command_line(SHELL):
+        assert any(f.fix.endswith("answer what is open by --io") for f in flyby.check(program))
+
+
 def test_helps_state_units_as_the_door_takes_them() -> None:
     assert "From signal to paint, s. Default: 0.0" in str(flyby.paint.__doc__)
     assert "Thickness wanted, with its unit: 50um. As numbers: m." in str(flyby.paint.__doc__)
