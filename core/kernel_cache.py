@@ -7,7 +7,8 @@ package are kept, in this order, in the folder that ``FLYBY_CACHE`` names, in nu
 user's among temporary files; else they are compiled at every start. What lies beside a module that
 cannot be written to is still read. A file that is damaged counts as missing, and is written anew.
 
-`install` has numba do so for modules of this package, and for no others.
+`install` has numba do so for modules of this package, and for no others. At a terminal it has
+compiling announced that takes a while.
 """
 
 from __future__ import annotations
@@ -19,12 +20,14 @@ import logging
 import os
 import pickle
 import stat
+import sys
 import tempfile
+import time
 from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
 
-from numba.core import caching
+from numba.core import caching, event
 
 VARIABLE = "FLYBY_CACHE"
 _PACKAGE = __name__.partition(".")[0] + "."
@@ -162,6 +165,40 @@ def install(dispatcher: Any) -> None:
             return caching.NullCache()
 
     dispatcher.FunctionCache = cache_of
+    if sys.stderr is not None and sys.stderr.isatty():
+        event.register("numba:compile", Announcer())
+
+
+class Announcer(event.Listener):  # type: ignore[misc]
+    """Says once that kernels of this package are compiled, when that has taken a while.
+
+    Args:
+        patience: s of compiling without a word.
+    """
+
+    def __init__(self, patience: float = 2.0) -> None:
+        self._left = patience
+        self._open: list[bool] = []
+        self._last = 0.0
+
+    def on_start(self, event: Any) -> None:
+        """A kernel is compiled, maybe for another."""
+        self._count()
+        module = str(event.data["dispatcher"].py_func.__module__)
+        self._open.append(module.startswith(_PACKAGE))
+
+    def on_end(self, event: Any) -> None:
+        """It is done."""
+        self._count()
+        self._open.pop()
+
+    def _count(self) -> None:
+        now = time.perf_counter()
+        if self._open and self._open[0]:
+            self._left -= now - self._last
+            if self._left <= 0.0:
+                _say("kernels are compiled, which is done once: this takes up to a minute")
+        self._last = now
 
 
 @cache

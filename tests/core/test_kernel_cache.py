@@ -12,7 +12,7 @@ from typing import Any
 
 import numba
 import pytest
-from numba.core import caching
+from numba.core import caching, event
 
 from flyby.core import kernel_cache
 
@@ -161,6 +161,19 @@ def test_a_full_disk_does_not_stop_a_kernel(
     monkeypatch.setattr(caching.IndexDataCacheFile, "_save_data", full)
     assert compiled(places)
     assert "No space left on device" in caplog.text
+
+
+@pytest.mark.parametrize("name", ["flyby.fake", "another.package"])
+@pytest.mark.parametrize("patience", [0.0, 1e3])
+def test_compiling_that_takes_long_is_said_once(
+    places: Path, name: str, patience: float, caplog: pytest.LogCaptureFixture
+) -> None:
+    (places / "package" / "__pycache__").unlink()
+    with event.install_listener("numba:compile", kernel_cache.Announcer(patience)):
+        for x in (3, 3.0):
+            kernel(places, name)(x)
+    said = name == "flyby.fake" and patience == 0.0
+    assert caplog.text.count("kernels are compiled, which is done once") == said
 
 
 @pytest.mark.parametrize("first", ["import numba", "import flyby", "import flyby.cli.main"])

@@ -22,7 +22,7 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner
 from ..path.tcp_samples import States
 from ..timing.interval import Intervals, joint_at, progress
 from ..timing.start_ramp import StartRamp, stamped_time
@@ -90,7 +90,7 @@ def way_slopes(states: States) -> FloatArray:
     return np.asarray(np.sqrt(squares + np.sum((_TURNING * states.v[:, 3:]) ** 2, axis=1)))
 
 
-@lean
+@inner
 def _at(
     n: Intervals, way: _Way, starts: float, length: float, k: int, t: float
 ) -> tuple[float, float]:
@@ -109,7 +109,7 @@ def _at(
     return way.covered[k + 1], area + (t - until) * way.covered[k + 1]
 
 
-@lean
+@inner
 def _integral(
     n: Intervals, way: _Way, starts: float, length: float, k: int, first: float, last: float
 ) -> float:
@@ -124,7 +124,7 @@ def _integral(
     return integral
 
 
-@lean
+@inner
 def _covered(n: Intervals, way: _Way, starts: float, length: float, k: int, t: float) -> float:
     """λ covered in interval k until a driven time."""
     stamped = stamped_time(t, starts, length)
@@ -134,7 +134,7 @@ def _covered(n: Intervals, way: _Way, starts: float, length: float, k: int, t: f
     return covered
 
 
-@lean
+@inner
 def _share(n: Intervals, way: _Way, k: int, place: float) -> tuple[float, float]:
     """The share of interval k behind which λ has a value, and dλ/dℓ there."""
     first, last = way.slope[n.sample[k]], way.slope[n.sample[k] + 1]

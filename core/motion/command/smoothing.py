@@ -18,6 +18,7 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray
+from ...robot.kinematics.lean import inner
 from ..model.motion_model import MotionModel
 
 States = tuple[FloatArray, FloatArray, FloatArray]
@@ -70,7 +71,8 @@ class JointMotion:
     def at(self, t: FloatArray) -> States:
         """Positions, velocities and accelerations (T, N) at times (T,) that do not decrease."""
         out = _empty(len(t), self.q.shape[1])
-        _interpolate(self.t, self.q, self.dq, t, *out)
+        q, dq = np.ascontiguousarray(self.q), np.ascontiguousarray(self.dq)
+        _interpolate(self.t, q, dq, t, *out)
         return out
 
     def averaged(self, window: float, t: FloatArray) -> States:
@@ -161,7 +163,7 @@ def _areas(t: FloatArray, q: FloatArray, dq: FloatArray) -> FloatArray:
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _forward(t: FloatArray, at: float, k: int) -> int:
     """The last interval that begins at or before a time, from one that does; -1 before all."""
     while k + 1 < t.size and t[k + 1] <= at:
@@ -169,7 +171,7 @@ def _forward(t: FloatArray, at: float, k: int) -> int:
     return k
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _cubic(
     t: FloatArray, q: FloatArray, dq: FloatArray, k: int, at: float, j: int
 ) -> tuple[float, float, float, float]:

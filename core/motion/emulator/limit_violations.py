@@ -12,7 +12,7 @@ from ...arrays import FloatArray, IntArray
 from ...errors import Note
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import motion
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner
 from ..geometry.quintic import basis, bends, slopes
 from ..path.tcp_samples import States
 from ..timing.limits import SegmentLimits
@@ -143,7 +143,7 @@ def _shares(
                 most[k], row[k] = peak, j
 
 
-@lean
+@inner
 def _look(
     chain: Chain,
     states: States,
@@ -192,7 +192,7 @@ def _look(
         share[axes + part] = rate**0.5 / velocity[axes + part]
 
 
-@lean
+@inner
 def _may_pass(share: FloatArray) -> bool:
     """Whether any row of values at a few even places may pass its limit anywhere between them.
 
@@ -211,7 +211,7 @@ def _may_pass(share: FloatArray) -> bool:
     return False
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _peak(share: FloatArray, j: int) -> float:
     """The greatest of a row's shares at places evenly apart, and of the parabolas through three."""
     peak = 0.0

@@ -18,14 +18,14 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner
 from .curves import ARC, LINE, Curves, Samples, TcpCurves, parameter_jet
 
 Bounds = tuple[float, float, float]
 """Of the first, second and third derivative."""
 
 
-@lean
+@inner
 def map_bounds(window: FloatArray, first: float, last: float) -> Bounds:
     """Bounds of |ds/dσ|, |d²s/dσ²| and |d³s/dσ³| for s from ``first`` to ``last``."""
     length, d0, d1 = window[1], window[2], window[3]
@@ -50,7 +50,7 @@ def map_bounds(window: FloatArray, first: float, last: float) -> Bounds:
     return s1, f2 * s1**3 * length, (3 * f2 * f2 + f1 * f3) * s1**5 * length**2
 
 
-@lean
+@inner
 def expand(curves: Curves, piece: int, s: float, begin: int, end: int, taylor: FloatArray) -> None:
     """Taylor coefficients by s of a polynomial's or line's components about ``s``.
 
@@ -82,7 +82,7 @@ def expand(curves: Curves, piece: int, s: float, begin: int, end: int, taylor: F
                 taylor[k, d] += s * taylor[k + 1, d]
 
 
-@lean
+@inner
 def _own_bounds(
     curves: Curves, piece: int, s: float, reach: float, begin: int, end: int, taylor: FloatArray
 ) -> Bounds:
@@ -111,7 +111,7 @@ def _own_bounds(
     return b1, b2, b3
 
 
-@lean
+@inner
 def curve_bounds(
     curves: Curves,
     piece: int,
@@ -147,7 +147,7 @@ def curve_bounds(
     return b1 * s1, b2 * s1 * s1 + b1 * s2, b3 * s1**3 + 3 * b2 * s1 * s2 + b1 * s3
 
 
-@lean
+@inner
 def _turn_bounds(
     curves: Curves, piece: int, sigma: float, half: float, begin: int, taylor: FloatArray
 ) -> Bounds:
@@ -163,7 +163,7 @@ def _turn_bounds(
     return b1, b2 + 0.5 * b1 * b1, b3 + 1.5 * b1 * b2 + 0.5 * b1**3
 
 
-@lean
+@inner
 def turning_bounds(
     curves: Curves, piece: int, sigma: float, half: float, taylor: FloatArray
 ) -> Bounds:
@@ -190,7 +190,7 @@ def make_taylor(curves: TcpCurves) -> FloatArray:
     return np.empty((width, 3))
 
 
-@lean
+@inner
 def bound_jerk(
     curves: TcpCurves,
     samples: Samples,

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner, lean
 
 LINE, POLYNOMIAL, ARC = 0, 1, 2
 
@@ -92,7 +92,7 @@ class Samples(NamedTuple):
         return Samples(self.sigma[-1:], self.position[-1:], self.turning[-1:], self.prescribed[-1:])
 
 
-@lean
+@inner
 def _map_jet(s: float, d0: float, d1: float) -> tuple[float, float, float, float]:
     """The rational map at s and its first three derivatives."""
     across, rate = s * (1 - s), 1 - 2 * s
@@ -106,7 +106,7 @@ def _map_jet(s: float, d0: float, d1: float) -> tuple[float, float, float, float
     return f0, f1, f2, f3
 
 
-@lean
+@inner
 def _parameter(window: FloatArray, sigma: float) -> float:
     """s at σ."""
     y = (sigma - window[0]) / window[1]
@@ -137,7 +137,7 @@ def _fill_slopes(window: FloatArray, sigma: FloatArray, slopes: FloatArray) -> N
         slopes[k] = parameter_jet(window[k], sigma[k])[1]
 
 
-@lean
+@inner
 def _slope_jet(window: FloatArray, sigma: float, end: int) -> tuple[float, float, float]:
     """Derivative of s, s', s'' (with respect to σ) with respect to the slope d₀ or d₁.
 
@@ -160,7 +160,7 @@ def _slope_jet(window: FloatArray, sigma: float, end: int) -> tuple[float, float
     return g0, g1 * s1 / length, (g2 * s1 * s1 + g1 * s2) / length**2
 
 
-@lean
+@inner
 def _basis(curves: Curves, piece: int, s: float, basis: FloatArray) -> int:
     """Write bᵢ and three derivatives with respect to s, (6, 4); how many are in use."""
     basis[0, 0] = 1.0
@@ -282,7 +282,7 @@ def pull(
     return sigma_bar
 
 
-@lean
+@inner
 def _pull_coefficients(
     row: FloatArray, s0: float, s1: float, s2: float, w0: float, w1: float, w2: float
 ) -> None:

@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from ...arrays import FloatArray
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner, lean
 from ...robot.kinematics.vectors import Vector, add, cross, dot, load, scale, turn
 
 _TERMS = 11
@@ -22,7 +22,7 @@ _SERIES = np.array(
 )
 
 
-@lean
+@inner
 def _half_sine(n: float) -> tuple[float, float, float, float]:
     """k(n) = sin(√n/2)/√n and its first three derivatives."""
     k0 = k1 = k2 = k3 = 0.0
@@ -34,7 +34,7 @@ def _half_sine(n: float) -> tuple[float, float, float, float]:
     return k0, k1, k2, k3
 
 
-@lean
+@inner
 def _quaternion_jet(
     phi: FloatArray,
 ) -> tuple[float, float, float, Vector, Vector, Vector]:
@@ -52,14 +52,14 @@ def _quaternion_jet(
     return c0, c1, c2, v0, v1, v2
 
 
-@lean
+@inner
 def _rate(c0: float, v0: Vector, c1: float, v1: Vector) -> Vector:
     """2 vec(h₁ h₀*)."""
     rate: Vector = scale(2.0, add(add(scale(c0, v1), scale(-c1, v0)), cross(v0, v1)))
     return rate
 
 
-@lean
+@inner
 def exponential(phi: FloatArray, R: FloatArray) -> tuple[Vector, Vector]:
     """Write R = exp(φ) (3, 3) and return ω and ω' for φ, φ', φ'' given as (3, 3)."""
     c0, c1, c2, v0, v1, v2 = _quaternion_jet(phi)
@@ -70,7 +70,7 @@ def exponential(phi: FloatArray, R: FloatArray) -> tuple[Vector, Vector]:
     return _rate(c0, v0, c1, v1), _rate(c0, v0, c2, v2)
 
 
-@lean
+@inner
 def _pull_rate(
     c0: float, v0: Vector, c1: float, v1: Vector, bar: Vector
 ) -> tuple[float, Vector, float, Vector]:
@@ -81,7 +81,7 @@ def _pull_rate(
     return dot(v1, twice), v0_bar, -dot(v0, twice), v1_bar
 
 
-@lean
+@inner
 def pull_exponential(
     phi: FloatArray, theta_bar: Vector, omega_bar: Vector, alpha_bar: Vector, phi_bar: FloatArray
 ) -> None:
@@ -123,7 +123,7 @@ def pull_exponential(
         phi_bar[2, i] += g2[i]
 
 
-@lean
+@inner
 def _matrix(R: FloatArray, v: Vector) -> Vector:
     turned: Vector = turn(
         (R[0, 0], R[0, 1], R[0, 2], R[1, 0], R[1, 1], R[1, 2], R[2, 0], R[2, 1], R[2, 2]), v
@@ -131,7 +131,7 @@ def _matrix(R: FloatArray, v: Vector) -> Vector:
     return turned
 
 
-@lean
+@inner
 def _transposed(R: FloatArray, v: Vector) -> Vector:
     turned: Vector = turn(
         (R[0, 0], R[1, 0], R[2, 0], R[0, 1], R[1, 1], R[2, 1], R[0, 2], R[1, 2], R[2, 2]), v
@@ -139,7 +139,7 @@ def _transposed(R: FloatArray, v: Vector) -> Vector:
     return turned
 
 
-@lean
+@inner
 def _still(vectors: FloatArray) -> bool:
     """Whether A and its derivatives are zero, as on all segments but arcs."""
     for i in range(3):

@@ -10,6 +10,7 @@ from numba import njit
 from ...arrays import FloatArray
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import jacobian, pose
+from ...robot.kinematics.lean import inner
 
 
 @njit(cache=True, error_model="numpy")
@@ -74,7 +75,7 @@ def first_exit(
     return 0.5 * (low + high)
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _distance(
     chain: Chain,
     q_wp: FloatArray,

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...arrays import FloatArray, IntArray
 from ...errors import InputError
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner, lean
 from ..timing.stamping import Stamp
 from ..timing.stamping_kernels import CEILING, NEXT, Rows, bound_normal, half_plane
 
@@ -112,7 +112,7 @@ def pull_times(
             x_bar[k + 1] -= slope / right
 
 
-@lean
+@inner
 def _add_row(
     m: float,
     code: int,
@@ -165,7 +165,7 @@ def pull_forth(
         x_bar[k] -= seed * p / q
 
 
-@lean
+@inner
 def _normal(
     code: int, k: int, w: float, rows: Rows, ceiling: float, following: float
 ) -> tuple[float, float]:

@@ -29,7 +29,7 @@ from ...robot.kinematics.chain_kernels import (
     walk_motion,
     walk_speeds,
 )
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner
 from ...robot.kinematics.vectors import UNTURNED, ZERO, add, cross, dot, load_row, scale, subtract
 from ...robot.model import Robot
 
@@ -143,7 +143,7 @@ def _load(
         )
 
 
-@lean
+@inner
 def _load_one(
     chain: Chain,
     at: IntArray,
@@ -245,7 +245,7 @@ def _pull(
             _push(chain, walk, force, ddq_bar[m])
 
 
-@lean
+@inner
 def _push(chain: Chain, walk: FloatArray, force: FloatArray, out: FloatArray) -> None:
     """Add Jᵀ of a force at the end of a walk."""
     last = walk.shape[0] - 1

@@ -27,12 +27,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+from numba.extending import register_jitable
 
 from ...arrays import FloatArray, IntArray
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_bounds import Columns, bound_columns, turn_columns
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner
 from ...robot.kinematics.linear import factor, invert_factors, solve
 
 LEAST = 1e-9
@@ -87,7 +87,7 @@ class TubeWork(NamedTuple):
     bound: Columns
 
 
-@njit(cache=True, error_model="numpy")
+@register_jitable
 def make_tube_work(size: int, joints: int) -> TubeWork:
     """Arrays for N = ``size`` axes and K = ``joints`` joints of a chain."""
     square, rows = np.empty((2, 6, 6)), np.zeros((5, size))
@@ -116,7 +116,7 @@ def make_tube_work(size: int, joints: int) -> TubeWork:
     )
 
 
-@lean
+@inner
 def invert(chain: Chain, place: IntArray, columns: FloatArray, work: TubeWork) -> int:
     """Write J_m⁻¹ of the solved axes and J_m⁻¹ ∂_mJ, given the chain's columns (6, K).
 
@@ -147,7 +147,7 @@ def invert(chain: Chain, place: IntArray, columns: FloatArray, work: TubeWork) -
     return sign
 
 
-@lean
+@inner
 def bounded_solution(work: TubeWork, linear: float, angular: float) -> bool:
     """Replace y (6,) by (1 − K)⁻¹ (y + |J_m⁻¹ w|), w any twist of these lengths.
 
@@ -171,7 +171,7 @@ def bounded_solution(work: TubeWork, linear: float, angular: float) -> bool:
     return sound
 
 
-@lean
+@inner
 def _stays_inside(solved: IntArray, work: TubeWork, linear: float, angular: float) -> bool:
     """Whether y + K r + |J_m⁻¹ w| ≤ r, w any twist of these lengths: r then bounds the solution.
 
@@ -188,7 +188,7 @@ def _stays_inside(solved: IntArray, work: TubeWork, linear: float, angular: floa
     return inside
 
 
-@lean
+@inner
 def _bound_changes(
     chain: Chain,
     place: IntArray,
@@ -243,7 +243,7 @@ def _bound_changes(
     return twist, spin
 
 
-@lean
+@inner
 def _begin(
     prescribed: IntArray, rate: FloatArray, bend: FloatArray, jerk: FloatArray, work: TubeWork
 ) -> None:
@@ -258,7 +258,7 @@ def _begin(
         work.third[axis] = third
 
 
-@lean
+@inner
 def stays_in_tube(
     chain: Chain,
     solved: IntArray,

@@ -25,7 +25,9 @@ def sample_joint(
     basis, value = np.empty((6, 4)), np.empty((3, states.q.shape[1]))
     for k in range(sigma.size):
         evaluate(curves, piece[k], sigma[k], basis, value)
-        states.q[k], states.dq[k], states.ddq[k] = value[0], value[1], value[2]
+        for j in range(states.q.shape[1]):
+            states.q[k, j], states.dq[k, j] = value[0, j], value[1, j]
+            states.ddq[k, j] = value[2, j]
         motion(chain, states.q[k], states.dq[k], states.ddq[k], states.v[k], states.a[k])
 
 

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numba.extending import register_jitable
 
 from ...arrays import FloatArray, IntArray
 from ...robot.kinematics.chain import Chain
@@ -25,7 +26,7 @@ from ...robot.kinematics.chain_kernels import (
     motion,
     velocity_gradient,
 )
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner
 from ...robot.kinematics.linear import factor, solve, solve_transposed
 from ...robot.kinematics.tracking import pose_error
 from ..geometry.curves import Samples, TcpCurves, evaluate, pull
@@ -86,7 +87,7 @@ class Scratch(NamedTuple):
     zero: FloatArray
 
 
-@njit(cache=True, error_model="numpy")
+@register_jitable
 def make_scratch(size: int, prescribed: int) -> Scratch:
     """Scratch for N = ``size`` axes, some of them prescribed."""
     return Scratch(
@@ -109,7 +110,7 @@ def make_scratch(size: int, prescribed: int) -> Scratch:
     )
 
 
-@lean
+@inner
 def approach(
     chain: Chain,
     solved: IntArray,
@@ -148,7 +149,7 @@ def approach(
     return best, conditioning
 
 
-@lean
+@inner
 def state_at(
     chain: Chain,
     solved: IntArray,
@@ -200,7 +201,7 @@ def state_at(
     return error, pivots
 
 
-@lean
+@inner
 def _rates(
     J: FloatArray,
     square: FloatArray,
@@ -225,7 +226,7 @@ def _rates(
         rates[solved[j]] = rhs[j]
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _push(
     J: FloatArray,
     square: FloatArray,

@@ -8,15 +8,19 @@ where that cannot be decided, at a singular configuration or next to it, the wal
 
 from __future__ import annotations
 
+from functools import lru_cache
+from threading import get_ident
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import jacobian
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner, lean
 from ...robot.kinematics.tracking import pose_error, track
-from ..geometry.curve_bounds import bound_jerk, make_taylor
+from ..geometry.curve_bounds import bound_jerk
 from ..geometry.curves import Samples, TcpCurves
 from .branch_proof import LEAST, TubeWork, invert, make_tube_work, stays_in_tube
 from .tcp_samples import CONVERGED, SINGULAR, Scratch, States, make_scratch, state_at
@@ -35,7 +39,50 @@ _FINEST = 1e-7
 """Share of the way between two samples below which steps are not halved any more."""
 
 
-@lean
+class _Work(NamedTuple):
+    """Arrays that a walk reuses: for `state_at`, for the tube, and its own.
+
+    Row 0 of ``walk`` is where it stands, row 1 its next step.
+    """
+
+    pose: Scratch
+    tube: TubeWork
+    walk: States
+    J: FloatArray
+    jerk: FloatArray
+    by_t: FloatArray
+    taylor: FloatArray
+    place: IntArray
+    joints: IntArray
+    centre: FloatArray
+    slope: FloatArray
+
+
+@lru_cache(maxsize=64)
+def _work(thread: int, size: int, prescribed: int, joints: int, width: int) -> _Work:
+    """For N = ``size`` axes, some of them prescribed, K = ``joints`` and curves of ``width``."""
+    return _Work(
+        make_scratch(size, prescribed),
+        make_tube_work(size, joints),
+        States.zeros(2, size),
+        np.empty((6, joints)),
+        np.empty(2 + prescribed),
+        np.empty((3, max(size, 2 + prescribed))),
+        np.empty((width, 3)),
+        np.empty(size, dtype=np.int64),
+        np.arange(joints),
+        np.empty(size),
+        np.empty(size),
+    )
+
+
+@inner
+def _copy(source: FloatArray, target: FloatArray) -> None:
+    for j in range(source.size):
+        target[j] = source[j]
+
+
+@inner
 def _copy_row(source: States, i: int, target: States, j: int) -> None:
     for n in range(source.q.shape[1]):
         target.q[j, n] = source.q[i, n]
@@ -44,7 +91,7 @@ def _copy_row(source: States, i: int, target: States, j: int) -> None:
         target.v[j, n], target.a[j, n] = source.v[i, n], source.a[i, n]
 
 
-@lean
+@inner
 def _stand(
     chain: Chain, single: Chain, place: IntArray, q: FloatArray, J: FloatArray, work: TubeWork
 ) -> int:
@@ -58,7 +105,7 @@ def _stand(
     return int(invert(chain, place, J, work))
 
 
-@lean
+@inner
 def _furthest(a: FloatArray, b: FloatArray) -> float:
     """The largest difference of two configurations."""
     most = 0.0
@@ -67,7 +114,7 @@ def _furthest(a: FloatArray, b: FloatArray) -> float:
     return most
 
 
-@lean
+@inner
 def _keeps_branch(
     chain: Chain,
     solved: IntArray,
@@ -96,7 +143,7 @@ def _keeps_branch(
     return bool(stays_in_tube(chain, solved, prescribed, place, J, rate, bend, third, work))
 
 
-@lean
+@inner
 def _hop(
     chain: Chain,
     single: Chain,
@@ -179,7 +226,6 @@ def _shortfall(chain: Chain, solved: IntArray, q: FloatArray, work: Scratch) -> 
     return float(pose_error(work.goal_R, work.value[0], R, p, error))
 
 
-@njit(cache=True, error_model="numpy")
 def sample_tcp(
     chain: Chain,
     solved: IntArray,
@@ -207,50 +253,65 @@ def sample_tcp(
         rad) the TCP stays short of its pose, and the last σ that it does come to; the
         configuration there is then written in the place of the sample's.
     """
-    size, axes = seed.size, prescribed.size
-    work, tube = make_scratch(size, axes), make_tube_work(size, chain.joint.size)
-    # Row 0 is where the walk stands, row 1 its next step.
-    walk = States(
-        np.empty((2, size)),
-        np.empty((2, size)),
-        np.empty((2, size)),
-        np.empty((2, 6)),
-        np.empty((2, 6)),
+    each = (curves.position, curves.turning, curves.prescribed)
+    width = max(curve.coefficients.shape[1] for curve in each)
+    work = _work(get_ident(), seed.size, prescribed.size, chain.joint.size, width)
+    failed, short, reached = _walk(
+        chain, solved, prescribed, curves, samples, seed, states, conditioning, work
     )
-    J = np.empty((6, chain.joint.size))
-    jerk, by_t = np.empty(2 + axes), np.empty((3, max(size, 2 + axes)))
-    taylor = make_taylor(curves)
+    if short < 0.0:
+        short = _shortfall(chain, solved, states.q[failed], work.pose)
+    return failed, short, reached
+
+
+@lean
+def _walk(
+    chain: Chain,
+    solved: IntArray,
+    prescribed: IntArray,
+    curves: TcpCurves,
+    samples: Samples,
+    seed: FloatArray,
+    states: States,
+    conditioning: FloatArray,
+    scratch: _Work,
+) -> tuple[int, float, float]:
+    """`sample_tcp`, with a negative length for how far the TCP stays short, where it is asked."""
+    size = seed.size
+    work, tube, walk, J = scratch.pose, scratch.tube, scratch.walk, scratch.J
+    jerk, by_t, taylor, place = scratch.jerk, scratch.by_t, scratch.taylor, scratch.place
     single = Chain(
         chain.rotation,
         chain.translation,
         chain.axis,
         chain.prismatic,
-        np.arange(chain.joint.size),
+        scratch.joints,
         chain.sign,
         chain.end_rotation,
         chain.end_translation,
     )
-    place = np.full(size, -1, dtype=np.int64)
+    place[:] = -1
     for j in range(6):
         place[solved[j]] = j
     # From q = centre at ``origin`` on the tube is proven up to ``sure``; curves stay the same up to
     # ``border``.
-    centre, slope, reach = seed.copy(), np.zeros(size), np.inf
+    centre, slope, reach = scratch.centre, scratch.slope, np.inf
+    slope[:] = 0.0
     origin = sure = border = samples.sigma[0]
     for k in range(samples.sigma.size):
         goal = samples.sigma[k]
         at = samples.sigma[max(k - 1, 0)]
         if goal == at:
             # The same place again, on the curves that begin there.
-            states.q[k] = seed if k == 0 else states.q[k - 1]
-            centre[:] = states.q[k]
+            _copy(seed if k == 0 else states.q[k - 1], centre)
+            _copy(centre, states.q[k])
             error, pivots = state_at(
                 chain, solved, prescribed, curves, samples, k, goal, states, k, work
             )
             conditioning[k] = pivots
             apart = _furthest(states.q[k], centre)
             if not (error < CONVERGED and pivots >= SINGULAR and apart <= JOINED):
-                states.q[k] = centre
+                _copy(centre, states.q[k])
                 return k, (0.0 if pivots < SINGULAR else max(error, apart)), goal
             sure = border = goal
             for i in range(k + 1, samples.sigma.size):
@@ -266,7 +327,9 @@ def sample_tcp(
             aim = goal
             if (sure - goal) * whole < 0.0:
                 # A tube from where the walk stands, as far as it can be proven.
-                centre[:], slope[:], origin = walk.q[0], walk.dq[0], at
+                _copy(walk.q[0], centre)
+                _copy(walk.dq[0], slope)
+                origin = at
                 side = _stand(chain, single, place, centre, J, tube)
                 left = border - at
                 step = left if abs(left) <= reach else np.copysign(reach, whole)
@@ -305,10 +368,10 @@ def sample_tcp(
                         at, pivots, hop_at = at + hop, 0.0, _HOP * abs(whole)
                     elif not proven:
                         conditioning[k] = min(pivots, conditioning[k - 1])
-                        states.q[k] = centre
-                        walk.q[1] = centre
+                        _copy(centre, states.q[k])
+                        _copy(centre, walk.q[1])
                         state_at(chain, solved, prescribed, curves, samples, k, goal, walk, 1, work)
-                        return k, _shortfall(chain, solved, centre, work), at
+                        return k, -1.0, at
                     sure = at
                     continue
                 sure = border if step == left else at + step

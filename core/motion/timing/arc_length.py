@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner, lean
 from ..geometry.corners import JOINT_CORNER, POSITION
 from ..geometry.layout import Layout
 from ..geometry.pieces import Pieces
@@ -126,7 +126,7 @@ def _zones(layout: Layout, pieces: Pieces, flat: NDArray[np.bool_]) -> IntArray:
     return np.stack([samples[first], samples[last + 1] - 1, joint], -1).astype(np.int64)
 
 
-@lean
+@inner
 def _square(states: States, k: int, joint: int, weights: FloatArray) -> tuple[float, float]:
     """|x'|² and x' · x'' of sample k."""
     square = mixed = 0.0
@@ -142,7 +142,7 @@ def _square(states: States, k: int, joint: int, weights: FloatArray) -> tuple[fl
     return square, mixed
 
 
-@lean
+@inner
 def _ends(
     states: States, first: int, last: int, joint: int, weights: FloatArray
 ) -> tuple[float, float, float]:
@@ -222,7 +222,7 @@ def _pull_measure(
         sigma_bar[k] -= h_bar
 
 
-@lean
+@inner
 def _pull_square(
     states: States,
     k: int,
@@ -246,7 +246,7 @@ def _pull_square(
         bar.a[k, i] += weight * one * mixed_bar
 
 
-@lean
+@inner
 def _pull_rates(
     first: FloatArray,
     second: FloatArray,

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner
 from ..geometry.pieces import PieceIndices
 from ..geometry.quintic import slopes
 from ..path.tcp_samples import States
@@ -47,7 +47,7 @@ def row_between(code: int) -> int:
     return (code - BETWEEN) // (2 * len(_PLACES))
 
 
-@lean
+@inner
 def _least(rate: FloatArray, velocity: FloatArray) -> tuple[float, int]:
     """Greatest x at these rates, and the row that bounds it."""
     most, row = 0.0, -1
@@ -58,7 +58,7 @@ def _least(rate: FloatArray, velocity: FloatArray) -> tuple[float, int]:
     return (1.0 / (most * most) if row >= 0 else np.inf), row
 
 
-@lean
+@inner
 def _inside(states: States, s: int, h: float, m: int, rate: FloatArray, twist: FloatArray) -> None:
     """Write the rates (N + 2) and the twist (6,) at place m between samples s and s + 1."""
     axes = rate.size - 2

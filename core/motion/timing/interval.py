@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ...arrays import FloatArray, IntArray
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner, lean
 from ..path.tcp_samples import States
 
 
@@ -35,7 +35,7 @@ class Intervals(NamedTuple):
         return Intervals(self.begin[own], self.end[own], self.sample[own], self.spacing[own], x)
 
 
-@lean
+@inner
 def progress(intervals: Intervals, k: int, t: float) -> tuple[float, float]:
     """The share of interval k that is behind at time t in s, 0 to 1, and dℓ/dt there.
 
@@ -75,7 +75,7 @@ def joint_at(states: States, s: int, j: int, length: float, z: float) -> tuple[f
     return q, slope / length, bend / length**2
 
 
-@lean
+@inner
 def sigma_at(sigma: FloatArray, rate: FloatArray, s: int, length: float, z: float) -> float:
     """σ at a share z behind sample s: the cubic with slopes dσ/dℓ = 1 / rate at both samples."""
     rise = sigma[s + 1] - sigma[s]

@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 
 from ...arrays import FloatArray
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner
 from ..path.tcp_samples import States
 
 _STILL = 1e-9
 """Rates (m or rad per unit) below which the TCP or the tool does not move."""
 
 
-@lean
+@inner
 def rates(states: States, k: int, axes: int, rate: FloatArray, bend: FloatArray) -> None:
     """Write the rates (N + 2) at sample k, and how they change."""
     for j in range(axes):
@@ -33,7 +33,7 @@ def rates(states: States, k: int, axes: int, rate: FloatArray, bend: FloatArray)
             rate[axes + part] = bend[axes + part] = 0.0
 
 
-@lean
+@inner
 def pull_rates(
     states: States, k: int, axes: int, rate_bar: FloatArray, bend_bar: FloatArray, out: States
 ) -> None:
@@ -56,7 +56,7 @@ def pull_rates(
             out.a[k, i] += by_bend * states.v[k, i]
 
 
-@lean
+@inner
 def sideways(states: States, k: int) -> float:
     """Length of what of the TCP's p'' is across its path."""
     square = mixed = bend = 0.0
@@ -69,7 +69,7 @@ def sideways(states: States, k: int) -> float:
     return math.sqrt(max(bend - mixed * mixed / square, 0.0))
 
 
-@lean
+@inner
 def pull_sideways(states: States, k: int, bar: float, out: States) -> None:
     """Reverse of `sideways` where it is above zero."""
     square = mixed = 0.0

@@ -18,7 +18,7 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner, lean
 from .stamping_polygon import ROUNDING, greatest_sum
 
 CEILING = -1
@@ -101,7 +101,7 @@ def fill_joint_limits(
         ceiling[k] = 1.0 / (ceiling[k] * ceiling[k])
 
 
-@lean
+@inner
 def half_plane(
     code: int,
     k: int,
@@ -120,7 +120,7 @@ def half_plane(
     return -p, -q, -lower[k, end, r]
 
 
-@lean
+@inner
 def bound_normal(code: int, ceiling: float, following: float) -> tuple[float, float]:
     """(p, q) of a bound that is no row; ``following`` bounds z."""
     if code == CEILING:
@@ -132,7 +132,7 @@ def bound_normal(code: int, ceiling: float, following: float) -> tuple[float, fl
     return -1.0, (SLOWDOWN if ceiling > 0.0 else 0.0)
 
 
-@lean
+@inner
 def _rows_hold(
     k: int,
     w: float,
@@ -157,7 +157,7 @@ def _rows_hold(
     return violated == 0
 
 
-@lean
+@inner
 def _fill_polygon(
     k: int,
     w: float,
@@ -182,7 +182,7 @@ def _fill_polygon(
     planes[NEXT, 2] = following
 
 
-@lean
+@inner
 def _first_pair(planes: FloatArray) -> tuple[int, int]:
     """Two half-planes of a polygon that bound y + z together: where the walk begins."""
     following = planes[NEXT, 2]
@@ -198,7 +198,7 @@ def _first_pair(planes: FloatArray) -> tuple[int, int]:
     return best, (NEXT if planes[best, 1] <= planes[best, 0] else SLOWEST)
 
 
-@lean
+@inner
 def _guess(
     code: int,
     k: int,
@@ -262,7 +262,7 @@ def sweep_back(
     return -1
 
 
-@lean
+@inner
 def _farthest(
     guess: int,
     k: int,
@@ -287,7 +287,7 @@ def _farthest(
     return z, source
 
 
-@lean
+@inner
 def _limit(y: float, top: float, source: int, i: int, j: int) -> int:
     """Which half-plane holds the speed down in an interval (see ``Stamp.limit``)."""
     if source >= 0:

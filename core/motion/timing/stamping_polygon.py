@@ -10,7 +10,7 @@ may be negative, as everywhere in numpy.
 from __future__ import annotations
 
 from ...arrays import FloatArray
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner, lean
 
 ROUNDING = 1e-14
 """Rounding of p y + q z, relative to the size of its terms."""
@@ -18,7 +18,7 @@ ROUNDING = 1e-14
 WALK_PER_PLANE = 2
 
 
-@lean
+@inner
 def vertex(planes: FloatArray, i: int, j: int) -> tuple[float, float]:
     """(y, z) where the edges of two half-planes meet."""
     # Of the two orders of elimination, the one whose factor times the row keeps rounding down.
@@ -29,7 +29,7 @@ def vertex(planes: FloatArray, i: int, j: int) -> tuple[float, float]:
     return (planes[i, 2] - planes[i, 1] * z) / planes[i, 0], z
 
 
-@lean
+@inner
 def most_violated(planes: FloatArray, y: float, z: float) -> int:
     """Index of the half-plane that (y, z) is farthest outside of; M if it is in all of them."""
     worst = len(planes)
@@ -45,7 +45,7 @@ def most_violated(planes: FloatArray, y: float, z: float) -> int:
     return worst
 
 
-@lean
+@inner
 def exchange(planes: FloatArray, entering: int, i: int, j: int) -> tuple[int, int]:
     """The pair that bounds y + z once ``entering`` holds too.
 
@@ -67,7 +67,7 @@ def exchange(planes: FloatArray, entering: int, i: int, j: int) -> tuple[int, in
     return i, entering
 
 
-@lean
+@inner
 def shrink(planes: FloatArray, y: float, z: float) -> float:
     """The greatest factor in [0, 1] with which (y, z) is in the polygon: the origin is."""
     factor = 1.0

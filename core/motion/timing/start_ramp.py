@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import FloatArray
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class StartRamp:
 SUDDEN = StartRamp()
 
 
-@lean
+@inner
 def stamped_time(t: float, begin: float, length: float) -> float:
     """The stamped time at a time, of a start of a length that begins at some time; all in s."""
     since = t - begin

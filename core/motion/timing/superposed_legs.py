@@ -27,7 +27,7 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner
 from ..geometry.corners import POSITION, TCP_CORNER
 from ..geometry.curves import ARC, Curves
 from ..geometry.layout import Layout
@@ -88,7 +88,7 @@ def room_along(zones: SuperposedZones, pieces: Pieces) -> FloatArray:
     return room
 
 
-@lean
+@inner
 def _brakes(
     states: States, k: int, limits: FloatArray, rate: FloatArray, bend: FloatArray
 ) -> tuple[float, int]:
@@ -101,7 +101,7 @@ def _brakes(
     return least, row
 
 
-@lean
+@inner
 def _speed(states: States, k: int) -> float:
     """|p'|² at sample k."""
     square = 0.0
@@ -110,7 +110,7 @@ def _speed(states: States, k: int) -> float:
     return square
 
 
-@lean
+@inner
 def _ends(
     spacing: FloatArray, pieces: PieceIndices, zone: IntArray
 ) -> tuple[tuple[int, int], tuple[int, int], tuple[float, float]]:
@@ -126,7 +126,7 @@ def _ends(
     return samples, (segment[first], segment[last]), (before, after)
 
 
-@lean
+@inner
 def _asked(
     states: States,
     samples: tuple[int, int],

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from .chain import Chain
-from .lean import lean
+from .lean import inner
 
 
 class Columns(NamedTuple):
@@ -33,7 +33,7 @@ class Columns(NamedTuple):
     angular_bent: FloatArray
 
 
-@lean
+@inner
 def turn_columns(
     chain: Chain,
     columns: FloatArray,
@@ -70,7 +70,7 @@ def turn_columns(
                 size_of[i, b, a], size_of[i, a, b] = abs(linear), abs(linear + angular)
 
 
-@lean
+@inner
 def bound_columns(chain: Chain, columns: FloatArray, rho: FloatArray, out: Columns) -> None:
     """Fill ``out`` for the box ``rho`` (N,) about the columns (6, K) at its middle.
 
@@ -114,7 +114,7 @@ def bound_columns(chain: Chain, columns: FloatArray, rho: FloatArray, out: Colum
         before = turn
 
 
-@lean
+@inner
 def bias(
     chain: Chain, lever: FloatArray, first: FloatArray, second: FloatArray, out: FloatArray
 ) -> None:

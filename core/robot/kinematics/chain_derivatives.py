@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ...arrays import FloatArray
 from .chain import Chain
 from .chain_kernels import jacobians
+from .lean import inner
 from .vectors import Vector, cross
 
 
@@ -32,7 +33,7 @@ def _columns(chain: Chain, q: FloatArray) -> FloatArray:
     return columns
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _column_change(columns: FloatArray, m: int, j: int, k: int) -> tuple[Vector, Vector]:
     """How column j changes with chain joint k: linear and angular part."""
     v_j = (columns[m, 0, j], columns[m, 1, j], columns[m, 2, j])

@@ -18,7 +18,7 @@ from numba import njit
 
 from ...arrays import FloatArray
 from .chain import Chain
-from .lean import lean
+from .lean import inner, lean
 from .vectors import (
     UNTURNED,
     ZERO,
@@ -38,7 +38,7 @@ from .vectors import (
 )
 
 
-@lean
+@inner
 def place(chain: Chain, k: int, turned: Rotation) -> tuple[Rotation, Vector, Vector]:
     """The frame before joint k: rotation, step to its origin, and the joint's signed axis."""
     step = turn(turned, load_row(chain.translation, k))
@@ -47,7 +47,7 @@ def place(chain: Chain, k: int, turned: Rotation) -> tuple[Rotation, Vector, Vec
     return placed, step, axis
 
 
-@lean
+@inner
 def turned_by(chain: Chain, k: int, value: float, placed: Rotation) -> Rotation:
     """The rotation behind a revolute joint k."""
     moved: Rotation = compose(
@@ -56,7 +56,7 @@ def turned_by(chain: Chain, k: int, value: float, placed: Rotation) -> Rotation:
     return moved
 
 
-@lean
+@inner
 def _finish(chain: Chain, turned: Rotation, at: Vector, R: FloatArray, p: FloatArray) -> None:
     """Write the TCP's pose, given the frame behind the last joint."""
     for i in range(3):
@@ -129,7 +129,7 @@ def jacobian(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray, J: Float
         J[2, j] += linear[2]
 
 
-@lean
+@inner
 def carry(omega: Vector, alpha: Vector, step: Vector) -> tuple[Vector, Vector]:
     """What a step fixed in a turning frame adds to velocity and acceleration."""
     velocity = cross(omega, step)
@@ -177,17 +177,17 @@ def motion(
 AXIS, ORIGIN, OMEGA, ALPHA, SPEED, RISE, COLUMNS = 0, 1, 2, 3, 4, 5, 6
 
 
-@lean
+@inner
 def _store(walk: FloatArray, k: int, column: int, value: Vector) -> None:
     walk[k, column, 0], walk[k, column, 1], walk[k, column, 2] = value
 
 
-@lean
+@inner
 def recall(walk: FloatArray, k: int, column: int) -> Vector:
     return walk[k, column, 0], walk[k, column, 1], walk[k, column, 2]
 
 
-@lean
+@inner
 def walk_motion(
     chain: Chain, q: FloatArray, dq: FloatArray, ddq: FloatArray, walk: FloatArray
 ) -> None:
@@ -246,7 +246,7 @@ def velocity_gradient(
     pull_velocity(chain, walk, w, grad_q)
 
 
-@lean
+@inner
 def walk_speeds(chain: Chain, dq: FloatArray, walk: FloatArray) -> None:
     """Write velocities at other rates (N,) into a walk whose axes and origins stand."""
     omega, speed = ZERO, ZERO
@@ -265,7 +265,7 @@ def walk_speeds(chain: Chain, dq: FloatArray, walk: FloatArray) -> None:
     _store(walk, last, SPEED, speed)
 
 
-@lean
+@inner
 def pull_velocity(chain: Chain, walk: FloatArray, w: FloatArray, grad_q: FloatArray) -> None:
     """Add the gradient of w · (velocity at the end of a walk) with respect to q; w is (6,)."""
     force, torque = (w[0], w[1], w[2]), (w[3], w[4], w[5])
@@ -274,7 +274,7 @@ def pull_velocity(chain: Chain, walk: FloatArray, w: FloatArray, grad_q: FloatAr
         grad_q[chain.joint[k]] += dot(force, linear) + dot(torque, angular)
 
 
-@lean
+@inner
 def _relative(walk: FloatArray, k: int) -> tuple[Vector, Vector, Vector]:
     """The TCP against the frame before joint k: place, velocity, angular velocity."""
     last = walk.shape[0] - 1
@@ -285,7 +285,7 @@ def _relative(walk: FloatArray, k: int) -> tuple[Vector, Vector, Vector]:
     return r, subtract(velocity, cross(omega, r)), spin
 
 
-@lean
+@inner
 def _velocity_change(chain: Chain, k: int, walk: FloatArray) -> tuple[Vector, Vector]:
     """Derivative of the TCP's velocity with respect to the value of joint k.
 
@@ -298,7 +298,7 @@ def _velocity_change(chain: Chain, k: int, walk: FloatArray) -> tuple[Vector, Ve
     return add(cross(omega, cross(axis, r)), cross(axis, velocity)), cross(axis, spin)
 
 
-@lean
+@inner
 def _acceleration_change(chain: Chain, k: int, walk: FloatArray) -> tuple[Vector, Vector]:
     """Derivative of the TCP's acceleration with respect to the value of joint k."""
     axis, omega = recall(walk, k, AXIS), recall(walk, k, OMEGA)
@@ -317,7 +317,7 @@ def _acceleration_change(chain: Chain, k: int, walk: FloatArray) -> tuple[Vector
     return linear, add(cross(omega, cross(axis, spin)), cross(axis, spun))
 
 
-@lean
+@inner
 def _acceleration_change_with_rate(chain: Chain, k: int, walk: FloatArray) -> tuple[Vector, Vector]:
     """Derivative of the TCP's acceleration with respect to the rate of joint k."""
     axis, omega = recall(walk, k, AXIS), recall(walk, k, OMEGA)
@@ -352,7 +352,7 @@ def acceleration_gradient(
     pull_acceleration(chain, walk, w, grad_q, grad_dq)
 
 
-@lean
+@inner
 def pull_acceleration(
     chain: Chain, walk: FloatArray, w: FloatArray, grad_q: FloatArray, grad_dq: FloatArray
 ) -> None:
@@ -373,7 +373,7 @@ def poses(chain: Chain, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     return R, p
 
 
-@lean
+@inner
 def _fill_poses(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray) -> None:
     for m in range(q.shape[0]):
         pose(chain, q[m], R[m], p[m])
@@ -387,7 +387,7 @@ def jacobians(chain: Chain, q: FloatArray) -> FloatArray:
     return J
 
 
-@lean
+@inner
 def _fill_jacobians(
     chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray, J: FloatArray
 ) -> None:
@@ -405,7 +405,7 @@ def motions(
     return v, a
 
 
-@lean
+@inner
 def _fill_motions(
     chain: Chain, q: FloatArray, dq: FloatArray, ddq: FloatArray, v: FloatArray, a: FloatArray
 ) -> None:

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
 from ...arrays import FloatArray
 from .arm_geometry import ArmGeometry
+from .lean import inner
 from .vectors import Rotation, Vector, add, compose, cross, dot, load, scale, subtract
 
 SLACK = 1e-10
@@ -26,13 +25,13 @@ Y: Vector = (0.0, 1.0, 0.0)
 Z: Vector = (0.0, 0.0, 1.0)
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def row(matrix: FloatArray, i: int) -> Vector:
     """A row of a matrix (3, 3)."""
     return matrix[i, 0], matrix[i, 1], matrix[i, 2]
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def rotation(matrix: FloatArray) -> Rotation:
     """The rotation of a matrix (3, 3)."""
     return (
@@ -48,14 +47,14 @@ def rotation(matrix: FloatArray) -> Rotation:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def target_rotation(arm: ArmGeometry, R: FloatArray) -> Rotation:
     """The rotation from zero to the flange's rotation R (3, 3), in the arm's frame."""
     turned: Rotation = compose(compose(rotation(arm.frame), rotation(R)), rotation(arm.zero))
     return turned
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def wrist_target(arm: ArmGeometry, R: FloatArray, p: FloatArray) -> Vector:
     """The wrist's centre in the arm's frame for a flange at R (3, 3), p (3,)."""
     c = load(arm.centre)
@@ -67,13 +66,13 @@ def wrist_target(arm: ArmGeometry, R: FloatArray, p: FloatArray) -> Vector:
     return dot(row(arm.frame, 0), at), dot(row(arm.frame, 1), at), dot(row(arm.frame, 2), at)
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def transposed(a: Rotation) -> Rotation:
     """The inverse rotation."""
     return a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def wrapped(angle: float) -> float:
     """The same angle in (-π, π]."""
     if -math.pi < angle <= math.pi:
@@ -82,7 +81,7 @@ def wrapped(angle: float) -> float:
     return turned
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def about(axis: Vector, angle: float, a: Vector) -> Vector:
     """Vector ``a`` turned about a unit axis (Rodrigues' formula)."""
     sine, cosine = math.sin(angle), math.cos(angle)
@@ -91,7 +90,7 @@ def about(axis: Vector, angle: float, a: Vector) -> Vector:
     return turned
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def solve_shoulder(lateral: float, target: Vector, behind: bool) -> tuple[float, float, float]:
     """Angle of joint 1 that brings a point to lateral distance ``lateral`` from the arm's plane.
 
@@ -112,7 +111,7 @@ def solve_shoulder(lateral: float, target: Vector, behind: bool) -> tuple[float,
     return angle, x, missing
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def solve_elbow(
     arm: ArmGeometry, x: float, z: float, flipped: bool
 ) -> tuple[float, float, float, float]:
@@ -144,7 +143,7 @@ def solve_elbow(
     return wrapped(second), wrapped(third), sine, missing
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def outer_angle(axis: Vector, start: Vector, end: Vector) -> float:
     """Angle about a unit axis from ``start`` to ``end``, measured across the axis."""
     # Projected first: nearly along the axis, little of the vectors is left to compare.

@@ -6,10 +6,10 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from .lean import lean
+from .lean import inner
 
 
-@lean
+@inner
 def factor(matrix: FloatArray, order: IntArray) -> tuple[float, float]:
     """Replace a matrix (n, n) by its LU factors, rows exchanged for the largest pivot.
 
@@ -42,7 +42,7 @@ def factor(matrix: FloatArray, order: IntArray) -> tuple[float, float]:
     return smallest, largest
 
 
-@lean
+@inner
 def solve(factors: FloatArray, order: IntArray, x: FloatArray) -> None:
     """Solve A y = x for the factored A; y replaces x (n,)."""
     n = factors.shape[0]
@@ -56,7 +56,7 @@ def solve(factors: FloatArray, order: IntArray, x: FloatArray) -> None:
         x[k] /= factors[k, k]
 
 
-@lean
+@inner
 def invert_factors(factors: FloatArray, order: IntArray, inverse: FloatArray) -> None:
     """Write A⁻¹ (n, n) for the factored A."""
     n = factors.shape[0]
@@ -79,7 +79,7 @@ def invert_factors(factors: FloatArray, order: IntArray, inverse: FloatArray) ->
             inverse[k, c] /= factors[k, k]
 
 
-@lean
+@inner
 def solve_transposed(factors: FloatArray, order: IntArray, x: FloatArray) -> None:
     """Solve Aᵀ y = x for the factored A; y replaces x (n,)."""
     n = factors.shape[0]

@@ -26,6 +26,7 @@ from .closed_form import (
     wrapped,
     wrist_target,
 )
+from .lean import inner
 from .vectors import Rotation, compose, cross, dot, rotation_about, turn
 
 
@@ -67,7 +68,7 @@ def solve_spherical_wrist(
     return least
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _solve_wrist(
     arm: ArmGeometry, target: Rotation, plain: FloatArray, flipped: FloatArray
 ) -> float:

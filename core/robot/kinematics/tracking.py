@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...arrays import FloatArray
 from .chain import Chain
 from .chain_kernels import jacobian
-from .lean import lean
+from .lean import inner, lean
 from .linear import solve_in_place
 from .vectors import Vector, dot, load_row
 
@@ -104,7 +104,7 @@ def least_step(
     return math.sqrt(solve_in_place(A, step))
 
 
-@lean
+@inner
 def pose_error(
     target_R: FloatArray, target_p: FloatArray, R: FloatArray, p: FloatArray, error: FloatArray
 ) -> float:

@@ -28,6 +28,7 @@ from .closed_form import (
     wrapped,
     wrist_target,
 )
+from .lean import inner
 from .vectors import Rotation, Vector, add, compose, cross, dot, load, rotation_about, turn
 
 
@@ -76,7 +77,7 @@ def solve_parallel_axes(
     return least
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _solve_wrist(arm: ArmGeometry, target: Rotation, flipped: bool) -> tuple[float, float, float]:
     """Angles of joints 5 and 6, and the sine between axes 4 and 6."""
     fifth, sixth = row(arm.axes, 1), row(arm.axes, 2)
@@ -94,7 +95,7 @@ def _solve_wrist(arm: ArmGeometry, target: Rotation, flipped: bool) -> tuple[flo
     return bend, outer_angle(sixth, turn(transposed(target), Y), end), sine
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _step_to_fourth(arm: ArmGeometry, target: Rotation, fifth: float, sixth: float) -> Vector:
     """From the wrist's centre to axis 4, for a rotation that all joints but the first make."""
     back = about(row(arm.axes, 1), -fifth, load(arm.centre_to_fourth))
@@ -102,7 +103,7 @@ def _step_to_fourth(arm: ArmGeometry, target: Rotation, fifth: float, sixth: flo
     return step
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _reaching_roll(arm: ArmGeometry, target: Rotation, x: float, z: float, back: Vector) -> float:
     """Joint 6 for an aligned wrist, where it turns axis 4 about the centre: 0 if that reaches.
 

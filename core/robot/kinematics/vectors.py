@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from ...arrays import FloatArray
-from .lean import lean
+from .lean import inner
 
 Vector = tuple[float, float, float]
 Rotation = tuple[float, float, float, float, float, float, float, float, float]
@@ -17,43 +17,43 @@ ZERO: Vector = (0.0, 0.0, 0.0)
 UNTURNED: Rotation = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 
-@lean
+@inner
 def load(array: FloatArray) -> Vector:
     """The vector of an array (3,)."""
     return array[0], array[1], array[2]
 
 
-@lean
+@inner
 def load_row(array: FloatArray, row: int) -> Vector:
     """The vector in a row of an array (..., 3)."""
     return array[row, 0], array[row, 1], array[row, 2]
 
 
-@lean
+@inner
 def add(a: Vector, b: Vector) -> Vector:
     """a + b."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
-@lean
+@inner
 def subtract(a: Vector, b: Vector) -> Vector:
     """a - b."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
-@lean
+@inner
 def scale(factor: float, a: Vector) -> Vector:
     """factor · a."""
     return factor * a[0], factor * a[1], factor * a[2]
 
 
-@lean
+@inner
 def dot(a: Vector, b: Vector) -> float:
     """a · b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@lean
+@inner
 def cross(a: Vector, b: Vector) -> Vector:
     """a × b."""
     return (
@@ -63,7 +63,7 @@ def cross(a: Vector, b: Vector) -> Vector:
     )
 
 
-@lean
+@inner
 def turn(rotation: Rotation, a: Vector) -> Vector:
     """The vector turned by the rotation."""
     return (
@@ -73,7 +73,7 @@ def turn(rotation: Rotation, a: Vector) -> Vector:
     )
 
 
-@lean
+@inner
 def compose(a: Rotation, b: Rotation) -> Rotation:
     """The rotation ``a`` followed, in its own frame, by ``b``: the matrix product."""
     return (
@@ -89,7 +89,7 @@ def compose(a: Rotation, b: Rotation) -> Rotation:
     )
 
 
-@lean
+@inner
 def load_rotation(matrices: FloatArray, k: int) -> Rotation:
     """The rotation of matrix ``k`` of an array (K, 3, 3)."""
     return (
@@ -105,7 +105,7 @@ def load_rotation(matrices: FloatArray, k: int) -> Rotation:
     )
 
 
-@lean
+@inner
 def rotation_about(axis: Vector, angle: float) -> Rotation:
     """The rotation by ``angle`` (rad) about a unit axis (Rodrigues' formula)."""
     x, y, z = axis
