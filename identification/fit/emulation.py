@@ -15,6 +15,7 @@ import numpy as np
 from ...core.arrays import FloatArray
 from ...core.motion.command.commanded_motion import stamped_motion
 from ...core.motion.command.elasticity import leads
+from ...core.motion.command.servo import friction_at
 from ...core.motion.command.smoothing import JointMotion, Smoothing, States
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.geometry.pieces import Sampling
@@ -168,7 +169,7 @@ class RunEmulator:
             model = with_value(model, key, float(values[k] + step))
         made = self._stages(model, base.nuisance, base.stages)
         if made is base.stages and base.moments is not None:
-            off = self.prepared.q - self._led(model, base.moments)
+            off = self.prepared.q - self._led(model, base, base.moments)
         else:
             off = self._off(made, model, base.nuisance)
         return np.asarray((off - base.off) / step)
@@ -180,9 +181,12 @@ class RunEmulator:
         t = nuisance.emulated(self.prepared.t, stages.window)
         return stages.smoothing.command(stages.stamped, t)
 
-    def _led(self, model: MotionModel, states: States) -> FloatArray:
+    def _led(self, model: MotionModel, base: _Base, states: States) -> FloatArray:
         """(K, N), commanded for a smoothed motion."""
-        return led(self.prepared.controller(model), states)
+        stages = base.stages
+        t = base.nuisance.emulated(self.prepared.t, stages.window)
+        controller = self.prepared.controller(model)
+        return led(controller, stages.smoothing, stages.stamped, t, states)
 
     def _by_time(self, stages: _Stages, model: MotionModel, nuisance: Nuisance) -> FloatArray:
         """(K, N), by the emulation's time."""
@@ -266,14 +270,21 @@ def commanded(
     controller: Controller, smoothing: Smoothing, stamped: JointMotion, t: FloatArray
 ) -> FloatArray:
     """Commanded joints (K, N) of a stamped motion at times that do not decrease."""
-    return led(controller, smoothing.command(stamped, t))
+    return led(controller, smoothing, stamped, t, smoothing.command(stamped, t))
 
 
-def led(controller: Controller, states: States) -> FloatArray:
-    """Commanded joints (K, N) of a smoothed motion."""
+def led(
+    controller: Controller,
+    smoothing: Smoothing,
+    stamped: JointMotion,
+    t: FloatArray,
+    states: States,
+) -> FloatArray:
+    """The same where the smoothed motion has states then (K, N)."""
+    q = states[0] + friction_at(controller.model.servo, smoothing, stamped, t, states)
     if controller.model.elasticity == RIGID:
-        return states[0]
-    return states[0] + leads(controller.model.elasticity, controller.robot, *states)
+        return q
+    return q + leads(controller.model.elasticity, controller.robot, *states)
 
 
 def _begins(changed: Stage | None, stage: Stage) -> bool:

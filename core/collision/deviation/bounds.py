@@ -1,9 +1,10 @@
 """How far smoothing in time takes the links off their path, place by place.
 
 See `averaging`. What motors lead by is what elastic joints give way by, so that links are where
-smoothing leaves them; servos that lag take their links with them (`motion.command.elasticity`). The
-bounds hold for all motions within the path's limits that rest no shorter than reckoned with, so at
-every override that stays as it is where rests are always as long.
+smoothing leaves them; servos that lag take their links with them (`motion.command.elasticity`), and
+so does friction, which stays within one bound at every speed (`motion.command.servo`). The bounds
+hold for all motions within the path's limits that rest no shorter than reckoned with, so at every
+override that stays as it is where rests are always as long.
 
 Where rests end by an in-position window (`motion.timing.rests`), slow motions rest less, and fast
 ones without rests would deviate far. So motions are told apart by how much slower they are: an
@@ -22,6 +23,7 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
+from ...motion.command.servo import friction_bound
 from ...motion.command.smoothing import Smoothing
 from ...motion.emulator.controller import Controller
 from ...motion.emulator.run import Run
@@ -143,7 +145,8 @@ class Deviation:
     def of(cls, controller: Controller, run: Run) -> Deviation:
         """Of a run."""
         smoothing = controller.smoothing(run.program, run.path)
-        nowhere = not smoothing.widths and not any(controller.model.elasticity.lag)
+        model = controller.model
+        nowhere = not smoothing.widths and not any(model.elasticity.lag) and not model.servo.rubs
         return cls(controller, run, smoothing, () if nowhere else _bands(controller, run))
 
     def over(self, first: int, last: int) -> tuple[DeviationBounds, ...]:
@@ -187,7 +190,8 @@ def _bands(controller: Controller, run: Run) -> tuple[_Band, ...]:
 def _within(known: Deviation, band: _Band, first: int, last: int) -> DeviationBounds:
     """How far the links of motions in a band may be from their path."""
     timing, smoothing = known.run.timing, known.smoothing
-    lag = known.controller.model.elasticity.lag
+    model = known.controller.model
+    lag = model.elasticity.lag
     size = timing.path.q.shape[1]
     reach = smoothing.window + timing.ramp
     step = band.coarser * (reach / _CELLS if reach > 0.0 else _STEP)
@@ -208,6 +212,7 @@ def _within(known: Deviation, band: _Band, first: int, last: int) -> DeviationBo
         share = np.concatenate([share, speed[:, None]], axis=1)
         late_ones = late != 0.0
         rest[:, late_ones] += np.abs(late[late_ones]) * rates.veer[:, late_ones]
+    rest += friction_bound(model.servo, size)
     most = rest + np.einsum("cwn,cw->cn", np.abs(ways), np.abs(share).max(axis=2))
     # What is not known is not small.
     unknown = ~np.isfinite(most).all(axis=1)

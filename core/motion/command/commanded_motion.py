@@ -1,8 +1,9 @@
 """What links and motors are commanded to do along a stamped path.
 
-All is done a stretch of time at a time. Averages look back over their window alone, and splines of
-leads forget values `_ASIDE` away. So a stretch needs no more of the stamped motion than itself and
-a little to both sides, and a program of any length no more memory than its samples and one stretch.
+All is done a stretch of time at a time. Averages look back over their window alone, splines of
+leads forget values `_ASIDE` away, and what friction remembers is carried on. So a stretch needs no
+more of the stamped motion than itself and a little to both sides, and a program of any length no
+more memory than its samples and one stretch.
 """
 
 from __future__ import annotations
@@ -14,10 +15,12 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...robot.model import Robot
-from ..model.elasticity import RIGID, Elasticity
+from ..model.elasticity import RIGID
+from ..model.motion_model import MotionModel
 from ..timing.timing import Timing
 from .elasticity import derivatives_of, lead_states, lead_step, links_of
 from .ramp import ramped
+from .servo import FrictionMemory
 from .smoothing import STEP, JointMotion, Smoothing, States, even_times, knot_step
 from .trajectory import Leads, no_leads, sample_times
 
@@ -51,33 +54,39 @@ def stretches(t: FloatArray) -> Iterator[slice]:
 
 
 def commanded_motion(
-    robot: Robot, elasticity: Elasticity, smoothing: Smoothing, timing: Timing, t: FloatArray
+    robot: Robot, model: MotionModel, smoothing: Smoothing, timing: Timing, t: FloatArray
 ) -> CommandedMotion:
     """What is driven at increasing times t (T,) in s."""
     shape = len(t), timing.path.q.shape[1]
     q, dq, ddq, sigma = (*(np.empty(shape) for _ in range(3)), np.empty(len(t)))
+    elasticity = model.elasticity
     lead = None if elasticity == RIGID else no_leads(shape)
+    friction = FrictionMemory(model.servo, smoothing, shape[1]) if model.servo.rubs else None
     step = lead_step(smoothing.window + timing.ramp)
     for part in stretches(t):
         sigma[part] = timing.place_at(np.clip(t[part] - timing.lag, 0.0, timing.duration))
-        if smoothing.window == 0.0 and timing.ramp == 0.0 and lead is None:
+        if smoothing.window == 0.0 and timing.ramp == 0.0 and lead is None and friction is None:
             q[part], dq[part], ddq[part] = timing.driven_at(t[part])
             continue
         begin, end = t[part][0] - _ASIDE * step, t[part][-1] + _ASIDE * step
-        stamped = stamped_motion(timing, begin - smoothing.window, end)
+        first = begin if friction is None else min(begin, friction.known_to)
+        stamped = stamped_motion(timing, first - smoothing.window, end)
         smooth = smoothing.command(stamped, t[part])
         q[part], dq[part], ddq[part] = smooth
-        if lead is None:
-            continue
-        even = even_times(max(begin, 0.0), min(end, timing.duration), step)
-        known = smoothing.command(stamped, even)
-        if any(elasticity.lag):
-            jerk = derivatives_of(even, known[2], t[part])[1]
-            q[part], dq[part], ddq[part] = links_of(elasticity, smooth, jerk)
-        for made, own in zip(
-            lead, lead_states(elasticity, robot, even, known, t[part]), strict=True
-        ):
-            made[part] = own
+        off = None if friction is None else friction.over(stamped, t[part], smooth)
+        if lead is not None:
+            even = even_times(max(begin, 0.0), min(end, timing.duration), step)
+            known = smoothing.command(stamped, even)
+            if any(elasticity.lag):
+                jerk = derivatives_of(even, known[2], t[part])[1]
+                q[part], dq[part], ddq[part] = links_of(elasticity, smooth, jerk)
+            for made, own in zip(
+                lead, lead_states(elasticity, robot, even, known, t[part]), strict=True
+            ):
+                made[part] = own
+        if off is not None:
+            for links, own in zip((q, dq, ddq), off, strict=True):
+                links[part] += own
     return CommandedMotion((q, dq, ddq), lead, sigma)
 
 

@@ -190,7 +190,7 @@ class Controller:
         period = self.model.period if period is None else period
         smoothing = self.smoothing(program, timing.path)
         t = sample_times(0.0, timing.duration, period)
-        found = commanded_motion(self.robot, self.model.elasticity, smoothing, timing, t)
+        found = commanded_motion(self.robot, self.model, smoothing, timing, t)
         path = timing.path
         last = len(path.route.moves) - 1
         segment = np.searchsorted(path.layout.waypoint, found.sigma, "right") - 1
@@ -292,9 +292,10 @@ class Controller:
     def _torques_taken(self, timing: Timing, trajectory: Trajectory) -> FloatArray:
         """(M, L), the greatest shares of limits of torque on each move.
 
-        Where servos lag or time comes up to speed, those of the motion as stamped.
+        Where servos lag or rub, or time comes up to speed, those of the motion as stamped.
         """
-        stamped = any(self.model.elasticity.lag) or timing.ramp > 0.0 or timing.start != SUDDEN
+        servos = any(self.model.elasticity.lag) or self.model.servo.rubs
+        stamped = servos or timing.ramp > 0.0 or timing.start != SUDDEN
         torque = self.model.torque
         taken = np.zeros((int(trajectory.move.max()) + 1, len(torque.own)))
         for part in stretches(trajectory.t):

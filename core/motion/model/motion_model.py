@@ -17,6 +17,7 @@ from .figures import Figure, Fit, Stage, check_figures, figure, figures_of, part
 from .kinds import POSITIVE, Choice, Range, RealNumber, Row, Truth
 from .provenance import Provenance
 from .rules import ArcTurn, DurationRule, LineTurn, OrientationZone, Overlap, Pace, Space
+from .servo import IDEAL, Servo
 from .torque import WITHOUT_LIMIT, Torque
 
 _WAIT = Range(0.0, 10.0)
@@ -224,6 +225,7 @@ class MotionModel:
     )
     torque: Torque = part("torque", WITHOUT_LIMIT)
     elasticity: Elasticity = part("elasticity", RIGID)
+    servo: Servo = part("servo", IDEAL)
     provenance: Mapping[str, Provenance] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

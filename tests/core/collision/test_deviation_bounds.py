@@ -22,6 +22,7 @@ from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.emulator.run import Run
 from flyby.core.motion.model.elasticity import Carried, Coupled, Elasticity
 from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.model.servo import Servo
 from flyby.core.motion.model.torque import Borne, Torque
 from flyby.core.motion.timing.rests import InPosition
 from flyby.core.motion.timing.timing import Settling, Timing
@@ -49,6 +50,7 @@ LOADED = replace(
     spring=(0.0, 3e-3),
 )
 LATE = Elasticity(lag=(1e-3, 0.0, -2e-3))
+RUBBING = Servo((-2e-3, 3e-3, 0.0, 0.0, 1e-3))
 WEAK = Torque((0.03, 0.05, 0.09), (Borne(5, (0.03, 0.03)),), fade=(0.2, 0.1))
 SPEED = Speed(tcp=2.0, reorientation=6.0)
 DIRECTIONS = np.concatenate([np.eye(6), np.random.default_rng(3).normal(size=(20, 6))])
@@ -75,6 +77,10 @@ MODELS = {
     "lag, ramp": MotionModel(smoothing=(0.04, 0.03), ramp=0.03, elasticity=LATE),
     "lag, slow start": MotionModel(smoothing=(0.04,), elasticity=LATE, start_ramp=0.1),
     "lag, unsmoothed": MotionModel(elasticity=LATE),
+    "friction": MotionModel(servo=RUBBING),
+    "friction, lag": MotionModel(
+        smoothing=(0.05, 0.05), settling=0.05, elasticity=LATE, servo=RUBBING
+    ),
     "fitted": ABB.motion_of(ROBOT),
 }
 

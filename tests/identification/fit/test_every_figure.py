@@ -11,7 +11,6 @@ import pytest
 
 from flyby.core.errors import InputError, MotionError
 from flyby.core.motion.command.commanded_motion import stamped_motion
-from flyby.core.motion.command.elasticity import leads
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.geometry.pieces import Sampling
 from flyby.core.motion.model.elasticity import Carried, Coupled
@@ -27,7 +26,7 @@ from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
-from flyby.identification.fit.emulation import Nuisance, RunEmulator
+from flyby.identification.fit.emulation import Nuisance, RunEmulator, commanded
 from flyby.identification.fit.keys import fit_of, with_value
 from flyby.identification.fit.parameters import ParameterSet, parameter
 from flyby.identification.fit.runs import PreparedRun, prepare
@@ -57,6 +56,7 @@ RICH = {
     "elasticity.lag_s": (0.0, 2e-3),
     "elasticity.weight": (0.0, 1.0),
     "elasticity.spring_rad": (1e-4,),
+    "servo.friction_rad": (0.0, 1e-3),
 }
 """What others need to show."""
 CORNERS = {"blend.tcp.kind": "arc", "zone.pace": "superposed", "limit.centripetal": 1.2}
@@ -106,6 +106,9 @@ EXAMPLES: dict[str, tuple[Any, dict[str, Any]]] = {
     "elasticity.lag_s": ((0.0, 1e-3), {}),
     "elasticity.weight": ((0.0, 2.0), {}),
     "elasticity.spring_rad": ((2e-4,), {}),
+    "servo.friction_rad": ((0.0, 5e-4), {}),
+    "servo.friction_rise_rad": (1e-3, {}),
+    "servo.friction_fade_rad": (0.02, {}),
 }
 """Another value of every figure, and what it needs beside it to show."""
 WITHOUT_EFFECT = {"blend.joint.kind", "blend.orientation.kind"}
@@ -182,7 +185,7 @@ def stages(key: str, changed: bool) -> tuple[Result, ...]:
     return (
         [path.q, path.sigma],
         [timing.begin, timing.end, np.array([timing.duration, *smoothing.widths]), states[0]],
-        [leads(one.elasticity, ROBOT, *states)],
+        [commanded(controller, smoothing, stamped_motion(timing), t)],
         [controller.sample(PROGRAM, timing).t],
     )
 

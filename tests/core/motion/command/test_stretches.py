@@ -10,6 +10,7 @@ import pytest
 from flyby.core.motion.command import commanded_motion as driven
 from flyby.core.motion.model.elasticity import Carried, Elasticity
 from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.model.servo import Servo
 from flyby.core.program.move import MoveJ, MoveL, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -24,6 +25,10 @@ MODELS = {
     "elastic": MotionModel(smoothing=(0.04, 0.03, 0.02), ramp=0.03, elasticity=GEARS),
     "slow start": MotionModel(smoothing=(0.05,), start_ramp=0.2),
     "lag": MotionModel(smoothing=(0.05, 0.03), elasticity=Elasticity(lag=(1e-3, 0.0, -2e-3))),
+    "friction": MotionModel(servo=Servo((-1e-3, 1e-3, 2e-3))),
+    "friction, elastic": MotionModel(
+        smoothing=(0.04, 0.03), ramp=0.03, elasticity=GEARS, servo=Servo((-1e-3, 1e-3))
+    ),
 }
 
 

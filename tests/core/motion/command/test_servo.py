@@ -1,0 +1,114 @@
+"""How far friction sets joints off where they begin to move or turn back."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flyby.core.errors import InputError
+from flyby.core.motion.command.servo import FrictionMemory, friction_at, friction_bound
+from flyby.core.motion.command.smoothing import JointMotion, Smoothing
+from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.model.servo import IDEAL, Servo
+from flyby.core.program.move import MoveJ, MoveL
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.zone import FINE, Radius
+
+SERVO = Servo((1e-3, -2e-3), rise=5e-4, fade=1e-2)
+NONE = Smoothing()
+
+
+def motion(seed: int, pace: float = 1.0) -> JointMotion:
+    """Two joints that turn back at times of their own, from rest on."""
+    knots = np.random.default_rng(seed).uniform(-0.3, 0.3, (9, 2))
+    return JointMotion(np.arange(9.0) / pace, knots, np.zeros_like(knots))
+
+
+def off(servo: Servo, driven: JointMotion, t: np.ndarray) -> np.ndarray:
+    return friction_at(servo, NONE, driven, t, driven.at(t))
+
+
+def test_it_sets_in_as_a_joint_turns_back_and_fades() -> None:
+    driven = JointMotion(
+        np.array([0.0, 1.0, 2.0]), np.array([[0.0], [0.5], [0.0]]), np.zeros((3, 1))
+    )
+    t = np.linspace(1.0, 2.0, 501)
+    made = off(replace(SERVO, friction=(1e-3,)), driven, t)[:, 0]
+    way = 0.5 - driven.at(t)[0][:, 0]
+    expected = -2e-3 * (np.exp(-way / SERVO.fade) - np.exp(-way / SERVO.rise))
+    np.testing.assert_allclose(made, expected, rtol=0, atol=1e-9)
+    assert np.abs(made).max() > 1.5e-3
+    assert abs(made[-1]) < 1e-12
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=st.integers(0, 1000), pace=st.floats(0.1, 2.0), cut=st.floats(0.05, 0.95))
+def test_it_follows_ways_alone(seed: int, pace: float, cut: float) -> None:
+    """The same at every speed, from either side, wherever joints are zero and stretches join."""
+    driven, t = motion(seed), np.linspace(0.0, 8.0, 4001)
+    made = off(SERVO, driven, t)
+    paced = off(SERVO, motion(seed, pace), t / pace)
+    # Where a joint turns back within a step, as much of its way is missed.
+    np.testing.assert_allclose(paced, made, rtol=0, atol=1e-4)
+    assert np.abs(made).max() > 1e-3
+    mirrored = replace(driven, q=1.0 - driven.q, dq=-driven.dq)
+    np.testing.assert_allclose(off(SERVO, mirrored, t), -made, rtol=0, atol=1e-12)
+    memory, at = FrictionMemory(SERVO, NONE, 2), int(cut * len(t))
+    parts = [memory.over(driven, part, driven.at(part))[0] for part in (t[:at], t[at:])]
+    np.testing.assert_allclose(np.concatenate(parts), made, rtol=0, atol=1e-12)
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=st.integers(0, 1000), pace=st.floats(0.1, 10.0), rise=st.floats(1e-4, 0.1))
+def test_it_stays_within_its_bound(seed: int, pace: float, rise: float) -> None:
+    servo = replace(SERVO, rise=rise)
+    t = np.linspace(0.0, 8.0 / pace, 2000)
+    made = np.abs(off(servo, motion(seed, pace), t))
+    assert (made <= friction_bound(servo, 2)).all()
+
+
+def test_its_derivatives_are_those_of_it() -> None:
+    driven, t, h = motion(3), np.arange(0.0501, 7.95, 0.004), 1e-6
+    states = driven.at(t)
+    made = FrictionMemory(SERVO, NONE, 2).over(driven, t, states)
+    before, behind = (
+        FrictionMemory(SERVO, NONE, 2).over(driven, t + step, driven.at(t + step))
+        for step in (-h, h)
+    )
+    fast = np.abs(states[1]) > 0.05  # the second jumps where joints turn back
+    for k in (0, 1):
+        slope = (behind[k] - before[k]) / (2 * h)
+        assert np.abs(slope - made[k + 1])[fast].max() < 1e-4 * np.abs(slope).max()
+
+
+def test_links_and_motors_are_off_alike(abb) -> None:
+    speed = Speed(tcp=0.4, reorientation=5.0)
+    moves = (
+        MoveL(abb.target((1, 0, 0)), speed, Radius(0.2 * abb.leg)),
+        MoveL(abb.target((1, 1, 0)), speed, FINE),
+        MoveJ(abb.target((0, 1, 0.4)), speed, FINE),
+    )
+    program = Program(moves, start=abb.start)
+    smooth = MotionModel(smoothing=(0.05, 0.03))
+    plain, same, rubbed = (
+        abb.controller(replace(smooth, servo=servo)).run(program, period=0.004).trajectory
+        for servo in (IDEAL, Servo((0.0, 0.0), rise=0.1), Servo((1e-3, -1e-3, 2e-3)))
+    )
+    np.testing.assert_array_equal(same.q, plain.q)
+    away = rubbed.q - plain.q
+    np.testing.assert_array_equal(rubbed.q_motor, rubbed.q)
+    bound = friction_bound(Servo((1e-3, -1e-3, 2e-3)), away.shape[1])
+    assert (np.abs(away) <= bound + 1e-12).all()
+    assert (np.abs(away).max(axis=0)[:3] > 0.3 * bound[:3]).any()
+    np.testing.assert_array_equal(rubbed.t, plain.t)
+
+
+@pytest.mark.parametrize("key", ["rise", "fade"])
+def test_a_way_of_nothing_is_refused(key: str) -> None:
+    with pytest.raises(InputError, match=f"servo.friction_{key}_rad"):
+        Servo(**{key: 0.0})
