@@ -228,16 +228,16 @@ def test_what_cannot_be_said_is_refused() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"turns": (math.pi,)}, "corner angles"),
-        ({"turns": ()}, "needs corner angles"),
+        ({"turns": (math.pi,)}, "angles: 180°"),
+        ({"turns": ()}, "angles: an experiment needs"),
         ({"radii": (-0.01,)}, "zones"),
         ({"speeds": (0.1, 0.1)}, "given twice"),
         ({"speeds": (math.nan,)}, "speeds"),
         ({"postures": 0}, "1 to 99"),
-        ({"minutes": 0.0}, "time above zero"),
+        ({"minutes": 0.0}, "minutes: must be above zero"),
         ({"overhead": -1.0}, "overhead"),
         ({"longest": math.inf}, "longest"),
-        ({"kinds": ()}, "one kind"),
+        ({"kinds": ()}, "kinds: an experiment needs at least one"),
         ({"tool": Tool("fixed", robot_held=False)}, "stands still"),
     ],
 )

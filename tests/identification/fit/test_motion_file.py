@@ -22,6 +22,7 @@ from flyby.core.motion.model.rules import (
     Pace,
     Space,
 )
+from flyby.core.motion.model.servo import Servo
 from flyby.core.motion.model.torque import Borne, Torque
 from flyby.identification.fit import (
     Fit,
@@ -123,6 +124,7 @@ OTHER = MotionModel(
         (0.5,),
         (Coupled(3, 2, 0.125),),
     ),
+    servo=Servo((1e-4,), 1e-4, 4e-3),
     jerk=12.0,
 )
 

@@ -292,8 +292,8 @@ def test_millimetres_taken_for_metres_are_refused_before_they_take_for_ever() ->
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        ({"sweep_width": 0.0}, "sweep_width must be above zero"),
-        ({"sweep_width": 0.1, "overhang": -1.0}, "overhang must be zero or more"),
+        ({"sweep_width": 0.0}, "sweep_width is a finite number above zero"),
+        ({"sweep_width": 0.1, "overhang": -1.0}, "overhang is a finite number, zero or more"),
         ({"sweep_width": 0.1, "view": (0.0, 0.0, 0.0)}, "view must be a direction"),
     ],
 )
