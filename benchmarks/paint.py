@@ -48,7 +48,7 @@ from flyby.problems.paint.spray.trajectory import PaintTrajectory
 from flyby.problems.paint.surface.part import Part
 from flyby.problems.paint.thickness.optimize import optimize
 from flyby.problems.paint.thickness.options import OuterLoop, PaintLimits
-from flyby.problems.paint.thickness.reference import Reference
+from flyby.problems.paint.thickness.reference import ReferencePlanes
 from flyby.problems.paint.thickness.speeds import best_speeds
 from flyby.validation.surfaces.fender import fender
 from flyby.validation.surfaces.sheets import plate, saddle, sloped, wavy
@@ -151,7 +151,7 @@ def _full(case: str, how: Full) -> Iterator[Figure]:
         deposition,
         start,
         TARGET,
-        Reference.below(start, how.plan.distance),
+        ReferencePlanes.below(start, how.plan.distance),
         limits=how.limits,
         loop=how.loop,
     )
@@ -223,7 +223,7 @@ def _warm() -> None:
     """Compile the kernels."""
     deposition, start = _start(Full(lambda: plate(21), plate))
     loop = OuterLoop(rounds=1, iterations=1)
-    optimize(deposition, start, TARGET, Reference.below(start, PLAN.distance), loop=loop)
+    optimize(deposition, start, TARGET, ReferencePlanes.below(start, PLAN.distance), loop=loop)
 
 
 def _figures(

@@ -26,10 +26,10 @@ from flyby.problems.paint.thickness.constraints import PaintConstraints
 from flyby.problems.paint.thickness.objective import PaintObjective
 from flyby.problems.paint.thickness.optimize import optimize
 from flyby.problems.paint.thickness.options import OuterLoop, PaintLimits, PaintWeights
-from flyby.problems.paint.thickness.reference import Reference
+from flyby.problems.paint.thickness.reference import ReferencePlanes
 from flyby.problems.paint.thickness.robust import NO_ERRORS, scenarios
 from flyby.problems.paint.thickness.round import TOLERANCE, JudgedTrajectory, Round
-from flyby.problems.paint.thickness.variables import Variables
+from flyby.problems.paint.thickness.variables import ThicknessVariables
 from flyby.validation.surfaces.sheets import plate
 
 TARGET, DISTANCE = 50e-6, 0.25
@@ -44,7 +44,7 @@ def beside_ipopt(
     case: str, deposition: Deposition, start: PaintTrajectory, target: float
 ) -> Iterator[Figure]:
     """Our rounds and IPOPT from one start."""
-    reference = Reference.below(start, DISTANCE)
+    reference = ReferencePlanes.below(start, DISTANCE)
     begin = time.process_time()
     ours = optimize(deposition, start, target, reference)
     own_time = time.process_time() - begin
@@ -84,7 +84,7 @@ def _scaling(case: str, across: int, longest: float, subpoints: int) -> list[Fig
     plain = Deposition(part.samples, ring(0.25), subpoints)
     footprint = ring(0.25).scaled(TARGET / coat(plain, start, TARGET).by_area.mean)
     deposition = plain.with_footprint(footprint)
-    step = _round(deposition, start, TARGET, Reference.below(start, DISTANCE))
+    step = _round(deposition, start, TARGET, ReferencePlanes.below(start, DISTANCE))
     z = np.zeros(step.variables.size)
     calls: dict[str, Callable[[], object]] = {
         "thickness_ms": lambda: deposition.thickness(start),
@@ -94,7 +94,7 @@ def _scaling(case: str, across: int, longest: float, subpoints: int) -> list[Fig
     figures = [Figure(case, "segments", start.segments, ""), Figure(case, "variables", len(z), "")]
     figures += [Figure(case, name, _fastest(call) / MILLI, "ms") for name, call in calls.items()]
     loop = OuterLoop(rounds=1, iterations=2)
-    optimize(deposition, start, TARGET, Reference.below(start, DISTANCE), loop=loop)
+    optimize(deposition, start, TARGET, ReferencePlanes.below(start, DISTANCE), loop=loop)
     most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
     return [*figures, Figure(case, "memory_mb", most / MEGA, "MB")]
 
@@ -111,10 +111,10 @@ def _fastest(call: Callable[[], object]) -> float:
 
 
 def _round(
-    deposition: Deposition, start: PaintTrajectory, target: float, reference: Reference
+    deposition: Deposition, start: PaintTrajectory, target: float, reference: ReferencePlanes
 ) -> Round:
     """The whole task as one round."""
-    variables = Variables.of(start, reference)
+    variables = ThicknessVariables.of(start, reference)
     return Round(
         0,
         variables,

@@ -25,7 +25,7 @@ _UNBROKEN = 32
 
 
 @dataclass(frozen=True)
-class Curve:
+class PictureCurve:
     """A curve of a picture.
 
     Args:
@@ -62,7 +62,7 @@ def table(columns: Sequence[tuple[str, str]], rows: Sequence[Sequence[str]]) -> 
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def picture(curves: Sequence[Curve], units: str = "m") -> str:
+def picture(curves: Sequence[PictureCurve], units: str = "m") -> str:
     """Curves as SVG; those in space are seen along the axis along which they reach least."""
     import numpy as np
 
@@ -116,7 +116,7 @@ def _thinned(points: FloatArray) -> FloatArray:
     return np.concatenate([points[:-1:step], points[-1:]])
 
 
-def _drawn(at: FloatArray, curve: Curve, colour: str, placed: object) -> str:
+def _drawn(at: FloatArray, curve: PictureCurve, colour: str, placed: object) -> str:
     line = " ".join(f"{x:.1f},{y:.1f}" for x, y in at)
     drawn = f'<polyline fill="none" stroke="{colour}" stroke-width="1.5" points="{line}"/>'
     if curve.marks is not None and callable(placed):

@@ -46,7 +46,7 @@ class Painted:
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class GunCurve:
     """A gun's motion.
 
     Args:
@@ -83,7 +83,7 @@ def draw_map(surface: Painted, title: str, kind: str) -> bytes:
         return figure_file(figure, kind)
 
 
-def draw_curve(surface: Painted, curve: Curve, title: str, kind: str) -> bytes:
+def draw_curve(surface: Painted, curve: GunCurve, title: str, kind: str) -> bytes:
     """The curve over the part with nozzle directions, grey where the gun is off."""
     import matplotlib
     from matplotlib.figure import Figure

@@ -15,7 +15,7 @@ with 10⁻⁴ degree at an arm of three metres."""
 
 
 @dataclass(frozen=True)
-class Corner:
+class MeasuredCorner:
     """Figures of one corner.
 
     Args:
@@ -31,7 +31,9 @@ class Corner:
     duration: float
 
 
-def measure_corner(t: FloatArray, tcp: FloatArray, points: FloatArray, radius: float) -> Corner:
+def measure_corner(
+    t: FloatArray, tcp: FloatArray, points: FloatArray, radius: float
+) -> MeasuredCorner:
     """The figures of a corner.
 
     Args:
@@ -58,7 +60,7 @@ def measure_corner(t: FloatArray, tcp: FloatArray, points: FloatArray, radius: f
     entry = float(path[left[0]] @ into) if len(left) else 0.0
     leave = float(path[apex + met[-1]] @ out) if len(met) else 0.0
     apex_distance = float(least_distance(path))
-    return Corner(apex_distance, max(entry, 0.0), max(leave, 0.0), float(np.ptp(t[rows])))
+    return MeasuredCorner(apex_distance, max(entry, 0.0), max(leave, 0.0), float(np.ptp(t[rows])))
 
 
 def _distance(path: FloatArray, unit: FloatArray) -> FloatArray:

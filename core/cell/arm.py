@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..files.tables import Table, per
+from ..files.tables import TomlTable, per
 from ..robot.catalogue import UNITS, read_shape
 from ..robot.joint import Joint
 from ..robot.model import Robot
@@ -14,7 +14,7 @@ from ..spatial.pose import IDENTITY, Pose
 BASE = "base"
 
 
-def read_arm(file: Table, robot: Robot) -> Robot:
+def read_arm(file: TomlTable, robot: Robot) -> Robot:
     """The robot with the ``[[robot_shape]]`` and ``[joint_limit.NAME]`` of a cell file.
 
     Raises:
@@ -24,7 +24,7 @@ def read_arm(file: Table, robot: Robot) -> Robot:
     return replace(robot, shapes=_shapes(file, robot), joints=_joints(file, robot))
 
 
-def _shapes(file: Table, robot: Robot) -> tuple[LinkShape, ...]:
+def _shapes(file: TomlTable, robot: Robot) -> tuple[LinkShape, ...]:
     """Those of the links that the file names, and the robot's own of all others."""
     names = [BASE, *(joint.name for joint in robot.joints)]
     frames = _at_zero(robot)
@@ -46,7 +46,7 @@ def _at_zero(robot: Robot) -> list[Pose]:
     return frames
 
 
-def _joints(file: Table, robot: Robot) -> tuple[Joint, ...]:
+def _joints(file: TomlTable, robot: Robot) -> tuple[Joint, ...]:
     tables = file.named_tables("joint_limit")
     known = [joint.name for joint in robot.joints]
     for name in tables:
@@ -59,7 +59,7 @@ def _joints(file: Table, robot: Robot) -> tuple[Joint, ...]:
     )
 
 
-def _limited(table: Table, joint: Joint) -> Joint:
+def _limited(table: TomlTable, joint: Joint) -> Joint:
     units = UNITS[joint.kind]
     limited = joint
     if table.unit_key("range", units):
@@ -79,7 +79,7 @@ def _limited(table: Table, joint: Joint) -> Joint:
     return limited
 
 
-def _narrowed(table: Table, joint: Joint, ends: tuple[float, ...]) -> Joint:
+def _narrowed(table: TomlTable, joint: Joint, ends: tuple[float, ...]) -> Joint:
     lower, upper = ends
     if lower >= upper:
         raise table.error("range", "must rise")

@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..display import counted, in_line
 from ..errors import Note, UnknownNameError
-from ..notebook import Curve, page, picture, table
+from ..notebook import PictureCurve, page, picture, table
 from ..program.tool import FLANGE, WORLD, Tool, WorkObject
 from ..robot.assembly import assemble
 from ..robot.kinematics.chain_kernels import poses
@@ -89,7 +89,10 @@ class Cell:
         shapes = {o.name: type(o.geometry.shape).__name__ for o in self.obstacles}
         rows = [(name, shapes[name], *_reach(box)) for name, box in boxes.items()]
         rows.insert(0, (self.robot.name, "robot", *_reach(at)))
-        curves = [Curve("robot", at, at), *(Curve("obstacles", b[_EDGES]) for b in boxes.values())]
+        curves = [
+            PictureCurve("robot", at, at),
+            *(PictureCurve("obstacles", b[_EDGES]) for b in boxes.values()),
+        ]
         return page(repr(self)[1:-1], table(_COLUMNS, rows), picture(curves))
 
     def _box(self, obstacle: Obstacle) -> FloatArray:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import InputError, UnknownNameError
-from ..files.tables import ANGLE, LENGTH, Table, per
+from ..files.tables import ANGLE, LENGTH, TomlTable, per
 from ..program.tool import FLANGE, WORLD, Tool, WorkObject
 from ..robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from ..robot.model import Robot
@@ -35,7 +35,7 @@ def load_cell(path: str | Path, registry: Registry) -> Cell:
             unit, a name stands for nothing; the message names file and key. Meshes are read
             later: see `Cell.check_meshes`.
     """
-    file = Table.read(path)
+    file = TomlTable.read(path)
     axes = [_external_axis(name, t) for name, t in file.named_tables("external_axis").items()]
     robot = read_arm(file, _robot(file, registry, tuple(axes)))
     tools, shapes = _tools(file)
@@ -61,7 +61,7 @@ def load_cell(path: str | Path, registry: Registry) -> Cell:
     )
 
 
-def _robot(file: Table, registry: Registry, axes: tuple[ExternalAxis, ...]) -> Robot:
+def _robot(file: TomlTable, registry: Registry, axes: tuple[ExternalAxis, ...]) -> Robot:
     try:
         robot = registry.find_robot(file.text("robot"))
     except UnknownNameError as error:
@@ -73,7 +73,7 @@ def _robot(file: Table, registry: Registry, axes: tuple[ExternalAxis, ...]) -> R
         raise file.error("external_axis", str(error)) from None
 
 
-def _tools(file: Table) -> tuple[dict[str, Tool], dict[str, Geometry]]:
+def _tools(file: TomlTable) -> tuple[dict[str, Tool], dict[str, Geometry]]:
     tools: dict[str, Tool] = {}
     shapes: dict[str, Geometry] = {}
     for name, table in file.named_tables("tool").items():
@@ -92,7 +92,7 @@ def _tools(file: Table) -> tuple[dict[str, Tool], dict[str, Geometry]]:
     return tools, shapes
 
 
-def _frames(file: Table, tables: Collection[str]) -> dict[str, WorkObject]:
+def _frames(file: TomlTable, tables: Collection[str]) -> dict[str, WorkObject]:
     frames: dict[str, WorkObject] = {}
     for name, table in file.named_tables("frame").items():
         if name == WORLD.name:
@@ -108,7 +108,7 @@ def _frames(file: Table, tables: Collection[str]) -> dict[str, WorkObject]:
     return frames
 
 
-def _obstacles(file: Table, tables: Collection[str]) -> tuple[Obstacle, ...]:
+def _obstacles(file: TomlTable, tables: Collection[str]) -> tuple[Obstacle, ...]:
     obstacles: list[Obstacle] = []
     for table in file.listed_tables("obstacle"):
         name = table.text("name")
@@ -122,11 +122,11 @@ def _obstacles(file: Table, tables: Collection[str]) -> tuple[Obstacle, ...]:
     return tuple(obstacles)
 
 
-def _carrier(table: Table, key: str, tables: Collection[str]) -> str | None:
+def _carrier(table: TomlTable, key: str, tables: Collection[str]) -> str | None:
     return table.choice(key, tables) if table.has(key) else None
 
 
-def _external_axis(name: str, table: Table) -> ExternalAxis:
+def _external_axis(name: str, table: TomlTable) -> ExternalAxis:
     """``[external_axis.NAME]``; lengths for a prismatic axis, angles for a revolute one."""
     kind = JointKind(table.choice("kind", list(JointKind)))
     unit = LENGTH if kind is JointKind.PRISMATIC else ANGLE
@@ -152,7 +152,7 @@ def _external_axis(name: str, table: Table) -> ExternalAxis:
     return axis
 
 
-def _allowed(table: Table, known: Collection[str]) -> tuple[tuple[str, str], ...]:
+def _allowed(table: TomlTable, known: Collection[str]) -> tuple[tuple[str, str], ...]:
     """Pairs that may touch: tools, obstacles, joints (for the links behind them) and ``base``."""
     pairs = table.value("pairs") if table.has("pairs") else []
     table.finish()
@@ -161,7 +161,7 @@ def _allowed(table: Table, known: Collection[str]) -> tuple[tuple[str, str], ...
     return tuple(_pair(table, pair, known) for pair in pairs)
 
 
-def _pair(table: Table, pair: object, known: Collection[str]) -> tuple[str, str]:
+def _pair(table: TomlTable, pair: object, known: Collection[str]) -> tuple[str, str]:
     if not isinstance(pair, list) or len(pair) != 2 or not all(isinstance(n, str) for n in pair):
         raise table.error("pairs", f"must be pairs of names, not {pair!r}")
     for name in pair:
@@ -170,14 +170,14 @@ def _pair(table: Table, pair: object, known: Collection[str]) -> tuple[str, str]
     return pair[0], pair[1]
 
 
-def _clearance(file: Table) -> float:
+def _clearance(file: TomlTable) -> float:
     value = file.quantity("clearance", LENGTH, 0.0)
     if value < 0:
         raise file.error("clearance", "must be zero or more")
     return value
 
 
-def _positive(table: Table, key: str, units: Mapping[str, float]) -> float:
+def _positive(table: TomlTable, key: str, units: Mapping[str, float]) -> float:
     value = table.quantity(key, units)
     if value <= 0:
         raise table.error(key, "must be above zero")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..errors import InputError
-from ..files.tables import LENGTH, Table
+from ..files.tables import LENGTH, TomlTable
 from ..program.tool import Load
 from ..robot.pose_table import read_vector
 from ..robot.shape import Box, Capsule, Cylinder, Shape, Sphere
@@ -21,7 +21,7 @@ SHAPES: dict[str, tuple[int, Callable[[tuple[float, ...]], Shape]]] = {
 """How many lengths a simple shape has, and what makes it."""
 
 
-def read_load(table: Table) -> Load | None:
+def read_load(table: TomlTable) -> Load | None:
     """A load: ``mass_kg``, ``centre_mm``, ``inertia_kgm2`` (principal moments)."""
     if not table.has("mass_kg"):
         for key in ("centre_mm", "centre_m", "inertia_kgm2"):
@@ -39,7 +39,7 @@ def read_load(table: Table) -> Load | None:
         raise table.error("mass_kg", str(error)) from None
 
 
-def read_geometry(table: Table, placement: Pose) -> Geometry | None:
+def read_geometry(table: TomlTable, placement: Pose) -> Geometry | None:
     """A shape: ``mesh`` with ``units``, ``box_mm`` (edges), ``sphere_mm`` (radius), or
     ``cylinder_mm`` / ``capsule_mm`` (radius and length along z); None if none is given.
     """

@@ -21,7 +21,7 @@ _MOST_BYTES = 10_000_000
 
 
 @dataclass(frozen=True)
-class Entry:
+class StagedFile:
     """One file of a set: staged under a number in the staging folder beside it.
 
     Args:
@@ -54,7 +54,7 @@ class Entry:
         return self.staging / f"{self.number}.old"
 
 
-def journal_of(primary: Path, entries: Sequence[Entry]) -> bytes:
+def journal_of(primary: Path, entries: Sequence[StagedFile]) -> bytes:
     """What the journal in a staging folder says of a set."""
     told = [
         {
@@ -69,7 +69,7 @@ def journal_of(primary: Path, entries: Sequence[Entry]) -> bytes:
     return json.dumps(told, indent=1).encode()
 
 
-def entries_of(primary: Path) -> list[Entry]:
+def entries_of(primary: Path) -> list[StagedFile]:
     """The files of a journal; each must be beside a staging folder of this very set.
 
     A folder may come from anywhere (a stick), and so may a journal: it never reaches files of
@@ -99,7 +99,7 @@ def entries_of(primary: Path) -> list[Entry]:
             and (before is None or isinstance(before, str))
         ):
             raise misshapen
-        entries.append(Entry(staging, row["number"], name, row["digest"], before))
+        entries.append(StagedFile(staging, row["number"], name, row["digest"], before))
     return entries
 
 
@@ -126,7 +126,7 @@ def _json(file: Path) -> Any:
         return None
 
 
-def put_in_place(entries: Sequence[Entry]) -> None:
+def put_in_place(entries: Sequence[StagedFile]) -> None:
     """Old files go, then new ones come; those that have come already stay."""
     with blaming(entries[0].target):
         pending = [entry for entry in entries if there(entry.new)]
@@ -142,7 +142,7 @@ def put_in_place(entries: Sequence[Entry]) -> None:
             sync(folder)
 
 
-def take_back(entries: Sequence[Entry]) -> None:
+def take_back(entries: Sequence[StagedFile]) -> None:
     """New files go, then the old ones come back, and with them the journal goes.
 
     Raises:
@@ -165,12 +165,12 @@ def take_back(entries: Sequence[Entry]) -> None:
         raise unfinished(entries, error.strerror or str(error)) from None
 
 
-def stands(entry: Entry) -> bool:
+def stands(entry: StagedFile) -> bool:
     """Whether what a file held is there to be put back."""
     return entry.before in (digest(entry.old), digest(entry.target))
 
 
-def unfinished(entries: Sequence[Entry], reason: str) -> InputError:
+def unfinished(entries: Sequence[StagedFile], reason: str) -> InputError:
     """The error that a set can be neither finished nor taken back."""
     names = ", ".join(str(entry.target) for entry in entries)
     where = ", ".join(str(staging) for staging in dict.fromkeys(e.staging for e in entries))

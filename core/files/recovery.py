@@ -15,7 +15,7 @@ from .disk import digest, open_folder, sync, there
 from .journal import (
     JOURNAL,
     PREFIX,
-    Entry,
+    StagedFile,
     entries_of,
     primary_of,
     put_in_place,
@@ -92,7 +92,7 @@ def _recover_set(primary: Path) -> None:
     shutil.rmtree(primary, ignore_errors=True)
 
 
-def _resolve(entries: Sequence[Entry]) -> str:
+def _resolve(entries: Sequence[StagedFile]) -> str:
     """Bring a set to an end; returns how, nothing if all of it had come to pass."""
     pending = [entry for entry in entries if there(entry.new)]
     for entry in pending:

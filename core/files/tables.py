@@ -23,7 +23,7 @@ def per(units: Mapping[str, float], time: str) -> dict[str, float]:
     return {f"{unit}_{time}": scale for unit, scale in units.items()}
 
 
-class Table:
+class TomlTable:
     """One table of a TOML file.
 
     Args:
@@ -39,7 +39,7 @@ class Table:
         self._asked: set[str] = set()
 
     @classmethod
-    def read(cls, path: str | Path) -> Table:
+    def read(cls, path: str | Path) -> TomlTable:
         """The file's outermost table.
 
         Raises:
@@ -120,25 +120,25 @@ class Table:
             raise self.error(key, f"must be a list of strings, not {value!r}")
         return tuple(value)
 
-    def table(self, key: str) -> Table:
+    def table(self, key: str) -> TomlTable:
         """The table at ``key``; an empty one if there is none."""
         value = self.value(key) if self.has(key) else {}
         if not isinstance(value, Mapping):
             raise self.error(key, f"must be a table, not {value!r}")
-        return Table(value, self.file, self._full(key))
+        return TomlTable(value, self.file, self._full(key))
 
-    def named_tables(self, key: str) -> dict[str, Table]:
+    def named_tables(self, key: str) -> dict[str, TomlTable]:
         """The tables ``[key.NAME]`` by name; empty if there is none."""
         outer = self.table(key)
         return {name: outer.table(name) for name in outer.data}
 
-    def listed_tables(self, key: str) -> tuple[Table, ...]:
+    def listed_tables(self, key: str) -> tuple[TomlTable, ...]:
         """The tables ``[[key]]``; messages count them from 1."""
         value = self.value(key) if self.has(key) else []
         if not isinstance(value, list) or not all(isinstance(item, Mapping) for item in value):
             raise self.error(key, f"must be an array of tables ([[{key}]]), not {value!r}")
         return tuple(
-            Table(item, self.file, f"{self._full(key)}[{i}]") for i, item in enumerate(value, 1)
+            TomlTable(item, self.file, f"{self._full(key)}[{i}]") for i, item in enumerate(value, 1)
         )
 
     def unit_key(self, key: str, units: Mapping[str, float]) -> str | None:

@@ -22,7 +22,7 @@ from pathlib import Path
 
 from ..errors import InputError, Note
 from .disk import WriteError, blaming, digest, open_folder, sync, there, write_new
-from .journal import JOURNAL, OWNER, PREFIX, Entry, journal_of, put_in_place, take_back
+from .journal import JOURNAL, OWNER, PREFIX, StagedFile, journal_of, put_in_place, take_back
 from .recovery import recover
 
 
@@ -138,7 +138,7 @@ def _checked(path: Path) -> Iterator[Note]:
 
 def _stage(
     wanted: Mapping[Path, bytes], staged: _Staged, root: Path | None, begun: list[Path]
-) -> list[Entry]:
+) -> list[StagedFile]:
     """All of a set on the disk, in staging folders."""
     entries = []
     for number, (path, data) in enumerate(wanted.items()):
@@ -147,7 +147,7 @@ def _stage(
                 _make_folder(path.parent, begun)
             staging = staged.beside(path.parent)
             before = digest(path)
-            entry = Entry(staging, number, path.name, hashlib.sha256(data).hexdigest(), before)
+            entry = StagedFile(staging, number, path.name, hashlib.sha256(data).hexdigest(), before)
             write_new(entry.new, data)
             if before is not None:
                 _take_permissions(path, entry.new)
@@ -173,7 +173,7 @@ def _take_permissions(before: Path, draft: Path) -> None:
     os.chmod(draft, stat.S_IMODE(state.st_mode))
 
 
-def _commit(entries: Sequence[Entry]) -> None:
+def _commit(entries: Sequence[StagedFile]) -> None:
     """Put staged files in their places, with a journal for as long as not all are there."""
     primary = entries[0].staging
     stagings = dict.fromkeys(entry.staging for entry in entries)

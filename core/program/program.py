@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from ..display import counted, in_line
 from ..errors import Note
-from ..notebook import Curve, page, picture, table
+from ..notebook import PictureCurve, page, picture, table
 from .move import Move, MoveC, MoveJ, MoveL, Statement
 from .target import JointTarget
 from .zone import zone_shown
@@ -75,7 +75,7 @@ class Program:
 
     def _repr_html_(self) -> str:
         points = self.waypoints()
-        drawn = "" if points is None else picture([Curve("waypoints", points, points)])
+        drawn = "" if points is None else picture([PictureCurve("waypoints", points, points)])
         rows = [(str(k), *_cells(move)) for k, move in enumerate(self.moves, 1)]
         return page(repr(self)[1:-1], table(COLUMNS, rows), drawn, notes=self.notes)
 

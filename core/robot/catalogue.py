@@ -70,7 +70,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import InputError
-from ..files.tables import ANGLE, LENGTH, Table
+from ..files.tables import ANGLE, LENGTH, TomlTable
 from ..spatial.pose import IDENTITY, Pose
 from ..spatial.rotation import matrix_from_rotation_vector
 from .inertia import Inertia
@@ -91,7 +91,7 @@ def load_robot(path: str | Path) -> Robot:
         InputError: the file cannot be read, or a key is missing, unknown or wrong; the message
             names file and key.
     """
-    table = Table.read(path)
+    table = TomlTable.read(path)
     try:
         robot = _robot(table)
     except InputError as error:
@@ -102,7 +102,7 @@ def load_robot(path: str | Path) -> Robot:
     return robot
 
 
-def _robot(table: Table) -> Robot:
+def _robot(table: TomlTable) -> Robot:
     rows = table.listed_tables("joint")
     if not rows:
         raise table.error("joint", "is missing; give one [[joint]] for each joint")
@@ -139,7 +139,7 @@ def _robot(table: Table) -> Robot:
     )
 
 
-def _origins(table: Table, needed: list[str]) -> Mapping[str, str]:
+def _origins(table: TomlTable, needed: list[str]) -> Mapping[str, str]:
     origins = {}
     for group in (*needed, *(key for key in table.data if key not in needed)):
         origin = table.text(group)
@@ -149,7 +149,7 @@ def _origins(table: Table, needed: list[str]) -> Mapping[str, str]:
     return origins
 
 
-def _joint(row: Table, placement: Pose, dh: bool, acceleration_time: float | None) -> Joint:
+def _joint(row: TomlTable, placement: Pose, dh: bool, acceleration_time: float | None) -> Joint:
     kind = JointKind(row.choice("kind", list(JointKind), JointKind.REVOLUTE))
     units = UNITS[kind]
     if dh and kind is JointKind.PRISMATIC:
@@ -183,7 +183,7 @@ def _joint(row: Table, placement: Pose, dh: bool, acceleration_time: float | Non
     return joint
 
 
-def _rate(row: Table, key: str, units: Mapping[str, float]) -> float | None:
+def _rate(row: TomlTable, key: str, units: Mapping[str, float]) -> float | None:
     """A speed or acceleration in SI, by whichever of its unit keys is given."""
     given = [unit for unit in units if row.has(f"{key}_{unit}")]
     if len(given) > 1:
@@ -191,7 +191,7 @@ def _rate(row: Table, key: str, units: Mapping[str, float]) -> float | None:
     return row.number(f"{key}_{given[0]}") * units[given[0]] if given else None
 
 
-def _dh_frames(table: Table, count: int) -> list[Pose]:
+def _dh_frames(table: TomlTable, count: int) -> list[Pose]:
     """The fixed parts Rz(theta) Tz(d) Tx(a) Rx(alpha) of each row."""
     rows = table.listed_tables("dh")
     if len(rows) != count:
@@ -209,14 +209,14 @@ def _dh_frames(table: Table, count: int) -> list[Pose]:
     return frames
 
 
-def _link_rows(table: Table, count: int) -> tuple[Table, ...]:
+def _link_rows(table: TomlTable, count: int) -> tuple[TomlTable, ...]:
     rows = table.listed_tables("link")
     if rows and len(rows) != count:
         raise table.error("link", f"there are {len(rows)} links for {count} joints")
     return rows
 
 
-def _inertia(row: Table) -> Inertia:
+def _inertia(row: TomlTable) -> Inertia:
     xx, yy, zz, xy, xz, yz = row.numbers("inertia_kgm2", 6)
     x, y, z = row.quantities("centre", LENGTH, 3)
     body = Inertia(row.number("mass_kg"), (x, y, z), ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
@@ -224,7 +224,7 @@ def _inertia(row: Table) -> Inertia:
     return body
 
 
-def _link_shape(row: Table, frames: list[Pose]) -> LinkShape:
+def _link_shape(row: TomlTable, frames: list[Pose]) -> LinkShape:
     """A shape, moved from the frame it is given in to the frame behind its joint."""
     link = row.number("link")
     if link not in range(len(frames)):
@@ -234,7 +234,7 @@ def _link_shape(row: Table, frames: list[Pose]) -> LinkShape:
     return LinkShape(int(link), shape, frames[int(link)] @ placement)
 
 
-def read_shape(row: Table) -> tuple[Shape, Pose]:
+def read_shape(row: TomlTable) -> tuple[Shape, Pose]:
     """A shape by ``kind`` with its lengths, and its frame in the one that these are given in.
 
     Raises:
@@ -248,7 +248,7 @@ def read_shape(row: Table) -> tuple[Shape, Pose]:
         raise row.error("kind", str(error)) from None
 
 
-def _shape(row: Table) -> tuple[Shape, Pose]:
+def _shape(row: TomlTable) -> tuple[Shape, Pose]:
     kind = row.choice("kind", ("sphere", "capsule", "cylinder", "box"))
     if kind == "box":
         x, y, z = row.quantities("size", LENGTH, 3)

@@ -35,7 +35,7 @@ class TreeNode:
 
 
 @dataclass(frozen=True, slots=True)
-class Tree:
+class JointTree:
     """Joints, each after its parent, under gravity (m/s², in the world)."""
 
     name: str
@@ -50,7 +50,7 @@ class Dynamics:
     known is NaN; its motion still acts on what it carries.
     """
 
-    def __init__(self, tree: Tree) -> None:
+    def __init__(self, tree: JointTree) -> None:
         self._model = _pinocchio_model(tree)
         self._data = self._model.createData()
         self._pool = pin.ModelPool(self._model, 1)
@@ -59,7 +59,7 @@ class Dynamics:
         self._unknown = [node.index for node in tree.nodes if node.body is None]
 
     @staticmethod
-    def of(tree: Tree) -> Dynamics:
+    def of(tree: JointTree) -> Dynamics:
         """The dynamics of a tree, built once for equal trees."""
         return _cached(tree)
 
@@ -91,11 +91,11 @@ class Dynamics:
 
 
 @lru_cache(maxsize=64)
-def _cached(tree: Tree) -> Dynamics:
+def _cached(tree: JointTree) -> Dynamics:
     return Dynamics(tree)
 
 
-def _pinocchio_model(tree: Tree) -> Any:
+def _pinocchio_model(tree: JointTree) -> Any:
     model = pin.Model()
     model.name = tree.name
     model.gravity.linear = np.array(tree.gravity)

@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike
 from ..arrays import FloatArray
 from ..display import counted, in_line
 from ..errors import InputError, UnknownNameError
-from ..notebook import Curve, page, picture, table
+from ..notebook import PictureCurve, page, picture, table
 from ..spatial.pose import IDENTITY, Pose, Vector3
 from .assembly import Stage, assemble
-from .dynamics import Dynamics, Tree, TreeNode
+from .dynamics import Dynamics, JointTree, TreeNode
 from .inertia import Inertia
 from .inverse import InverseSolution, equivalent_turns, solve
 from .joint import COLUMNS, ExternalAxis, ExternalRole, Joint, JointLimits
@@ -94,7 +94,9 @@ class Robot:
     def _repr_html_(self) -> str:
         rows = [j.cells() for j in (*self.joints, *(axis.joint for axis in self.external_axes))]
         at = self.outline()
-        return page(repr(self)[1:-1], table(COLUMNS, rows), picture([Curve("robot", at, at)]))
+        return page(
+            repr(self)[1:-1], table(COLUMNS, rows), picture([PictureCurve("robot", at, at)])
+        )
 
     def outline(self) -> FloatArray:
         """Base, joints and flange (n + 2, 3) m in the world, all axes as near to zero as can be."""
@@ -288,7 +290,7 @@ class Robot:
             )
         return Dynamics.of(self._tree(load or Inertia(0.0)))
 
-    def _tree(self, load: Inertia) -> Tree:
+    def _tree(self, load: Inertia) -> JointTree:
         """All axes as a tree of joints with a body behind each."""
         nodes: list[TreeNode] = []
         places: dict[str | None, int] = {None: -1}
@@ -311,7 +313,7 @@ class Robot:
                 body = body + load.placed(self.flange)
             nodes.append(TreeNode(joint, parent, step, index, body))
             parent, step = len(nodes) - 1, IDENTITY
-        return Tree(self.name, tuple(nodes), self.gravity)
+        return JointTree(self.name, tuple(nodes), self.gravity)
 
     def inverse_dynamics(
         self, q: ArrayLike, dq: ArrayLike, ddq: ArrayLike, load: Inertia | None = None

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ..files.tables import LENGTH, Table
+from ..files.tables import LENGTH, TomlTable
 from ..spatial.pose import Pose, Vector3
 from ..spatial.rotation import matrix_from_quaternion, matrix_from_rotation_vector
 
@@ -20,7 +20,7 @@ QUATERNION_TOLERANCE = 1e-2
 """Quaternions written by hand have three digits; they are scaled to length 1."""
 
 
-def read_pose(table: Table) -> Pose:
+def read_pose(table: TomlTable) -> Pose:
     """The pose in a table that may hold other keys too."""
     matrix = np.eye(4)
     matrix[:3, :3] = _rotation(table)
@@ -28,7 +28,7 @@ def read_pose(table: Table) -> Pose:
     return Pose.from_matrix(matrix)
 
 
-def pose_at(table: Table, key: str) -> Pose:
+def pose_at(table: TomlTable, key: str) -> Pose:
     """The pose in the table at ``key``, which holds nothing else; no turn, no shift if absent."""
     inner = table.table(key)
     pose = read_pose(inner)
@@ -36,7 +36,7 @@ def pose_at(table: Table, key: str) -> Pose:
     return pose
 
 
-def read_vector(table: Table, key: str, default: Vector3 | None = None) -> Vector3:
+def read_vector(table: TomlTable, key: str, default: Vector3 | None = None) -> Vector3:
     """Three lengths in m, given as ``key_mm`` or ``key_m``."""
     if default is not None and table.unit_key(key, LENGTH) is None:
         return default
@@ -44,7 +44,7 @@ def read_vector(table: Table, key: str, default: Vector3 | None = None) -> Vecto
     return x, y, z
 
 
-def _rotation(table: Table) -> NDArray[np.float64]:
+def _rotation(table: TomlTable) -> NDArray[np.float64]:
     given = [form for form in FORMS if table.has(form)]
     if len(given) > 1:
         raise table.error(given[1], f"the orientation is given by {given[0]} already")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ..arrays import FloatArray
 from .problem.evaluation import Point
-from .problem.optimality import Residuals
+from .problem.optimality import OptimalityResiduals
 
 
 @dataclass(slots=True)
@@ -25,7 +25,7 @@ class Best:
     point: Point
     multipliers: FloatArray
     objective: float
-    at: Residuals
+    at: OptimalityResiduals
     near: bool
 
     def beaten_by(self, other: Best, tolerance: float) -> bool:

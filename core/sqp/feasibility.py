@@ -12,8 +12,8 @@ from .model import Model
 from .problem.errors import CallableError
 from .problem.evaluation import Point
 from .problem.scaled import ScaledProblem
-from .restoration import Limits, Outcome, Restoration, Restored
-from .search import Search, Step
+from .restoration import Limits, Restoration, RestorationOutcome, Restored
+from .search import FilterStep, Search
 
 _RESTARTS = 3
 _ASIDE = 1e-3
@@ -68,7 +68,7 @@ class Feasibility:
         self._tolerance = tolerance
         self._restarts = 0
 
-    def restored(self, point: Point) -> Step:
+    def restored(self, point: Point) -> FilterStep:
         """A step to where the main iteration can go on.
 
         Args:
@@ -82,7 +82,7 @@ class Feasibility:
         step = self._onward(found)
         if step is not None:
             return step
-        if found.outcome is Outcome.STATIONARY and found.point is point:
+        if found.outcome is RestorationOutcome.STATIONARY and found.point is point:
             aside = self._sideways(point)
             if aside is not None:
                 return aside
@@ -91,12 +91,12 @@ class Feasibility:
     def _lowered(self, point: Point) -> Restored:
         return self._restoration.run(point, lambda p, theta: self._filter.admits(theta, p.f))
 
-    def _onward(self, found: Restored) -> Step | None:
+    def _onward(self, found: Restored) -> FilterStep | None:
         """The step if the main iteration can go on from there."""
         nothing = np.zeros(len(found.point.c))
-        if found.outcome is Outcome.RESTORED:
+        if found.outcome is RestorationOutcome.RESTORED:
             self._model.forget()
-            return Step(found.point, 1.0, nothing, "restoration")
+            return FilterStep(found.point, 1.0, nothing, "restoration")
         if self._problem.violation(found.point) > self._tolerance:
             return None
         # Feasible, but the filter wants a better objective, which no step here gives.
@@ -104,22 +104,24 @@ class Feasibility:
         self._restarts += 1
         if self._restarts > _RESTARTS:
             raise NowhereError(found)
-        return Step(found.point, 1.0, nothing, "restoration")
+        return FilterStep(found.point, 1.0, nothing, "restoration")
 
-    def _sideways(self, point: Point) -> Step | None:
+    def _sideways(self, point: Point) -> FilterStep | None:
         """A step that lowers the objective at a point where the violation is stationary: its
         gradient may only be zero by chance there."""
         found = self._model.sideways()
         return None if found is None else self._search.along(point, found, found.y, "elastic")
 
-    def _escaped(self, found: Restored) -> Step:
+    def _escaped(self, found: Restored) -> FilterStep:
         """A step away from where the violation is stationary but no minimum.
 
         Raises:
             NowhereError: nothing near by is less violated.
         """
         least = found
-        directions = self._directions(found) if found.outcome is Outcome.STATIONARY else []
+        directions = (
+            self._directions(found) if found.outcome is RestorationOutcome.STATIONARY else []
+        )
         for direction in directions:
             start = self._aside(found.point, direction)
             if start is None:
@@ -131,7 +133,7 @@ class Feasibility:
                 return step
             if self._theta(found) < (1.0 - _LESS) * self._theta(least):
                 least = found
-            if found.outcome is not Outcome.STATIONARY:
+            if found.outcome is not RestorationOutcome.STATIONARY:
                 break
         raise NowhereError(least)
 

@@ -34,7 +34,7 @@ _PATIENCE = 10
 _LEAST_WEIGHT = 1e-8
 
 
-class Outcome(Enum):
+class RestorationOutcome(Enum):
     """How restoration ended."""
 
     RESTORED = auto()
@@ -57,7 +57,7 @@ class Restored:
         trouble: of the callables, where their having no value kept the last steps from being taken.
     """
 
-    outcome: Outcome
+    outcome: RestorationOutcome
     point: Point
     multipliers: FloatArray
     trouble: CallableError | None = None
@@ -139,7 +139,7 @@ class Restoration:
             elif self._step(at, found.d, reach, predicted):
                 enough = at.theta <= _ENOUGH * first or at.theta <= self._tolerance
                 if enough and accepted(at.point, at.theta):
-                    return Restored(Outcome.RESTORED, at.point, found.y)
+                    return Restored(RestorationOutcome.RESTORED, at.point, found.y)
             elif at.radius < _LEAST_RADIUS * max(1.0, float((np.abs(at.point.x) / reach).max())):
                 return self._proven(at, reach, found) or _stuck(at)
             self._moved(at.point, at.length)
@@ -225,7 +225,7 @@ class Restoration:
             mu = mu if free is None else np.clip(free.y, -1.0, 1.0)
             if free is None or not self._proves(point, span * reach, mu):
                 return None
-        return Restored(Outcome.STATIONARY, point, mu)
+        return Restored(RestorationOutcome.STATIONARY, point, mu)
 
     def _span(self, at: _State, reach: FloatArray) -> float:
         """How many reaches away a single variable might undo the violation."""
@@ -264,7 +264,7 @@ class Restoration:
 
 
 def _stuck(at: _State) -> Restored:
-    return Restored(Outcome.NO_STEP, at.point, np.zeros(len(at.point.c)), at.trouble)
+    return Restored(RestorationOutcome.NO_STEP, at.point, np.zeros(len(at.point.c)), at.trouble)
 
 
 def _column_norms(point: Point) -> FloatArray:

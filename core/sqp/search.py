@@ -23,7 +23,7 @@ _ROUNDING = 1e-15
 
 
 @dataclass(slots=True)
-class Step:
+class FilterStep:
     """A step that the filter took.
 
     Args:
@@ -82,14 +82,14 @@ class Search:
 
     def along(
         self, point: Point, found: QpSolution, multipliers: FloatArray, kind: str
-    ) -> Step | None:
+    ) -> FilterStep | None:
         """As much of a step as the filter takes; None if it takes nothing."""
         self.trouble = None
         attempt = _Attempt(point, self._problem.theta(point.c), found, multipliers, kind)
         size = float(np.abs(found.d).max())
         tiny = _ROUNDING * max(1.0, float(np.abs(point.x).max()))
         if size <= 10 * tiny:
-            return Step(point, 1.0, found.y, kind)
+            return FilterStep(point, 1.0, found.y, kind)
         length = 1.0
         for halving in range(_HALVINGS):
             trial = self._trial(point, found.d, length)
@@ -116,7 +116,7 @@ class Search:
 
     def _judged(
         self, attempt: _Attempt, trial: Point, found: QpSolution, length: float
-    ) -> Step | None:
+    ) -> FilterStep | None:
         """The step to a trial point if the filter takes it."""
         before = (attempt.theta, attempt.origin.f)
         after = (self._problem.theta(trial.c), trial.f)
@@ -128,7 +128,7 @@ class Search:
         self._model.taken(attempt.origin, found.d, length)
         multipliers = attempt.multipliers + length * (found.y - attempt.multipliers)
         kind = attempt.kind if found is attempt.found else "corrected"
-        return Step(trial, length, multipliers, kind)
+        return FilterStep(trial, length, multipliers, kind)
 
     def _differentiable(self, trial: Point) -> bool:
         """Whether a trial point has derivatives, which it has from then on."""
@@ -139,7 +139,7 @@ class Search:
             return False
         return True
 
-    def _corrected(self, attempt: _Attempt, trial: Point) -> Step | None:
+    def _corrected(self, attempt: _Attempt, trial: Point) -> FilterStep | None:
         """Second-order correction: the same model, with the constraints' values after the step."""
         theta = self._problem.theta(trial.c)
         if theta < attempt.theta or not len(trial.c):

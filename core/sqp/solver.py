@@ -28,13 +28,13 @@ from .problem.errors import CallableError
 from .problem.evaluation import Point
 from .problem.hessians import HessianKind, choose_kind, make_source
 from .problem.nlp import NLP
-from .problem.optimality import Residuals
+from .problem.optimality import OptimalityResiduals
 from .problem.scaled import ScaledProblem
 from .qp.backends import BackendKind, make_backends
 from .qp.problem import QpSolution
-from .restoration import Outcome, Restoration
+from .restoration import Restoration, RestorationOutcome
 from .result import Iteration, Result, Status, Timings
-from .search import Search, Step
+from .search import FilterStep, Search
 from .verdict import Ending, Evidence, is_far, near, nothing_to_gain, verdict
 from .workspace import Workspace, make_workspace
 
@@ -202,7 +202,7 @@ class _Solver:
             self.stalls = self.stalls + 1 if still else 0
             self.iterations += 1
 
-    def _visit(self, point: Point, length: float, kind: str) -> Residuals:
+    def _visit(self, point: Point, length: float, kind: str) -> OptimalityResiduals:
         """Take note of a point at the beginning of an iteration.
 
         Raises:
@@ -228,7 +228,7 @@ class _Solver:
         self.iterations += 1
         self._visit(point, length, "restoration")
 
-    def _report(self, point: Point, at: Residuals, length: float, kind: str) -> None:
+    def _report(self, point: Point, at: OptimalityResiduals, length: float, kind: str) -> None:
         if self.options.callback is None:
             return
         seen = Iteration(
@@ -247,7 +247,7 @@ class _Solver:
 
     # ------------------------------------------------------------------------- a step
 
-    def _step(self, point: Point, at: Residuals) -> Step:
+    def _step(self, point: Point, at: OptimalityResiduals) -> FilterStep:
         """The next step, whatever it takes."""
         if self.stalls >= _STALLS:
             return self._last_step(point)
@@ -272,7 +272,7 @@ class _Solver:
             return multipliers
         return found.y
 
-    def _after_failure(self, point: Point, found: QpSolution) -> Step:
+    def _after_failure(self, point: Point, found: QpSolution) -> FilterStep:
         """The model is wrong nearby: feasibility first, or a smaller region."""
         if self.problem.violation(point) > self.options.tolerance:
             return self._restored(point)
@@ -281,9 +281,9 @@ class _Solver:
         self.failures += 1
         if self.failures > _FAILURES or size < 1e-10:
             return self._last_step(point)
-        return Step(point, 0.0, found.y, "normal")
+        return FilterStep(point, 0.0, found.y, "normal")
 
-    def _restored(self, point: Point) -> Step:
+    def _restored(self, point: Point) -> FilterStep:
         """A step to where feasibility is restored as far as the filter wants it.
 
         Raises:
@@ -296,7 +296,7 @@ class _Solver:
         except NowhereError as nowhere:
             found = nowhere.found
         self.trouble = found.trouble
-        stationary = found.outcome is Outcome.STATIONARY
+        stationary = found.outcome is RestorationOutcome.STATIONARY
         at = self.problem.residuals(found.point, self.multipliers)
         if at.violation <= self.options.tolerance:
             raise _End(Ending.NO_STEP)
@@ -309,11 +309,11 @@ class _Solver:
         if self.options.step_box is not None or self.restarts > _RESTARTS:
             raise _End(Ending.NO_STEP)
         self.filter.entries.clear()
-        return Step(self.best.point, 1.0, self.best.multipliers, "restoration")
+        return FilterStep(self.best.point, 1.0, self.best.multipliers, "restoration")
 
     # ---------------------------------------------------------------------- the end
 
-    def _last_step(self, point: Point) -> Step:
+    def _last_step(self, point: Point) -> FilterStep:
         """Steepest descent, where no model's step helps any more and it promises to gain something.
 
         Raises:
@@ -369,22 +369,22 @@ class _Solver:
         if self.best.at.within(self.options.tolerance):
             raise _End(Ending.CONVERGED)
 
-    def _optimal(self, point: Point, multipliers: FloatArray, at: Residuals) -> _End:
+    def _optimal(self, point: Point, multipliers: FloatArray, at: OptimalityResiduals) -> _End:
         self.best = self._best(point, multipliers, at)
         return _End(Ending.CONVERGED)
 
-    def _best(self, point: Point, multipliers: FloatArray, at: Residuals) -> Best:
+    def _best(self, point: Point, multipliers: FloatArray, at: OptimalityResiduals) -> Best:
         likely = near(at, self.options.tolerance)
         return Best(point, multipliers, self.problem.objective(point), at, likely)
 
-    def _remember(self, point: Point, at: Residuals) -> None:
+    def _remember(self, point: Point, at: OptimalityResiduals) -> None:
         seen = self._best(point, self.multipliers, at)
         if self.first_feasible is None and at.violation <= self.options.tolerance:
             self.first_feasible = seen.objective
         if self.best.beaten_by(seen, self.options.tolerance):
             self.best = seen
 
-    def _evidence(self, at: Residuals, objective: float) -> Evidence:
+    def _evidence(self, at: OptimalityResiduals, objective: float) -> Evidence:
         """What is known of the best point.
 
         Args:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from .problem.optimality import Residuals
+from .problem.optimality import OptimalityResiduals
 from .result import Status
 
 _UNBOUNDED = 1e20
@@ -48,7 +48,7 @@ class Evidence:
         iterations: number of them.
     """
 
-    at: Residuals
+    at: OptimalityResiduals
     tolerance: float
     objective: float
     first_objective: float
@@ -87,7 +87,7 @@ def is_far(size: float, first: float) -> bool:
     return size > _UNBOUNDED * max(1.0, first)
 
 
-def near(at: Residuals, tolerance: float) -> bool:
+def near(at: OptimalityResiduals, tolerance: float) -> bool:
     """Whether residuals are as small as arithmetic may allow: each beside what it is the difference
     of; no variable's slope is excused by another one's multiplier."""
     return at.relative <= tolerance

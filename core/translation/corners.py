@@ -45,7 +45,7 @@ _NOMINAL = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
-class Corner:
+class EmulatedCorner:
     """What a controller makes of the zone between two moves.
 
     Args:
@@ -62,19 +62,19 @@ class Corner:
     zone: Zone
 
 
-def corners_of(path: Path) -> list[Corner]:
+def corners_of(path: Path) -> list[EmulatedCorner]:
     """The M − 1 corners of a path."""
     return [_corner(path, i) for i in range(len(path.route.zones))]
 
 
-def _corner(path: Path, i: int) -> Corner:
+def _corner(path: Path, i: int) -> EmulatedCorner:
     zone = path.route.zones[i]
     if path.corners.kind[i] == STOP:
-        return Corner(False, 0.0, 0.0, 0.0, zone)
+        return EmulatedCorner(False, 0.0, 0.0, 0.0, zone)
     distance = _distances(path, i)
     turn = float(path.segments.turn[i]) * path.corners.reach[i, TURNING, 0]
     edges = float(min(distance[0], distance[-1]))
-    return Corner(True, _least(path, i, distance), edges, turn, zone)
+    return EmulatedCorner(True, _least(path, i, distance), edges, turn, zone)
 
 
 def _rows(path: Path, i: int) -> NDArray[np.int64]:
@@ -114,7 +114,11 @@ def _least(path: Path, i: int, distance: FloatArray) -> float:
 
 
 def fit_zones(
-    party: Party, dialect: Dialect | None, program: Program, route: Route, wanted: Sequence[Corner]
+    party: Party,
+    dialect: Dialect | None,
+    program: Program,
+    route: Route,
+    wanted: Sequence[EmulatedCorner],
 ) -> Path:
     """The path through zones with which a controller cuts corners as far as wanted.
 
@@ -149,7 +153,7 @@ def _with_zones(route: Route, zones: Sequence[Zone]) -> Route:
 
 
 def _first_guess(
-    dialect: Dialect | None, program: Program, route: Route, i: int, corner: Corner
+    dialect: Dialect | None, program: Program, route: Route, i: int, corner: EmulatedCorner
 ) -> Zone:
     """A zone of the preferred kind, as large as the other controller's."""
     if not corner.passed:
@@ -171,14 +175,14 @@ def _first_guess(
     return FINE
 
 
-def _turning_zone(dialect: Dialect, kinds: Sequence[type[Zone]], corner: Corner) -> Zone:
+def _turning_zone(dialect: Dialect, kinds: Sequence[type[Zone]], corner: EmulatedCorner) -> Zone:
     """For corners at which the TCP stays and the tool turns on."""
     if dialect.zone_parts and Radius in kinds:
         return Radius(_NOMINAL, _NOMINAL, _NOMINAL, angle=corner.turn)
     return Angle(corner.turn) if Angle in kinds else FINE
 
 
-def _radius(dialect: Dialect, corner: Corner) -> Radius:
+def _radius(dialect: Dialect, corner: EmulatedCorner) -> Radius:
     """A sphere, with the parts beside the TCP's if the language has them."""
     zone, tcp = corner.zone, corner.reach
     if not dialect.zone_parts:
@@ -210,7 +214,7 @@ def _resized(zone: Sized, size: float) -> Sized:
     return zone
 
 
-def _better(zone: Zone, wanted: Corner, found: Corner) -> Zone:
+def _better(zone: Zone, wanted: EmulatedCorner, found: EmulatedCorner) -> Zone:
     """The zone scaled so that the cut becomes what is wanted."""
     size = _size(zone)
     if not (wanted.passed and found.passed) or size == 0.0 or wanted.cut < _STRAIGHT:
@@ -227,7 +231,7 @@ def _better(zone: Zone, wanted: Corner, found: Corner) -> Zone:
     return _resized(zone, size * ratio)
 
 
-def _within(zone: Zone, found: Corner) -> Zone:
+def _within(zone: Zone, found: EmulatedCorner) -> Zone:
     """The zone, no larger than the controller lets it be."""
     if isinstance(zone, Radius) and found.passed and _STILL < found.reach < zone.tcp * _KEPT:
         zone = _resized(zone, found.reach * _KEPT)

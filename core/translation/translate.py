@@ -14,7 +14,7 @@ from ..motion.emulator.controller import Controller
 from ..motion.geometry.segments import make_segments
 from ..motion.model.rules import Overlap
 from ..motion.path.path import Path, Route
-from ..notebook import Curve, page, picture, table
+from ..notebook import PictureCurve, page, picture, table
 from ..program.event import Event
 from ..program.move import ArcOrientation, MoveC, MoveJ, MoveL, Opaque, Statement, Wait
 from ..program.program import Program
@@ -23,7 +23,7 @@ from ..program.zone import FINE, Angle, Radius, SpeedFraction, Zone
 from ..robot.model import Robot
 from ..spatial.pose import IDENTITY, Pose
 from ..vendor import Vendor
-from .corners import Corner, corners_of, fit_zones
+from .corners import EmulatedCorner, corners_of, fit_zones
 from .emulation import Party
 from .frames import Frames
 from .half_turns import decided
@@ -67,7 +67,7 @@ class Translation:
 
     def _repr_html_(self) -> str:
         points = [(name, p.waypoints()) for name, p in self._programs()]
-        curves = [Curve(name, at, at) for name, at in points if at is not None]
+        curves = [PictureCurve(name, at, at) for name, at in points if at is not None]
         rows = [("" if n.span is None else str(n.span.line), n.message) for n in self.losses]
         lost = table(LOSSES, rows) if rows else ""
         return page(repr(self)[1:-1], lost, picture(curves) if curves else "")
@@ -220,7 +220,7 @@ class _Translator:
     # --------------------------------------------------------------------------- zones
 
     def _zoned(
-        self, program: Program, route: Route, wanted: Sequence[Corner]
+        self, program: Program, route: Route, wanted: Sequence[EmulatedCorner]
     ) -> tuple[Program, Path]:
         """The program with zones that cut its corners as wanted, and its path."""
         path = fit_zones(self.target, self.dialect, program, route, wanted)
@@ -231,21 +231,25 @@ class _Translator:
         moves = [replace(move, zone=zones[i]) for i, move in enumerate(program.moves)]
         return program.with_moves(tuple(moves)), path
 
-    def _wanted(self, route: Route, old: Path) -> list[Corner]:
+    def _wanted(self, route: Route, old: Path) -> list[EmulatedCorner]:
         """What the old controller makes of each corner of the new route."""
-        known: dict[int, Corner] = {}
+        known: dict[int, EmulatedCorner] = {}
         corners = corners_of(old)
         for i, corner in enumerate(corners):
             for move in range(old.route.moves[i], old.route.moves[i + 1]):
                 known[move] = corner
-        stop = Corner(False, 0.0, 0.0, 0.0, FINE)
+        stop = EmulatedCorner(False, 0.0, 0.0, 0.0, FINE)
         return [known.get(move, stop) for move in route.moves[:-1]]
 
-    def _tell_zones(self, path: Path, wanted: Sequence[Corner], losses: LossesOfPart) -> None:
+    def _tell_zones(
+        self, path: Path, wanted: Sequence[EmulatedCorner], losses: LossesOfPart
+    ) -> None:
         for move, one, other in zip(path.route.zone_moves, wanted, corners_of(path), strict=True):
             self._tell_zone(move, one, other, losses)
 
-    def _tell_zone(self, move: int, wanted: Corner, found: Corner, losses: LossesOfPart) -> None:
+    def _tell_zone(
+        self, move: int, wanted: EmulatedCorner, found: EmulatedCorner, losses: LossesOfPart
+    ) -> None:
         """What the corner at the end of a move loses."""
         if not wanted.passed:
             return

@@ -67,10 +67,10 @@ from flyby.core.source.lines.program import (
     read_lines,
 )
 from flyby.core.source.lines.program import Statement as LineStatement
-from flyby.core.source.patch.uses import Kind, MovePart
+from flyby.core.source.patch.uses import MovePart, UseKind
 from flyby.core.source.reading import Files, ReadOptions, read_with
 from flyby.core.source.text.files import SourceFile, SourceText, read_source
-from flyby.core.source.write.options import PatchOptions
+from flyby.core.source.write.options import PatcherOptions
 from flyby.core.spatial.pose import Pose
 from flyby.core.vendor import Vendor, lazy_robots
 
@@ -214,7 +214,7 @@ class Language:
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         """See `flyby.core.language.Patcher`."""
-        chosen = PatchOptions.of(options, "ACME patcher")
+        chosen = PatcherOptions.of(options, "ACME patcher")
         return patch_lines(program, chosen, _numbers_of, repr)
 
 
@@ -223,7 +223,7 @@ def _read(files: Files, main: str, options: ReadOptions) -> Program:
     return run_lines(read_lines(files[main].text, main, grammar, "ACME"), grammar, options)
 
 
-def _numbers_of(kind: Kind, part: MovePart, move: Move) -> tuple[float, ...]:
+def _numbers_of(kind: UseKind, part: MovePart, move: Move) -> tuple[float, ...]:
     _refuse_what_cannot_be_said(move)
     if isinstance(part, Speed):
         return tuple(v for v in (part.tcp, part.reorientation) if v is not None)

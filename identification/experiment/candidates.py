@@ -64,7 +64,7 @@ class _Signed(PlannedCorner):
 
 
 @dataclass(frozen=True)
-class Family:
+class PostureFamily:
     """Everything at one posture.
 
     Args:

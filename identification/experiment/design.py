@@ -24,7 +24,7 @@ from ...core.program.target import JointTarget, PoseTarget
 from ...core.program.zone import FINE
 from ...core.source.patch.edits import difference
 from ...core.vendor import Vendor
-from .candidates import Family
+from .candidates import PostureFamily
 from .checking import Refused, check
 from .information import Informer
 from .plan import CandidateRun, Designed, Experiment, Plan, Skipped, usual_radii
@@ -139,7 +139,7 @@ class _Designer:
         found: list[CandidateRun] = []
         for number, site in enumerate(sites):
             self.say(f"designing runs at posture {number + 1}")
-            family = Family(
+            family = PostureFamily(
                 self.words,
                 self.controller,
                 self.plan,

@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import Any
 
 from ...core.errors import InputError, UnknownNameError
-from ...core.motion.model.figures import Figure, Fit, Member, Tables, with_figures
+from ...core.motion.model.figures import Figure, FitRange, Member, Tables, with_figures
 from ...core.motion.model.kinds import RealNumber, Row
 from ...core.motion.model.motion_model import FIGURES, MotionModel
 
@@ -33,7 +33,7 @@ def figure_of(key: str) -> Figure:
     return _found(key)[0]
 
 
-def fit_of(key: str) -> Fit:
+def fit_of(key: str) -> FitRange:
     """How the number at a key is fitted.
 
     Raises:

@@ -5,14 +5,14 @@ from .columns import Columns, load_columns
 from .reading import read_samples
 from .records import load_run
 from .run import LoggedRun
-from .samples import Samples
+from .samples import LogSamples
 
 __all__ = [
     "CleanLog",
     "Columns",
     "Hole",
+    "LogSamples",
     "LoggedRun",
-    "Samples",
     "clean",
     "load_columns",
     "load_run",

@@ -20,7 +20,7 @@ import numpy as np
 
 from ...core.errors import InputError
 from ...core.files.reading import read_toml
-from .samples import Samples, in_order
+from .samples import LogSamples, in_order
 from .table import Table
 
 TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
@@ -61,7 +61,7 @@ class Columns:
         if self.time is None and not 0 < self.period < math.inf:
             raise InputError("without a column of time the period must be above zero")
 
-    def samples(self, table: Table) -> Samples:
+    def samples(self, table: Table) -> LogSamples:
         """The samples of a table.
 
         Raises:

@@ -9,12 +9,12 @@ from ...core.robot.model import Robot
 from .columns import Columns
 from .formats import recognise
 from .rsi import is_rsi, parse_rsi
-from .samples import Samples
+from .samples import LogSamples
 from .table import parse_table
 from .text import read_text
 
 
-def read_samples(path: Path, robot: Robot, columns: Columns | None = None) -> Samples:
+def read_samples(path: Path, robot: Robot, columns: Columns | None = None) -> LogSamples:
     """The samples of a log.
 
     Args:
@@ -35,7 +35,7 @@ def read_samples(path: Path, robot: Robot, columns: Columns | None = None) -> Sa
     return samples
 
 
-def _read(path: Path, robot: Robot, columns: Columns | None) -> Samples:
+def _read(path: Path, robot: Robot, columns: Columns | None) -> LogSamples:
     text = read_text(path)
     if columns is not None:
         return columns.samples(parse_table(text, str(path), columns.delimiter))

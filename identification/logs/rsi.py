@@ -15,7 +15,7 @@ import numpy as np
 from ...core.errors import InputError
 from ...core.robot.model import Robot
 from .formats import axis_scales
-from .samples import Samples, in_order
+from .samples import LogSamples, in_order
 
 END = "</Rob>"
 _IPOC = re.compile(r"<IPOC>\s*(\d{1,18})\s*</IPOC>")
@@ -28,7 +28,7 @@ def is_rsi(text: str) -> bool:
     return END in text and "<Rob" in text
 
 
-def parse_rsi(text: str, file: str, robot: Robot) -> Samples:
+def parse_rsi(text: str, file: str, robot: Robot) -> LogSamples:
     """The samples in the frames of a text; what stands between them is passed over.
 
     Raises:

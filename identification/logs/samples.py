@@ -17,7 +17,7 @@ periods below that; beyond this share its stamps say too little."""
 
 
 @dataclass(frozen=True, eq=False)
-class Samples:
+class LogSamples:
     """What a file says.
 
     Args:
@@ -33,7 +33,7 @@ class Samples:
 
 def in_order(
     t: FloatArray, q: FloatArray, lines: IntArray, file: str, notes: tuple[str, ...] = ()
-) -> Samples:
+) -> LogSamples:
     """The samples whose time is later than that of all before.
 
     Args:
@@ -69,4 +69,4 @@ def in_order(
         )
     if lost:
         notes = (*notes, f"{lost} samples whose time does not increase are left out")
-    return Samples(t[later], q[later], notes)
+    return LogSamples(t[later], q[later], notes)

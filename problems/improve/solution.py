@@ -14,7 +14,7 @@ from ...core.errors import InputError, Note
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.emulator.run import Run
 from ...core.motion.timing.timing import Timing
-from ...core.notebook import Curve, page, picture, table
+from ...core.notebook import PictureCurve, page, picture, table
 from ...core.program.program import Program
 from ...core.robot.model import Robot
 from ...core.spatial.rotation import rotation_vector
@@ -151,7 +151,7 @@ class Solution:
             points = program.waypoints()
             if points is None:
                 return ""
-            curves.append(Curve(name, points, points))
+            curves.append(PictureCurve(name, points, points))
         return picture(curves)
 
     @property

@@ -23,7 +23,7 @@ from .surface.part import Part
 from .surface.resolution import coarsened
 from .thickness.optimize import optimize
 from .thickness.options import OuterLoop, PaintLimits, PaintWeights
-from .thickness.reference import Reference
+from .thickness.reference import ReferencePlanes
 from .thickness.robust import NO_ERRORS, PaintErrors
 from .thickness.round import Progress
 from .thickness.speeds import SpeedSolution, best_speeds
@@ -161,7 +161,7 @@ def paint(
         coarse.deposition,
         start,
         wishes.target,
-        Reference.below(start, wishes.plan.distance),
+        ReferencePlanes.below(start, wishes.plan.distance),
         limits=wishes.limits,
         weights=wishes.weights,
         loop=wishes.loop,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...core.notebook import Curve, page, picture, table
+from ...core.notebook import PictureCurve, page, picture, table
 from ...identification.logs import LoggedRun
 from ...identification.prediction import Prediction
 from ...identification.residuals import Figures
@@ -60,7 +60,7 @@ class Comparison:
         robot, log = self.prediction.robot, self.prediction.log
         step = max(1, len(log.q) // 400)
         at = np.array([robot.flange_pose(q).position for q in log.q[::step]])
-        drawn = picture([Curve("flange as logged", at)])
+        drawn = picture([PictureCurve("flange as logged", at)])
         return page(repr(self)[1:-1], table(COLUMNS, self.rows()), drawn, notes=self.notes)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ...core.cell.cell import Cell
 from ...core.display import counted
-from ...core.notebook import Curve, page, picture, table
+from ...core.notebook import PictureCurve, page, picture, table
 from ...identification.experiment.page import LOG_SUFFIX, described, way
 from ...identification.experiment.page import page as make_page
 from ...identification.experiment.picture import draw_experiment
@@ -92,6 +92,6 @@ class DesignedExperiment:
     def _repr_html_(self) -> str:
         at = [run.run.trajectory.position for run in self.experiment.runs[:4]]
         names = [run.candidate.name for run in self.experiment.runs[:4]]
-        curves = [Curve(name, points) for name, points in zip(names, at, strict=True)]
+        curves = [PictureCurve(name, points) for name, points in zip(names, at, strict=True)]
         parts = [table(COLUMNS, self.rows()), *([picture(curves)] if curves else [])]
         return page(repr(self)[1:-1], *parts, notes=self.notes)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from ...core.display import counted
-from ...core.notebook import Curve, page, picture, table
+from ...core.notebook import PictureCurve, page, picture, table
 from ...core.program.program import Program
 from ...core.source.patch.runnable import runnable_files
 from ...problems.improve.energy import Front, FrontPoint
@@ -89,7 +89,9 @@ class ProgramFront(Front):
         parts = [table(self.columns(), self.rows())]
         if len(self.points) > 1:
             at = np.array([(p.duration, p.energy) for p in self.points])
-            parts.append(picture([Curve(f"energy, {self.unit}, over time, s", at, at)], "s, …"))
+            parts.append(
+                picture([PictureCurve(f"energy, {self.unit}, over time, s", at, at)], "s, …")
+            )
         return page(repr(self)[1:-1], *parts, notes=self.notes)
 
 

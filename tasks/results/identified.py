@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core.display import counted
-from ...core.notebook import Curve, page, picture, table
+from ...core.notebook import PictureCurve, page, picture, table
 from ...identification.fit import Fit, Judgement, Outcome
 from ...identification.fit.selection import Score
 from ..files.logged_runs import LoggedRuns
@@ -136,7 +136,7 @@ class IdentifiedModel:
         k = np.arange(float(len(shown)))
         both = 1e3 * np.array(shown)
         drawn = [
-            Curve(name, np.stack([k, both[:, j]], 1), np.stack([k, both[:, j]], 1))
+            PictureCurve(name, np.stack([k, both[:, j]], 1), np.stack([k, both[:, j]], 1))
             for j, name in enumerate(("path, mm, before", "after, run by run"))
         ]
         return page(

@@ -11,7 +11,7 @@ from ...core.errors import Note
 from ...core.motion.command.trajectory import Trajectory
 from ...core.motion.model.consumption import SQUARED_TORQUE, Consumption
 from ...core.motion.timing.timing import Timing
-from ...core.notebook import Curve, page, picture, table
+from ...core.notebook import PictureCurve, page, picture, table
 from ...core.program.program import Program
 from ...core.robot.model import Robot
 from ...drawing.motion import draw_motion
@@ -92,7 +92,7 @@ class FreeMotion:
         return f"<Free motion of {self.robot.name}: {self.duration:.4f} s{said}>"
 
     def _repr_html_(self) -> str:
-        drawn = picture([Curve("path of the TCP", self.trajectory.position)])
+        drawn = picture([PictureCurve("path of the TCP", self.trajectory.position)])
         return page(repr(self)[1:-1], table(COLUMNS, self.rows()), drawn, notes=self.notes)
 
 
@@ -164,5 +164,5 @@ class TunedMotion:
         )
 
     def _repr_html_(self) -> str:
-        drawn = picture([Curve("path of the TCP", self.trajectory.position)])
+        drawn = picture([PictureCurve("path of the TCP", self.trajectory.position)])
         return page(repr(self)[1:-1], table(COLUMNS, self.rows()), drawn)

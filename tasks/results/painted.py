@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from ...core.errors import Note
-from ...core.notebook import Curve as Shown
+from ...core.notebook import PictureCurve as Shown
 from ...core.notebook import page, picture, table
-from ...drawing.coat import Curve, Painted, draw_curve, draw_map, draw_spread, draw_strokes
+from ...drawing.coat import GunCurve, Painted, draw_curve, draw_map, draw_spread, draw_strokes
 from ...problems.paint.coating.coat import Coat
 from ...problems.paint.executable.execute import Executable
 from ...problems.paint.painting import Painting
@@ -112,7 +112,7 @@ class PaintedPart:
             "thickness.png": draw_map(surface, title, "png"),
             "curve.png": draw_curve(
                 surface,
-                Curve(curve.position, curve.nozzle, curve.speeds, curve.painting),
+                GunCurve(curve.position, curve.nozzle, curve.speeds, curve.painting),
                 f"{part.name}: {curve.total_length:.1f} m, {curve.total_duration:.1f} s",
                 "png",
             ),

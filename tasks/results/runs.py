@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from ...core.motion.emulator import run as core_run
-from ...core.notebook import Curve, page, picture
+from ...core.notebook import PictureCurve, page, picture
 from ...core.robot.model import Robot
 from .report import MoveTable, Report, located, make_report
 
@@ -47,5 +47,5 @@ class Run(core_run.Run):
         return draw(self, self.robot, kind)
 
     def _repr_html_(self) -> str:
-        curve = Curve("path of the TCP", self.trajectory.position)
+        curve = PictureCurve("path of the TCP", self.trajectory.position)
         return page(repr(self)[1:-1], self.moves._repr_html_(), picture([curve]), notes=self.notes)

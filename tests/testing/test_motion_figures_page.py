@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from flyby.core.motion.model.figures import Figure, Fit, Member, Tables
+from flyby.core.motion.model.figures import Figure, FitRange, Member, Tables
 from flyby.core.motion.model.kinds import RealNumber, Row
 from flyby.core.motion.model.motion_model import FIGURES
 
@@ -39,7 +39,7 @@ def neutral(one: Figure) -> str:
     return "none" if entry in ([], "none") else str(entry)
 
 
-def fitted(fit: Fit | None) -> str:
+def fitted(fit: FitRange | None) -> str:
     if fit is None:
         return ""
     if fit.upper == float("inf"):

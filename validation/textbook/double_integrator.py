@@ -34,7 +34,7 @@ from scipy import sparse
 from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.sqp import NLP
-from ...core.sqp.algebra.entries import Entries
+from ...core.sqp.algebra.entries import MatrixEntries
 from .ranges import check_force, check_nodes
 
 
@@ -206,16 +206,16 @@ class DoubleIntegrator:
         i = 3 * np.arange(self.nodes - 1)
         return np.concatenate([2 + i, 5 + i, 3 + i, 6 + i])
 
-    def _jacobian_entries(self) -> Entries:
+    def _jacobian_entries(self) -> MatrixEntries:
         every = np.arange(self.m)
         first, second = np.split(every, 2)
         i = 3 * np.arange(self.nodes - 1)
         rows = [every, every, first, first, second, second, every]
         columns = [1 + i, 2 + i, 4 + i, 5 + i, self._driving_columns(), np.zeros(self.m, int)]
-        return Entries(np.concatenate(rows), np.concatenate(columns), (self.m, self.n))
+        return MatrixEntries(np.concatenate(rows), np.concatenate(columns), (self.m, self.n))
 
-    def _hessian_entries(self) -> Entries:
+    def _hessian_entries(self) -> MatrixEntries:
         columns = self._driving_columns()
         time = np.zeros(len(columns), int)
         rows = np.concatenate([columns, time])
-        return Entries(rows, np.concatenate([time, columns]), (self.n, self.n))
+        return MatrixEntries(rows, np.concatenate([time, columns]), (self.n, self.n))

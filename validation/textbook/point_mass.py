@@ -26,7 +26,7 @@ from scipy import sparse
 from ...core.arrays import FloatArray, IntArray
 from ...core.errors import InputError
 from ...core.sqp import NLP
-from ...core.sqp.algebra.entries import Entries
+from ...core.sqp.algebra.entries import MatrixEntries
 from .arcs import Arcs
 from .avoidance import STRIDE, AvoidanceRows, Bernstein, Chords, Samples, State, columns
 from .ranges import check_force, check_nodes
@@ -214,7 +214,7 @@ class PointMass:
 
     # --------------------------------------------------------------------------- patterns
 
-    def _jacobian_entries(self) -> Entries:
+    def _jacobian_entries(self) -> MatrixEntries:
         first = np.arange(self._intervals)
         each = 2 * self._intervals
         moved, sped = np.arange(each), each + np.arange(each)
@@ -237,7 +237,7 @@ class PointMass:
         )
         return _entries(parts, (self.m, self.n))
 
-    def _hessian_entries(self) -> Entries:
+    def _hessian_entries(self) -> MatrixEntries:
         first = np.arange(self._intervals)
         speeds, forces = columns(first, 1).ravel(), columns(first, 2).ravel()
         after = columns(first + 1, 1).ravel()
@@ -266,6 +266,6 @@ def _means(v: FloatArray) -> FloatArray:
     return 0.5 * (v[:-1] + v[1:])
 
 
-def _entries(parts: Sequence[tuple[IntArray, IntArray]], shape: tuple[int, int]) -> Entries:
+def _entries(parts: Sequence[tuple[IntArray, IntArray]], shape: tuple[int, int]) -> MatrixEntries:
     rows, places = (np.concatenate(side) for side in zip(*parts, strict=True))
-    return Entries(rows, places, shape)
+    return MatrixEntries(rows, places, shape)

@@ -10,7 +10,7 @@ from scipy import sparse
 
 from ...core.arrays import FloatArray, IntArray
 from ...core.sqp import NLP
-from ...core.sqp.algebra.entries import Entries
+from ...core.sqp.algebra.entries import MatrixEntries
 from .capsule_box import Clearances
 from .curves import BlendCurve, Curve, Line
 from .field_rows import AtPoints, FieldRows
@@ -310,10 +310,10 @@ class Transcription:
             fixed.append((layout.points, self.task.points))
         return fixed
 
-    def _entries(self, places: str, shape: tuple[int, int]) -> Entries:
+    def _entries(self, places: str, shape: tuple[int, int]) -> MatrixEntries:
         rows, columns = [], []
         for block, first in zip(self._blocks, self._bounds, strict=False):
             row, column = getattr(block, places)
             rows.append(row + (first if places == "jacobian_places" else 0))
             columns.append(column)
-        return Entries(np.concatenate(rows), np.concatenate(columns), shape)
+        return MatrixEntries(np.concatenate(rows), np.concatenate(columns), shape)

@@ -19,7 +19,7 @@ class Rapid:
     """Reader, writer, patcher and recorder.
 
     Writing takes the options ``zones`` and ``opaque`` (`RapidOptions`), patching ``shared`` and
-    ``derived`` (`PatchOptions`), recording none.
+    ``derived`` (`PatcherOptions`), recording none.
     """
 
     def read(self, text: str, file: str, options: ReadOptions) -> Program:
@@ -48,13 +48,13 @@ class Rapid:
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         """See `flyby.core.language.Patcher.patch`."""
         from ...core.source.patch.edits import reading_of
-        from ...core.source.write.options import PatchOptions
+        from ...core.source.write.options import PatcherOptions
         from .motion.targets import axis_kinds
         from .patch.patcher import patch
 
         # The files are read again as they were read, be it without a robot.
         kinds = axis_kinds(reading_of(program).options.robot)
-        return patch(program, PatchOptions.of(options, "RAPID patcher"), kinds or ())
+        return patch(program, PatcherOptions.of(options, "RAPID patcher"), kinds or ())
 
     def record(self, program: Program, robot: Robot, period: float) -> Sources:
         """See `flyby.core.language.Recorder.record`."""

@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray
-from ...motion.timing.stamping_kernels import Rows
+from ...motion.timing.stamping_kernels import StampRows
 from ...motion.timing.timing import Timing
 
 _LOOSER = 1e-9
@@ -94,7 +94,7 @@ def coefficients(timing: Timing, part: slice) -> tuple[FloatArray, FloatArray]:
 
 @njit(cache=True, error_model="numpy")
 def _reach(
-    rows: Rows,
+    rows: StampRows,
     spacing: FloatArray,
     ceiling: FloatArray,
 ) -> None:
@@ -114,7 +114,7 @@ def _reach(
 @njit(cache=True, error_model="numpy")
 def _polygon(
     k: int,
-    rows: Rows,
+    rows: StampRows,
     spacing: FloatArray,
     ceiling: FloatArray,
     here: FloatArray,

@@ -43,7 +43,7 @@ class TriangleMesh:
 Solid = Sphere | Capsule | Cylinder | Box | Polytope | TriangleMesh
 
 
-class Extent(NamedTuple):
+class SolidExtent(NamedTuple):
     """A box along the axes of a solid's own frame that holds it.
 
     Args:
@@ -57,25 +57,27 @@ class Extent(NamedTuple):
     radius: float
 
 
-def extent(solid: Solid) -> Extent:
+def extent(solid: Solid) -> SolidExtent:
     """The box and the sphere that hold a solid."""
     origin = np.zeros(3)
     match solid:
         case Sphere(radius):
-            return Extent(origin, np.full(3, radius), radius)
+            return SolidExtent(origin, np.full(3, radius), radius)
         case Capsule(radius, length):
             half = 0.5 * length + radius
-            return Extent(origin, np.array([radius, radius, half]), half)
+            return SolidExtent(origin, np.array([radius, radius, half]), half)
         case Cylinder(radius, length):
             half = 0.5 * length
-            return Extent(origin, np.array([radius, radius, half]), float(np.hypot(radius, half)))
+            return SolidExtent(
+                origin, np.array([radius, radius, half]), float(np.hypot(radius, half))
+            )
         case Box(size):
             edges = 0.5 * np.array(size)
-            return Extent(origin, edges, float(np.linalg.norm(edges)))
+            return SolidExtent(origin, edges, float(np.linalg.norm(edges)))
     lowest, highest = solid.vertices.min(axis=0), solid.vertices.max(axis=0)
     centre = 0.5 * (lowest + highest)
     radius = float(np.linalg.norm(solid.vertices - centre, axis=1).max())
-    return Extent(centre, 0.5 * (highest - lowest), radius)
+    return SolidExtent(centre, 0.5 * (highest - lowest), radius)
 
 
 def core_radius(solid: Solid) -> float:

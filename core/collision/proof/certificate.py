@@ -19,9 +19,9 @@ from ...program.tool import Tool
 from ..deviation.bounds import Deviation, parts_of
 from ..scene.scene import CollisionScene
 from .enclosure import Enclosure, Span
-from .findings import Budget, Cause, UnprovenStretch
+from .findings import Budget, FailureCause, UnprovenStretch
 from .subdivision import Prover
-from .verdict import CONTACT, MM, Certificate, Met, Reader, nearest_of
+from .verdict import CONTACT, MM, Certificate, Met, VerdictReader, nearest_of
 
 SceneOf = Callable[[Tool], CollisionScene]
 """The scene with a tool mounted."""
@@ -103,7 +103,7 @@ def certify_stretch(
             raise InputError(f"a stretch runs from a first to a last σ, not from {first} to {last}")
     enclosure = Enclosure.of(run.path)
     left = Budget(budget)
-    deviation_of_run, reader = Deviation.of(controller, run), Reader(run)
+    deviation_of_run, reader = Deviation.of(controller, run), VerdictReader(run)
     wanted = max(clearance - TOLERANCE, CONTACT)
     torn = _first_tear(run, spans)
     if torn is not None:
@@ -130,7 +130,7 @@ def certify_stretch(
             for prover, pieces in provers:
                 prover.tighten(spans, pieces, resolution)
         met += [Met(prover.scene, prover.nearest, prover.proven) for prover, _ in provers]
-        if any(finding.cause is Cause.NEAR for _, finding in findings):
+        if any(finding.cause is FailureCause.NEAR for _, finding in findings):
             break
     if findings:
         scene, finding = min(findings, key=lambda found: _rank(found[1]))
@@ -181,9 +181,11 @@ def _first_tear(run: Run, spans: Sequence[Span]) -> UnprovenStretch | None:
         sigma = float(path.pieces.edge[piece + 1])
         if any(first < sigma < last for first, last in spans):
             q = path.q[right[piece]]
-            return UnprovenStretch(Cause.TORN, int(piece), sigma, sigma, sigma, q, None, None, 1.0)
+            return UnprovenStretch(
+                FailureCause.TORN, int(piece), sigma, sigma, sigma, q, None, None, 1.0
+            )
     return None
 
 
 def _rank(finding: UnprovenStretch) -> tuple[bool, float]:
-    return finding.cause is not Cause.NEAR, finding.begin
+    return finding.cause is not FailureCause.NEAR, finding.begin

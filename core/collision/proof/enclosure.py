@@ -28,7 +28,7 @@ Span = tuple[float, float]
 """First and last σ."""
 
 
-class Intervals(NamedTuple):
+class EnclosedIntervals(NamedTuple):
     """M intervals of a path with what is known of q there.
 
     Args:
@@ -85,7 +85,7 @@ class Enclosure:
         """(M,), how long pieces are in their own parameters."""
         return np.asarray(np.where(self.curve < 0, np.diff(self.edge), 1.0)[piece])
 
-    def over(self, spans: Sequence[Span], pieces: Iterable[int] | None = None) -> Intervals:
+    def over(self, spans: Sequence[Span], pieces: Iterable[int] | None = None) -> EnclosedIntervals:
         """One interval for every piece that spans of σ touch, no wider than needed.
 
         On TCP-space pieces they are widened to the path's samples: those are known to lie on one
@@ -127,7 +127,7 @@ class Enclosure:
         j = min(int(np.searchsorted(sigma, last, "left")), len(sigma) - 1)
         return float(sigma[i]), float(sigma[j]), q[[i, j]]
 
-    def halves(self, intervals: Intervals, which: IntArray) -> Intervals:
+    def halves(self, intervals: EnclosedIntervals, which: IntArray) -> EnclosedIntervals:
         """Both halves of some intervals, (2 K,): those of the i-th are at 2 i and 2 i + 1."""
         begin, end = intervals.begin[which], intervals.end[which]
         middle = 0.5 * (begin + end)
@@ -149,7 +149,7 @@ class Enclosure:
 
     def _enclosed(
         self, piece: IntArray, begin: FloatArray, end: FloatArray, ends: FloatArray
-    ) -> Intervals:
+    ) -> EnclosedIntervals:
         boxes = Boxes.empty(len(piece), self.size)
         curve = self.curve[piece]
         rows = np.flatnonzero(curve >= 0)
@@ -157,7 +157,7 @@ class Enclosure:
         rows = np.flatnonzero(curve < 0)
         if self.path is not None and len(rows):
             _enclose_tcp(self.path, piece, begin, end, ends, rows, boxes)
-        return Intervals(piece, begin, end, ends, boxes)
+        return EnclosedIntervals(piece, begin, end, ends, boxes)
 
 
 def _enclose_tcp(

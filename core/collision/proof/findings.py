@@ -9,7 +9,7 @@ from enum import Enum, auto
 from ...arrays import FloatArray
 
 
-class Cause(Enum):
+class FailureCause(Enum):
     """Why a stretch is not proven."""
 
     NEAR = auto()
@@ -41,7 +41,7 @@ class UnprovenStretch:
         conditioning: of the Jacobian there.
     """
 
-    cause: Cause
+    cause: FailureCause
     piece: int
     begin: float
     end: float
@@ -53,7 +53,7 @@ class UnprovenStretch:
 
 
 @dataclass
-class Nearest:
+class NearestPair:
     """Where the least was met so far, and which pair.
 
     Args:

@@ -18,8 +18,8 @@ from ...arrays import FloatArray
 from ..deviation.bounds import DeviationBounds, by_interval
 from ..scene.scene import CollisionScene
 from .boxes import Boxes
-from .enclosure import Enclosure, Intervals, Span
-from .findings import Budget, Cause, Nearest, UnprovenStretch
+from .enclosure import EnclosedIntervals, Enclosure, Span
+from .findings import Budget, FailureCause, NearestPair, UnprovenStretch
 from .items import Items, Sweeps
 from .sweep import sweep
 
@@ -55,7 +55,7 @@ class Prover:
     budget: Budget
 
     def __post_init__(self) -> None:
-        self.nearest = Nearest()
+        self.nearest = NearestPair()
         self.proven = math.inf
         """m, the least of what was proven so far."""
 
@@ -128,14 +128,14 @@ class _Search:
             if not len(items.pair):
                 break
             if prover.budget.left < 0:
-                self._keep(self._finding(intervals, items, 0, Cause.EXHAUSTED))
+                self._keep(self._finding(intervals, items, 0, FailureCause.EXHAUSTED))
                 break
             which, rows = np.unique(items.interval, return_inverse=True)
             intervals = prover.enclosure.halves(intervals, which)
             items = items._replace(interval=rows).on_both_halves()
         return self._violation or self._unproven
 
-    def _look_around(self, intervals: Intervals, items: Items) -> None:
+    def _look_around(self, intervals: EnclosedIntervals, items: Items) -> None:
         """Measure at the middles, so that there is a least distance to go by."""
         if self._prover.nearest.kept == math.inf:
             sound = items.chosen(intervals.boxes.verified[items.interval])
@@ -148,7 +148,7 @@ class _Search:
             return self._wanted
         return self._prover.nearest.kept - self._resolution
 
-    def _open(self, intervals: Intervals, items: Items) -> Items:
+    def _open(self, intervals: EnclosedIntervals, items: Items) -> Items:
         """Prove what can be proven; the rest."""
         verified = intervals.boxes.verified[items.interval]
         unknown, known = items.chosen(~verified), items.chosen(verified)
@@ -163,7 +163,7 @@ class _Search:
         near &= self._judged(intervals, asked, again, near)
         return Items.joined(unknown, known.chosen(left & wide), asked.chosen(near))
 
-    def _swept(self, intervals: Intervals, items: Items) -> Sweeps:
+    def _swept(self, intervals: EnclosedIntervals, items: Items) -> Sweeps:
         """Lower bounds of the items' distances."""
         of = self._prover.enclosure.sigma
         begin, end = (of(intervals.piece, edge) for edge in (intervals.begin, intervals.end))
@@ -177,7 +177,7 @@ class _Search:
         self._prover.proven = min(self._prover.proven, least)
         return np.asarray(left)
 
-    def _measured(self, intervals: Intervals, items: Items, found: Sweeps) -> Items:
+    def _measured(self, intervals: EnclosedIntervals, items: Items, found: Sweeps) -> Items:
         """The items with distances and planes at the middles."""
         if not len(items.pair):
             return items
@@ -194,7 +194,7 @@ class _Search:
             self._remember(intervals, items._replace(distance=distance, normal=normal), nearest)
         return items._replace(distance=distance - ROUNDING, normal=normal)
 
-    def _remember(self, intervals: Intervals, items: Items, k: np.int64) -> None:
+    def _remember(self, intervals: EnclosedIntervals, items: Items, k: np.int64) -> None:
         """Keep the k-th item if it is the nearest so far."""
         prover, row = self._prover, int(items.interval[k])
         q, sigma = intervals.boxes.q[row], self._middle(intervals, row)
@@ -204,16 +204,16 @@ class _Search:
         kept = distance - float(prover.sweep(Boxes.at(q), here, here, alone).deviation[0])
         if kept < prover.nearest.kept:
             piece, pair = int(intervals.piece[row]), int(items.pair[k])
-            prover.nearest = Nearest(kept, distance, sigma, piece, pair, q)
+            prover.nearest = NearestPair(kept, distance, sigma, piece, pair, q)
 
     def _judged(
-        self, intervals: Intervals, items: Items, found: Sweeps, near: NDArray[np.bool_]
+        self, intervals: EnclosedIntervals, items: Items, found: Sweeps, near: NDArray[np.bool_]
     ) -> NDArray[np.bool_]:
         """Note which open items are too near; whether halving them can tell more."""
         travel = found.travel
         stalled = near & (travel < _STALLED)
         if self._resolution is not None:
-            self._note(intervals, items, stalled, Cause.STALLED)
+            self._note(intervals, items, stalled, FailureCause.STALLED)
             return ~stalled
         distance = items.distance + ROUNDING
         too_near = near & (distance < self._wanted)
@@ -222,35 +222,41 @@ class _Search:
         deviated = near & located & ~(distance - found.deviation >= self._wanted)
         # Where the path alone is clear it is the deviations beside that leave it open.
         deviated |= stalled & (distance - travel >= self._wanted + 2.0 * ROUNDING)
-        self._note(intervals, items, too_near, Cause.NEAR)
-        self._note(intervals, items, deviated & ~too_near, Cause.DEVIATION)
-        self._note(intervals, items, stalled & ~deviated, Cause.STALLED)
+        self._note(intervals, items, too_near, FailureCause.NEAR)
+        self._note(intervals, items, deviated & ~too_near, FailureCause.DEVIATION)
+        self._note(intervals, items, stalled & ~deviated, FailureCause.STALLED)
         return ~(stalled | deviated)
 
     def _note(
-        self, intervals: Intervals, items: Items, chosen: NDArray[np.bool_], cause: Cause
+        self,
+        intervals: EnclosedIntervals,
+        items: Items,
+        chosen: NDArray[np.bool_],
+        cause: FailureCause,
     ) -> None:
         """Keep the first of the chosen items as a finding."""
         if chosen.any():
             # Items come in the order of the path.
             self._keep(self._finding(intervals, items, int(np.argmax(chosen)), cause))
 
-    def _worth_halving(self, intervals: Intervals, items: Items) -> NDArray[np.bool_]:
+    def _worth_halving(self, intervals: EnclosedIntervals, items: Items) -> NDArray[np.bool_]:
         """Which items lie before the first violation and are not too narrow to be halved."""
         row = items.interval
         piece, begin, end = intervals.piece[row], intervals.begin[row], intervals.end[row]
         narrow = end - begin < _NARROWEST * self._prover.enclosure.whole(piece)
         sound = intervals.boxes.verified[row]
-        self._note(intervals, items, narrow & sound, Cause.STALLED)
-        self._note(intervals, items, narrow & ~sound, Cause.UNVERIFIED)
+        self._note(intervals, items, narrow & sound, FailureCause.STALLED)
+        self._note(intervals, items, narrow & ~sound, FailureCause.UNVERIFIED)
         if self._violation is None:
             return ~narrow
         start = self._prover.enclosure.sigma(piece, begin)
         return np.asarray(~narrow & (start < self._violation.sigma))
 
-    def _finding(self, intervals: Intervals, items: Items, k: int, cause: Cause) -> UnprovenStretch:
+    def _finding(
+        self, intervals: EnclosedIntervals, items: Items, k: int, cause: FailureCause
+    ) -> UnprovenStretch:
         row = int(items.interval[k])
-        blamed = cause not in (Cause.UNVERIFIED, Cause.EXHAUSTED)
+        blamed = cause not in (FailureCause.UNVERIFIED, FailureCause.EXHAUSTED)
         enclosure, piece = self._prover.enclosure, intervals.piece[row : row + 1]
         begin, end = (enclosure.sigma(piece, a[row : row + 1]) for a in intervals[1:3])
         return UnprovenStretch(
@@ -265,13 +271,13 @@ class _Search:
             float(intervals.boxes.conditioning[row]),
         )
 
-    def _middle(self, intervals: Intervals, row: int) -> float:
+    def _middle(self, intervals: EnclosedIntervals, row: int) -> float:
         middle = 0.5 * (intervals.begin[row : row + 1] + intervals.end[row : row + 1])
         return float(self._prover.enclosure.sigma(intervals.piece[row : row + 1], middle)[0])
 
     def _keep(self, finding: UnprovenStretch) -> None:
         """Remember the first of each kind along the path."""
-        if finding.cause is Cause.NEAR:
+        if finding.cause is FailureCause.NEAR:
             if self._violation is None or finding.sigma < self._violation.sigma:
                 self._violation = finding
         elif self._unproven is None or finding.begin < self._unproven.begin:

@@ -14,7 +14,7 @@ from ...motion.emulator.run import Run
 from ...motion.path.building import NEAR_SINGULAR
 from ..scene.scene import CollisionScene
 from .enclosure import Span
-from .findings import Cause, Nearest, UnprovenStretch
+from .findings import FailureCause, NearestPair, UnprovenStretch
 
 CONTACT = 2e-6
 """m that bodies keep at least, even where no clearance is asked for: measured distances may be
@@ -80,12 +80,12 @@ class Met(NamedTuple):
     """
 
     scene: CollisionScene
-    nearest: Nearest
+    nearest: NearestPair
     proven: float
 
 
 @dataclass(frozen=True)
-class Reader:
+class VerdictReader:
     """Puts what provers found into words and places of the program.
 
     Args:
@@ -105,7 +105,7 @@ class Reader:
         """The certificate of a stretch that is not proven."""
         pair = None if finding.pair is None else scene.pair_names(finding.pair)
         move, time = self._move(finding.piece), self._time(finding.sigma)
-        violated = finding.cause is Cause.NEAR
+        violated = finding.cause is FailureCause.NEAR
         least = math.inf if nearest is None else nearest.nearest.distance
         if finding.distance is not None:
             least = min(least, finding.distance)
@@ -157,38 +157,38 @@ class Reader:
         bodies = "" if pair is None else f"{pair[0]} and {pair[1]}"
         distance = 0.0 if finding.distance is None else finding.distance
         match finding.cause:
-            case Cause.NEAR if distance <= 0.0:
+            case FailureCause.NEAR if distance <= 0.0:
                 # Where a mesh is cut there is no depth.
                 depth = f" by {-distance * MM:.3f} mm" if distance < -CONTACT else ""
                 return f"{bodies} overlap{depth}"
-            case Cause.NEAR:
+            case FailureCause.NEAR:
                 return (
                     f"{bodies} come within {distance * MM:.3f} mm, {_shown(wanted)} have to be kept"
                 )
-            case Cause.DEVIATION:
+            case FailureCause.DEVIATION:
                 return (
                     f"not proven: {bodies} are {distance * MM:.3f} mm apart on the path, but the "
                     "controller's smoothing in time and the motion model's residual may bring "
                     f"them within the {_shown(wanted)} to be kept"
                 )
-            case Cause.UNVERIFIED if finding.conditioning > NEAR_SINGULAR:
+            case FailureCause.UNVERIFIED if finding.conditioning > NEAR_SINGULAR:
                 return (
                     "not proven: from one sample of the path to the next the joints cannot be "
                     "followed on one configuration of the arm; sample the path more densely"
                 )
-            case Cause.UNVERIFIED:
+            case FailureCause.UNVERIFIED:
                 return (
                     "not proven: the joints cannot be enclosed where the path of the TCP runs "
                     "through a singular configuration of the arm or very near to it "
                     f"(conditioning {finding.conditioning:.1e}); go round it with a joint move, or "
                     "turn the tool differently"
                 )
-            case Cause.STALLED:
+            case FailureCause.STALLED:
                 return (
                     f"not proven: {bodies} are {distance * MM:.4f} mm apart, within rounding of "
                     f"the {_shown(wanted)} to be kept"
                 )
-            case Cause.TORN:
+            case FailureCause.TORN:
                 return (
                     "not proven: the joints jump from one piece of the path to the next; go round "
                     "singular configurations with a joint move, or use a stop point"

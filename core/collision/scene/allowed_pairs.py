@@ -13,7 +13,7 @@ from ...arrays import FloatArray
 from ...cell.cell import Cell
 from ...errors import Note
 from ...robot.model import Robot
-from .bodies import Body, Kind
+from .bodies import Body, BodyKind
 from .frames import FrameTree
 
 Touch = Callable[[FloatArray, NDArray[np.int64]], NDArray[np.bool_]]
@@ -81,7 +81,7 @@ def _reason(cell: Cell, first: Body, second: Body, frames: FrameTree) -> str | N
 
 
 def _adjacent(robot: Robot, first: Body, second: Body) -> bool:
-    if first.kind is not Kind.LINK or second.kind is not Kind.LINK:
+    if first.kind is not BodyKind.LINK or second.kind is not BodyKind.LINK:
         return False
     order = ["base", *(joint.name for joint in robot.joints)]
     return abs(order.index(first.part) - order.index(second.part)) == 1
@@ -91,7 +91,7 @@ def _meant(robot: Robot, pair: tuple[str, str], first: Body, second: Body) -> bo
     def answers(body: Body, name: str) -> bool:
         if body.part == name:
             return True
-        carried = body.kind is Kind.OBSTACLE and body.frame > 0
+        carried = body.kind is BodyKind.OBSTACLE and body.frame > 0
         return carried and robot.axis_names[body.frame - 1] == name
 
     a, b = pair
@@ -155,6 +155,9 @@ def overlap_notes(
 def _own(pairs: Pairs, bodies: tuple[Body, ...]) -> NDArray[np.bool_]:
     """Which pairs are of links and tools that the robot carries, (P,)."""
     own = np.array(
-        [body.kind is Kind.LINK or (body.kind is Kind.TOOL and body.frame > 0) for body in bodies]
+        [
+            body.kind is BodyKind.LINK or (body.kind is BodyKind.TOOL and body.frame > 0)
+            for body in bodies
+        ]
     )
     return np.asarray(own[pairs.kept].all(axis=1))

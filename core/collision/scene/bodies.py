@@ -24,7 +24,7 @@ BASE = "base"
 """What the robot's base is called in tables of allowed pairs."""
 
 
-class Kind(StrEnum):
+class BodyKind(StrEnum):
     """What a body is part of."""
 
     LINK = "link"
@@ -48,7 +48,7 @@ class Body:
 
     name: str
     part: str
-    kind: Kind
+    kind: BodyKind
     frame: int
     solid: Solid
     placement: Pose
@@ -76,7 +76,7 @@ def bodies_of(cell: Cell, tool: Tool) -> Bodies:
         solids, odd = _tool_solids(name, cell.tool_geometries[name])
         frame, placement = _tool_place(cell, name)
         notes += odd
-        found += _pieces(name, name, Kind.TOOL, frame, placement, solids)
+        found += _pieces(name, name, BodyKind.TOOL, frame, placement, solids)
     notes += _tool_notes(cell, tool)
     for obstacle in cell.obstacles:
         solids, odd = _obstacle_solids(obstacle.geometry)
@@ -133,7 +133,7 @@ def _links(robot: Robot) -> Iterable[Body]:
             if link == 0:
                 frame, placement = base.frame, base.placement @ shape.placement
             full = part if len(shapes) == 1 else f"{part} ({number})"
-            yield Body(full, part, Kind.LINK, frame, shape.shape, placement)
+            yield Body(full, part, BodyKind.LINK, frame, shape.shape, placement)
 
 
 def _present_tools(cell: Cell, mounted: Tool) -> list[str]:
@@ -168,11 +168,11 @@ def _obstacle(robot: Robot, obstacle: Obstacle, solids: list[Solid]) -> list[Bod
     carrier = obstacle.carried_by
     frame = WORLD if carrier is None else frame_of_axis(robot, carrier)
     name = obstacle.name
-    return _pieces(name, name, Kind.OBSTACLE, frame, obstacle.geometry.placement, solids)
+    return _pieces(name, name, BodyKind.OBSTACLE, frame, obstacle.geometry.placement, solids)
 
 
 def _pieces(
-    name: str, part: str, kind: Kind, frame: int, placement: Pose, solids: list[Solid]
+    name: str, part: str, kind: BodyKind, frame: int, placement: Pose, solids: list[Solid]
 ) -> list[Body]:
     if len(solids) == 1:
         return [Body(name, part, kind, frame, solids[0], placement)]

@@ -27,7 +27,7 @@ from .segments import JOINT_SEGMENT, EndsGradient, SegmentsGradient
 
 
 @dataclass
-class Edges:
+class CornerEdges:
     """Joint states at the edges of the corners blended in joint space; or their gradient.
 
     Args:
@@ -39,7 +39,7 @@ class Edges:
     ddq: FloatArray
 
     @classmethod
-    def of_joint_legs(cls, layout: Layout) -> Edges:
+    def of_joint_legs(cls, layout: Layout) -> CornerEdges:
         """Edges on the joint lines; those on other legs are zero."""
         ends, s = layout.segments.ends, layout.segments
         reach = layout.corners.reach[:, POSITION]
@@ -52,19 +52,19 @@ class Edges:
         return cls(q, dq, np.zeros_like(q))
 
     @classmethod
-    def zeros_like(cls, edges: Edges) -> Edges:
+    def zeros_like(cls, edges: CornerEdges) -> CornerEdges:
         """A gradient to add to."""
         return cls(*(np.zeros_like(edges.q) for _ in range(3)))
 
 
 def pull_joint_legs(
     layout: Layout,
-    bar: Edges,
+    bar: CornerEdges,
     reach_bar: FloatArray,
     segments_bar: SegmentsGradient,
     ends_bar: EndsGradient,
 ) -> None:
-    """Reverse of `Edges.of_joint_legs`."""
+    """Reverse of `CornerEdges.of_joint_legs`."""
     s = layout.segments
     reach = layout.corners.reach[:, POSITION]
     for side, which, near, sign in ((0, slice(None, -1), 1, -1.0), (1, slice(1, None), 0, 1.0)):
@@ -78,7 +78,7 @@ def pull_joint_legs(
         segments_bar.scale[which] -= np.sum(dq_bar * step, 1) / scale[:, 0] ** 2
 
 
-def make_joint_curves(layout: Layout, blend: Blend, edges: Edges) -> Curves:
+def make_joint_curves(layout: Layout, blend: Blend, edges: CornerEdges) -> Curves:
     """2 M − 1 curves: the joint moves', and from M on the corners'."""
     s = layout.segments
     count = len(s.scale)
@@ -104,13 +104,13 @@ def make_joint_curves(layout: Layout, blend: Blend, edges: Edges) -> Curves:
 def pull_joint_curves(
     layout: Layout,
     blend: Blend,
-    edges: Edges,
+    edges: CornerEdges,
     bar: Curves,
     layout_bar: LayoutGradient,
     segments_bar: SegmentsGradient,
     ends_bar: EndsGradient,
     blend_bar: BlendGradient,
-) -> Edges:
+) -> CornerEdges:
     """Reverse of `make_joint_curves`; returns the edges' gradient."""
     s = layout.segments
     count = len(s.scale)
@@ -127,7 +127,7 @@ def pull_joint_curves(
     slopes_bar = pull_blend_windows(layout, POSITION, slopes, bar.window[count:], layout_bar)
     blend_bar.slopes += slopes_bar.sum(0)
     blend_bar.coefficients += bar.coefficients
-    out = Edges.zeros_like(edges)
+    out = CornerEdges.zeros_like(edges)
     close = bar.control[count:, 3]
     before, after = layout.extent[:, POSITION, :1], layout.extent[:, POSITION, 1:]
     out.q[:, 0] += bar.control[count:, 0] - close

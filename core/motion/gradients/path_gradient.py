@@ -9,7 +9,7 @@ import numpy as np
 from ...arrays import FloatArray
 from ..geometry.corners import POSITION, STOP, Corners, ZoneGradient
 from ..geometry.curves import Samples, TcpCurves
-from ..geometry.joint_curves import Edges, pull_joint_curves, pull_joint_legs
+from ..geometry.joint_curves import CornerEdges, pull_joint_curves, pull_joint_legs
 from ..geometry.layout import LayoutGradient, pull_layout
 from ..geometry.segments import EndsGradient, SegmentsGradient, pull_segments
 from ..geometry.tcp_curves import pull_tcp_curves
@@ -172,7 +172,9 @@ def pull_corners(
                     targets[name][index] += bar * part
 
 
-def _pull_edges(path: Path, bar: Edges, tcp_bar: TcpCurves, layout_bar: LayoutGradient) -> None:
+def _pull_edges(
+    path: Path, bar: CornerEdges, tcp_bar: TcpCurves, layout_bar: LayoutGradient
+) -> None:
     """Reverse of the edges that inverse kinematics found on TCP legs."""
     route, layout = path.route, path.layout
     for run in edge_runs(route, layout):

@@ -19,7 +19,7 @@ from ...arrays import FloatArray, IntArray
 from ...errors import InputError
 from ...robot.kinematics.lean import inner, lean
 from ..timing.stamping import Stamp
-from ..timing.stamping_kernels import CEILING, NEXT, Rows, bound_normal, half_plane
+from ..timing.stamping_kernels import CEILING, NEXT, StampRows, bound_normal, half_plane
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,7 +55,7 @@ def stamp_adjoint(
     x_seed = _seed(x_bar, "x_bar", count)
     t_seed = _seed(t_bar, "t_bar", count)
     spacing, ceiling, top = np.zeros(count), np.zeros(count + 1), np.zeros(count + 1)
-    out = Rows(*(np.zeros(limits.a.shape) for _ in range(4)))
+    out = StampRows(*(np.zeros(limits.a.shape) for _ in range(4)))
     pull_times(limits.spacing, stamp.x, t_seed, x_seed, spacing)
     pull_forth(limits.spacing, limits.rows, stamp.x, stamp.source, x_seed, top, out, spacing)
     free_start = stamp.x[0] < stamp.top[0]
@@ -120,8 +120,8 @@ def _add_row(
     spacing: FloatArray,
     y: float,
     z: float,
-    rows: Rows,
-    out: Rows,
+    rows: StampRows,
+    out: StampRows,
     spacing_bar: FloatArray,
 ) -> None:
     """Add m · (dh - dn · (y, z)) of a row's half-plane to the derivatives of its numbers."""
@@ -143,12 +143,12 @@ def _add_row(
 @lean
 def pull_forth(
     spacing: FloatArray,
-    rows: Rows,
+    rows: StampRows,
     x: FloatArray,
     source: IntArray,
     x_bar: FloatArray,
     top_bar: FloatArray,
-    out: Rows,
+    out: StampRows,
     spacing_bar: FloatArray,
 ) -> None:
     """Pull ``x_bar`` back through the sweep forth; ``x_bar[0]`` is complete afterwards."""
@@ -167,7 +167,7 @@ def pull_forth(
 
 @inner
 def _normal(
-    code: int, k: int, w: float, rows: Rows, ceiling: float, following: float
+    code: int, k: int, w: float, rows: StampRows, ceiling: float, following: float
 ) -> tuple[float, float]:
     """(p, q) of any half-plane of interval k."""
     if code >= 0:
@@ -180,13 +180,13 @@ def _normal(
 @lean
 def pull_back(
     spacing: FloatArray,
-    rows: Rows,
+    rows: StampRows,
     ceiling: FloatArray,
     top: FloatArray,
     partner: FloatArray,
     pair: IntArray,
     top_bar: FloatArray,
-    out: Rows,
+    out: StampRows,
     spacing_bar: FloatArray,
     ceiling_bar: FloatArray,
 ) -> None:

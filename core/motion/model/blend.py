@@ -28,7 +28,7 @@ from numpy.polynomial import polynomial as P
 
 from ...arrays import FloatArray
 from ...errors import InputError
-from .figures import Fit, Stage, check_figures, figure
+from .figures import FitRange, Stage, check_figures, figure
 from .kinds import Choice, Row
 
 BASIS = 6
@@ -71,7 +71,7 @@ class Blend:
         unit="1",
         default=(),
         always=True,
-        fit=Fit(-8.0, 8.0, 0.5),
+        fit=FitRange(-8.0, 8.0, 0.5),
     )
 
     def __post_init__(self) -> None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...errors import InputError
-from .figures import Fit, Stage, Tables, check_figures, figure, member
+from .figures import FitRange, Stage, Tables, check_figures, figure, member
 from .kinds import FINITE, NOT_NEGATIVE, RealNumber, Row, Whole
 
-_LEAD = Fit(-5e-3, 5e-3, 1e-4)
+_LEAD = FitRange(-5e-3, 5e-3, 1e-4)
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Coupled:
         RealNumber(),
         "share of what the stiffness of that one alone lets it give way by",
         unit="1",
-        fit=Fit(-2.0, 2.0, 0.1),
+        fit=FitRange(-2.0, 2.0, 0.1),
     )
 
 
@@ -70,7 +70,7 @@ class Elasticity:
         "how much farther a joint gives way at most before its gear is stiff; joints beyond do not",
         unit="rad",
         default=(),
-        fit=Fit(0.0, 5e-3, 1e-4),
+        fit=FitRange(0.0, 5e-3, 1e-4),
     )
     lag: tuple[float, ...] = figure(
         "lag_s",
@@ -90,7 +90,7 @@ class Elasticity:
         "joints beyond hold none",
         unit="1",
         default=(),
-        fit=Fit(-10.0, 10.0, 0.5),
+        fit=FitRange(-10.0, 10.0, 0.5),
     )
     spring: tuple[float, ...] = figure(
         "spring_rad",

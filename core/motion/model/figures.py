@@ -18,7 +18,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from ...errors import InputError
-from .kinds import Kind, words_of
+from .kinds import FigureKind, words_of
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -44,7 +44,7 @@ class Stage(IntEnum):
 
 
 @dataclass(frozen=True)
-class Fit:
+class FitRange:
     """How ``flyby identify`` fits a number.
 
     Args:
@@ -74,12 +74,12 @@ class Figure:
     """
 
     key: str
-    kind: Kind
+    kind: FigureKind
     stage: Stage
     unit: str
     help: str
     always: bool = False
-    fit: Fit | None = None
+    fit: FitRange | None = None
     neutral: Any = None
     path: tuple[str, ...] = ()
 
@@ -114,10 +114,10 @@ class Member:
     """
 
     key: str
-    kind: Kind
+    kind: FigureKind
     unit: str
     help: str
-    fit: Fit | None = None
+    fit: FitRange | None = None
     name: str = ""
 
 
@@ -137,7 +137,7 @@ class Tables:
         return _members(self.of)
 
     def read(self, key: str, entry: Any) -> tuple[Any, ...]:
-        """See `Kind`."""
+        """See `FigureKind`."""
         if not isinstance(entry, list):
             raise InputError(f"{key}: a list of tables is expected, not {entry!r}")
         return tuple(self._read(f"{key}[{k}]", one) for k, one in enumerate(entry))
@@ -150,7 +150,7 @@ class Tables:
         return self.of(**read)
 
     def check(self, key: str, value: Any) -> None:
-        """See `Kind`."""
+        """See `FigureKind`."""
         if len(value) > MOST_TABLES:
             raise InputError(f"{key} has {len(value)} tables; at most {MOST_TABLES} are taken")
         for k, one in enumerate(value):
@@ -160,7 +160,7 @@ class Tables:
                 member.kind.check(f"{key}[{k}].{member.key}", getattr(one, member.name))
 
     def entry(self, value: Any) -> Any:
-        """See `Kind`."""
+        """See `FigureKind`."""
         return [{m.key: m.kind.entry(getattr(one, m.name)) for m in self.members} for one in value]
 
     def __str__(self) -> str:
@@ -169,14 +169,14 @@ class Tables:
 
 def figure(
     key: str,
-    kind: Kind,
+    kind: FigureKind,
     stage: Stage,
     help: str,
     *,
     default: Any,
     unit: str = "",
     always: bool = False,
-    fit: Fit | None = None,
+    fit: FitRange | None = None,
 ) -> Any:
     """A field of a motion model, or of a part of one, that is a figure; see `Figure`."""
     said = Figure(key, kind, stage, unit, help, always, fit, neutral=default)
@@ -188,7 +188,9 @@ def part(key: str, default: DataclassInstance) -> Any:
     return field(default=default, metadata={_PART: key})
 
 
-def member(key: str, kind: Kind, help: str, *, unit: str = "", fit: Fit | None = None) -> Any:
+def member(
+    key: str, kind: FigureKind, help: str, *, unit: str = "", fit: FitRange | None = None
+) -> Any:
     """A field of one of several tables; see `Member`."""
     return field(metadata={_FIGURE: Member(key, kind, unit, help, fit)})
 

@@ -63,7 +63,7 @@ POSITIVE = Range(0.0, above=True)
 NOT_NEGATIVE = Range(0.0)
 
 
-class Kind(Protocol):
+class FigureKind(Protocol):
     """How figures of a kind are stated."""
 
     def read(self, key: str, entry: Any) -> Any:
@@ -100,16 +100,16 @@ class RealNumber:
     optional: bool = False
 
     def read(self, key: str, entry: Any) -> float | None:
-        """See `Kind`."""
+        """See `FigureKind`."""
         return None if self.optional and entry == NONE else float(number(key, entry))
 
     def check(self, key: str, value: Any) -> None:
-        """See `Kind`."""
+        """See `FigureKind`."""
         if not (self.optional and value is None):
             self.within.check(key, value)
 
     def entry(self, value: Any) -> Any:
-        """See `Kind`."""
+        """See `FigureKind`."""
         return NONE if value is None else value
 
     def __str__(self) -> str:
@@ -121,18 +121,18 @@ class Whole:
     """A whole number that counts something, such as joints from one on; nothing to fit."""
 
     def read(self, key: str, entry: Any) -> int:
-        """See `Kind`."""
+        """See `FigureKind`."""
         if isinstance(entry, bool) or not isinstance(entry, int):
             raise InputError(f"{key}: a whole number is expected, not {entry!r}")
         return entry
 
     def check(self, key: str, value: Any) -> None:
-        """See `Kind`."""
+        """See `FigureKind`."""
         if self.read(key, value) < 1:
             raise InputError(f"{key} counts from one, not {value}")
 
     def entry(self, value: Any) -> Any:
-        """See `Kind`."""
+        """See `FigureKind`."""
         return value
 
     def __str__(self) -> str:
@@ -156,7 +156,7 @@ class Row:
     single: bool = False
 
     def read(self, key: str, entry: Any) -> tuple[float, ...]:
-        """See `Kind`."""
+        """See `FigureKind`."""
         if self.single and not isinstance(entry, list):
             value = float(number(key, entry))
             return () if value == 0.0 else (value,)
@@ -165,7 +165,7 @@ class Row:
         return tuple(float(number(f"{key}[{k}]", value)) for k, value in enumerate(entry))
 
     def check(self, key: str, value: Any) -> None:
-        """See `Kind`."""
+        """See `FigureKind`."""
         if not isinstance(value, tuple):
             raise InputError(f"{key}: several numbers are expected, not {value!r}")
         if len(value) > MOST_ENTRIES:
@@ -174,7 +174,7 @@ class Row:
             self.within.check(f"{key}[{k}]", one)
 
     def entry(self, value: Any) -> Any:
-        """See `Kind`."""
+        """See `FigureKind`."""
         return list(value)
 
     def __str__(self) -> str:
@@ -192,19 +192,19 @@ class Choice:
     words: type[StrEnum] | tuple[str, ...]
 
     def read(self, key: str, entry: Any) -> Any:
-        """See `Kind`."""
+        """See `FigureKind`."""
         if not isinstance(entry, str) or entry not in tuple(self.words):
             raise InputError(f"{key}: {self} is expected, not {entry!r}")
         return self.words(entry) if isinstance(self.words, type) else entry
 
     def check(self, key: str, value: Any) -> None:
-        """See `Kind`."""
+        """See `FigureKind`."""
         known = isinstance(value, self.words if isinstance(self.words, type) else str)
         if not known or value not in tuple(self.words):
             raise InputError(f"{key}: {self} is expected, not {value!r}")
 
     def entry(self, value: Any) -> Any:
-        """See `Kind`."""
+        """See `FigureKind`."""
         return str(value)
 
     def __str__(self) -> str:
@@ -213,21 +213,21 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Truth:
+class TruthValue:
     """True or false."""
 
     def read(self, key: str, entry: Any) -> bool:
-        """See `Kind`."""
+        """See `FigureKind`."""
         self.check(key, entry)
         return bool(entry)
 
     def check(self, key: str, value: Any) -> None:
-        """See `Kind`."""
+        """See `FigureKind`."""
         if not isinstance(value, bool):
             raise InputError(f"{key}: true or false is expected, not {value!r}")
 
     def entry(self, value: Any) -> Any:
-        """See `Kind`."""
+        """See `FigureKind`."""
         return value
 
     def __str__(self) -> str:

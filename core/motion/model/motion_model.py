@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from ...display import counted, in_line
 from .blend import PARABOLA, Blend
 from .elasticity import RIGID, Elasticity
-from .figures import Figure, Fit, Stage, check_figures, figure, figures_of, part
-from .kinds import POSITIVE, Choice, Range, RealNumber, Row, Truth
+from .figures import Figure, FitRange, Stage, check_figures, figure, figures_of, part
+from .kinds import POSITIVE, Choice, Range, RealNumber, Row, TruthValue
 from .provenance import Provenance
 from .rules import ArcTurn, DurationRule, LineTurn, OrientationZone, Overlap, Pace, Space
 from .servo import IDEAL, Servo
@@ -79,7 +79,7 @@ class MotionModel:
         unit="1",
         default=0.5,
         always=True,
-        fit=Fit(0.0, 0.5),
+        fit=FitRange(0.0, 0.5),
     )
     orientation_zone: OrientationZone = figure(
         "zone.orientation",
@@ -99,7 +99,7 @@ class MotionModel:
     )
     stops_at_pure_reorientation: bool = figure(
         "zone.stops_at_pure_reorientation",
-        Truth(),
+        TruthValue(),
         Stage.PATH,
         "no zone between a TCP move and a mere reorientation",
         default=False,
@@ -122,7 +122,7 @@ class MotionModel:
         "over which a program's time comes up to speed when it starts",
         unit="s",
         default=0.0,
-        fit=Fit(),
+        fit=FitRange(),
     )
     ramp: float = figure(
         "time.ramp_s",
@@ -132,7 +132,7 @@ class MotionModel:
         "smoothed: accelerations along the path rise and fall over this time",
         unit="s",
         default=0.0,
-        fit=Fit(0.0, 0.5, 0.02),
+        fit=FitRange(0.0, 0.5, 0.02),
     )
     smoothing: tuple[float, ...] = figure(
         "time.smoothing_s",
@@ -142,7 +142,7 @@ class MotionModel:
         unit="s",
         default=(),
         always=True,
-        fit=Fit(0.0, 0.5, 0.01),
+        fit=FitRange(0.0, 0.5, 0.01),
     )
     settling: float | None = figure(
         "time.settling_s",
@@ -152,7 +152,7 @@ class MotionModel:
         "motion has come to rest, which takes the whole window of ramp and smoothing",
         unit="s",
         default=None,
-        fit=Fit(0.0, 1.0, 0.1),
+        fit=FitRange(0.0, 1.0, 0.1),
     )
     in_position: float = figure(
         "time.in_position_rad",
@@ -162,7 +162,7 @@ class MotionModel:
         "for waits of one length",
         unit="rad (m of a linear axis)",
         default=0.0,
-        fit=Fit(0.0, 0.1, 2e-3),
+        fit=FitRange(0.0, 0.1, 2e-3),
     )
     in_position_time: float | None = figure(
         "time.in_position_time_s",
@@ -171,7 +171,7 @@ class MotionModel:
         "for how long they are to be; without, as long as the whole window of ramp and smoothing",
         unit="s",
         default=None,
-        fit=Fit(0.0, 1.0, 0.05),
+        fit=FitRange(0.0, 1.0, 0.05),
     )
     jerk: float | None = figure(
         "time.jerk",
@@ -182,7 +182,7 @@ class MotionModel:
         unit="1/s",
         default=None,
         always=True,
-        fit=Fit(),
+        fit=FitRange(),
     )
     # Where corners of superposed legs are too sharp for their speed, it makes blends smaller.
     tcp_acceleration: float | None = figure(
@@ -192,7 +192,7 @@ class MotionModel:
         "along the path, where the program states none",
         unit="m/s²",
         default=None,
-        fit=Fit(),
+        fit=FitRange(),
     )
     reorientation_acceleration: float | None = figure(
         "limit.reorientation_acceleration",
@@ -201,7 +201,7 @@ class MotionModel:
         "of the turn along the path, where the program states none",
         unit="rad/s²",
         default=None,
-        fit=Fit(),
+        fit=FitRange(),
     )
     centripetal: float | None = figure(
         "limit.centripetal",
@@ -211,7 +211,7 @@ class MotionModel:
         "along the path",
         unit="1",
         default=None,
-        fit=Fit(),
+        fit=FitRange(),
     )
     joint_acceleration_scale: tuple[float, ...] = figure(
         "limit.joint_acceleration_scale",
@@ -221,7 +221,7 @@ class MotionModel:
         "keep theirs",
         unit="1",
         default=(),
-        fit=Fit(0.1, 10.0, 0.5),
+        fit=FitRange(0.1, 10.0, 0.5),
     )
     torque: Torque = part("torque", WITHOUT_LIMIT)
     elasticity: Elasticity = part("elasticity", RIGID)

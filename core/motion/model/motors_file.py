@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ...files.tables import Table
+from ...files.tables import TomlTable
 from .consumption import Motors
 
 
@@ -17,7 +17,7 @@ def load_motors(file: str | Path) -> Motors:
     Raises:
         InputError: the file cannot be read, or a key or value is wrong; it names file and key.
     """
-    table = Table.read(file)
+    table = TomlTable.read(file)
     copper = table.numbers("copper_w_per_nm2")
     if min(copper, default=0.0) < 0.0:
         raise table.error("copper_w_per_nm2", f"must be zero or more, not {min(copper):g}")

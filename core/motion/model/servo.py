@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .figures import Fit, Stage, check_figures, figure
+from .figures import FitRange, Stage, check_figures, figure
 from .kinds import FINITE, POSITIVE, RealNumber, Row
 
-_TRAVEL = Fit(1e-5, 0.1, 1e-3)
+_TRAVEL = FitRange(1e-5, 0.1, 1e-3)
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Servo:
         "where it turns back (above zero: ahead); joints beyond are not",
         unit="rad (m of a linear axis)",
         default=(),
-        fit=Fit(-5e-3, 5e-3, 1e-4),
+        fit=FitRange(-5e-3, 5e-3, 1e-4),
     )
     rise: float = figure(
         "friction_rise_rad",

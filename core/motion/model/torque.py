@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...errors import InputError
-from .figures import Fit, Stage, Tables, check_figures, figure, member
+from .figures import FitRange, Stage, Tables, check_figures, figure, member
 from .kinds import NOT_NEGATIVE, POSITIVE, Row, Whole
 
 
@@ -21,7 +21,7 @@ class Borne:
         Row(NOT_NEGATIVE),
         "share of the limit per N m, times kg, of each joint before that, first to last",
         unit="s²/m²",
-        fit=Fit(0.0, 10.0, 0.05),
+        fit=FitRange(0.0, 10.0, 0.05),
     )
 
 
@@ -41,7 +41,7 @@ class Torque:
         "joints that have one are limited by torque, those beyond by their acceleration",
         unit="s²/rad",
         default=(),
-        fit=Fit(1e-6, 10.0, 0.05),
+        fit=FitRange(1e-6, 10.0, 0.05),
     )
     carried: tuple[Borne, ...] = figure(
         "carried", Tables(Borne), Stage.TIMING, "masses on the arm", default=()
@@ -53,7 +53,7 @@ class Torque:
         "share of the masses' weight that the joint's motor holds; joints beyond hold none",
         unit="1",
         default=(),
-        fit=Fit(0.0, 5.0, 0.5),
+        fit=FitRange(0.0, 5.0, 0.5),
     )
     fade: tuple[float, ...] = figure(
         "fade_s2",
@@ -62,7 +62,7 @@ class Torque:
         "share of the limit that is lost per square of the joint's speed",
         unit="s²/rad²",
         default=(),
-        fit=Fit(0.0, 10.0, 0.2),
+        fit=FitRange(0.0, 10.0, 0.2),
     )
 
     def __post_init__(self) -> None:

@@ -31,7 +31,7 @@ from numba.extending import register_jitable
 
 from ...arrays import FloatArray, IntArray
 from ...robot.kinematics.chain import Chain
-from ...robot.kinematics.chain_bounds import Columns, bound_columns, turn_columns
+from ...robot.kinematics.chain_bounds import ColumnBounds, bound_columns, turn_columns
 from ...robot.kinematics.lean import inner
 from ...robot.kinematics.linear import factor, invert_factors, solve
 
@@ -84,7 +84,7 @@ class TubeWork(NamedTuple):
     values: FloatArray
     R: FloatArray
     p: FloatArray
-    bound: Columns
+    bound: ColumnBounds
 
 
 @register_jitable
@@ -112,7 +112,9 @@ def make_tube_work(size: int, joints: int) -> TubeWork:
         np.empty(joints),
         np.empty((3, 3)),
         np.empty(3),
-        Columns(columns[0], columns[1], columns[2], columns[3], columns[4], columns[5], columns[6]),
+        ColumnBounds(
+            columns[0], columns[1], columns[2], columns[3], columns[4], columns[5], columns[6]
+        ),
     )
 
 

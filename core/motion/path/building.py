@@ -18,7 +18,7 @@ from ...robot.singularities import nearest_singularity
 from ..geometry.corners import JOINT_CORNER, POSITION
 from ..geometry.curves import Curves, Samples, TcpCurves
 from ..geometry.cutting import cut
-from ..geometry.joint_curves import Edges, make_joint_curves
+from ..geometry.joint_curves import CornerEdges, make_joint_curves
 from ..geometry.layout import Layout, flat_corners
 from ..geometry.pieces import Pieces, Sampling
 from ..geometry.segments import JOINT_SEGMENT, make_segments
@@ -55,7 +55,7 @@ def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
         raise OverlapError(route.moves[corners.overlapping[0]], corners.overlapping)
     layout = Layout.of(segments, corners)
     tcp = make_tcp_curves(layout, model.tcp, model.orientation)
-    edges = Edges.of_joint_legs(layout)
+    edges = CornerEdges.of_joint_legs(layout)
     for run in edge_runs(route, layout):
         states, _ = _follow(route, layout, tcp.curves, run)
         for array, part in ((edges.q, states.q), (edges.dq, states.dq), (edges.ddq, states.ddq)):
@@ -74,7 +74,12 @@ def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
 
 
 def _sampled(
-    route: Route, layout: Layout, curves: TcpCurves, joint: Curves, edges: Edges, pieces: Pieces
+    route: Route,
+    layout: Layout,
+    curves: TcpCurves,
+    joint: Curves,
+    edges: CornerEdges,
+    pieces: Pieces,
 ) -> tuple[FloatArray, States, FloatArray]:
     """σ (S,), states and conditioning (S,) of the samples."""
     sigma = pieces.sigma()
@@ -177,7 +182,7 @@ def edge_runs(route: Route, layout: Layout) -> Iterator[TcpRun]:
 
 
 @dataclass(frozen=True)
-class Stretch:
+class SampledStretch:
     """Consecutive samples of one space and one chain."""
 
     chain: Chain
@@ -187,7 +192,7 @@ class Stretch:
     stop: int
 
 
-def stretches(route: Route, layout: Layout, pieces: Pieces) -> Iterator[Stretch]:
+def stretches(route: Route, layout: Layout, pieces: Pieces) -> Iterator[SampledStretch]:
     """The stretches of a path, in its order."""
     first = pieces.first_sample
     begin = 0
@@ -199,16 +204,16 @@ def stretches(route: Route, layout: Layout, pieces: Pieces) -> Iterator[Stretch]
             if same_space and route.chains[pieces.segment[p]] is chain:
                 continue
         space = bool(pieces.joint_space[begin])
-        yield Stretch(chain, space, begin, int(first[begin]), int(first[p]))
+        yield SampledStretch(chain, space, begin, int(first[begin]), int(first[p]))
         begin = p
 
 
 def _tcp_run(
     route: Route,
     layout: Layout,
-    edges: Edges,
+    edges: CornerEdges,
     pieces: Pieces,
-    stretch: Stretch,
+    stretch: SampledStretch,
     piece: IntArray,
     sigma: FloatArray,
 ) -> TcpRun:

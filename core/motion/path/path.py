@@ -15,7 +15,7 @@ from ...robot.kinematics.chain import Chain
 from ...robot.model import Robot
 from ..geometry.corners import Corners
 from ..geometry.curves import Curves
-from ..geometry.joint_curves import Edges
+from ..geometry.joint_curves import CornerEdges
 from ..geometry.layout import Layout, flat_corners
 from ..geometry.pieces import Pieces
 from ..geometry.segments import Ends, Segments
@@ -102,7 +102,7 @@ class Path:
     layout: Layout
     tcp: TcpGeometry
     joint: Curves
-    edges: Edges
+    edges: CornerEdges
     pieces: Pieces
     sigma: FloatArray
     states: States

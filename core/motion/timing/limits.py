@@ -29,7 +29,7 @@ from ..path.tcp_samples import States
 from . import stamping
 from .between_samples import lower_between
 from .rates import rates, sideways
-from .stamping_kernels import Rows
+from .stamping_kernels import StampRows
 from .superposed_legs import SuperposedZones, lower_ceilings, room_along
 from .torque_rows import Shares, torque_rows
 
@@ -162,7 +162,7 @@ def _fill(
     centripetal: float,
     room: FloatArray,
     place: IntArray,
-    rows: Rows,
+    rows: StampRows,
     ceiling: FloatArray,
     binding: IntArray,
 ) -> None:
@@ -254,7 +254,7 @@ def path_limits(
     count, plain = int(pieces.first_interval[-1]), len(limited)
     torques = 0 if shares is None else 2 * shares.h.shape[1]
     if known is None:
-        rows = Rows(*(np.zeros((count, 2, plain + torques)) for _ in range(4)))
+        rows = StampRows(*(np.zeros((count, 2, plain + torques)) for _ in range(4)))
     else:
         place[:] = -1
         rows = known.rows.rows

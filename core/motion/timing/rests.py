@@ -44,7 +44,7 @@ class InPosition:
 
 
 @dataclass(frozen=True)
-class Entries:
+class WindowEntries:
     """How the axes come within a window round S stops.
 
     Args:
@@ -82,7 +82,7 @@ class Rests:
     most: float
     in_position: InPosition | None
     approach: FloatArray
-    entries: Entries | None
+    entries: WindowEntries | None
     counted: NDArray[np.bool_]
 
     @classmethod
@@ -124,7 +124,7 @@ class Rests:
 
 def _entries(
     pieces: Pieces, along: ArcLength, stamp: Stamp, knot: IntArray, window: float
-) -> Entries:
+) -> WindowEntries:
     """When the axes are within a window round each stop for good."""
     begin = np.concatenate([np.zeros(min(len(knot), 1), dtype=np.int64), knot[:-1]])
     ends, q = pieces.interval_ends, along.states.q
@@ -143,7 +143,7 @@ def _entries(
     x0, x1 = stamp.x[k], stamp.x[k + 1]
     pace = np.sqrt(x0) + np.sqrt(x0 + z * (x1 - x0))
     t[outside] = stamp.t[k] + 2.0 * z * along.spacing[k] / pace
-    return Entries(begin, interval, share, axis, t)
+    return WindowEntries(begin, interval, share, axis, t)
 
 
 def _shares(

@@ -104,9 +104,9 @@ class StampLimits:
             raise InputError(f"ceiling has shape {self.ceiling.shape}; it must be ({count + 1},)")
 
     @property
-    def rows(self) -> kernels.Rows:
+    def rows(self) -> kernels.StampRows:
         """The rows, as the kernels take them."""
-        return kernels.Rows(self.a, self.b, self.lower, self.upper)
+        return kernels.StampRows(self.a, self.b, self.lower, self.upper)
 
 
 def joint_limits(

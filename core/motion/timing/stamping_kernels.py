@@ -36,7 +36,7 @@ NONE = -5
 SLOWDOWN = 1e-6
 
 
-class Rows(NamedTuple):
+class StampRows(NamedTuple):
     """Rows of K intervals, (K, 2, R) each; see `stamping.StampLimits`."""
 
     a: FloatArray
@@ -46,7 +46,7 @@ class Rows(NamedTuple):
 
 
 @lean
-def first_unsound_row(rows: Rows) -> int:
+def first_unsound_row(rows: StampRows) -> int:
     """Flat index of the first row that is not finite or forbids u = x = 0; -1 if all are sound."""
     a, b, lower, upper = rows
     for k in range(a.shape[0]):
@@ -106,7 +106,7 @@ def half_plane(
     code: int,
     k: int,
     w: float,
-    rows: Rows,
+    rows: StampRows,
 ) -> tuple[float, float, float]:
     """(p, q, h) of a row's half-plane p y + q z ≤ h in interval k."""
     a, b, lower, upper = rows
@@ -138,7 +138,7 @@ def _rows_hold(
     w: float,
     y: float,
     z: float,
-    rows: Rows,
+    rows: StampRows,
 ) -> bool:
     """Whether all rows of interval k hold at (y, z), up to rounding: a scan without branches."""
     a, b, lower, upper = rows
@@ -161,7 +161,7 @@ def _rows_hold(
 def _fill_polygon(
     k: int,
     w: float,
-    rows: Rows,
+    rows: StampRows,
     ceiling: float,
     following: float,
     planes: FloatArray,
@@ -203,7 +203,7 @@ def _guess(
     code: int,
     k: int,
     w: float,
-    rows: Rows,
+    rows: StampRows,
     ceiling: float,
     following: float,
 ) -> tuple[float, int]:
@@ -221,7 +221,7 @@ def _guess(
 @lean
 def sweep_back(
     spacing: FloatArray,
-    rows: Rows,
+    rows: StampRows,
     ceiling: FloatArray,
     x_end: float,
     planes: FloatArray,
@@ -268,7 +268,7 @@ def _farthest(
     k: int,
     w: float,
     y: float,
-    rows: Rows,
+    rows: StampRows,
     following: float,
 ) -> tuple[float, int]:
     """max z from x_k = y in interval k, and the half-plane that stops it there."""
@@ -302,7 +302,7 @@ def _limit(y: float, top: float, source: int, i: int, j: int) -> int:
 @lean
 def sweep_forth(
     spacing: FloatArray,
-    rows: Rows,
+    rows: StampRows,
     x_start: float,
     top: FloatArray,
     partner: FloatArray,

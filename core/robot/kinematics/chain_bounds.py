@@ -14,7 +14,7 @@ from .chain import Chain
 from .lean import inner
 
 
-class Columns(NamedTuple):
+class ColumnBounds(NamedTuple):
     """Bounds for the K joints of a chain on a box.
 
     Args:
@@ -71,7 +71,7 @@ def turn_columns(
 
 
 @inner
-def bound_columns(chain: Chain, columns: FloatArray, rho: FloatArray, out: Columns) -> None:
+def bound_columns(chain: Chain, columns: FloatArray, rho: FloatArray, out: ColumnBounds) -> None:
     """Fill ``out`` for the box ``rho`` (N,) about the columns (6, K) at its middle.
 
     A joint turns the columns of the joints behind it, and the levers of those before it: products

@@ -43,7 +43,7 @@ class Skip(Generic[Block]):
 
 
 @dataclass(slots=True)
-class Nesting:
+class ActiveBlocks:
     """Which routines and loops are under way.
 
     Attributes:
@@ -74,7 +74,7 @@ class Branches(Generic[Block]):
         skips: how many branches were not taken.
     """
 
-    def __init__(self, analysis: Analysis[Block], course: Course, nesting: Nesting) -> None:
+    def __init__(self, analysis: Analysis[Block], course: Course, nesting: ActiveBlocks) -> None:
         self._analysis = analysis
         self._course = course
         self.nesting = nesting

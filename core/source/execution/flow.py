@@ -34,7 +34,7 @@ from contextlib import contextmanager
 from typing import Generic
 
 from .analysis import Analysis
-from .branches import Branches, Nesting
+from .branches import ActiveBlocks, Branches
 from .endings import Endings, Loop, Passes, Start
 from .host import Host, Undecided
 from .steps import Block
@@ -50,7 +50,7 @@ class Flow(Generic[Block]):
 
     def __init__(self, analysis: Analysis[Block], host: Host) -> None:
         self._host = host
-        self._nesting = Nesting()
+        self._nesting = ActiveBlocks()
         self._branches: Branches[Block] = Branches(analysis, host.course, self._nesting)
         self._endings = Endings(analysis, host, self._branches)
         self.choose = self._branches.choose

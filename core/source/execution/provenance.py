@@ -51,7 +51,7 @@ class Source(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class MovePart:
     """A part of a move (target, speed, zone) before all reads are known.
 
     Args:
@@ -85,7 +85,7 @@ class Reads:
         span = source.span
         self._inside[source.root].add((span.start, span.end, reader))
 
-    def origin(self, part: Part, move: int) -> Origin:
+    def origin(self, part: MovePart, move: int) -> Origin:
         """The origin of a part of a move, when all reads are known."""
         if part.predefined is not None:
             return Origin(Ownership.SHARED, part.span, part.predefined)

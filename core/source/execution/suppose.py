@@ -38,7 +38,7 @@ def is_open(datum: SharedDatum) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class Parts(Generic[Node]):
+class ConditionParts(Generic[Node]):
     """What a condition is made of, as far as it tells what its data are.
 
     Args:
@@ -73,7 +73,7 @@ class Supposing(Generic[Node]):
     """
 
     outputs: Outputs
-    parts: Callable[[Node], Parts[Node]]
+    parts: Callable[[Node], ConditionParts[Node]]
     holds: Callable[[Node], bool | None]
     equate: Callable[[Node, Node | bool], bool]
     forget: Callable[[Node], None]
@@ -119,7 +119,7 @@ class Supposing(Generic[Node]):
             self.outputs.forget(asked)
             self.forget(condition)
 
-    def _stated(self, condition: Node, parts: Parts[Node], truth: bool) -> bool:
+    def _stated(self, condition: Node, parts: ConditionParts[Node], truth: bool) -> bool:
         """Whether a condition states the value that a datum has: ``flag``, ``n = 1``."""
         if parts.sides is None:
             return self.equate(condition, truth)

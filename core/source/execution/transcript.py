@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from ...errors import Note, Span
 from ...program.move import Move, Opaque, Statement, Wait
 from ...program.origin import MoveOrigin
-from .provenance import Part, Reads
+from .provenance import MovePart, Reads
 
 _SHOWN = 4
 """Names that a note on kept statements lists."""
@@ -25,10 +25,10 @@ class MoveParts:
     """
 
     statement: Span
-    target: Part
-    speed: Part
-    zone: Part
-    via: Part | None = None
+    target: MovePart
+    speed: MovePart
+    zone: MovePart
+    via: MovePart | None = None
 
 
 @dataclass

@@ -22,7 +22,7 @@ from ..execution.endings import Loop
 from ..execution.flow import Flow
 from ..execution.limits import Meter
 from ..execution.outputs import Outputs
-from ..execution.provenance import Part, Reads
+from ..execution.provenance import MovePart, Reads
 from ..execution.scopes import unknown_name
 from ..execution.steps import NOTHING
 from ..execution.transcript import MoveParts, Transcript
@@ -309,7 +309,7 @@ class _Interpreter:
         self._out.emit_move(move, MoveParts(statement.span, target, speed, zone, via))
         self.place = move
 
-    def _operand(self, operand: Operand) -> tuple[tuple[float, ...], Part]:
+    def _operand(self, operand: Operand) -> tuple[tuple[float, ...], MovePart]:
         """The numbers of a part of a move, and where they stand."""
         if operand.point is None:
             numbers = tuple(self._values.number(one) for one in operand.numbers)
@@ -317,7 +317,7 @@ class _Interpreter:
                 Literal(one.span, None, (one.span,)) if isinstance(one, Number) else None
                 for one in operand.numbers
             )
-            return numbers, Part(operand.span, sources if any(sources) else ())
+            return numbers, MovePart(operand.span, sources if any(sources) else ())
         index = self._values.number(operand.point.index)
         key = operand.point.word, int(index)
         point = self._program.points.get(key)
@@ -327,4 +327,4 @@ class _Interpreter:
             raise SourceError(unknown_name("point", text, known, "define it"), operand.point.span)
         numbers = tuple(self._values.number(one) for one in point.numbers)
         spans = tuple(one.span if isinstance(one, Number) else None for one in point.numbers)
-        return numbers, Part(operand.span, (Literal(point.span, text, spans),))
+        return numbers, MovePart(operand.span, (Literal(point.span, text, spans),))

@@ -8,17 +8,17 @@ from ...errors import InputError, Span
 from ...program.move import Move
 from ...program.program import Program
 from ..patch.edits import Edit, reading_of
-from ..patch.plan import Plan, Wish, patch_program
-from ..patch.uses import Kind, MovePart, Use
+from ..patch.plan import PatchPlan, Wish, patch_program
+from ..patch.uses import MovePart, Use, UseKind
 from ..reading import Files
-from ..write.options import PatchOptions
+from ..write.options import PatcherOptions
 
-NumbersOf = Callable[[Kind, MovePart, Move], Sequence[float]]
+NumbersOf = Callable[[UseKind, MovePart, Move], Sequence[float]]
 """The numbers of a part of a move, in the order in which a line has them."""
 
 
 def patch_lines(
-    program: Program, options: PatchOptions, numbers: NumbersOf, number: Callable[[float], str]
+    program: Program, options: PatcherOptions, numbers: NumbersOf, number: Callable[[float], str]
 ) -> Files:
     """The files of a program with the numbers that it has now.
 
@@ -45,7 +45,7 @@ def patch_lines(
 
     literals = _Literals(text_at, numbers, number)
 
-    def edits(plan: Plan) -> list[Edit]:
+    def edits(plan: PatchPlan) -> list[Edit]:
         return [edit for use in plan.changes for edit in _edits(plan, use, literals)]
 
     return patch_program(program, options, literals, edits)
@@ -84,7 +84,7 @@ class _Literals:
         return Wish(texts, complete=not missing)
 
 
-def _edits(plan: Plan, use: Use, literals: _Literals) -> list[Edit]:
+def _edits(plan: PatchPlan, use: Use, literals: _Literals) -> list[Edit]:
     try:
         against = plan.against(use)
         if plan.changeable(use) and plan.wish(use).complete and not against:

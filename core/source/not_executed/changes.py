@@ -10,7 +10,7 @@ from ...program.origin import Origin
 from ...program.program import Program
 from ..patch.edits import changed_moves, reading_of
 from ..patch.insertions import changes_of
-from ..patch.uses import Kind
+from ..patch.uses import UseKind
 from .executed import lines_of_span
 
 
@@ -34,7 +34,7 @@ def changed_numbers(before: Program, after: Program) -> list[ChangedNumber]:
     found: dict[object, ChangedNumber] = {}
     _, kept = changes_of(before, after)
     for index, old, new in changed_moves(before, after):
-        for kind in Kind:
+        for kind in UseKind:
             origin: Origin | None = getattr(old.origin, kind, None)
             if origin is None or getattr(old, kind) == getattr(new, kind):
                 continue
@@ -65,7 +65,7 @@ def changed_statements(before: Program, after: Program) -> list[tuple[int, Span]
         else:
             parts = (
                 getattr(old.origin, k, None)
-                for k in Kind
+                for k in UseKind
                 if getattr(old, k, 0) != getattr(new, k, 0)
             )
             spans = [span for part in parts if part is not None for span in part.numbers]
@@ -78,6 +78,6 @@ def changed_statements(before: Program, after: Program) -> list[tuple[int, Span]
     return [(index, span) for span, index in found.items()]
 
 
-def _same_datum(old: Origin, new: Move, kind: Kind) -> bool:
+def _same_datum(old: Origin, new: Move, kind: UseKind) -> bool:
     origin: Origin | None = getattr(new.origin, kind, None)
     return origin is not None and origin.datum == old.datum

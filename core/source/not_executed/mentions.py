@@ -13,7 +13,7 @@ from ..reading import Reading
 from ..text.files import SourceText, unbroken
 from ..text.references import Reference, reference_of, references
 from .executed import executed
-from .renewal import Blocks, Place
+from .renewal import FileBlocks, Place
 
 ASSIGNED = re.compile(r"[ \t]*:?=(?!=)")
 _ARGUMENT = re.compile(r"[(,][ \t]*$|\\[ \t]*$")
@@ -101,7 +101,7 @@ class ProgramText:
             name: [UnsaidNames.of(one, wording) for one in wording.unsaid(text)]
             for name, text in self.texts.items()
         }
-        self.blocks = Blocks(self.texts, self.routines, wording)
+        self.blocks = FileBlocks(self.texts, self.routines, wording)
         self._executed = executed(program, reading)
 
     def definition(self, datum: Reference, number: Span) -> Reference | None:

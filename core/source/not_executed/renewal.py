@@ -39,7 +39,7 @@ class _Mark:
     end: int
 
 
-class Blocks:
+class FileBlocks:
     """The blocks and calls of files.
 
     Args:

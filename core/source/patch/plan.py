@@ -18,9 +18,9 @@ from ...errors import FlybyError, InputError, Span
 from ...program.origin import Ownership
 from ...program.program import Program
 from ..reading import Files
-from ..write.options import PatchOptions, Sharing
+from ..write.options import PatcherOptions, Sharing
 from .edits import Edit, alike, listed, patched, reading_of
-from .uses import Kind, OtherChange, Use, uses
+from .uses import OtherChange, Use, UseKind, uses
 
 Texts = Mapping[Span, str]
 """What shall stand at a span."""
@@ -58,7 +58,7 @@ class Literals(Protocol):
         """
 
 
-class Plan:
+class PatchPlan:
     """Finds what changes in place.
 
     Args:
@@ -69,7 +69,7 @@ class Plan:
         self,
         parts: Sequence[Use],
         literals: Literals,
-        options: PatchOptions,
+        options: PatcherOptions,
         in_place: Collection[Ownership],
     ) -> None:
         self.parts = parts
@@ -77,9 +77,9 @@ class Plan:
         self._literals = literals
         self._options = options
         self._changeable = in_place
-        self._wishes: dict[tuple[int, Kind], Wish] = {}
+        self._wishes: dict[tuple[int, UseKind], Wish] = {}
         self._readers: defaultdict[Span, list[Use]] = defaultdict(list)
-        self._executions: defaultdict[tuple[Span, Kind], list[Use]] = defaultdict(list)
+        self._executions: defaultdict[tuple[Span, UseKind], list[Use]] = defaultdict(list)
         self._votes: dict[Span, dict[str, list[int]]] = {}
         for use in parts:
             self._executions[use.statement, use.kind].append(use)
@@ -201,9 +201,9 @@ _IN_PLACE: dict[Sharing, list[tuple[Ownership, ...]]] = {
 
 def patch_program(
     program: Program,
-    options: PatchOptions,
+    options: PatcherOptions,
     literals: Literals,
-    edits: Callable[[Plan], Iterable[Edit]],
+    edits: Callable[[PatchPlan], Iterable[Edit]],
     other_change: OtherChange = lambda old, new: None,
 ) -> Files:
     """The files of a program with its targets, speeds and zones, every other byte kept.
@@ -224,7 +224,7 @@ def patch_program(
     parts = uses(reading.again({}), program, other_change)
 
     def attempt(in_place: Collection[Ownership]) -> Files:
-        return patched(program, reading, edits(Plan(parts, literals, options, in_place)))
+        return patched(program, reading, edits(PatchPlan(parts, literals, options, in_place)))
 
     first, *others = _IN_PLACE[options.shared]
     try:

@@ -21,7 +21,7 @@ OtherChange = Callable[[Move, Move], str | None]
 """What of an old and a new move of one kind differs that the literals of their parts do not say."""
 
 
-class Kind(StrEnum):
+class UseKind(StrEnum):
     """The parts of a move that have a place in the text."""
 
     TARGET = "target"
@@ -40,7 +40,7 @@ class Use:
     """
 
     index: int
-    kind: Kind
+    kind: UseKind
     statement: Span
     origin: Origin
     old: MovePart
@@ -85,7 +85,7 @@ def uses(before: Program, after: Program, other_change: OtherChange) -> list[Use
 def _uses_of(index: int, old: Move, new: Move) -> Iterator[Use]:
     origin = old.origin
     assert origin is not None  # the reader gives every move one
-    for kind in Kind:
+    for kind in UseKind:
         at: Origin | None = getattr(origin, kind)
         if at is not None:
             parts = getattr(old, kind), getattr(new, kind)
@@ -95,7 +95,7 @@ def _uses_of(index: int, old: Move, new: Move) -> Iterator[Use]:
 def _rest(old: Move, new: Move) -> str | None:
     """What differs beside the parts that have a place in the text."""
     for field in fields(old):
-        if field.name in {"origin", *Kind}:
+        if field.name in {"origin", *UseKind}:
             continue
         if not alike(getattr(old, field.name), getattr(new, field.name)):
             return field.name.replace("_", " ")

@@ -11,7 +11,7 @@ from ..text.names import Names
 
 
 @dataclass(frozen=True, slots=True)
-class Datum:
+class NewDatum:
     """A value to be declared.
 
     Args:
@@ -40,17 +40,17 @@ class Declarations(ABC):
     """Data types in the order in which they are declared."""
 
     def __init__(self) -> None:
-        self._spelling: dict[Datum, str | None] = {}
+        self._spelling: dict[NewDatum, str | None] = {}
 
     @abstractmethod
     def numbered(self) -> Mapping[str, Iterator[str]]:
         """Data type → names for the data that have none, for types that are numbered."""
 
     @abstractmethod
-    def line(self, datum: Datum, name: str) -> str:
+    def line(self, datum: NewDatum, name: str) -> str:
         """A declaration."""
 
-    def declare(self, datum: Datum, wanted: str | None) -> Datum:
+    def declare(self, datum: NewDatum, wanted: str | None) -> NewDatum:
         """Declare a datum from now on.
 
         Args:
@@ -59,9 +59,9 @@ class Declarations(ABC):
         self._spelling.setdefault(datum, wanted)
         return datum
 
-    def names(self, names: Names) -> dict[Datum, str]:
+    def names(self, names: Names) -> dict[NewDatum, str]:
         """A name for every datum."""
-        given: dict[Datum, str] = {}
+        given: dict[NewDatum, str] = {}
         equal: dict[tuple[str, str], str] = {}
         for datum, wanted in self._spelling.items():
             if wanted:
@@ -79,7 +79,7 @@ class Declarations(ABC):
                 given[datum] = names.claim(datum.stem, datum.fallback)
         return given
 
-    def lines(self, names: dict[Datum, str]) -> list[str]:
+    def lines(self, names: dict[NewDatum, str]) -> list[str]:
         """The declarations, by type and then by first use."""
         texts = {names[datum]: datum for datum in self._spelling}
         return [

@@ -40,7 +40,7 @@ def as_comments() -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class PatchOptions:
+class PatcherOptions:
     """How a program's own files are patched.
 
     Args:
@@ -52,7 +52,7 @@ class PatchOptions:
     derived: Sharing = Sharing.REFUSE
 
     @classmethod
-    def of(cls, options: Mapping[str, str], patcher: str) -> PatchOptions:
+    def of(cls, options: Mapping[str, str], patcher: str) -> PatcherOptions:
         """From options by name; see `chosen`."""
         return chosen(cls, options, patcher)
 

@@ -10,7 +10,7 @@ from scipy import sparse
 from ...arrays import FloatArray, IntArray
 
 
-class Entries:
+class MatrixEntries:
     """The places of a matrix's entries, in the order in which their values are worked out.
 
     Args:

@@ -16,7 +16,7 @@ Bounds = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
 
 @dataclass(slots=True)
-class Residuals:
+class OptimalityResiduals:
     """How far a point is from a solution.
 
     Args:
@@ -73,7 +73,7 @@ def residuals(
     row_terms: FloatArray,
     multipliers: FloatArray,
     bounds: Bounds,
-) -> Residuals:
+) -> OptimalityResiduals:
     """Residuals at x, all in the user's scale; multipliers of bounds follow from stationarity.
 
     Args:
@@ -94,7 +94,7 @@ def residuals(
     pressed_c = np.abs(multipliers) * np.minimum(gap, 1.0)
     outside = np.maximum(np.maximum(c_lower - c, c - c_upper), 0.0)
     parts = ((left, terms), (pressed_x, np.abs(nu)), (pressed_c, np.abs(multipliers)))
-    return Residuals(
+    return OptimalityResiduals(
         _largest(left),
         max(_largest(pressed_x), _largest(pressed_c)),
         max(violation.largest(x, x_lower, x_upper), violation.largest(c, c_lower, c_upper)),

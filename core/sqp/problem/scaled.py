@@ -8,7 +8,7 @@ from ...arrays import FloatArray
 from . import violation
 from .evaluation import Evaluation, Point
 from .nlp import NLP
-from .optimality import Residuals, lagrangian_slope, residuals, row_terms, slope_terms
+from .optimality import OptimalityResiduals, lagrangian_slope, residuals, row_terms, slope_terms
 from .patterns import Pattern
 
 
@@ -69,7 +69,7 @@ class ScaledProblem:
         found = multipliers / evaluation.constraint_factors * evaluation.objective_factor
         return np.where(np.isfinite(found), found, 0.0)
 
-    def residuals(self, point: Point, multipliers: FloatArray) -> Residuals:
+    def residuals(self, point: Point, multipliers: FloatArray) -> OptimalityResiduals:
         """How far a point is from a solution, unscaled; multipliers are the scaled ones."""
         evaluation, factor = self.evaluation, self.evaluation.objective_factor
         return residuals(
@@ -82,7 +82,9 @@ class ScaledProblem:
             self.nlp.bounds,
         )
 
-    def result_residuals(self, x: FloatArray, multipliers: FloatArray) -> tuple[float, Residuals]:
+    def result_residuals(
+        self, x: FloatArray, multipliers: FloatArray
+    ) -> tuple[float, OptimalityResiduals]:
         """Objective and residuals at x, computed anew from the callables; multipliers (m,) are the
         unscaled ones."""
         f, c, g, J = self.evaluation.unscaled(x)

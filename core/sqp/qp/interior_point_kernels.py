@@ -21,8 +21,8 @@ from ..algebra.ldl import Factors, substitute
 from ..algebra.linear import EntryIndices
 from .interior_point_scaling import Scaled, values
 from .interior_point_state import (
+    InteriorPointResiduals,
     Iterate,
-    Residuals,
     proves_infeasible,
     proves_unbounded,
     residuals,
@@ -77,7 +77,7 @@ def minimise(
         _start_from(qp, guess, point)
     elif not _start(qp, system, point):
         return FAILED, 0
-    at = Residuals(np.zeros(n + m), np.zeros(n), np.zeros(m), np.zeros(sides))
+    at = InteriorPointResiduals(np.zeros(n + m), np.zeros(n), np.zeros(m), np.zeros(sides))
     best, patience = np.inf, _PATIENCE
     for count in range(iterations + 1):
         left, gap = residuals(qp, point, at)
@@ -161,7 +161,9 @@ def _start_from(qp: Scaled, guess: FloatArray, point: Iterate) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def _step(qp: Scaled, point: Iterate, at: Residuals, system: System, floor: float) -> bool:
+def _step(
+    qp: Scaled, point: Iterate, at: InteriorPointResiduals, system: System, floor: float
+) -> bool:
     """A predictor, a corrector and the step; False if the factorisation breaks down.
 
     Args:
@@ -215,7 +217,7 @@ def _weigh(qp: Scaled, point: Iterate, system: System) -> None:
 
 @njit(cache=True, error_model="numpy")
 def _direction(
-    qp: Scaled, point: Iterate, at: Residuals, system: System, refinements: int
+    qp: Scaled, point: Iterate, at: InteriorPointResiduals, system: System, refinements: int
 ) -> float:
     """The step for the sides' products to gain ``system.product``; how far it may go."""
     n = len(qp.q)

@@ -29,7 +29,7 @@ class Iterate(NamedTuple):
     multiplier: FloatArray
 
 
-class Residuals(NamedTuple):
+class InteriorPointResiduals(NamedTuple):
     """What is left to be done, scaled.
 
     Args:
@@ -46,7 +46,7 @@ class Residuals(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def residuals(qp: Scaled, point: Iterate, at: Residuals) -> tuple[float, float]:
+def residuals(qp: Scaled, point: Iterate, at: InteriorPointResiduals) -> tuple[float, float]:
     """Fill in the residuals and y of the sides; the largest in proportion to what it is part of,
     unscaled, and how large a gap counts as one, scaled."""
     n, m = len(qp.q), len(qp.target)
@@ -117,7 +117,7 @@ def proves_infeasible(qp: Scaled, point: Iterate) -> bool:
 
 
 @njit(cache=True, error_model="numpy")
-def proves_unbounded(qp: Scaled, point: Iterate, at: Residuals) -> bool:
+def proves_unbounded(qp: Scaled, point: Iterate, at: InteriorPointResiduals) -> bool:
     """Whether the objective falls along d without end, and no side is in the way."""
     n = len(qp.q)
     largest = 0.0

@@ -61,7 +61,7 @@ class Brush(NamedTuple):
     cone: Cone
 
 
-class Blocks(NamedTuple):
+class PointGroups(NamedTuple):
     """Points of the surface in compact groups.
 
     Args:
@@ -87,7 +87,7 @@ class Surface(NamedTuple):
     """
 
     brush: Brush
-    blocks: Blocks
+    blocks: PointGroups
     visible: BoolArray
 
 
@@ -112,7 +112,7 @@ class Guns(NamedTuple):
     length: FloatArray
 
 
-class Gun(NamedTuple):
+class SprayPoint(NamedTuple):
     """One sub-point: the virtual source, the nozzle and the fan, zero for symmetric footprints."""
 
     source: Vector
@@ -129,15 +129,15 @@ class Slopes(NamedTuple):
 
 
 @compiled
-def gun_at(cone: Cone, guns: Guns, p: int) -> Gun:
+def gun_at(cone: Cone, guns: Guns, p: int) -> SprayPoint:
     """The gun at a sub-point."""
     nozzle = load_row(guns.nozzle, p)
     fan = load_row(guns.fan, p) if len(guns.fan) else (0.0, 0.0, 0.0)
-    return Gun(subtract(load_row(guns.tcp, p), scale(cone.source, nozzle)), nozzle, fan)
+    return SprayPoint(subtract(load_row(guns.tcp, p), scale(cone.source, nozzle)), nozzle, fan)
 
 
 @compiled
-def meets(surface: Surface, gun: Gun, g: int) -> bool:
+def meets(surface: Surface, gun: SprayPoint, g: int) -> bool:
     """Whether the cone may meet a group."""
     cone, radius = surface.brush.cone, surface.blocks.radii[g]
     v = subtract(load_row(surface.blocks.centres, g), gun.source)
@@ -149,7 +149,7 @@ def meets(surface: Surface, gun: Gun, g: int) -> bool:
 
 
 @compiled
-def ray(surface: Surface, gun: Gun, segment: int, k: int) -> tuple[float, float]:
+def ray(surface: Surface, gun: SprayPoint, segment: int, k: int) -> tuple[float, float]:
     """Radius r at which point k is seen, and B / f(r); r is negative where no paint arrives."""
     cone, visible = surface.brush.cone, surface.visible
     if len(visible) and not visible[k, segment]:
@@ -203,7 +203,7 @@ def _slope_over_radius(brush: Brush, r: float) -> float:
 
 
 @compiled
-def slopes_at(surface: Surface, gun: Gun, k: int, r: float) -> Slopes:
+def slopes_at(surface: Surface, gun: SprayPoint, k: int, r: float) -> Slopes:
     """B at point k, that paint arrives at, and its derivatives.
 
     Args:
@@ -243,7 +243,7 @@ def slopes_at(surface: Surface, gun: Gun, k: int, r: float) -> Slopes:
 
 
 @compiled
-def across(gun: Gun, length: float, slope: Vector) -> Vector:
+def across(gun: SprayPoint, length: float, slope: Vector) -> Vector:
     """From the slope by a unit vector to that by the vector of ``length`` it was made from."""
     x, y, z = subtract(slope, scale(dot(slope, gun.nozzle), gun.nozzle))
     return x / length, y / length, z / length

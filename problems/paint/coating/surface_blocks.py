@@ -6,13 +6,13 @@ import numpy as np
 
 from ....core.arrays import FloatArray, IntArray
 from ..surface.samples import SurfaceSamples
-from .kernels import Blocks
+from .kernels import PointGroups
 
 GROUP = 32
 """Points of a group, at most."""
 
 
-def grouped(samples: SurfaceSamples) -> tuple[Blocks, IntArray]:
+def grouped(samples: SurfaceSamples) -> tuple[PointGroups, IntArray]:
     """The groups, and the index (V,) in ``samples`` of each of their points.
 
     Groups come by halving the longest extent again and again; neighbours in the list are
@@ -27,7 +27,7 @@ def grouped(samples: SurfaceSamples) -> tuple[Blocks, IntArray]:
         centres[g] = 0.5 * (part.min(axis=0) + part.max(axis=0))
         radii[g] = np.linalg.norm(part - centres[g], axis=1).max()
     normals = np.ascontiguousarray(samples.normals[order])
-    return Blocks(points, normals, starts, centres, radii), order
+    return PointGroups(points, normals, starts, centres, radii), order
 
 
 def _halved(points: FloatArray) -> tuple[IntArray, list[int]]:

@@ -23,7 +23,7 @@ from ..surface.part import Part
 from .emulated import EmulatedPainting, drive
 from .feedback import Execution, Progress, drive_evenly, judged
 from .lag import lag_notes
-from .spin import Clear, Posture, choose_posture
+from .spin import Clear, GunPosture, choose_posture
 from .station import Station
 from .writing import DriveOptions, with_run_in
 
@@ -49,7 +49,7 @@ class Executable:
 
     program: Program
     planned: PaintTrajectory
-    posture: Posture
+    posture: GunPosture
     driven: EmulatedPainting
     coat: Coat
     rounds: tuple[float, ...]

@@ -21,7 +21,7 @@ from ..coating.coat import Coat, coat
 from ..coating.deposition import Deposition
 from ..spray.trajectory import PaintTrajectory
 from .emulated import EmulatedPainting, drive
-from .spin import Posture
+from .spin import GunPosture
 from .station import Station
 from .writing import DriveOptions, paint_program
 
@@ -59,7 +59,7 @@ class Execution:
 def drive_evenly(
     controller: Controller,
     planned: PaintTrajectory,
-    posture: Posture,
+    posture: GunPosture,
     station: Station,
     options: DriveOptions,
     deposition: Deposition,
@@ -110,7 +110,7 @@ def drive_evenly(
 def _driven(
     controller: Controller,
     planned: PaintTrajectory,
-    posture: Posture,
+    posture: GunPosture,
     station: Station,
     options: DriveOptions,
     deposition: Deposition,

@@ -45,7 +45,7 @@ Clear = Callable[[FloatArray], bool]
 
 
 @dataclass(frozen=True, eq=False)
-class Posture:
+class GunPosture:
     """How the robot holds the gun along a trajectory.
 
     Args:
@@ -72,7 +72,7 @@ class _Candidates:
 
 def choose_posture(
     trajectory: PaintTrajectory, station: Station, clear: Clear = lambda joints: True
-) -> Posture:
+) -> GunPosture:
     """The turns about the nozzle, and the joints, with which the whole trajectory is driven best.
 
     Of the postures that collide with nothing it is the cheapest; where all collide, the cheapest of
@@ -96,7 +96,7 @@ def choose_posture(
     frames = gun_frames(world)
     grids = _coarse(world, frames, station)
     whole = [grid for grid in grids if np.isfinite(grid.joints[..., 0]).any(axis=1).all()]
-    first: Posture | None = None
+    first: GunPosture | None = None
     for posture in _postures(whole, world, frames, station):
         if clear(posture.joints):
             return posture
@@ -108,7 +108,7 @@ def choose_posture(
 
 def _postures(
     grids: list[_Candidates], world: PaintTrajectory, frames: FloatArray, station: Station
-) -> Iterator[Posture]:
+) -> Iterator[GunPosture]:
     """The best posture of each branch that is driven without winding a joint up, cheapest first."""
     robot = station.cell.robot
     ways = [(*_cheapest(grid, world, robot), grid) for grid in grids]
@@ -120,7 +120,7 @@ def _postures(
             continue
         if world.fan is None:
             turns, unwound = _refined(turns, unwound, world, frames, station)
-        yield Posture(turned(frames, turns), unwound)
+        yield GunPosture(turned(frames, turns), unwound)
 
 
 def _coarse(world: PaintTrajectory, frames: FloatArray, station: Station) -> list[_Candidates]:

@@ -17,7 +17,7 @@ from ....core.source.write.approach import approach_speed
 from ....core.spatial.pose import Pose
 from ..spray.signals import GunSignals, gun_events
 from ..spray.trajectory import PaintTrajectory
-from .spin import Posture
+from .spin import GunPosture
 from .station import Station
 
 APPROACH = 0.5
@@ -71,7 +71,7 @@ def with_run_in(trajectory: PaintTrajectory, length: float) -> PaintTrajectory:
 
 
 def paint_program(
-    trajectory: PaintTrajectory, posture: Posture, station: Station, options: DriveOptions
+    trajectory: PaintTrajectory, posture: GunPosture, station: Station, options: DriveOptions
 ) -> Program:
     """The program that drives a trajectory, one line a segment.
 
@@ -125,7 +125,7 @@ def _events(
     return [at_start + at[1], *at[2:]] if trajectory.segments > 1 else [at_start + at[1]]
 
 
-def _targets(trajectory: PaintTrajectory, posture: Posture, station: Station) -> Sequence[Pose]:
+def _targets(trajectory: PaintTrajectory, posture: GunPosture, station: Station) -> Sequence[Pose]:
     """Poses (W,) of the TCP in the frame of the targets."""
     to_part = np.linalg.inv(station.place.matrix())[:3, :3]
     poses = []

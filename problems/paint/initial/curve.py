@@ -17,7 +17,7 @@ from ..surface.part import Part
 from .fan import fan_across
 from .guide import Guide
 from .plan import Coats, Gun, Method, SweepPlan
-from .projection import Frames, Projector
+from .projection import Projector, SprayFrames
 from .raster import Rectangle, raster, rectangle_round, view_of
 from .remarks import missed_notes, ripple_notes, spacing_notes
 from .sideways import sideways
@@ -126,9 +126,9 @@ def _nearest_begin(sweeps: list[Sweep], last: Sweep) -> list[Sweep]:
 
 def _strung(
     plan: SweepPlan, coats: list[list[Sweep]]
-) -> tuple[Frames, BoolArray, NDArray[np.int64]]:
+) -> tuple[SprayFrames, BoolArray, NDArray[np.int64]]:
     """Sweeps with turns between: waypoints, whether segments are painted, sweeps' numbers."""
-    pieces: list[Frames] = []
+    pieces: list[SprayFrames] = []
     flags: list[BoolArray] = []
     numbers: list[NDArray[np.int64]] = []
     number = itertools.count()
@@ -143,11 +143,11 @@ def _strung(
             over = sweep.feasible[1:] & sweep.feasible[:-1]
             flags.append(over | (plan.gaps is Gun.ON))
             numbers.append(np.full(len(sweep.feasible), next(number)))
-    frames = Frames(*(np.concatenate(values) for values in zip(*pieces, strict=True)))
+    frames = SprayFrames(*(np.concatenate(values) for values in zip(*pieces, strict=True)))
     return frames, np.concatenate(flags), np.concatenate(numbers)
 
 
-def _turn(plan: SweepPlan, one: Frames, two: Frames) -> Frames:
+def _turn(plan: SweepPlan, one: SprayFrames, two: SprayFrames) -> SprayFrames:
     """Waypoints straight from the end of a sweep to the start of the next, without both.
 
     Neither the gun nor its place on the surface moves by more than a longest segment between them.
@@ -162,4 +162,4 @@ def _turn(plan: SweepPlan, one: Frames, two: Frames) -> Frames:
     spray /= np.maximum(np.linalg.norm(spray, axis=1, keepdims=True), 1e-12)
     tangent = way - np.einsum("ij,kj->ik", spray, way) * spray
     tangent /= np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-12)
-    return Frames(start.point + share * way, tangent, spray)
+    return SprayFrames(start.point + share * way, tangent, spray)

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....core.arrays import FloatArray
-from .projection import Frames
+from .projection import SprayFrames
 
 
-def fan_across(frames: Frames, sweep: NDArray[np.int64]) -> FloatArray:
+def fan_across(frames: SprayFrames, sweep: NDArray[np.int64]) -> FloatArray:
     """(W, 3) unit vectors of the long axis, square to the spray.
 
     Along sweeps it points across them; on sweeps to and fro to the same side, so that the gun need

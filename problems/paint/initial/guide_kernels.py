@@ -9,12 +9,12 @@ from numba import njit
 
 from ....core.arrays import BoolArray, FloatArray, IntArray
 from ..surface.rays.bvh import trace
-from ..surface.rays.tree import DEPTH, Tree
+from ..surface.rays.tree import DEPTH, RayTree
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def meet_lines(
-    tree: Tree,
+    tree: RayTree,
     faces: IntArray,
     normals: FloatArray,
     points: FloatArray,
@@ -52,7 +52,7 @@ def meet_lines(
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def find_edges_along(
-    tree: Tree,
+    tree: RayTree,
     points: FloatArray,
     directions: FloatArray,
     ways: FloatArray,
@@ -112,7 +112,7 @@ def find_edges_along(
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _meet(
-    tree: Tree,
+    tree: RayTree,
     point: FloatArray,
     direction: FloatArray,
     reach: float,

@@ -32,7 +32,7 @@ BEHIND = np.cos(np.deg2rad(110.0))
 """Least product of the gun's direction and the view, smoothing and extension allowed for."""
 
 
-class Frames(NamedTuple):
+class SprayFrames(NamedTuple):
     """Points with the direction of the sweep and of the spray.
 
     Args:
@@ -45,9 +45,9 @@ class Frames(NamedTuple):
     tangent: FloatArray
     spray: FloatArray
 
-    def at(self, rows: slice | list[int] | BoolArray | IntArray) -> Frames:
+    def at(self, rows: slice | list[int] | BoolArray | IntArray) -> SprayFrames:
         """Some of them."""
-        return Frames(self.point[rows], self.tangent[rows], self.spray[rows])
+        return SprayFrames(self.point[rows], self.tangent[rows], self.spray[rows])
 
     @property
     def side(self) -> FloatArray:
@@ -64,7 +64,7 @@ class Projected(NamedTuple):
         inside: (N,) whether it lies on the surface.
     """
 
-    frames: Frames
+    frames: SprayFrames
     feasible: BoolArray
     inside: BoolArray
 
@@ -88,7 +88,7 @@ class Projector:
         """m along the line of projection within which a point near the surface looks for it."""
         return 0.5 * max(self.plan.longest_segment, self.plan.sweep_width)
 
-    def project(self, frames: Frames, reach: float | None = None) -> Projected:
+    def project(self, frames: SprayFrames, reach: float | None = None) -> Projected:
         """Pseudo-projection of frames (N).
 
         Args:
@@ -118,7 +118,7 @@ class Projector:
         feasible &= length[:, 0] > 1e-6
         keep = feasible[:, None]
         return Projected(
-            Frames(
+            SprayFrames(
                 np.where(keep, point, frames.point),
                 np.where(keep, tangent / np.maximum(length, 1e-12), frames.tangent),
                 np.where(keep, spray, frames.spray),
@@ -127,7 +127,7 @@ class Projector:
             met.found & feasible,
         )
 
-    def beyond(self, frames: Frames, ways: FloatArray, farthest: float) -> FloatArray:
+    def beyond(self, frames: SprayFrames, ways: FloatArray, farthest: float) -> FloatArray:
         """How far (N,) m points lie beyond the edge along ways (N, 3): negative on the surface.
 
         -inf where no edge is found within ``farthest`` m ahead of a point on the surface, inf where
@@ -141,7 +141,7 @@ class Projector:
         return np.where(inside, -edge, edge)
 
     def _inner_points(
-        self, frames: Frames, inside: BoolArray, reach: float
+        self, frames: SprayFrames, inside: BoolArray, reach: float
     ) -> tuple[FloatArray, BoolArray]:
         """Points (N, 3) off the edge by d_edgeOffset, and which are feasible.
 
@@ -178,7 +178,7 @@ class Projector:
         return inner, feasible
 
     def _inward(
-        self, points: FloatArray, frames: Frames, ways: FloatArray, reach: float
+        self, points: FloatArray, frames: SprayFrames, ways: FloatArray, reach: float
     ) -> FloatArray:
         """Shifts (N, 3) of points on the surface away from edges that are too near."""
         offset = self.plan.offset
@@ -195,7 +195,7 @@ class Projector:
         return shift
 
     def _spray(
-        self, frames: Frames, inner: FloatArray, base: FloatArray, reach: float
+        self, frames: SprayFrames, inner: FloatArray, base: FloatArray, reach: float
     ) -> FloatArray:
         """Smoothed directions (N, 3) into the surface at inner points above their bases."""
         n = len(inner)
@@ -218,7 +218,7 @@ class Projector:
         )
         return -cluster_mean(normals, used)
 
-    def _off_edge(self, frames: Frames, points: FloatArray, reach: float) -> BoolArray:
+    def _off_edge(self, frames: SprayFrames, points: FloatArray, reach: float) -> BoolArray:
         """(N, K) whether points (N, K, 3) are off the edge by d_edgeOffset, all four ways."""
         n, k = points.shape[:2]
         off = np.ones((n, k), dtype=bool)

@@ -13,7 +13,7 @@ from ....core.errors import InputError
 from ..surface.part import Part
 from .guide import Guide
 from .plan import SweepPlan
-from .projection import Frames
+from .projection import SprayFrames
 
 MOST_SEGMENTS = 1500
 """A raster has no more: six variables for each make full matrices of 0.65 GB."""
@@ -75,7 +75,7 @@ def rectangle_round(part: Part, guide: Guide, plan: SweepPlan) -> Rectangle:
     return Rectangle(centre, along, across, spray, float(high[0] - low[0]), float(high[1] - low[1]))
 
 
-def raster(rectangle: Rectangle, plan: SweepPlan) -> list[Frames]:
+def raster(rectangle: Rectangle, plan: SweepPlan) -> list[SprayFrames]:
     """Lines along the rectangle, the sweep width apart and in its middle, all in one direction.
 
     There are as many as it takes for no point to be farther than half a sweep width from one; each
@@ -99,7 +99,7 @@ def raster(rectangle: Rectangle, plan: SweepPlan) -> list[Frames]:
     tangent = np.tile(rectangle.along, (segments + 1, 1))
     spray = np.tile(rectangle.spray, (segments + 1, 1))
     return [
-        Frames(
+        SprayFrames(
             rectangle.centre + along[:, None] * rectangle.along + a * rectangle.across,
             tangent,
             spray,

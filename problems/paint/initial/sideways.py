@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....core.arrays import BoolArray, FloatArray
-from .projection import Frames, Projector
+from .projection import Projector, SprayFrames
 from .raster import sweep_count
 from .sweep import Sweep, directed, fit
 
@@ -37,7 +37,7 @@ class Walked(NamedTuple):
         extent: (M,) m after which each point came to the surface's edge; inf if it did not.
     """
 
-    frames: Frames
+    frames: SprayFrames
     feasible: BoolArray
     inside: BoolArray
     extent: FloatArray
@@ -115,10 +115,10 @@ def walk(projector: Projector, sweep: Sweep, distance: float) -> Walked:
 
 
 def _step(
-    projector: Projector, frames: Frames, side: FloatArray, step: FloatArray
-) -> tuple[Frames, FloatArray, BoolArray, FloatArray, BoolArray]:
+    projector: Projector, frames: SprayFrames, side: FloatArray, step: FloatArray
+) -> tuple[SprayFrames, FloatArray, BoolArray, FloatArray, BoolArray]:
     """Points carried by one step; the side's direction is turned with the surface."""
-    ahead = Frames(frames.point + step[:, None] * side, frames.tangent, frames.spray)
+    ahead = SprayFrames(frames.point + step[:, None] * side, frames.tangent, frames.spray)
     projected = projector.project(ahead)
     new = projected.frames
     moved = np.linalg.norm(new.point - frames.point, axis=1)
@@ -126,7 +126,7 @@ def _step(
     side /= np.maximum(np.linalg.norm(side, axis=1, keepdims=True), 1e-12)
     tangent = np.cross(side, new.spray)
     tangent *= np.sign(np.einsum("ij,ij->i", tangent, new.tangent))[:, None]
-    new = Frames(new.point, tangent, new.spray)
+    new = SprayFrames(new.point, tangent, new.spray)
     return new, side, projected.feasible, moved, projected.inside
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....core.arrays import BoolArray, FloatArray
-from .projection import Frames, Projector
+from .projection import Projector, SprayFrames
 
 MOST_STEPS = 200
 """Rounds of divisions, at most."""
@@ -38,7 +38,7 @@ class Sweep:
         feasible: (M,) False for points interpolated over what is no surface.
     """
 
-    frames: Frames
+    frames: SprayFrames
     feasible: BoolArray
 
     @property
@@ -54,10 +54,10 @@ class Sweep:
     def reversed(self) -> Sweep:
         """The sweep in the other direction."""
         point, tangent, spray = (values[::-1] for values in self.frames)
-        return Sweep(Frames(point, -tangent, spray), self.feasible[::-1])
+        return Sweep(SprayFrames(point, -tangent, spray), self.feasible[::-1])
 
 
-def fit(projector: Projector, frames: Frames, reach: float | None = None) -> Sweep | None:
+def fit(projector: Projector, frames: SprayFrames, reach: float | None = None) -> Sweep | None:
     """The sweep of frames along a line; None where less than two of them are feasible.
 
     Args:
@@ -75,7 +75,7 @@ def fit(projector: Projector, frames: Frames, reach: float | None = None) -> Swe
     return unbunched(sweep, projector.plan.distance)
 
 
-def trimmed(projector: Projector, frames: Frames, reach: float | None = None) -> Sweep | None:
+def trimmed(projector: Projector, frames: SprayFrames, reach: float | None = None) -> Sweep | None:
     """Step 3a: what is not feasible goes at the ends and is interpolated between."""
     projected = projector.project(frames, reach)
     good = np.flatnonzero(projected.feasible)
@@ -101,7 +101,7 @@ def extended(projector: Projector, sweep: Sweep) -> Sweep:
         missing = min(plan.overhang - beyond, plan.longest_segment)
         if abs(missing) <= END or math.isinf(missing):
             break
-        moved = Frames(end.point + missing * end.tangent, end.tangent, end.spray)
+        moved = SprayFrames(end.point + missing * end.tangent, end.tangent, end.spray)
         projected = projector.project(moved)
         step = (projected.frames.point - end.point)[0] * np.sign(missing)
         if not projected.feasible[0] or step @ end.tangent[0] < LEAST_AHEAD * np.linalg.norm(step):
@@ -145,7 +145,7 @@ def divided(projector: Projector, sweep: Sweep) -> Sweep:
         if len(long) == 0 or len(feasible) > 100 * MOST_STEPS:
             break
         projected = projector.project(_between(frames.at(long), frames.at(long + 1)))
-        frames = Frames(
+        frames = SprayFrames(
             *(
                 np.insert(old, long + 1, new, axis=0)
                 for old, new in zip(frames, projected.frames, strict=True)
@@ -230,15 +230,15 @@ def unbunched(sweep: Sweep, distance: float) -> Sweep:
     return Sweep(_framed(frames.point, frames.tangent, spray), sweep.feasible)
 
 
-def _framed(point: FloatArray, ways: FloatArray, spray: FloatArray) -> Frames:
+def _framed(point: FloatArray, ways: FloatArray, spray: FloatArray) -> SprayFrames:
     """Frames with orthogonal unit directions."""
     spray = spray / np.linalg.norm(spray, axis=1, keepdims=True)
     across = ways - np.einsum("ij,ij->i", ways, spray)[:, None] * spray
     length = np.linalg.norm(across, axis=1, keepdims=True)
-    return Frames(point, across / np.maximum(length, 1e-12), spray)
+    return SprayFrames(point, across / np.maximum(length, 1e-12), spray)
 
 
-def _interpolated(frames: Frames, at: FloatArray, wanted: FloatArray) -> Frames:
+def _interpolated(frames: SprayFrames, at: FloatArray, wanted: FloatArray) -> SprayFrames:
     """Frames at other parameters than those at which they are known, in rising order."""
     values = [
         np.stack([np.interp(wanted, at, one[:, k]) for k in range(3)], axis=1) for one in frames
@@ -246,10 +246,10 @@ def _interpolated(frames: Frames, at: FloatArray, wanted: FloatArray) -> Frames:
     return _framed(*values)
 
 
-def _between(a: Frames, b: Frames) -> Frames:
+def _between(a: SprayFrames, b: SprayFrames) -> SprayFrames:
     """Frames in the middle."""
     return _framed(0.5 * (a.point + b.point), a.tangent + b.tangent, a.spray + b.spray)
 
 
-def _joined(*frames: Frames) -> Frames:
-    return Frames(*(np.concatenate(values) for values in zip(*frames, strict=True)))
+def _joined(*frames: SprayFrames) -> SprayFrames:
+    return SprayFrames(*(np.concatenate(values) for values in zip(*frames, strict=True)))

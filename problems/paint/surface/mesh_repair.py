@@ -37,7 +37,7 @@ class Repaired(NamedTuple):
     notes: tuple[Note, ...]
 
 
-class Edges(NamedTuple):
+class MeshEdges(NamedTuple):
     """The edges of a mesh.
 
     Args:
@@ -90,7 +90,7 @@ def repair(
     return Repaired(vertices[used], np.searchsorted(used, faces), tuple(notes))
 
 
-def find_edges(faces: IntArray) -> Edges:
+def find_edges(faces: IntArray) -> MeshEdges:
     """The edges of triangles (F, 3)."""
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     ends, edge = np.unique(
@@ -105,7 +105,7 @@ def find_edges(faces: IntArray) -> Edges:
     one, two = order[first], order[first + 1]
     pairs = np.stack([one // 3, two // 3], axis=1)
     alike = start[one] != start[two]
-    return Edges(ends, count, pairs, np.flatnonzero(count == 2), alike, edge.reshape(-1, 3))
+    return MeshEdges(ends, count, pairs, np.flatnonzero(count == 2), alike, edge.reshape(-1, 3))
 
 
 def _check(vertices: FloatArray, faces: IntArray, name: str) -> None:
@@ -187,7 +187,7 @@ def _is_first(faces: IntArray) -> BoolArray:
     return first
 
 
-def _note_crowded(vertices: FloatArray, edges: Edges, name: str, notes: list[Note]) -> None:
+def _note_crowded(vertices: FloatArray, edges: MeshEdges, name: str, notes: list[Note]) -> None:
     crowded = np.flatnonzero(edges.triangles > 2)
     if len(crowded):
         x, y, z = vertices[edges.ends[crowded[0]]].mean(axis=0)
@@ -203,7 +203,7 @@ def _note_crowded(vertices: FloatArray, edges: Edges, name: str, notes: list[Not
 def _turned(
     vertices: FloatArray,
     faces: IntArray,
-    edges: Edges,
+    edges: MeshEdges,
     name: str,
     view: FloatArray | None,
     normals: FloatArray | None,
@@ -233,7 +233,7 @@ def _turned(
     return np.where(flip[:, None], faces[:, ::-1], faces)
 
 
-def _flips(n: int, edges: Edges) -> tuple[BoolArray, IntArray, BoolArray]:
+def _flips(n: int, edges: MeshEdges) -> tuple[BoolArray, IntArray, BoolArray]:
     """Which of n triangles to turn so that pieces are turned alike; pieces; one-sided ones.
 
     On the double cover, where each triangle stands twice, once turned round, and neighbours that
@@ -259,7 +259,7 @@ def _flips(n: int, edges: Edges) -> tuple[BoolArray, IntArray, BoolArray]:
 def _wrong_pieces(
     vertices: FloatArray,
     faces: IntArray,
-    edges: Edges,
+    edges: MeshEdges,
     flip: BoolArray,
     piece: IntArray,
     view: FloatArray | None,

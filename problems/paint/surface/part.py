@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from ....core.arrays import BoolArray, FloatArray, IntArray
 from ....core.errors import InputError, Note
 from ....core.spatial.pose import Pose
-from .mesh_repair import Edges, face_normals, find_edges
+from .mesh_repair import MeshEdges, face_normals, find_edges
 from .rays.engine import RayEngine, make_rays
 from .rays.rays import Rays
 from .samples import SurfaceSamples
@@ -194,7 +194,7 @@ def vertex_normals(vertices: FloatArray, faces: IntArray) -> FloatArray:
     return np.where(norm[:, None] > 1e-9, total / np.maximum(norm, 1e-9)[:, None], single)
 
 
-def sharp_pairs(vertices: FloatArray, faces: IntArray, edges: Edges, angle: float) -> BoolArray:
+def sharp_pairs(vertices: FloatArray, faces: IntArray, edges: MeshEdges, angle: float) -> BoolArray:
     """Which of the edges' pairs of triangles turn by more than an angle (rad)."""
     across = face_normals(vertices, faces)
     across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), np.finfo(float).tiny)

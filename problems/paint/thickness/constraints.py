@@ -7,7 +7,7 @@ from scipy import sparse
 
 from ....core.arrays import FloatArray, IntArray
 from .options import PaintLimits
-from .variables import Variables
+from .variables import ThicknessVariables
 
 _LENGTH = 0.1
 """Unit of the rows on lengths, m."""
@@ -24,7 +24,9 @@ class PaintConstraints:
         origin: (W, 3) where the waypoints were at first, m.
     """
 
-    def __init__(self, limits: PaintLimits, variables: Variables, origin: FloatArray) -> None:
+    def __init__(
+        self, limits: PaintLimits, variables: ThicknessVariables, origin: FloatArray
+    ) -> None:
         self._limits = limits
         self._variables = variables
         self._origin = origin

@@ -19,7 +19,7 @@ from ..coating.deposition import Deposition
 from ..spray.trajectory import PaintTrajectory
 from .options import PaintWeights
 from .path_cost import PathCost
-from .variables import Variables
+from .variables import ThicknessVariables
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ class PaintObjective:
         scenarios: Sequence[Scenario],
         target: float,
         weights: PaintWeights,
-        variables: Variables,
+        variables: ThicknessVariables,
     ) -> None:
         self._scenarios = scenarios
         self._target = target

@@ -18,12 +18,12 @@ from ..spray.trajectory import PaintTrajectory
 from .constraints import PaintConstraints
 from .objective import PaintObjective
 from .options import OuterLoop, PaintLimits, PaintWeights
-from .reference import Reference
+from .reference import ReferencePlanes
 from .robust import NO_ERRORS, PaintErrors, scenarios
 from .round import TOLERANCE, JudgedTrajectory, Progress, Round
-from .variables import Variables
+from .variables import ThicknessVariables
 
-Surroundings = Callable[[PaintTrajectory], Reference]
+Surroundings = Callable[[PaintTrajectory], ReferencePlanes]
 Sight = Callable[[PaintTrajectory], BoolArray]
 
 
@@ -55,7 +55,7 @@ def optimize(
     deposition: Deposition,
     trajectory: PaintTrajectory,
     target: float,
-    reference: Reference | Surroundings,
+    reference: ReferencePlanes | Surroundings,
     *,
     limits: PaintLimits | None = None,
     weights: PaintWeights | None = None,
@@ -90,7 +90,7 @@ def optimize(
     iterations, now = 0, trajectory
     result: Result | None = None
     for number in range(loop.rounds):
-        variables = Variables.of(now, around(now))
+        variables = ThicknessVariables.of(now, around(now))
         seen_by = deposition if sight is None else deposition.with_visible(sight(now))
         cases = scenarios(seen_by, errors)
         step = Round(

@@ -14,7 +14,7 @@ _UNIT = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Reference:
+class ReferencePlanes:
     """A plane for each waypoint: that of the surface, or of its smooth extension beyond an edge.
 
     Args:
@@ -40,7 +40,7 @@ class Reference:
             object.__setattr__(self, name, value)
 
     @classmethod
-    def below(cls, trajectory: PaintTrajectory, distance: float) -> Reference:
+    def below(cls, trajectory: PaintTrajectory, distance: float) -> ReferencePlanes:
         """What lies square below the nozzle: for an initial curve that keeps its distance.
 
         Args:

@@ -14,7 +14,7 @@ from ..spray.trajectory import PaintTrajectory
 from .constraints import PaintConstraints
 from .objective import PaintObjective
 from .options import OuterLoop
-from .variables import Variables
+from .variables import ThicknessVariables
 
 Progress = Callable[[int, Iteration], bool | None]
 
@@ -60,7 +60,7 @@ class Round:
     """
 
     number: int
-    variables: Variables
+    variables: ThicknessVariables
     objective: PaintObjective
     constraints: PaintConstraints
     loop: OuterLoop

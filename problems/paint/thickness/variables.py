@@ -16,7 +16,7 @@ import numpy as np
 from ....core.arrays import FloatArray
 from ....core.errors import InputError
 from ..spray.trajectory import PaintTrajectory
-from .reference import Reference
+from .reference import ReferencePlanes
 
 POSITION = 0.02
 """Unit of positions, m."""
@@ -28,7 +28,7 @@ _SQUARE = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Variables:
+class ThicknessVariables:
     """Variables z (n,) round a trajectory, at which z = 0.
 
     Args:
@@ -39,12 +39,12 @@ class Variables:
     """
 
     start: PaintTrajectory
-    reference: Reference
+    reference: ReferencePlanes
     tangents: FloatArray
     angles: FloatArray
 
     @classmethod
-    def of(cls, start: PaintTrajectory, reference: Reference) -> Variables:
+    def of(cls, start: PaintTrajectory, reference: ReferencePlanes) -> ThicknessVariables:
         """The variables round a trajectory.
 
         Raises:

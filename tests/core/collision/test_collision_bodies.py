@@ -16,7 +16,7 @@ from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry, Mesh
 from flyby.core.collision.distance.convex import hull, is_closed, obstacle_solids, tool_solids
 from flyby.core.collision.distance.solid import Polytope, TriangleMesh
-from flyby.core.collision.scene.bodies import Kind, bodies_of
+from flyby.core.collision.scene.bodies import BodyKind, bodies_of
 from flyby.core.collision.scene.frames import WORLD, frame_of_axis
 from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.errors import InputError
@@ -63,7 +63,7 @@ def test_links_tool_and_obstacles_ride_on_their_carriers() -> None:
     ]
     robot = scene.robot
     assert by_name["base"].frame == frame_of_axis(robot, "track")
-    assert by_name["gun"].frame == 3 and by_name["gun"].kind is Kind.TOOL
+    assert by_name["gun"].frame == 3 and by_name["gun"].kind is BodyKind.TOOL
     assert by_name["gun"].placement.position == pytest.approx((0.0, 0.0, 0.7))
     assert by_name["spindle"].frame == WORLD
     assert by_name["fixture"].frame == frame_of_axis(robot, "table")

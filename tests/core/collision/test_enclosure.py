@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from flyby.core.arrays import FloatArray
-from flyby.core.collision.proof.enclosure import Enclosure, Intervals
+from flyby.core.collision.proof.enclosure import EnclosedIntervals, Enclosure
 from flyby.core.errors import MotionError
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.geometry.corners import POSITION
@@ -41,7 +41,7 @@ DENSE = Sampling(step=0.004, turn=0.02, joint=0.02, halvings=1, most=2000)
 FEW = settings(max_examples=12)
 
 
-def leaves(path: Path, levels: int = 22) -> list[Intervals]:
+def leaves(path: Path, levels: int = 22) -> list[EnclosedIntervals]:
     """Intervals with enclosures that cover the path."""
     enclosure = Enclosure.of(path)
     intervals = enclosure.over([(0.0, path.sigma[-1])])

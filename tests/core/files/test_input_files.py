@@ -21,7 +21,7 @@ from flyby.core.cell.mesh_file import read_scene
 from flyby.core.errors import InputError
 from flyby.core.files.arrays import read_npz
 from flyby.core.files.reading import read_bytes, read_json, read_text, read_toml
-from flyby.core.files.tables import Table
+from flyby.core.files.tables import TomlTable
 from flyby.core.motion.command.trajectory import Trajectory
 from flyby.core.motion.model.motion_file import load_motion_model
 from flyby.core.source.execution.answers import load_answers
@@ -87,7 +87,7 @@ TOML = {
 @pytest.mark.parametrize("text", TOML, ids=range(len(TOML)))
 def test_hostile_toml_is_refused_by_every_reader(tmp_path: Path, text: str) -> None:
     path = _saved(tmp_path, text.encode("utf-8", "surrogatepass"))
-    for read in (read_toml, load_answers, load_motion_model, Table.read):
+    for read in (read_toml, load_answers, load_motion_model, TomlTable.read):
         with pytest.raises(InputError, match=TOML[text]) as caught:
             read(path)
         assert "file.toml" in str(caught.value)
@@ -243,7 +243,7 @@ def test_motion_models_that_would_take_for_ever_are_refused(tmp_path: Path, text
 
 
 def test_a_number_beyond_all_quantities_is_refused(tmp_path: Path) -> None:
-    table = Table.read(_saved(tmp_path, b"a = 1e308\nb = [1e13]\nc = 1e12"))
+    table = TomlTable.read(_saved(tmp_path, b"a = 1e308\nb = [1e13]\nc = 1e12"))
     with pytest.raises(InputError, match=r"a: must lie within ±1e\+12"):
         table.number("a")
     with pytest.raises(InputError, match="b: must lie within"):

@@ -11,7 +11,7 @@ import pytest
 
 from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, Iteration, Status, solve
-from flyby.core.sqp.problem.optimality import Residuals
+from flyby.core.sqp.problem.optimality import OptimalityResiduals
 from flyby.core.sqp.verdict import Ending, Evidence, verdict
 
 from .honesty import assert_honest, solved
@@ -60,10 +60,10 @@ def test_a_large_multiplier_excuses_no_other_variable() -> None:
 
 def test_acceptable_needs_small_residuals_beside_their_own_terms() -> None:
     """An evidence that was once taken for a solution: slope 1e-3 beside a multiplier of 1e7."""
-    at = Residuals(1e-3, 0.0, 0.0, 1e-3, False, np.array([0.0, 1e7]))
+    at = OptimalityResiduals(1e-3, 0.0, 0.0, 1e-3, False, np.array([0.0, 1e7]))
     known = Evidence(at, 1e-6, 1.6, 1.6, 1.0, 1.0, True, 0.0, "", False, 10)
     assert verdict(Ending.NO_STEP, known)[0] is Status.ITERATION_LIMIT
-    rounded = Residuals(1e-3, 0.0, 0.0, 1e-7, False, np.array([0.0, 1e7]))
+    rounded = OptimalityResiduals(1e-3, 0.0, 0.0, 1e-7, False, np.array([0.0, 1e7]))
     promising = Evidence(rounded, 1e-6, 1.6, 1.6, 1.0, 1.0, True, 0.5, "", False, 10)
     assert verdict(Ending.NO_STEP, promising)[0] is Status.ITERATION_LIMIT
     done = Evidence(rounded, 1e-6, 1.6, 1.6, 1.0, 1.0, True, 1e-9, "", False, 10)
@@ -71,7 +71,7 @@ def test_acceptable_needs_small_residuals_beside_their_own_terms() -> None:
 
 
 def test_violations_that_are_rounding_are_acceptable_but_not_optimal() -> None:
-    at = Residuals(0.0, 0.0, 1e-3, 0.0, True, np.zeros(1))
+    at = OptimalityResiduals(0.0, 0.0, 1e-3, 0.0, True, np.zeros(1))
     known = Evidence(at, 1e-6, 1.0, 1.0, 1.0, 1.0, True, 0.0, "", False, 10)
     for ending in (Ending.NO_STEP, Ending.STATIONARY_VIOLATION):
         status, message = verdict(ending, known)

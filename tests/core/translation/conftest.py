@@ -20,7 +20,7 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.model import Robot
 from flyby.core.spatial.pose import IDENTITY, Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
-from flyby.core.translation.corners import Corner, corners_of
+from flyby.core.translation.corners import EmulatedCorner, corners_of
 from flyby.core.translation.translate import Translation, translate
 from flyby.core.vendor import Vendor
 
@@ -75,7 +75,7 @@ class Pair:
         return programs(self, kinds or (MoveJ, MoveL, MoveC))
 
     @staticmethod
-    def corners(made: Run) -> dict[int, Corner]:
+    def corners(made: Run) -> dict[int, EmulatedCorner]:
         """The corner at the end of each move that is driven."""
         return dict(zip(made.path.route.moves, corners_of(made.path), strict=False))
 

@@ -15,7 +15,7 @@ from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.geometry.pieces import Sampling
 from flyby.core.motion.model.elasticity import Carried, Coupled
 from flyby.core.motion.model.figures import Figure, Tables, with_figures
-from flyby.core.motion.model.kinds import Choice, RealNumber, Row, Truth
+from flyby.core.motion.model.kinds import Choice, RealNumber, Row, TruthValue
 from flyby.core.motion.model.motion_file import figures_text, load_motion_model
 from flyby.core.motion.model.motion_model import FIGURES, MotionModel, first_change
 from flyby.core.motion.model.torque import Borne
@@ -238,7 +238,7 @@ def refused(one: Figure) -> list[str]:
     kind = one.kind
     if isinstance(kind, Choice):
         return ['"no such word"', "3"]
-    if isinstance(kind, Truth):
+    if isinstance(kind, TruthValue):
         return ['"false"', "1"]
     if isinstance(kind, Tables):
         return ["3", "[3]", "[{ joint = 3 }]"]

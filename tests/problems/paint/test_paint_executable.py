@@ -25,7 +25,7 @@ from flyby.problems.paint.executable.emulated import EmulatedPainting, drive
 from flyby.problems.paint.executable.feedback import drive_evenly
 from flyby.problems.paint.executable.frames import gun_frames, turned
 from flyby.problems.paint.executable.lag import lag_notes
-from flyby.problems.paint.executable.spin import Posture, choose_posture
+from flyby.problems.paint.executable.spin import GunPosture, choose_posture
 from flyby.problems.paint.executable.station import PLAIN_GUN, Station
 from flyby.problems.paint.executable.writing import DriveOptions, paint_program, with_run_in
 from flyby.problems.paint.spray.signals import GunSignals
@@ -45,13 +45,13 @@ def station(x: float = 1.0, vendor: str = "abb", robot: str = "abb/irb6640-180-2
 
 
 @pytest.fixture(scope="module")
-def held() -> tuple[PaintTrajectory, Posture]:
+def held() -> tuple[PaintTrajectory, GunPosture]:
     """The sweeps over the metre plate, and how the robot holds the gun."""
     planned = with_run_in(plate_case(0.25, 11)[1], 0.05)
     return planned, choose_posture(planned, station())
 
 
-def test_the_robot_holds_the_gun_as_planned(held: tuple[PaintTrajectory, Posture]):
+def test_the_robot_holds_the_gun_as_planned(held: tuple[PaintTrajectory, GunPosture]):
     planned, posture = held
     here = station()
     world = planned.moved(here.place)
@@ -64,18 +64,18 @@ def test_the_robot_holds_the_gun_as_planned(held: tuple[PaintTrajectory, Posture
     assert (limits.lower <= posture.joints).all() and (posture.joints <= limits.upper).all()
 
 
-def test_joints_keep_to_their_speeds(held: tuple[PaintTrajectory, Posture]):
+def test_joints_keep_to_their_speeds(held: tuple[PaintTrajectory, GunPosture]):
     planned, posture = held
     rate = np.abs(np.diff(posture.joints, axis=0)) / planned.duration[:, None]
     assert (rate < 0.5 * ROBOT.limits.velocity).all()
 
 
-def test_where_a_posture_collides_another_branch_is_taken(held: tuple[PaintTrajectory, Posture]):
+def test_where_a_posture_collides_another_branch_is_taken(held: tuple[PaintTrajectory, GunPosture]):
     planned, cheapest = held
-    tried: list[Posture] = []
+    tried: list[GunPosture] = []
 
     def clear(joints: FloatArray) -> bool:
-        tried.append(Posture(cheapest.rotation, joints))
+        tried.append(GunPosture(cheapest.rotation, joints))
         return len(tried) == 2
 
     other = choose_posture(planned, station(), clear)
@@ -109,7 +109,7 @@ def test_a_closed_part_is_closed_for_the_proof_too():
     assert not any("watertight" in str(note) for note in CollisionScene(cell, PLAIN_GUN).notes)
 
 
-def test_a_stretch_out_of_reach_is_named(held: tuple[PaintTrajectory, Posture]):
+def test_a_stretch_out_of_reach_is_named(held: tuple[PaintTrajectory, GunPosture]):
     planned, _ = held
     with pytest.raises(MotionError, match=r"cannot reach .*waypoint.* m along the curve.* mm of"):
         choose_posture(planned, station(1.9))
@@ -156,7 +156,7 @@ def test_run_in_goes_straight_on_with_the_gun_off():
     assert with_run_in(planned, 0.0) is planned
 
 
-def test_the_program_switches_the_gun_at_its_waypoints(held: tuple[PaintTrajectory, Posture]):
+def test_the_program_switches_the_gun_at_its_waypoints(held: tuple[PaintTrajectory, GunPosture]):
     planned, posture = held
     options = DriveOptions(signals=GunSignals("doGun", delay=0.04))
     program = paint_program(planned, posture, station(), options)
@@ -210,7 +210,7 @@ def assert_near(driven: EmulatedPainting, planned: PaintTrajectory, zone: float)
 
 
 def test_what_is_driven_is_what_was_planned_but_for_corners(
-    held: tuple[PaintTrajectory, Posture],
+    held: tuple[PaintTrajectory, GunPosture],
 ):
     planned, posture = held
     program = paint_program(planned, posture, station(), DriveOptions())
@@ -227,7 +227,7 @@ def test_what_is_driven_is_what_was_planned_but_for_corners(
 
 
 @pytest.mark.parametrize("zone", [0.01, 0.05])
-def test_speeds_make_up_for_the_controller(held: tuple[PaintTrajectory, Posture], zone: float):
+def test_speeds_make_up_for_the_controller(held: tuple[PaintTrajectory, GunPosture], zone: float):
     """Even a path with corners and one speed gets a better coat than it had."""
     planned, posture = held
     deposition, start = plate_case(0.25, 21)
@@ -241,7 +241,7 @@ def test_speeds_make_up_for_the_controller(held: tuple[PaintTrajectory, Posture]
     assert (made.planned.speeds >= SPEED[0] * (1 - 1e-9)).all()
 
 
-def test_progress_ends_the_rounds(held: tuple[PaintTrajectory, Posture]):
+def test_progress_ends_the_rounds(held: tuple[PaintTrajectory, GunPosture]):
     planned, posture = held
     deposition, _ = plate_case(0.25, 11)
     seen: list[int] = []

@@ -14,7 +14,7 @@ from flyby.problems.paint.coating.deposition import Deposition
 from flyby.problems.paint.spray.trajectory import PaintTrajectory
 from flyby.problems.paint.thickness.optimize import PaintSolution, optimize
 from flyby.problems.paint.thickness.options import OuterLoop, PaintLimits, PaintWeights
-from flyby.problems.paint.thickness.reference import Reference
+from flyby.problems.paint.thickness.reference import ReferencePlanes
 from flyby.problems.paint.thickness.robust import PaintErrors, scenarios
 
 from .paint_cases import TARGET, plate, plate_case
@@ -24,7 +24,7 @@ MICRON = 1e-6
 
 def held(found: PaintSolution, start: PaintTrajectory, limits: PaintLimits) -> None:
     """Every limit, from the trajectory itself."""
-    after, reference = found.trajectory, Reference.below(start, 0.25)
+    after, reference = found.trajectory, ReferencePlanes.below(start, 0.25)
     slack = 1e-3
     distance = after.position[:, 2]
     assert limits.distance[0] - slack * 0.1 <= distance.min()
@@ -45,7 +45,7 @@ def test_plates_get_even(radius, deviation, std):
     """Optimised on 25² points, judged on 101²."""
     deposition, start = plate_case(radius, 25)
     limits = PaintLimits(deviation=deviation)
-    found = optimize(deposition, start, TARGET, Reference.below(start, 0.25), limits=limits)
+    found = optimize(deposition, start, TARGET, ReferencePlanes.below(start, 0.25), limits=limits)
     fine = Deposition(plate(101), deposition.footprint, 12)
     after = coat(fine, found.trajectory, TARGET).by_area
     assert after.std <= std * MICRON
@@ -67,7 +67,7 @@ def test_tight_limits_hold():
     )
     loop = OuterLoop(rounds=2, iterations=3, position=0.02)
     found = optimize(
-        deposition, start, TARGET, Reference.below(start, 0.25), limits=limits, loop=loop
+        deposition, start, TARGET, ReferencePlanes.below(start, 0.25), limits=limits, loop=loop
     )
     held(found, start, limits)
     assert found.after.by_area.std < 0.9 * found.before.by_area.std
@@ -75,7 +75,7 @@ def test_tight_limits_hold():
 
 def test_a_shorter_time_can_be_bought():
     deposition, start = plate_case(0.25, 17)
-    reference = Reference.below(start, 0.25)
+    reference = ReferencePlanes.below(start, 0.25)
     loop = OuterLoop(rounds=2, iterations=2)
     plain = optimize(deposition, start, TARGET, reference, loop=loop)
     hurried = optimize(
@@ -91,7 +91,7 @@ def test_a_shorter_time_can_be_bought():
 
 def test_robust_trajectories_stand_errors_better():
     deposition, start = plate_case(0.25, 17)
-    reference = Reference.below(start, 0.25)
+    reference = ReferencePlanes.below(start, 0.25)
     errors = PaintErrors(height=0.01, radius=0.03)
     cases = scenarios(deposition, errors)
 
@@ -111,7 +111,9 @@ def test_gun_stays_off_where_it_is_off():
     flow = start.flow.copy()
     flow[12:14] = 0.0
     off = start.with_flow(flow)
-    found = optimize(deposition, off, TARGET, Reference.below(off, 0.25), loop=OuterLoop(rounds=1))
+    found = optimize(
+        deposition, off, TARGET, ReferencePlanes.below(off, 0.25), loop=OuterLoop(rounds=1)
+    )
     assert np.array_equal(found.trajectory.flow, flow)
     assert found.after.by_area.std < 0.5 * found.before.by_area.std
 
@@ -120,10 +122,10 @@ def test_the_reference_is_asked_each_round():
     deposition, start = plate_case(0.25, 15)
     asked = []
 
-    def surroundings(trajectory: PaintTrajectory) -> Reference:
+    def surroundings(trajectory: PaintTrajectory) -> ReferencePlanes:
         asked.append(trajectory)
         foot = trajectory.position * (1.0, 1.0, 0.0)
-        return Reference(foot, np.tile((0.0, 0.0, 1.0), (len(foot), 1)))
+        return ReferencePlanes(foot, np.tile((0.0, 0.0, 1.0), (len(foot), 1)))
 
     loop = OuterLoop(rounds=3, iterations=1, enough=0.0)
     optimize(deposition, start, TARGET, surroundings, loop=loop)
@@ -140,7 +142,7 @@ def test_what_is_hidden_gets_paint_from_elsewhere():
         seen[: deposition.samples.size // 2, ::2] = False
         return seen
 
-    reference, loop = Reference.below(start, 0.25), OuterLoop(rounds=2, iterations=2)
+    reference, loop = ReferencePlanes.below(start, 0.25), OuterLoop(rounds=2, iterations=2)
     found = optimize(deposition, start, TARGET, reference, sight=sight, loop=loop)
     hidden = deposition.with_visible(sight(start))
     assert found.before.by_area == coat(hidden, start, TARGET).by_area
@@ -156,7 +158,9 @@ def test_interrupting_keeps_the_best_so_far():
         seen.append(number)
         return len(seen) > 4
 
-    found = optimize(deposition, start, TARGET, Reference.below(start, 0.25), progress=progress)
+    found = optimize(
+        deposition, start, TARGET, ReferencePlanes.below(start, 0.25), progress=progress
+    )
     assert found.interrupted
     assert found.status is Status.INTERRUPTED
     assert found.after.by_area.std < found.before.by_area.std

@@ -15,9 +15,9 @@ from flyby.problems.paint.spray.footprint import ring
 from flyby.problems.paint.thickness.constraints import PaintConstraints
 from flyby.problems.paint.thickness.objective import PaintObjective, Scenario
 from flyby.problems.paint.thickness.options import OuterLoop, PaintLimits, PaintWeights
-from flyby.problems.paint.thickness.reference import Reference
+from flyby.problems.paint.thickness.reference import ReferencePlanes
 from flyby.problems.paint.thickness.robust import PaintErrors, scenarios
-from flyby.problems.paint.thickness.variables import Variables
+from flyby.problems.paint.thickness.variables import ThicknessVariables
 
 from .paint_cases import TARGET, bumpy, wandering
 
@@ -25,16 +25,16 @@ SEEDS = st.integers(0, 10_000)
 FEW = settings(max_examples=10)
 
 
-def variables_of(seed: int) -> Variables:
+def variables_of(seed: int) -> ThicknessVariables:
     trajectory = wandering(5, seed)
     rng = np.random.default_rng(seed)
     normal = -trajectory.nozzle + rng.uniform(-0.2, 0.2, trajectory.nozzle.shape)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     foot = trajectory.position - 0.25 * normal + rng.uniform(-0.02, 0.02, normal.shape)
-    return Variables.of(trajectory, Reference(foot, normal))
+    return ThicknessVariables.of(trajectory, ReferencePlanes(foot, normal))
 
 
-def somewhere(variables: Variables, seed: int) -> np.ndarray:
+def somewhere(variables: ThicknessVariables, seed: int) -> np.ndarray:
     return np.random.default_rng(seed + 1).uniform(-0.5, 0.5, variables.size)
 
 
@@ -74,7 +74,7 @@ def test_turns_are_the_nozzles_slopes(seed):
         assert np.allclose(turns[:, k], slope, atol=1e-7)
 
 
-def objective_of(seed: int, weights: PaintWeights) -> tuple[Variables, PaintObjective]:
+def objective_of(seed: int, weights: PaintWeights) -> tuple[ThicknessVariables, PaintObjective]:
     variables = variables_of(seed)
     deposition = Deposition(bumpy(15, seed), ring(0.2).scaled(5e-5), 3)
     cases = scenarios(deposition, PaintErrors(height=0.01, radius=0.03))
@@ -217,15 +217,18 @@ def test_scenarios_hold_the_mean_square_of_what_is_quadratic():
         (lambda: OuterLoop(rounds=0), "rounds"),
         (lambda: OuterLoop(duration=1.0), "box"),
         (lambda: PaintErrors(height=-1.0), "height"),
-        (lambda: Reference(np.zeros((2, 3)), np.ones((2, 3))), "unit length"),
-        (lambda: Reference(np.zeros((2, 3)), np.ones((3, 3))), r"\(W, 3\)"),
+        (lambda: ReferencePlanes(np.zeros((2, 3)), np.ones((2, 3))), "unit length"),
+        (lambda: ReferencePlanes(np.zeros((2, 3)), np.ones((3, 3))), r"\(W, 3\)"),
         (
-            lambda: Variables.of(wandering(3, 1), Reference.below(wandering(4, 1), 0.2)),
+            lambda: ThicknessVariables.of(
+                wandering(3, 1), ReferencePlanes.below(wandering(4, 1), 0.2)
+            ),
             "4 planes for 3 waypoints",
         ),
         (
-            lambda: Variables.of(
-                wandering(3, 1), Reference(np.zeros((3, 3)), np.tile((0.0, 0.0, -1.0), (3, 1)))
+            lambda: ThicknessVariables.of(
+                wandering(3, 1),
+                ReferencePlanes(np.zeros((3, 3)), np.tile((0.0, 0.0, -1.0), (3, 1))),
             ),
             "does not point at the surface",
         ),

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from flyby.core.arrays import FloatArray
 from flyby.problems.paint.initial.guide import Guide
 from flyby.problems.paint.initial.plan import SweepPlan
-from flyby.problems.paint.initial.projection import Frames, Projector, cluster_mean
+from flyby.problems.paint.initial.projection import Projector, SprayFrames, cluster_mean
 from flyby.problems.paint.surface.part import Part
 from flyby.validation.surfaces.sheets import grid_faces, plate, saddle, scanned
 
@@ -23,11 +23,11 @@ def projector(part: Part, plan: SweepPlan) -> Projector:
     return Projector(Guide(part, plan.holes), plan, DOWN)
 
 
-def above(x: FloatArray, y: FloatArray, z: float) -> Frames:
+def above(x: FloatArray, y: FloatArray, z: float) -> SprayFrames:
     """Frames looking down, with tangents along x."""
     n = len(x)
     point = np.stack([x, y, np.full(n, z)], axis=1)
-    return Frames(point, np.tile((1.0, 0.0, 0.0), (n, 1)), np.tile(DOWN, (n, 1)))
+    return SprayFrames(point, np.tile((1.0, 0.0, 0.0), (n, 1)), np.tile(DOWN, (n, 1)))
 
 
 def slope(angle: float) -> Part:

@@ -16,7 +16,7 @@ from flyby.core.program.zone import FINE, ContourFraction, Radius
 from flyby.core.source.patch.edits import difference
 from flyby.core.source.reading import ReadOptions, read_with
 from flyby.core.source.text.files import SourceFile, decode
-from flyby.core.source.write.options import PatchOptions, Sharing
+from flyby.core.source.write.options import PatcherOptions, Sharing
 from flyby.testing import strategies as given_by
 from flyby.vendors.abb.motion.configuration import AbbConfiguration
 from flyby.vendors.abb.patch.patcher import patch
@@ -25,8 +25,8 @@ from flyby.vendors.abb.values import predefined
 from flyby.vendors.abb.write.options import RapidOptions
 from flyby.vendors.abb.write.writer import write
 
-OWN = PatchOptions(Sharing.OWN, Sharing.OWN)
-REFUSE = PatchOptions()
+OWN = PatcherOptions(Sharing.OWN, Sharing.OWN)
+REFUSE = PatcherOptions()
 FILE = "job.mod"
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 Z10 = predefined.zone("z10")
@@ -73,7 +73,9 @@ def moved(target: Any, *, x: float | None = None, z: float | None = None) -> Any
     return replace(target, pose=replace(target.pose, position=position))
 
 
-def patched(text: str, change: Callable[[Program], Program], options: PatchOptions = REFUSE) -> str:
+def patched(
+    text: str, change: Callable[[Program], Program], options: PatcherOptions = REFUSE
+) -> str:
     files = patch(change(program_of({FILE: text})), options)
     return files[FILE].text if files else text
 

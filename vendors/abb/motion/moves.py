@@ -16,7 +16,7 @@ from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import WORLD, Load, Tool, WorkObject
 from ....core.program.zone import FINE, Zone
-from ....core.source.execution.provenance import Part
+from ....core.source.execution.provenance import MovePart
 from ....core.source.execution.transcript import MoveParts, Transcript
 from ..syntax.tree import Expression, Invoke, Name
 from ..values.arguments import Bound, bind
@@ -102,7 +102,7 @@ class _MoveReader:
         self.record: Record = ()
         _refuse_options(bound)
 
-    def pose_target(self, name: str, follow: bool) -> tuple[PoseTarget, Part]:
+    def pose_target(self, name: str, follow: bool) -> tuple[PoseTarget, MovePart]:
         expression = self.bound.named(name)
         found = self._found(expression, "target", ROBTARGET)
         target = self.run.convert.pose_target(
@@ -116,7 +116,7 @@ class _MoveReader:
             self.run.evaluator.reads.by_expression(found.source, self.run.out.move_index)
         return target, _part_of(expression.span, source)
 
-    def joint_target(self, arm_stays: bool) -> tuple[JointTarget, Part]:
+    def joint_target(self, arm_stays: bool) -> tuple[JointTarget, MovePart]:
         expression = self.bound.named("ToJointPos")
         found = self._found(expression, "target", JOINTTARGET)
         name = _datum_name(found, expression)
@@ -144,7 +144,7 @@ class _MoveReader:
             )
         return (present[0], _record(value)[1])
 
-    def common(self) -> tuple[Common, Part, Part]:
+    def common(self) -> tuple[Common, MovePart, MovePart]:
         """What every move has, and what its speed and zone are made of."""
         tool = self._tool()
         work_object = self._work_object()
@@ -197,7 +197,7 @@ class _MoveReader:
         use = f"{self.bound.text} \\{name.upper()}"
         return self.run.evaluator.number(self.bound.option(name), self.scope, use)
 
-    def _speed(self) -> tuple[Speed, Part]:
+    def _speed(self) -> tuple[Speed, MovePart]:
         expression = self.bound.named("Speed")
         found = self._found(expression, "speed", SPEEDDATA)
         assert isinstance(found.value, tuple)
@@ -214,11 +214,11 @@ class _MoveReader:
         # Under VelSet the number in the text is not the speed: derived.
         for source in filter(None, part.sources):
             self.run.evaluator.reads.by_expression(source, self.run.out.move_index)
-        return speed, Part(part.span)
+        return speed, MovePart(part.span)
 
-    def _zone(self) -> tuple[Zone, Part]:
+    def _zone(self) -> tuple[Zone, MovePart]:
         if "Zone" not in self.bound.names:
-            return FINE, Part(self.bound.span)
+            return FINE, MovePart(self.bound.span)
         expression = self.bound.named("Zone")
         found = self._found(expression, "zone", ZONEDATA)
         part = self._part(found, expression, ("z", "inpos"))
@@ -229,7 +229,7 @@ class _MoveReader:
         zone = self.run.convert.zone(found.value, name, self._option("z"), expression.span)
         return zone, part
 
-    def _part(self, found: Located, expression: Expression, options: tuple[str, ...]) -> Part:
+    def _part(self, found: Located, expression: Expression, options: tuple[str, ...]) -> MovePart:
         """A speed or zone; a number in an option at the move is the move's own."""
         given = [name for name in options if name in self.bound.options]
         if not given:
@@ -250,8 +250,8 @@ def _record(value: Value) -> Record:
     return value
 
 
-def _part_of(span: Span, source: Literal | None, predefined: str | None = None) -> Part:
-    return Part(span, () if source is None else (source,), predefined)
+def _part_of(span: Span, source: Literal | None, predefined: str | None = None) -> MovePart:
+    return MovePart(span, () if source is None else (source,), predefined)
 
 
 def _refuse_options(bound: Bound) -> None:
@@ -290,7 +290,7 @@ def read_move(
     follow = settings.check_joint if form.kind == "joint" else settings.check_linear
     arc = _arc_orientation(run, bound) if form.kind == "circular" else None
     via: PoseTarget | None = None
-    via_part: Part | None = None
+    via_part: MovePart | None = None
     target: PoseTarget | JointTarget
     if form.kind in ("absolute", "external"):
         target, part = reader.joint_target(form.kind == "external")

@@ -24,10 +24,10 @@ from ....core.program.origin import Ownership
 from ....core.program.program import Program
 from ....core.program.zone import Fine
 from ....core.source.patch.edits import Edit, alike, reading_of
-from ....core.source.patch.plan import Plan, patch_program
+from ....core.source.patch.plan import PatchPlan, patch_program
 from ....core.source.patch.uses import Use
 from ....core.source.reading import Files
-from ....core.source.write.options import PatchOptions
+from ....core.source.write.options import PatcherOptions
 from ..syntax.tree import Aggregate, Name
 from .additions import Additions
 from .inplace import RapidLiterals
@@ -35,7 +35,7 @@ from .places import Operand, Places
 from .substitutes import Substitutes
 
 
-def patch(program: Program, options: PatchOptions, axis_kinds: Sequence[str] = ()) -> Files:
+def patch(program: Program, options: PatcherOptions, axis_kinds: Sequence[str] = ()) -> Files:
     """The program's files with its numbers; see `core.source.patch.plan.patch_program`.
 
     Args:
@@ -44,7 +44,7 @@ def patch(program: Program, options: PatchOptions, axis_kinds: Sequence[str] = (
     places = Places(reading_of(program).files)
     literals = RapidLiterals(places, axis_kinds)
 
-    def edits(plan: Plan) -> list[Edit]:
+    def edits(plan: PatchPlan) -> list[Edit]:
         return _Edits(plan, places, axis_kinds).all()
 
     return patch_program(program, options, literals, edits, _other_change)
@@ -53,7 +53,7 @@ def patch(program: Program, options: PatchOptions, axis_kinds: Sequence[str] = (
 class _Edits:
     """Finds the edits."""
 
-    def __init__(self, plan: Plan, places: Places, axis_kinds: Sequence[str]) -> None:
+    def __init__(self, plan: PatchPlan, places: Places, axis_kinds: Sequence[str]) -> None:
         self._plan = plan
         self._places = places
         self._additions = Additions(places)

@@ -7,7 +7,7 @@ states, else values that are not known.
 
 from __future__ import annotations
 
-from ....core.source.execution.suppose import Parts, Supposing
+from ....core.source.execution.suppose import ConditionParts, Supposing
 from ..syntax.traversal import calls_in, names_in
 from ..syntax.tree import Call, Expression, Invoke, Name, Operation, Unary
 from ..values.arguments import bind
@@ -41,22 +41,22 @@ def suppose(evaluator: Evaluator, condition: Expression, scope: Scope, truth: bo
     ).wait(condition, truth)
 
 
-def _parts(condition: Expression) -> Parts[Expression]:
+def _parts(condition: Expression) -> ConditionParts[Expression]:
     """What a condition is made of; it is evaluated once if it calls more than outputs."""
     asks = any(call.name not in READING for call in calls_in(condition))
     if isinstance(condition, Unary) and condition.operator == "not":
-        return Parts(negated=condition.operand, asks=asks)
+        return ConditionParts(negated=condition.operand, asks=asks)
     if not isinstance(condition, Operation):
-        return Parts(asks=asks)
+        return ConditionParts(asks=asks)
     operators = {operator for operator, _ in condition.rest}
     operands = (condition.first, *(operand for _, operand in condition.rest))
     if operators == {"and"}:
-        return Parts(all_of=operands, asks=asks)
+        return ConditionParts(all_of=operands, asks=asks)
     if operators == {"or"}:
-        return Parts(any_of=operands, asks=asks)
+        return ConditionParts(any_of=operands, asks=asks)
     if len(operands) == 2 and operators <= {"=", "<>"}:
-        return Parts(sides=(operands[0], operands[1]), equal=operators == {"="}, asks=asks)
-    return Parts(asks=asks)
+        return ConditionParts(sides=(operands[0], operands[1]), equal=operators == {"="}, asks=asks)
+    return ConditionParts(asks=asks)
 
 
 def _holds(evaluator: Evaluator, condition: Expression, scope: Scope) -> bool | None:

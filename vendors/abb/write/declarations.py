@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from itertools import count
 
 from ....core.source.write import declarations
-from ....core.source.write.declarations import Datum
+from ....core.source.write.declarations import NewDatum
 from ..values.records import Record
 from .formatting import literal
 from .numbers import number
@@ -48,28 +48,28 @@ class Declarations(declarations.Declarations):
 
     types = tuple(STORAGE)
 
-    def add(self, type_: str, record: Record, wanted: str | None, stem: str = "") -> Datum:
+    def add(self, type_: str, record: Record, wanted: str | None, stem: str = "") -> NewDatum:
         """The datum of this value and name, declared from now on."""
         return self.declare(datum(type_, record, wanted, stem), wanted)
 
-    def add_undefined(self, type_: str, definition: str) -> Datum:
+    def add_undefined(self, type_: str, definition: str) -> NewDatum:
         """A datum without an initial value; data of one definition are one."""
-        return self.declare(Datum(type_, definition, None, "", FALLBACK[type_]), None)
+        return self.declare(NewDatum(type_, definition, None, "", FALLBACK[type_]), None)
 
     def numbered(self) -> Mapping[str, Iterator[str]]:
         """``p10``, ``p20``, …"""
         return {type_: _tens(stem) for type_, stem in COUNTED.items()}
 
-    def line(self, datum: Datum, name: str) -> str:
+    def line(self, datum: NewDatum, name: str) -> str:
         """``CONST robtarget p10 := […];``"""
         initial = "" if datum.type in UNDEFINED else f" := {datum.text}"
         return f"{STORAGE[datum.type]} {datum.type} {name}{initial};"
 
 
-def datum(type_: str, record: Record, wanted: str | None, stem: str = "") -> Datum:
+def datum(type_: str, record: Record, wanted: str | None, stem: str = "") -> NewDatum:
     """A datum; names that differ in upper and lower case only are the same."""
     folded = wanted.casefold() if wanted else None
-    return Datum(type_, literal(record), folded, stem, FALLBACK[type_])
+    return NewDatum(type_, literal(record), folded, stem, FALLBACK[type_])
 
 
 def _tens(stem: str) -> Iterator[str]:

@@ -17,7 +17,7 @@ from ....core.errors import InputError
 from ....core.program.event import Event, EventAnchor
 from ....core.program.move import Move, MoveJ
 from ....core.program.target import JointTarget
-from ....core.source.write.declarations import Datum
+from ....core.source.write.declarations import NewDatum
 from ....core.source.write.options import OpaqueStyle, as_comments
 from ..values.records import MM
 from .numbers import number
@@ -62,7 +62,7 @@ class Events:
     def __init__(self, operands: Operands, style: OpaqueStyle) -> None:
         self._operands = operands
         self._style = style
-        self._defined: set[Datum] = set()
+        self._defined: set[NewDatum] = set()
 
     def of(self, move: Move) -> Said:
         """How the events of a move are said.
@@ -87,7 +87,7 @@ class Events:
         verb = plain.replace("Move", "Trigg")
         return Said(tuple(self._definitions(triggers)), verb, tuple(triggers))
 
-    def _definitions(self, triggers: Sequence[Datum]) -> list[tuple[Operand, ...]]:
+    def _definitions(self, triggers: Sequence[NewDatum]) -> list[tuple[Operand, ...]]:
         r"""``TriggIO trigg10,25\DOp:=doGun,1;`` of those that are not defined yet."""
         new = [t for t in dict.fromkeys(triggers) if t not in self._defined]
         self._defined.update(new)

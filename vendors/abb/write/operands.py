@@ -1,7 +1,7 @@
 """What stands in a move instruction: targets, speeds, zones, tools, work objects, loads.
 
-Each function gives the name of a predefined datum, or a `Datum` that the module will declare. What
-RAPID cannot say is an `InputError`; the writer adds which move it was.
+Each function gives the name of a predefined datum, or a `NewDatum` that the module will declare.
+What RAPID cannot say is an `InputError`; the writer adds which move it was.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from ....core.program.speed import Speed
 from ....core.program.target import Configuration, JointTarget, PoseTarget
 from ....core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from ....core.program.zone import Fine, Radius, Zone
-from ....core.source.write.declarations import Datum
+from ....core.source.write.declarations import NewDatum
 from ..motion.configuration import AbbConfiguration
 from ..values.predefined import NAMES, SPEEDS, ZONES
 from ..values.records import (
@@ -33,7 +33,7 @@ from .declarations import Declarations, sized
 from .formatting import literal
 from .options import RapidOptions, ZoneStyle
 
-Operand = str | Datum
+Operand = str | NewDatum
 
 ARM_AXES = 6
 UNSTATED_CONFIGURATION: Record = (0.0, 0.0, 0.0, 0.0)

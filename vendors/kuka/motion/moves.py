@@ -16,7 +16,7 @@ from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import Load, Tool, WorkObject
 from ....core.program.zone import Zone
 from ....core.source.execution.limits import Meter
-from ....core.source.execution.provenance import ELSEWHERE, Part
+from ....core.source.execution.provenance import ELSEWHERE, MovePart
 from ....core.source.execution.transcript import MoveParts, Transcript
 from ..syntax.tree import Expression, Flat, MotionInstruction, Name
 from ..values.data import Data
@@ -158,7 +158,7 @@ class MotionReader:
             via, target = self._by_angle(motion, motion.angle, scope, start, via, target)
             complete = Struct("e6pos", {**found.complete.fields, **frame_of(target.pose).fields})
             found = replace(found, target=target, complete=complete, sources=Sources(()))
-            via_part = Part(motion.targets[0].span)
+            via_part = MovePart(motion.targets[0].span)
             for read in (auxiliary.sources, found.sources):
                 self._read_by_expression(read.entries)
         found = self._constant_orientation(found, start, placement, motion)
@@ -344,13 +344,13 @@ class MotionReader:
         at = placement.tool, placement.work_object, placement.load
         return (speed.value, zone.value, *at), speed.sources, zone.sources
 
-    def _part(self, span: Span, sources: Sources, predefined: str | None = None) -> Part:
+    def _part(self, span: Span, sources: Sources, predefined: str | None = None) -> MovePart:
         reads, index = self.evaluator.reads, self.transcript.move_index
         for source in sources.distinct():
             reads.by_move(source, index)
             # A number may be read alone here and with its aggregate by another move.
             reads.by_expression(source, index)
-        return Part(span, sources.entries, predefined)
+        return MovePart(span, sources.entries, predefined)
 
     def _emit(
         self,
@@ -358,7 +358,7 @@ class MotionReader:
         move: Move,
         found: ReadTarget,
         sources: Sequence[Sources],
-        via: Part | None = None,
+        via: MovePart | None = None,
     ) -> None:
         parts = MoveParts(
             motion.span,

@@ -14,7 +14,7 @@ from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
 from ....core.source.patch.edits import TOLERANCE, alike
 from ....core.source.patch.plan import Texts, Wish
-from ....core.source.patch.uses import Kind, Use
+from ....core.source.patch.uses import Use, UseKind
 from ....core.source.text.numerals import shortest
 from ..motion.configuration import KukaConfiguration
 from ..values.angles import written_angles
@@ -115,7 +115,7 @@ def literals_of(use: Use) -> dict[str, frozenset[Span]]:
 
 
 def _variables(use: Use) -> list[str]:
-    if use.kind is Kind.ZONE:
+    if use.kind is UseKind.ZONE:
         return [variable for variable, _ in zone_settings(use.old)]  # type: ignore[arg-type]
     if len(use.origin.numbers) == _OF_AXES:
         return ["$VEL_AXIS"] * 6 + ["$ACC_AXIS"] * 6

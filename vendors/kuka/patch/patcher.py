@@ -29,10 +29,10 @@ from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.zone import Fine, Zone
 from ....core.robot.model import Robot
 from ....core.source.patch.edits import Edit, listed, reading_of, with_one_distance
-from ....core.source.patch.plan import Plan, Texts, patch_program
-from ....core.source.patch.uses import Kind, Use
+from ....core.source.patch.plan import PatchPlan, Texts, patch_program
+from ....core.source.patch.uses import Use, UseKind
 from ....core.source.reading import Files
-from ....core.source.write.options import PatchOptions
+from ....core.source.write.options import PatcherOptions
 from ..write.formatting import e6axis, e6pos
 from ..write.speeds import approximation, zone_settings
 from .additions import Additions, PlacedMove, settings_of
@@ -47,23 +47,25 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
     """The program's files with its numbers; see `core.source.patch.plan.patch_program`.
 
     Args:
-        options: ``shared`` and ``derived``, each ``refuse`` or ``own``; see `PatchOptions`.
+        options: ``shared`` and ``derived``, each ``refuse`` or ``own``; see `PatcherOptions`.
     """
     reading = reading_of(program)
     places = Places(reading.files)
     literals = KrlLiterals(places, reading.options.robot or robot)
 
-    def edits(plan: Plan) -> list[Edit]:
+    def edits(plan: PatchPlan) -> list[Edit]:
         return _Edits(plan, literals, places, reading.options.robot or robot).all()
 
-    chosen = PatchOptions.of(options, "KRL patcher")
+    chosen = PatcherOptions.of(options, "KRL patcher")
     return patch_program(with_one_distance(program), chosen, literals, edits, _other_change)
 
 
 class _Edits:
     """Finds the edits."""
 
-    def __init__(self, plan: Plan, literals: KrlLiterals, places: Places, robot: Robot) -> None:
+    def __init__(
+        self, plan: PatchPlan, literals: KrlLiterals, places: Places, robot: Robot
+    ) -> None:
         self._plan = plan
         self._literals = literals
         self._places = places
@@ -84,7 +86,7 @@ class _Edits:
         try:
             if isinstance(use.new, Zone):
                 list(zone_settings(use.new))  # refuses what KRL cannot say
-            if use.kind is Kind.ZONE and type(use.old) is not type(use.new):
+            if use.kind is UseKind.ZONE and type(use.old) is not type(use.new):
                 return list(self._another_approximation(use))
             against = plan.against(use)
             if plan.changeable(use) and not against:
@@ -108,7 +110,7 @@ class _Edits:
         for span, text in texts.items():
             yield Edit(span, text, use.index)
             form = self._places.form(span)
-            if use.kind is Kind.SPEED and form is not None:
+            if use.kind is UseKind.SPEED and form is not None:
                 for place, shown in shown_velocity(self._places, form, text):
                     if place != span:
                         yield Edit(place, shown, use.index)
@@ -116,7 +118,7 @@ class _Edits:
     def _completed(self, use: Use) -> Edit | None:
         """Components put into the aggregate that leaves them out; None if there is none."""
         known = [span for span in use.origin.numbers if span is not None]
-        if use.kind not in (Kind.TARGET, Kind.VIA) or not known:
+        if use.kind not in (UseKind.TARGET, UseKind.VIA) or not known:
             return None
         last = max(known, key=lambda span: span.end)
         rest = self._rest_of_aggregate(last)
@@ -138,7 +140,7 @@ class _Edits:
     # ------------------------------------------------------------- numbers of their own
 
     def _own(self, use: Use) -> Iterator[Edit]:
-        if use.kind in (Kind.TARGET, Kind.VIA):
+        if use.kind in (UseKind.TARGET, UseKind.VIA):
             yield self._own_target(use)
         else:
             self._set(use)
@@ -161,7 +163,7 @@ class _Edits:
     def _set(self, use: Use) -> None:
         """Settings of its own for a speed or zone that differs."""
         own = settings_of(use.move)
-        if use.kind is Kind.SPEED:
+        if use.kind is UseKind.SPEED:
             own = {k: text for k, text in own.items() if not k.startswith("$APO")}
             before = settings_of(replace(use.move, speed=use.old))  # type: ignore[arg-type]
             own = {k: text for k, text in own.items() if before.get(k) != text}
@@ -228,7 +230,7 @@ def _motions(parts: Sequence[Use]) -> list[PlacedMove]:
     """All moves in the order of execution."""
     literals: defaultdict[int, dict[str, frozenset[Span]]] = defaultdict(dict)
     for use in parts:
-        if use.kind in (Kind.SPEED, Kind.ZONE):
+        if use.kind in (UseKind.SPEED, UseKind.ZONE):
             literals[use.index].update(literals_of(use))
     found = {
         use.index: PlacedMove(use.index, use.move, use.statement, literals[use.index])

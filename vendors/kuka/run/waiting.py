@@ -6,7 +6,7 @@ from contextlib import suppress
 
 from ....core.errors import SourceError
 from ....core.source.execution.answers import Course
-from ....core.source.execution.suppose import Parts, Supposing
+from ....core.source.execution.suppose import ConditionParts, Supposing
 from ..syntax.traversal import calls_in, data_in
 from ..syntax.tree import Ambiguous, Expression, Name, Operation, Unary
 from ..values.data import Data
@@ -63,23 +63,25 @@ class Waited:
         answered = any(self._course.changing(self._data.text(d.span)) for d in data_in(condition))
         return answered or any(True for _ in calls_in(condition))
 
-    def _parts(self, condition: Expression, scope: Scope) -> Parts[Expression]:
+    def _parts(self, condition: Expression, scope: Scope) -> ConditionParts[Expression]:
         asks = self._asks(condition)
         if isinstance(condition, Ambiguous):
             condition = self._meant(condition, scope)
         if isinstance(condition, Unary) and condition.operator == "not":
-            return Parts(negated=condition.operand, asks=asks)
+            return ConditionParts(negated=condition.operand, asks=asks)
         if not isinstance(condition, Operation):
-            return Parts(asks=asks)
+            return ConditionParts(asks=asks)
         operators = {operator for operator, _ in condition.rest}
         operands = (condition.first, *(operand for _, operand in condition.rest))
         if operators == {"and"}:
-            return Parts(all_of=operands, asks=asks)
+            return ConditionParts(all_of=operands, asks=asks)
         if operators == {"or"}:
-            return Parts(any_of=operands, asks=asks)
+            return ConditionParts(any_of=operands, asks=asks)
         if len(operands) == 2 and operators <= {"==", "<>"}:
-            return Parts(sides=(operands[0], operands[1]), equal=operators == {"=="}, asks=asks)
-        return Parts(asks=asks)
+            return ConditionParts(
+                sides=(operands[0], operands[1]), equal=operators == {"=="}, asks=asks
+            )
+        return ConditionParts(asks=asks)
 
     def _meant(self, condition: Ambiguous, scope: Scope) -> Expression:
         try:

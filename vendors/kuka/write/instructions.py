@@ -16,7 +16,7 @@ from ....core.program.program import Program
 from ....core.program.target import JointTarget, PoseTarget, Target
 from ....core.program.tool import Load
 from ....core.robot.model import Robot
-from ....core.source.write.declarations import Datum
+from ....core.source.write.declarations import NewDatum
 from ....core.spatial.pose import IDENTITY, Pose
 from .declarations import DataList
 from .formatting import MM, e6axis, e6pos, frame, load
@@ -24,7 +24,7 @@ from .numbers import number
 from .payload import flange_load
 from .speeds import approximation, speed_settings, zone_settings
 
-Line = tuple[str | Datum, ...]
+Line = tuple[str | NewDatum, ...]
 """Text, and data whose names are not given yet."""
 
 NULL_FRAME = "$NULLFRAME"
@@ -55,7 +55,7 @@ class Phrases:
             return ("LIN ", self._position(move), zone)
         return ("PTP ", self._point(move.target), zone)
 
-    def _position(self, move: Move) -> Datum:
+    def _position(self, move: Move) -> NewDatum:
         if isinstance(move.target, JointTarget):
             raise InputError(
                 "KRL's LIN and CIRC take a position, not axis values: give the move the pose, or "
@@ -63,12 +63,12 @@ class Phrases:
             )
         return self._passed(move.target)
 
-    def _passed(self, target: PoseTarget) -> Datum:
+    def _passed(self, target: PoseTarget) -> NewDatum:
         """A position whose S and T do not count."""
         text = e6pos(replace(target, configuration=None), self.robot)
         return self.data.add("E6POS", self.stated.get(_key(target, text), text), target.name)
 
-    def _point(self, target: Target) -> Datum:
+    def _point(self, target: Target) -> NewDatum:
         if isinstance(target, PoseTarget):
             return self.data.add("E6POS", e6pos(target, self.robot), target.name)
         return self.data.add("E6AXIS", e6axis(target, self.robot), target.name)
@@ -114,10 +114,10 @@ class Phrases:
         yield "$TOOL", ("$TOOL=", self._frame(*held))
         yield "$LOAD", ("$LOAD=", self._load(flange_load(move)))
 
-    def _frame(self, pose: Pose, name: str) -> str | Datum:
+    def _frame(self, pose: Pose, name: str) -> str | NewDatum:
         return NULL_FRAME if pose == IDENTITY else self.data.add("FRAME", frame(pose), name)
 
-    def _load(self, value: Load | None) -> Datum:
+    def _load(self, value: Load | None) -> NewDatum:
         name = "NOLOAD" if value is None else value.name
         return self.data.add("LOAD", load(value), name)
 

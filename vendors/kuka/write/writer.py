@@ -13,7 +13,7 @@ from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.model import Robot
 from ....core.source.text.files import lines_of
 from ....core.source.text.names import Names
-from ....core.source.write.declarations import Datum
+from ....core.source.write.declarations import NewDatum
 from ....core.source.write.options import OpaqueStyle, chosen
 from ....core.source.write.statements import lines_of_statements
 from ..motion.configuration import KukaConfiguration, label
@@ -91,7 +91,7 @@ def compose(
     phrases = Phrases(robot, data, stated_positions(program, robot))
     lines = _Body(program, phrases, options).lines()
     names = data.names(Names(NAME_RULES, [module]))
-    body = ["".join(names[p] if isinstance(p, Datum) else p for p in line) for line in lines]
+    body = ["".join(names[p] if isinstance(p, NewDatum) else p for p in line) for line in lines]
     whole = [*around.header, *INI, "", *around.before, *body, *around.after]
     return {
         f"{module}.src": source_text(f"{module}( )", whole),
@@ -110,7 +110,7 @@ def source_text(routine: str, body: Sequence[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _data(module: str, data: DataList, names: dict[Datum, str]) -> str:
+def _data(module: str, data: DataList, names: dict[NewDatum, str]) -> str:
     lines = [*HEADER, f"DEFDAT {module}", *EXTERNALS, *data.lines(names), "ENDDAT"]
     return "\n".join(lines) + "\n"
 

@@ -16,7 +16,7 @@ from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget, Target
 from ....core.program.tool import Tool
 from ....core.program.zone import FINE, Radius, Zone
-from ....core.source.execution.provenance import ELSEWHERE, Part
+from ....core.source.execution.provenance import ELSEWHERE, MovePart
 from ....core.source.execution.transcript import MoveParts, Transcript
 from ....core.spatial.pose import Pose
 from ..syntax.tree import Argument, Call, Expression
@@ -167,7 +167,7 @@ class _MoveReader:
 
     # ------------------------------------------------------------------- targets
 
-    def _target(self, argument: Argument) -> tuple[Target, Part]:
+    def _target(self, argument: Argument) -> tuple[Target, MovePart]:
         expression = argument.value
         span = self.texts.span_of(expression)
         if self._is_inverse(expression):
@@ -177,9 +177,9 @@ class _MoveReader:
         value = found.value
         name = argument.name or "target"
         if isinstance(value, PendingInverse):
-            return self._solution(value), Part(span)
+            return self._solution(value), MovePart(span)
         self._known(found, f"the {name} of {self.call.name}", span)
-        part = Part(span, covering(found.sources, _SIX) if found.sources else ())
+        part = MovePart(span, covering(found.sources, _SIX) if found.sources else ())
         if isinstance(value, UrPose):
             pose = self._pose(value, expression)
             return PoseTarget(pose, name=found.name), part
@@ -200,13 +200,13 @@ class _MoveReader:
             and self.scope.function(INVERSE) is None
         )
 
-    def _inverse(self, call: Call, span: Span) -> tuple[Target, Part]:
+    def _inverse(self, call: Call, span: Span) -> tuple[Target, MovePart]:
         given = bind(call, INVERSE_PARAMETERS, 1, self.texts)
         if "tcp" in given:
             found = solution(self.run, call, self.scope)
             if isinstance(found, Unknown):
                 raise self._refusal("target", found, span)
-            return self._solution(found), Part(span)
+            return self._solution(found), MovePart(span)
         goal = locate(self.run, given["x"].value, self.scope)
         self._known(goal, f"the pose of {INVERSE}", span)
         pose = self._pose(goal.value, given["x"].value)
@@ -216,13 +216,13 @@ class _MoveReader:
             near = locate(self.run, given["qnear"].value, self.scope)
         if near is None or self.run.position.is_here(near.value):
             kept = sources if any(sources) else ()
-            return PoseTarget(pose, name=goal.name), Part(span, kept)
+            return PoseTarget(pose, name=goal.name), MovePart(span, kept)
         if isinstance(near.value, Unknown):
             raise self._refusal("qnear", near.value, span)
         configuration = to_near(self.run, near.value, given["qnear"].value)
         sources = (*sources, *covering(near.sources, _SIX))
         target = PoseTarget(pose, configuration, name=goal.name)
-        return target, Part(span, sources if any(sources) else ())
+        return target, MovePart(span, sources if any(sources) else ())
 
     def _solution(self, found: PendingInverse) -> PoseTarget:
         """The pose that inverse kinematics was asked for, for the TCP in force."""
@@ -285,15 +285,15 @@ class _MoveReader:
                 self.span,
             ) from None
 
-    def _part(self, names: tuple[str, ...], sources: dict[str, Sources]) -> Part:
+    def _part(self, names: tuple[str, ...], sources: dict[str, Sources]) -> MovePart:
         """Of some arguments; where none is written, the place where they could be."""
         written = [self.given[name] for name in names if name in self.given]
         if not written:
             close = self.call.end - 1
-            return Part(self.texts.span(close, close))
+            return MovePart(self.texts.span(close, close))
         start, end = min(a.start for a in written), max(a.end for a in written)
         own = [covering(sources.get(name, ()), 1)[0] for name in names]
-        return Part(self.texts.span(start, end), tuple(own) if any(own) else ())
+        return MovePart(self.texts.span(start, end), tuple(own) if any(own) else ())
 
     # ---------------------------------------------------------------------- arcs
 

@@ -11,7 +11,7 @@ from ....core.program.speed import Speed
 from ....core.program.target import Configuration, PoseTarget, Target
 from ....core.program.zone import Fine, Radius, Zone
 from ....core.source.patch.plan import Wish
-from ....core.source.patch.uses import Kind, Use
+from ....core.source.patch.uses import Use, UseKind
 from ....core.spatial.pose import Pose
 from ..motion.configuration import UrConfiguration
 from ..syntax.lexer import number_value
@@ -121,7 +121,7 @@ def arguments(use: Use) -> list[Argument]:
         blend(new)
         return [Argument("r", _spans(use, 1), (_radius(old),), (_radius(new),))]
     assert not isinstance(old, Speed | Zone) and not isinstance(new, Speed | Zone)
-    if use.kind is Kind.VIA:
+    if use.kind is UseKind.VIA:
         assert isinstance(old, PoseTarget) and isinstance(new, PoseTarget)
         return [_pose(VIA, _spans(use, 6), old.pose, new.pose)]
     return list(_goal(use, old, new))

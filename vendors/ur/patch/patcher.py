@@ -18,10 +18,10 @@ from ....core.program.origin import Ownership
 from ....core.program.program import Program
 from ....core.robot.model import Robot
 from ....core.source.patch.edits import Edit, reading_of, with_one_distance
-from ....core.source.patch.plan import Plan, patch_program
+from ....core.source.patch.plan import PatchPlan, patch_program
 from ....core.source.patch.uses import Use
 from ....core.source.reading import Files
-from ....core.source.write.options import PatchOptions
+from ....core.source.write.options import PatcherOptions
 from .inplace import Argument, ScriptLiterals, arguments
 from .places import PUT_IN, MoveCall, MoveCalls
 
@@ -30,9 +30,9 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
     """The program's files with its numbers; see `core.source.patch.plan.patch_program`.
 
     Args:
-        options: ``shared`` and ``derived``, each ``refuse`` or ``own``; see `PatchOptions`.
+        options: ``shared`` and ``derived``, each ``refuse`` or ``own``; see `PatcherOptions`.
     """
-    chosen = PatchOptions.of(options, "URScript patcher")
+    chosen = PatcherOptions.of(options, "URScript patcher")
     calls = MoveCalls(reading_of(program).files)
     literals = ScriptLiterals(calls)
     return patch_program(
@@ -43,7 +43,7 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
 class _Edits:
     """Finds the edits."""
 
-    def __init__(self, plan: Plan, calls: MoveCalls) -> None:
+    def __init__(self, plan: PatchPlan, calls: MoveCalls) -> None:
         self._plan = plan
         self._calls = calls
         self._put_in: dict[Span, dict[str, Edit]] = {}

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ....core.source.execution.outputs import Outputs
-from ....core.source.execution.suppose import Parts, Supposing
+from ....core.source.execution.suppose import ConditionParts, Supposing
 from ..syntax.traversal import calls_written, methods_in, names_in
 from ..syntax.tree import Expression, Name, Operation, Unary
 from ..values.evaluator import Evaluation, condition, evaluate
@@ -31,21 +31,23 @@ def has_ended(run: Evaluation, outputs: Outputs, expression: Expression, scope: 
     Supposing(outputs, _parts, holds, equate, forget).suppose(expression, False)
 
 
-def _parts(expression: Expression) -> Parts[Expression]:
+def _parts(expression: Expression) -> ConditionParts[Expression]:
     asks = any(True for _ in calls_written(expression)) or any(True for _ in methods_in(expression))
     if isinstance(expression, Unary) and expression.operator == "not":
-        return Parts(negated=expression.operand, asks=asks)
+        return ConditionParts(negated=expression.operand, asks=asks)
     if not isinstance(expression, Operation):
-        return Parts(asks=asks)
+        return ConditionParts(asks=asks)
     operators = {operator for operator, _ in expression.rest}
     operands = (expression.first, *(operand for _, operand in expression.rest))
     if operators == {"and"}:
-        return Parts(all_of=operands, asks=asks)
+        return ConditionParts(all_of=operands, asks=asks)
     if operators == {"or"}:
-        return Parts(any_of=operands, asks=asks)
+        return ConditionParts(any_of=operands, asks=asks)
     if len(operands) == 2 and operators <= {"==", "!="}:
-        return Parts(sides=(operands[0], operands[1]), equal=operators == {"=="}, asks=asks)
-    return Parts(asks=asks)
+        return ConditionParts(
+            sides=(operands[0], operands[1]), equal=operators == {"=="}, asks=asks
+        )
+    return ConditionParts(asks=asks)
 
 
 def _give(name: str, value: Value, scope: Scope) -> bool:

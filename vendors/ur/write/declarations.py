@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from ....core.source.write import declarations
-from ....core.source.write.declarations import Datum
+from ....core.source.write.declarations import NewDatum
 
-Operand = str | Datum
+Operand = str | NewDatum
 Line = tuple[Operand, ...]
 """Text, and data whose names are not given yet."""
 
@@ -21,12 +21,12 @@ class Declarations(declarations.Declarations):
         """The datum of a value with a name; a value without one stands where it is used."""
         if not wanted:
             return text
-        return self.declare(Datum("", text, wanted, wanted, "target"), wanted)
+        return self.declare(NewDatum("", text, wanted, wanted, "target"), wanted)
 
     def numbered(self) -> Mapping[str, Iterator[str]]:
         """None: all have names."""
         return {}
 
-    def line(self, datum: Datum, name: str) -> str:
+    def line(self, datum: NewDatum, name: str) -> str:
         """``global p1 = p[…]``"""
         return f"global {name} = {datum.text}"

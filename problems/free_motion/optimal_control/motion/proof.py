@@ -14,7 +14,7 @@ import numpy as np
 from .....core.collision.deviation.bounds import DeviationBounds
 from .....core.collision.proof.certificate import BUDGET
 from .....core.collision.proof.enclosure import Enclosure
-from .....core.collision.proof.findings import Budget, Cause, UnprovenStretch
+from .....core.collision.proof.findings import Budget, FailureCause, UnprovenStretch
 from .....core.collision.proof.subdivision import Prover
 from .....core.collision.proof.verdict import CONTACT, MM, Certificate, Verdict, in_words
 from .....core.collision.scene.scene import CollisionScene
@@ -89,9 +89,9 @@ def _refused(
     scene: CollisionScene, finding: UnprovenStretch, wanted: float, measured: int
 ) -> Proof:
     pair = None if finding.pair is None else scene.pair_names(finding.pair)
-    violated = finding.cause is Cause.NEAR
+    violated = finding.cause is FailureCause.NEAR
     where = f"at {finding.sigma:.3f} s"
-    if finding.cause is Cause.EXHAUSTED or pair is None or finding.distance is None:
+    if finding.cause is FailureCause.EXHAUSTED or pair is None or finding.distance is None:
         message = f"{where}: not proven, the budget of measured distances is used up"
     else:
         message = (

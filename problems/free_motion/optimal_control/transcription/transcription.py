@@ -15,7 +15,7 @@ from scipy import sparse
 
 from .....core.arrays import FloatArray
 from .....core.sqp import NLP
-from .....core.sqp.algebra.entries import Entries
+from .....core.sqp.algebra.entries import MatrixEntries
 from ..motion.layout import VariableLayout
 from ..task.limits import MotionLimits
 from ..task.sampled import Plant, TcpSpeed, TorqueField
@@ -187,18 +187,18 @@ class _Program:
         self._owner, self._rows = owner, Stack(blocks)
 
     @cached_property
-    def _jacobian_entries(self) -> Entries:
+    def _jacobian_entries(self) -> MatrixEntries:
         shape = len(self._rows.lower), self._owner.layout.size
-        return Entries(*self._rows.jacobian_places, shape)
+        return MatrixEntries(*self._rows.jacobian_places, shape)
 
     @cached_property
-    def _hessian_entries(self) -> Entries:
+    def _hessian_entries(self) -> MatrixEntries:
         places = [self._rows.hessian_places]
         if self._owner._energy is not None:
             places.append(self._owner._energy.hessian_places)
         rows, columns = (np.concatenate([p[i] for p in places]) for i in (0, 1))
         size = self._owner.layout.size
-        return Entries(rows, columns, (size, size))
+        return MatrixEntries(rows, columns, (size, size))
 
     def jacobian(self, x: FloatArray) -> sparse.csc_array:
         return self._jacobian_entries.matrix(self._rows.jacobian(x))

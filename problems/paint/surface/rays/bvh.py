@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from .....core.arrays import FloatArray, IntArray
 from .rays import Rays
-from .tree import DEPTH, Tree, build_tree
+from .tree import DEPTH, RayTree, build_tree
 
 BATCH = 8192
 """Queries that are worth a thread of their own."""
@@ -84,7 +84,7 @@ def _in_threads(work: Callable[[slice], None], n: int) -> None:
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _first_hits(
-    tree: Tree,
+    tree: RayTree,
     origins: FloatArray,
     directions: FloatArray,
     far: float,
@@ -100,7 +100,7 @@ def _first_hits(
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _any_hits(
-    tree: Tree,
+    tree: RayTree,
     origins: FloatArray,
     ways: FloatArray,
     found: NDArray[np.bool_],
@@ -113,7 +113,7 @@ def _any_hits(
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def trace(
-    tree: Tree,
+    tree: RayTree,
     origin: FloatArray,
     direction: FloatArray,
     far: float,
@@ -150,7 +150,7 @@ def trace(
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _is_before(tree: Tree, a: int, b: int, direction: FloatArray) -> bool:
+def _is_before(tree: RayTree, a: int, b: int, direction: FloatArray) -> bool:
     """Whether the ray comes to the box of node a first, by the boxes' centres."""
     along = 0.0
     for axis in range(3):
@@ -240,7 +240,7 @@ def _cross(
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _nearest_points(tree: Tree, points: FloatArray, face: IntArray, nearest: FloatArray) -> None:
+def _nearest_points(tree: RayTree, points: FloatArray, face: IntArray, nearest: FloatArray) -> None:
     stack = np.empty(2 * DEPTH, dtype=np.int64)
     gaps = np.empty(2 * DEPTH)
     found = np.empty(3)
@@ -270,7 +270,7 @@ def _nearest_points(tree: Tree, points: FloatArray, face: IntArray, nearest: Flo
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _gap(tree: Tree, node: int, point: FloatArray) -> float:
+def _gap(tree: RayTree, node: int, point: FloatArray) -> float:
     """Square of the distance to a node's box."""
     square = 0.0
     for axis in range(3):

@@ -32,7 +32,7 @@ class Hits(NamedTuple):
         return self.face >= 0
 
 
-class Nearest(NamedTuple):
+class NearestPoints(NamedTuple):
     """The mesh's points nearest to given ones.
 
     Args:
@@ -92,11 +92,11 @@ class Rays(ABC):
         )
         return result
 
-    def nearest(self, points: FloatArray) -> Nearest:
+    def nearest(self, points: FloatArray) -> NearestPoints:
         """The mesh's points nearest to points (N, 3) m."""
         points = np.ascontiguousarray(np.atleast_2d(points), dtype=float)
         face, nearest = self._nearest(points)
-        return Nearest(face, np.linalg.norm(points - nearest, axis=1), nearest)
+        return NearestPoints(face, np.linalg.norm(points - nearest, axis=1), nearest)
 
     @abstractmethod
     def _first(

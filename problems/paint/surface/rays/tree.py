@@ -22,7 +22,7 @@ PAD = 1e-12
 """By which boxes are grown, as a share of the mesh's size: rounding must not hide a triangle."""
 
 
-class Tree(NamedTuple):
+class RayTree(NamedTuple):
     """Nodes in depth-first order: a node's first child stands right behind it.
 
     Args:
@@ -42,7 +42,7 @@ class Tree(NamedTuple):
     face: IntArray
 
 
-def build_tree(corners: FloatArray) -> Tree:
+def build_tree(corners: FloatArray) -> RayTree:
     """The tree of triangles (F, 3, 3) m."""
     corners = np.ascontiguousarray(corners, dtype=float)
     low, high = corners.min(axis=1), corners.max(axis=1)
@@ -50,7 +50,7 @@ def build_tree(corners: FloatArray) -> Tree:
         float(np.abs(corners).max()), float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     )
     nodes = 2 * len(corners)
-    tree = Tree(
+    tree = RayTree(
         np.empty((nodes, 3)),
         np.empty((nodes, 3)),
         np.full(nodes, -1, dtype=np.int64),
@@ -60,7 +60,7 @@ def build_tree(corners: FloatArray) -> Tree:
         np.arange(len(corners)),
     )
     used = _split_nodes(tree, low - pad, high + pad, corners.mean(axis=1))
-    return Tree(
+    return RayTree(
         tree.low[:used],
         tree.high[:used],
         tree.other[:used],
@@ -72,7 +72,7 @@ def build_tree(corners: FloatArray) -> Tree:
 
 
 @njit(cache=True, error_model="numpy")
-def _split_nodes(tree: Tree, low: FloatArray, high: FloatArray, middle: FloatArray) -> int:
+def _split_nodes(tree: RayTree, low: FloatArray, high: FloatArray, middle: FloatArray) -> int:
     """Fill the tree depth first; number of nodes. Ranges of ``tree.face`` are sorted in place."""
     begin = np.empty(2 * DEPTH, dtype=np.int64)
     end = np.empty(2 * DEPTH, dtype=np.int64)
@@ -103,7 +103,9 @@ def _split_nodes(tree: Tree, low: FloatArray, high: FloatArray, middle: FloatArr
 
 
 @njit(cache=True, error_model="numpy")
-def _bound(tree: Tree, node: int, low: FloatArray, high: FloatArray, first: int, last: int) -> None:
+def _bound(
+    tree: RayTree, node: int, low: FloatArray, high: FloatArray, first: int, last: int
+) -> None:
     for axis in range(3):
         lowest, highest = np.inf, -np.inf
         for k in range(first, last):

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import Span
 from flyby.core.program.origin import Ownership
-from flyby.core.source.execution.provenance import ELSEWHERE, Part, Reads
+from flyby.core.source.execution.provenance import ELSEWHERE, MovePart, Reads
 
 
 def span(start: int, end: int) -> Span:
@@ -34,7 +34,7 @@ WHOLE = Literal(span(0, 10), span(0, 10))
 
 
 def origin(reads: Reads, *sources: Literal | None, move: int = 0):  # type: ignore[no-untyped-def]
-    return reads.origin(Part(AT, sources), move)
+    return reads.origin(MovePart(AT, sources), move)
 
 
 def test_without_a_source_a_part_is_derived() -> None:
@@ -44,7 +44,7 @@ def test_without_a_source_a_part_is_derived() -> None:
 
 
 def test_predefined_data_is_shared_and_has_no_numbers() -> None:
-    found = Reads().origin(Part(AT, predefined="v100"), 0)
+    found = Reads().origin(MovePart(AT, predefined="v100"), 0)
     assert (found.ownership, found.datum, found.numbers) == (Ownership.SHARED, "v100", ())
 
 

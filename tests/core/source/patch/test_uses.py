@@ -16,7 +16,7 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import PoseTarget
 from flyby.core.program.tool import Load, Tool
 from flyby.core.program.zone import FINE, Radius
-from flyby.core.source.patch.uses import Kind, uses
+from flyby.core.source.patch.uses import UseKind, uses
 from flyby.core.spatial.pose import Pose
 
 SPEED = Speed(tcp=0.1)
@@ -53,8 +53,8 @@ def nothing(old: Move, new: Move) -> None:
 def test_every_part_of_every_move_is_named_in_order() -> None:
     found = uses(BEFORE, BEFORE, nothing)
     assert [(use.index, use.kind) for use in found] == [
-        *((0, kind) for kind in (Kind.TARGET, Kind.SPEED, Kind.ZONE)),
-        *((1, kind) for kind in Kind),
+        *((0, kind) for kind in (UseKind.TARGET, UseKind.SPEED, UseKind.ZONE)),
+        *((1, kind) for kind in UseKind),
     ]
     assert [use.statement.line for use in found] == [1] * 3 + [3] * 4
     assert not any(use.changes for use in found)

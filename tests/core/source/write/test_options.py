@@ -4,7 +4,7 @@ import pytest
 
 from flyby.core.errors import InputError, UnknownNameError
 from flyby.core.registry import find_vendor
-from flyby.core.source.write.options import PatchOptions, Sharing
+from flyby.core.source.write.options import PatcherOptions, Sharing
 
 MOVES = {
     "abb": "MODULE m\nCONST jointtarget j:=[[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n"
@@ -15,16 +15,16 @@ MOVES = {
 
 
 def test_what_is_not_named_is_refused_by_default() -> None:
-    assert PatchOptions.of({}, "RAPID patcher") == PatchOptions(Sharing.REFUSE, Sharing.REFUSE)
-    own = PatchOptions.of({"shared": "own"}, "RAPID patcher")
-    assert own == PatchOptions(shared=Sharing.OWN)
+    assert PatcherOptions.of({}, "RAPID patcher") == PatcherOptions(Sharing.REFUSE, Sharing.REFUSE)
+    own = PatcherOptions.of({"shared": "own"}, "RAPID patcher")
+    assert own == PatcherOptions(shared=Sharing.OWN)
 
 
 def test_unknown_names_and_values_are_refused() -> None:
     with pytest.raises(UnknownNameError, match=r"RAPID patcher.*did you mean 'shared'"):
-        PatchOptions.of({"share": "own"}, "RAPID patcher")
+        PatcherOptions.of({"share": "own"}, "RAPID patcher")
     with pytest.raises(InputError, match="option derived: one of refuse, own, not 'freeze'"):
-        PatchOptions.of({"derived": "freeze"}, "RAPID patcher")
+        PatcherOptions.of({"derived": "freeze"}, "RAPID patcher")
 
 
 @pytest.mark.parametrize("name", MOVES)
