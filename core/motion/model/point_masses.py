@@ -20,17 +20,14 @@ from ...robot.kinematics.chain_kernels import (
     ORIGIN,
     RISE,
     SPEED,
-    carry,
-    place,
     pull_acceleration,
     pull_velocity,
     recall,
-    turned_by,
     walk_motion,
     walk_speeds,
 )
 from ...robot.kinematics.lean import inner
-from ...robot.kinematics.vectors import UNTURNED, ZERO, add, cross, dot, load_row, scale, subtract
+from ...robot.kinematics.vectors import cross, dot, subtract
 from ...robot.model import Robot
 
 
@@ -125,72 +122,15 @@ def _load(
     across: FloatArray,
     held: FloatArray,
 ) -> None:
-    axes, origins = np.empty((at[-1], 3)), np.empty((at[-1], 3))
+    walk = np.empty((chain.joint.size + 1, COLUMNS, 3))
     for m in range(q.shape[0]):
-        _load_one(
-            chain,
-            at,
-            weight,
-            gravity,
-            q[m],
-            dq[m],
-            ddq[m],
-            axes,
-            origins,
-            along[m],
-            across[m],
-            held[m],
-        )
-
-
-@inner
-def _load_one(
-    chain: Chain,
-    at: IntArray,
-    weight: FloatArray,
-    gravity: FloatArray,
-    q: FloatArray,
-    dq: FloatArray,
-    ddq: FloatArray,
-    axes: FloatArray,
-    origins: FloatArray,
-    along: FloatArray,
-    across: FloatArray,
-    held: FloatArray,
-) -> None:
-    turned, origin = UNTURNED, ZERO
-    omega, alpha, speed, rise = ZERO, ZERO, ZERO, ZERO
-    b = 0
-    for k in range(at[-1] + 1):
-        turned, step, axis = place(chain, k, turned)
-        velocity, acceleration = carry(omega, alpha, step)
-        origin, speed, rise = add(origin, step), add(speed, velocity), add(rise, acceleration)
-        if k == at[b]:
-            for i in range(k):
-                j = chain.joint[i]
-                lever = load_row(axes, i)
-                if not chain.prismatic[i]:
-                    lever = cross(lever, subtract(origin, load_row(origins, i)))
-                along[j] += weight[b, j] * dot(lever, speed)
-                across[j] += weight[b, j] * dot(lever, rise)
-                held[j] += weight[b, j] * dot(lever, (gravity[0], gravity[1], gravity[2]))
-            b += 1
-            if b == at.size:
-                return
-        axes[k, 0], axes[k, 1], axes[k, 2] = axis
-        origins[k, 0], origins[k, 1], origins[k, 2] = origin
-        j = chain.joint[k]
-        rate = scale(dq[j], axis)
-        if chain.prismatic[k]:
-            slide = scale(q[j], axis)
-            velocity, acceleration = carry(omega, alpha, slide)
-            origin, speed = add(origin, slide), add(speed, add(velocity, rate))
-            rise = add(rise, add(acceleration, scale(2.0, cross(omega, rate))))
-            rise = add(rise, scale(ddq[j], axis))
-        else:
-            turned = turned_by(chain, k, q[j], turned)
-            alpha = add(alpha, add(scale(ddq[j], axis), cross(omega, rate)))
-            omega = add(omega, rate)
+        walk_motion(chain, q[m], dq[m], ddq[m], walk)
+        for b in range(at.size):
+            end = at[b]
+            way = walk[: end + 1]
+            _push(chain, way, walk[end, SPEED], weight[b], along[m])
+            _push(chain, way, walk[end, RISE], weight[b], across[m])
+            _push(chain, way, gravity, weight[b], held[m])
 
 
 @njit(cache=True, error_model="numpy")
@@ -213,7 +153,7 @@ def _pull(
     z the bars times its weights."""
     rows = chain.joint.size + 1
     own, other = np.empty((rows, COLUMNS, 3)), np.empty((rows, COLUMNS, 3))
-    force, rates = np.zeros(6), np.empty(q.shape[1])
+    force, rates, whole = np.zeros(6), np.empty(q.shape[1]), np.ones(q.shape[1])
     for m in range(q.shape[0]):
         walk_motion(chain, q[m], dq[m], ddq[m], own)
         for k in range(at[-1] + 1):
@@ -234,7 +174,7 @@ def _pull(
             pull_velocity(chain, moved, force, q_bar[m])
             force[:3] = moved[end, SPEED]
             pull_velocity(chain, walk, force, q_bar[m])
-            _push(chain, walk, force, dq_bar[m])
+            _push(chain, walk, force, whole, dq_bar[m])
             for j in range(rates.size):
                 rates[j] = weight[b, j] * across[m, j]
             walk_speeds(chain, rates, moved)
@@ -242,20 +182,22 @@ def _pull(
             pull_velocity(chain, moved, force, q_bar[m])
             force[:3] = moved[end, SPEED]
             pull_acceleration(chain, walk, force, q_bar[m], dq_bar[m])
-            _push(chain, walk, force, ddq_bar[m])
+            _push(chain, walk, force, whole, ddq_bar[m])
 
 
 @inner
-def _push(chain: Chain, walk: FloatArray, force: FloatArray, out: FloatArray) -> None:
-    """Add Jᵀ of a force at the end of a walk."""
+def _push(
+    chain: Chain, walk: FloatArray, force: FloatArray, weight: FloatArray, out: FloatArray
+) -> None:
+    """Add Jᵀ of a force at the end of a walk, each joint's share times its weight."""
     last = walk.shape[0] - 1
     pull = force[0], force[1], force[2]
     for k in range(last):
         lever = recall(walk, k, AXIS)
         if not chain.prismatic[k]:
-            arm = subtract(recall(walk, last, ORIGIN), recall(walk, k, ORIGIN))
-            lever = cross(lever, arm)
-        out[chain.joint[k]] += dot(lever, pull)
+            lever = cross(lever, subtract(recall(walk, last, ORIGIN), recall(walk, k, ORIGIN)))
+        j = chain.joint[k]
+        out[j] += weight[j] * dot(lever, pull)
 
 
 def filled(values: tuple[float, ...], size: int) -> FloatArray:
