@@ -67,14 +67,17 @@ def ramped(
     """
     shape = len(t), states.q.shape[1]
     q, dq = np.empty(shape), np.empty(shape)
-    since = start.driven(intervals.begin)
-    first = max(int(np.searchsorted(since, t[0] - window, side="right")) - 1, 0)
-    last = max(int(np.searchsorted(since, t[-1], side="right")), first + 1)
-    part = intervals.rows(first, last)
+    # Only what these times look at, and one more to both sides: a program has many stretches.
+    stamped = start.stamped(np.array([t[0] - window, t[-1]]))[0]
+    first, last = np.searchsorted(intervals.begin, stamped, side="right")
+    part = intervals.rows(max(int(first) - 2, 0), int(last) + 1)
+    left = int(part.sample[0])
+    part = part._replace(sample=part.sample - left)
+    states = states.rows(left, left + int(part.sample[-1]) + 2)
     slope = way_slopes(states)
     covered = 0.5 * part.spacing * (slope[part.sample] + slope[part.sample + 1])
     way = _Way(
-        since[first:last],
+        start.driven(part.begin),
         start.driven(part.end),
         slope,
         np.concatenate([[0.0], np.cumsum(covered)]),
