@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import json
+import os
+import shutil
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import Any
+from unicodedata import combining, east_asian_width
 
 from ..core.display import shown
 
-if TYPE_CHECKING:
-    from rich.console import Console
-    from rich.table import Table
-
-UNBOUNDED = 10_000
 WIDE = 180
 """Columns of a table that goes into a file or a pipe."""
+_BETWEEN = 3
+"""Blanks between columns."""
+_DRAWN_ANYWAY = ("FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
+"""Variables that tell Rich to write as to a terminal."""
 
 
 def print_json(value: object) -> None:
@@ -24,20 +27,28 @@ def print_json(value: object) -> None:
     print(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False))
 
 
-def print_rich(*parts: Any) -> None:
-    """Print Rich tables and texts."""
-    console = _console()
-    for part in parts:
-        console.print(shown(part) if isinstance(part, str) else part)
+def print_rich(*texts: str) -> None:
+    """Print texts, each from the beginning of a line."""
+    for text in texts:
+        _print(shown(text))
 
 
-def _console() -> Console:
+def _print(text: str, style: str = "", *, whole: bool = False) -> None:
+    """Print on stdout; in a terminal styled, and broken between words unless it is to be whole."""
+    if _plain(sys.stdout):
+        print(text)
+        return
     from rich.console import Console
+    from rich.text import Text
 
-    console = Console(highlight=False, markup=False, emoji=False)
-    if not console.is_terminal:
-        console.width = WIDE
-    return console
+    Console(highlight=False).print(Text(text, style), soft_wrap=whole)
+
+
+def _plain(stream: Any) -> bool:
+    """Whether text goes to a file or a pipe as it is. Rich is not even imported then."""
+    if stream is not None and stream.isatty():
+        return False
+    return not any(os.environ.get(name) for name in _DRAWN_ANYWAY)
 
 
 def print_table(
@@ -47,69 +58,144 @@ def print_table(
 
     Args:
         columns: heading and ``left`` or ``right`` of each.
-        rows: cells; what stands in brackets is text, not markup.
+        rows: cells.
         title: above the table.
     """
-    console = _console()
-    parts = _parts(columns, rows, console)
+    room = WIDE if _plain(sys.stdout) else shutil.get_terminal_size().columns
+    made = [
+        _Column(heading, justify == "right", [shown(row[k]) for row in rows])
+        for k, (heading, justify) in enumerate(columns)
+    ]
+    named = (k for k in range(1, len(columns)) if all(any(row[:k]) for row in rows))
+    parts = _parts(made, next(named, 1), room)
     for part in parts:
-        console.print(_table(part, columns, rows, title))
+        if title is not None:
+            _print(shown(title), "italic")
+        for line, style in _lines(part, len(rows), room):
+            _print(line, style, whole=True)
     if len(parts) > 1:
-        print_rich(
-            f"the table is in {len(parts)} parts, as it does not fit into {console.width} columns; "
-            "--json has it whole"
-        )
+        told = f"the table is in {len(parts)} parts, as it does not fit into {room} columns; "
+        print_rich(*_broken(f"{told}--json has it whole", room))
 
 
-def _parts(
-    columns: Sequence[tuple[str, str]], rows: Sequence[Sequence[str]], console: Console
-) -> list[list[int]]:
+@dataclass(frozen=True)
+class _Column:
+    """Heading and cells; those of numbers stay in one line, texts are broken where they must."""
+
+    heading: str
+    numbers: bool
+    cells: Sequence[str]
+
+    def widest(self) -> int:
+        """Columns of the terminal that it takes if nothing is broken."""
+        return max(_width(line) for cell in self._all() for line in cell.split("\n"))
+
+    def narrowest(self) -> int:
+        """Columns of the terminal that it takes at the least."""
+        if self.numbers:
+            return self.widest()
+        return max((_width(word) for cell in self._all() for word in cell.split()), default=1)
+
+    def _all(self) -> list[str]:
+        return [self.heading, *self.cells]
+
+
+def _width(text: str) -> int:
+    """Columns of the terminal that a text takes."""
+    if text.isascii():
+        return len(text)
+    wide = sum(east_asian_width(sign) in "WF" for sign in text)
+    return len(text) + wide - sum(combining(sign) > 0 for sign in text)
+
+
+def _parts(columns: Sequence[_Column], key: int, room: int) -> list[list[_Column]]:
     """Which columns stand side by side: all if they fit, else as many as do.
 
-    Each part begins with the columns that name every row.
+    Args:
+        columns: of the table.
+        key: how many name the rows; each part begins with those.
+        room: columns of the terminal.
     """
-    from rich.measure import Measurement
-
-    options = console.options.update(width=UNBOUNDED)
-    named = (k for k in range(1, len(columns)) if all(any(row[:k]) for row in rows))
-    key = list(range(next(named, 1)))
-    parts = [key]
-    for column in range(len(key), len(columns)):
+    names = list(columns[:key])
+    parts = [names]
+    for column in columns[key:]:
         wider = [*parts[-1], column]
-        needed = Measurement.get(console, options, _table(wider, columns, rows)).minimum
-        if needed <= console.width or parts[-1] == key:
+        needed = _together([one.narrowest() for one in wider])
+        if needed <= room or parts[-1] == names:
             parts[-1] = wider
         else:
-            parts.append([*key, column])
+            parts.append([*names, column])
     return parts
 
 
-def _table(
-    chosen: Sequence[int],
-    columns: Sequence[tuple[str, str]],
-    rows: Sequence[Sequence[str]],
-    title: str | None = None,
-) -> Table:
-    """The chosen columns of a table."""
-    from rich.box import SIMPLE_HEAD
-    from rich.cells import cell_len
-    from rich.table import Table
-    from rich.text import Text
+def _together(widths: Sequence[int]) -> int:
+    """Columns of the terminal that a table takes, with a blank at both ends."""
+    return sum(widths) + _BETWEEN * (len(widths) - 1) + 2
 
-    table = Table(box=SIMPLE_HEAD, title=title, title_justify="left", pad_edge=False)
-    for k, (heading, justify) in ((k, columns[k]) for k in chosen):
-        numeric = justify == "right"
-        lines = [*heading.split("\n"), *(shown(row[k]) for row in rows)] if numeric else []
-        table.add_column(
-            heading,
-            justify="right" if numeric else "left",
-            no_wrap=numeric,
-            min_width=max(map(cell_len, lines), default=None),
-            overflow="fold",
-        )
-    for row in rows:
-        table.add_row(*(Text(shown(row[k])) for k in chosen))
-    return table
+
+def _lines(columns: Sequence[_Column], rows: int, room: int) -> Iterator[tuple[str, str]]:
+    """The lines of a table, each with its style."""
+    widths = _fitting(columns, room)
+    whole = _together(widths)
+
+    def row(cells: Sequence[str], *, low: bool) -> Iterator[str]:
+        broken = [_broken(cell, width) for cell, width in zip(cells, widths, strict=True)]
+        height = max(map(len, broken))
+        for at in range(height):
+            placed = []
+            for lines, column, width in zip(broken, columns, widths, strict=True):
+                line = at - (height - len(lines) if low else 0)
+                text = lines[line] if 0 <= line < len(lines) else ""
+                blanks = " " * (width - _width(text))
+                placed.append(blanks + text if column.numbers else text + blanks)
+            yield f" {(_BETWEEN * ' ').join(placed)} "
+
+    yield " " * whole, ""
+    for line in row([column.heading for column in columns], low=True):
+        yield line, "bold"
+    yield f" {'─' * (whole - 2)} ", ""
+    for k in range(rows):
+        for line in row([column.cells[k] for column in columns], low=False):
+            yield line, ""
+    yield " " * whole, ""
+
+
+def _fitting(columns: Sequence[_Column], room: int) -> list[int]:
+    """Widths of columns: of those of text, the widest give way until all fit."""
+    widths = [column.widest() for column in columns]
+    # Where not even the narrowest fit, words are broken.
+    least = [width if column.numbers else 1 for column, width in zip(columns, widths, strict=True)]
+    for floors in ([column.narrowest() for column in columns], least):
+        while _together(widths) > room:
+            spare = [k for k, floor in enumerate(floors) if widths[k] > floor]
+            if not spare:
+                break
+            widths[max(spare, key=lambda k: widths[k])] -= 1
+    return widths
+
+
+def _broken(text: str, width: int) -> list[str]:
+    """A text in lines no wider than ``width``, between words where it can be."""
+    if "\n" not in text and _width(text) <= width:
+        return [text]
+    lines = []
+    for line in text.split("\n"):
+        filled = ""
+        for word in line.split(" "):
+            longer = f"{filled} {word}" if filled else word
+            if _width(longer) <= width:
+                filled = longer
+                continue
+            if filled:
+                lines.append(filled)
+            filled = ""
+            for sign in word:
+                if filled and _width(filled + sign) > width:
+                    lines.append(filled)
+                    filled = ""
+                filled += sign
+        lines.append(filled)
+    return lines
 
 
 def warn(message: str) -> None:
@@ -123,6 +209,9 @@ def fail(message: str) -> None:
 
 
 def _complain(label: str, style: str, message: str) -> None:
+    if _plain(sys.stderr):
+        print(f"{label}: {shown(message)}", file=sys.stderr)
+        return
     from rich.console import Console
     from rich.text import Text
 

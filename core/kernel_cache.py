@@ -27,7 +27,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
 
+import numba
 from numba.core import caching, event
+
+from .numba_version import LINKED
 
 VARIABLE = "FLYBY_CACHE"
 _PACKAGE = __name__.partition(".")[0] + "."
@@ -87,6 +90,15 @@ class _Temporary(_UserWide):  # type: ignore[misc]
 class _Places(caching.CompileResultCacheImpl):  # type: ignore[misc]
     _locator_classes: ClassVar = [_Given, *_STANDARD, _Temporary]
 
+    def rebuild(self, target_context: Any, payload: Any) -> Any:
+        """The kernel that was kept."""
+        if numba.version_info.short == LINKED:
+            from .kernel_loading import load
+
+            return load(target_context, payload)
+        target_context.refresh()
+        return super().rebuild(target_context, payload)
+
 
 class _Files(caching.IndexDataCacheFile):  # type: ignore[misc]
     """numba's files, with a digest at the end: machine code that is not whole is never run."""
@@ -129,7 +141,7 @@ class KernelCache(caching.FunctionCache):  # type: ignore[misc]
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """What is kept of a signature; None if nothing, or nothing that can be used."""
         try:
-            found = super().load_overload(sig, target_context)
+            found = self._load_overload(sig, target_context)
             if found is None and self._beside is not None:
                 key = self._index_key(sig, target_context.codegen())
                 data = self._beside.load(key)

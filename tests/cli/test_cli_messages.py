@@ -66,6 +66,21 @@ def test_tables_lose_nothing_in_narrow_terminals(
     assert ("--json has it whole" in said) == (width < 150)
 
 
+def test_texts_in_tables_are_broken_between_words(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(console, "WIDE", 30)
+    console.print_table(
+        [("#", "right"), ("target", "left")], [("1", "one 中文 extraordinary place")]
+    )
+    assert capsys.readouterr().out.splitlines()[1:-1] == [
+        " #   target                   ",
+        " ──────────────────────────── ",
+        " 1   one 中文 extraordinary   ",
+        "     place                    ",
+    ]
+
+
 def test_what_is_wrong_by_itself_ends_with_status_2(flyby: Flyby) -> None:
     robot = "--robot", ROBOT
     square = str(SQUARE)

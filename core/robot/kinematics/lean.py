@@ -17,13 +17,10 @@ import numba
 from numba import njit
 from numba.extending import register_jitable
 
+from ...numba_version import LINKED
+
 lean = njit(cache=True, error_model="numpy", _nrt=False, no_cfunc_wrapper=True)
 """Compiles a function that makes no array: where it would, numba refuses to compile it."""
-
-
-LINKED = (0, 68)
-"""The version of numba, major and minor, whose compiler `linked` builds on. With others kernels are
-compiled as numba does by itself: the same code, which takes about twice as long to make."""
 
 
 def inner(function: Any) -> Any:

@@ -1,6 +1,7 @@
 """What numba's compiler needs so that code is made for other kernels alone; see `lean.inner`.
 
-It builds on the inside of one version of numba (`lean.LINKED`) and is imported with that one only.
+It builds on the inside of one version of numba (`numba_version.LINKED`), and is imported with that
+one only.
 """
 
 from __future__ import annotations

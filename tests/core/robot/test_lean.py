@@ -5,10 +5,11 @@ from __future__ import annotations
 import pytest
 from numba import njit
 
+from flyby.core.numba_version import LINKED
 from flyby.core.robot.kinematics import lean
 
 
-@pytest.mark.parametrize("linked", [lean.LINKED, (0, 0)], ids=["as installed", "another numba"])
+@pytest.mark.parametrize("linked", [LINKED, (0, 0)], ids=["as installed", "another numba"])
 def test_inner_kernels_serve_with_any_numba(linked, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(lean, "LINKED", linked)
 
