@@ -170,6 +170,7 @@ def _first_run(case: str) -> Iterator[Figure]:
         leave = shutil.ignore_patterns("__pycache__", ".*", "docs", "tests")
         shutil.copytree(root, Path(folder, "flyby"), ignore=leave)
         around = os.environ | {"PYTHONPATH": folder, "FLYBY_CACHE": str(Path(folder, "cache"))}
+        around.pop("PYTHONDONTWRITEBYTECODE", None)  # as an installed package has it
         command = ["emulate", str(root / "examples" / "deburring.mod"), "--robot"]
         command += ["abb/irb6640-180-255"]
         code = "from flyby.cli.main import main; main()"

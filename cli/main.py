@@ -3,33 +3,40 @@
 from __future__ import annotations
 
 import logging
-from typing import Annotated, Any
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+from typing import Annotated, Any, cast
 
 import typer
 from typer.core import TyperCommand, TyperGroup
+from typer.main import get_command
 
 from ..core.door import command_line
 from ..core.errors import FlybyError, OptionError
 from ..tasks.options.shell import SHELL
-from .catalogue import robots, vendors
-from .check import check
-from .compare import compare
 from .console import fail, warn
-from .emulate import emulate
-from .experiment import experiment
-from .free import free, tune
-from .identify import identify
-from .kinematics import fk, ik
-from .optimize import optimize
-from .paint import paint
-from .pareto import pareto
-from .record import record
-from .translate import translate
-from .zones import zones
 
+COMMANDS = {
+    **{
+        name: name
+        for name in (
+            *("emulate", "check", "translate", "record", "experiment", "compare", "identify"),
+            *("zones", "optimize", "pareto"),
+        )
+    },
+    "free": "free",
+    "tune": "free",
+    "paint": "paint",
+    "robots": "catalogue",
+    "vendors": "catalogue",
+    "fk": "kinematics",
+    "ik": "kinematics",
+}
+"""The module of each command, in the order of the help."""
 LONGEST_NAME = 300
 """Characters of a file's name that are shown."""
-NUMBERS_MAY_BE_NEGATIVE = {"ignore_unknown_options": True}
+NUMBERS_MAY_BE_NEGATIVE = ("fk", "ik")
+"""Commands that take words which begin with a minus for numbers."""
 
 
 class Command(TyperCommand):
@@ -44,11 +51,40 @@ class Command(TyperCommand):
         return found
 
 
+class _Imported(Mapping[str, TyperCommand]):
+    """Commands by name; each is imported when it is asked for."""
+
+    def __init__(self) -> None:
+        self._made: dict[str, TyperCommand] = {}
+
+    def __getitem__(self, name: str) -> TyperCommand:
+        if name not in self._made:
+            module = import_module(f".{COMMANDS[name]}", __package__)
+            alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+            settings = {"ignore_unknown_options": name in NUMBERS_MAY_BE_NEGATIVE}
+            alone.command(name, cls=Command, context_settings=settings)(getattr(module, name))
+            self._made[name] = cast(TyperCommand, get_command(alone))
+        return self._made[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in COMMANDS
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(COMMANDS)
+
+    def __len__(self) -> int:
+        return len(COMMANDS)
+
+
 class Commands(TyperGroup):
     """The commands; an error that a user can cause ends them with one message and status 1 or 2.
 
     It is 2 where what was typed is wrong by itself, whatever the files hold.
     """
+
+    def __init__(self, **given: Any) -> None:
+        super().__init__(**given)
+        self.commands = _Imported()  # type: ignore[assignment]
 
     def invoke(self, ctx: Any) -> Any:
         """Run the chosen command."""
@@ -77,13 +113,6 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (
-    *(emulate, check, translate, record, experiment, compare, identify, zones),
-    *(optimize, pareto, free, tune, paint, robots, vendors),
-):
-    app.command(cls=Command)(command)
-for command in (fk, ik):
-    app.command(cls=Command, context_settings=NUMBERS_MAY_BE_NEGATIVE)(command)
 
 
 def _version(wanted: bool) -> None:

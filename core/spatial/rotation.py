@@ -35,7 +35,7 @@ def quaternion_from_matrix(matrix: FloatArray) -> FloatArray:
     return quaternion.reshape(*m.shape[:-2], 4)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False, no_cfunc_wrapper=True)
 def _quaternions(matrices: FloatArray, quaternions: FloatArray) -> None:
     for k in range(len(matrices)):
         m, q = matrices[k], quaternions[k]

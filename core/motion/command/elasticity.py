@@ -30,10 +30,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 
 from ...arrays import BoolArray, FloatArray
 from ...errors import InputError
+from ...robot.kinematics.lean import lean
 from ...robot.model import Robot
 from ..model.elasticity import Elasticity
 from ..model.point_masses import filled, mass_loads
@@ -156,20 +156,20 @@ def derivatives_of(
         values: (S, N).
         at: (T,) s, not decreasing.
     """
+    values = np.ascontiguousarray(values)
     slopes = np.zeros_like(values)
     if len(t) > 2:
-        _fill_slopes(values, float(t[1] - t[0]), slopes)
+        _fill_slopes(values, float(t[1] - t[0]), slopes, np.zeros(len(values)))
     return JointMotion(t, values, slopes).at(at)
 
 
-@njit(cache=True, error_model="numpy")
-def _fill_slopes(values: FloatArray, step: float, slopes: FloatArray) -> None:
+@lean
+def _fill_slopes(values: FloatArray, step: float, slopes: FloatArray, pivot: FloatArray) -> None:
     """Slopes (T, N) of the cubic spline through values a step apart, at rest at its ends.
 
     Its second derivative is continuous where m₋ + 4 m + m₊ = 3 (v₊ − v₋) / step.
     """
     last = values.shape[0] - 1
-    pivot = np.zeros(last + 1)
     for i in range(1, last):
         pivot[i] = 1.0 / (4.0 - pivot[i - 1])
         for j in range(values.shape[1]):

@@ -19,10 +19,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ...arrays import FloatArray
-from ...robot.kinematics.lean import inner
+from ...robot.kinematics.lean import inner, lean
 from ..path.tcp_samples import States
 from ..timing.interval import Intervals, joint_at, progress
 from ..timing.start_ramp import StartRamp, stamped_time
@@ -149,7 +148,7 @@ def _share(n: Intervals, way: _Way, k: int, place: float) -> tuple[float, float]
     return z, first + z * (last - first)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _drive(
     n: Intervals,
     way: _Way,

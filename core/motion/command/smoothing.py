@@ -15,10 +15,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from ...arrays import FloatArray
-from ...robot.kinematics.lean import inner
+from ...robot.kinematics.lean import inner, lean
 from ..model.motion_model import MotionModel
 
 States = tuple[FloatArray, FloatArray, FloatArray]
@@ -151,16 +150,20 @@ def _empty(count: int, size: int) -> States:
     return np.empty((count, size)), np.empty((count, size)), np.empty((count, size))
 
 
-@njit(cache=True, error_model="numpy")
 def _areas(t: FloatArray, q: FloatArray, dq: FloatArray) -> FloatArray:
     """(S, N), ∫ (q − q₀) dt from the first knot."""
-    out = np.zeros(q.shape)
+    areas = np.zeros(q.shape)
+    _fill_areas(t, q, dq, areas)
+    return areas
+
+
+@lean
+def _fill_areas(t: FloatArray, q: FloatArray, dq: FloatArray, out: FloatArray) -> None:
     for k in range(t.size - 1):
         h = t[k + 1] - t[k]
         for j in range(q.shape[1]):
             mean = 0.5 * (q[k, j] + q[k + 1, j]) - q[0, j]
             out[k + 1, j] = out[k, j] + h * (mean + h / 12 * (dq[k, j] - dq[k + 1, j]))
-    return out
 
 
 @inner
@@ -191,7 +194,7 @@ def _cubic(
     return area, position, (v0 + z * (2 * c2 + z * 3 * c3)) / h, (2 * c2 + 6 * z * c3) / h**2
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _average_evenly(
     q: FloatArray,
     dq: FloatArray,
@@ -228,7 +231,7 @@ def _average_evenly(
             velocity[i, j] = (q[now, j] - before) / window
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _interpolate(
     t: FloatArray,
     q: FloatArray,
@@ -245,7 +248,7 @@ def _interpolate(
             _, position[i, j], velocity[i, j], acceleration[i, j] = _cubic(t, q, dq, k, at[i], j)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _average(
     t: FloatArray,
     q: FloatArray,

@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 
 from ...arrays import FloatArray, IntArray
 from ...errors import Note
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import motion
-from ...robot.kinematics.lean import inner
+from ...robot.kinematics.lean import inner, lean
 from ..geometry.quintic import basis, bends, slopes
 from ..path.tcp_samples import States
 from ..timing.limits import SegmentLimits
@@ -109,7 +108,6 @@ def _why(timing: Timing, k: int) -> str:
     return "where joints turn unevenly along the line"
 
 
-@njit(cache=True, error_model="numpy")
 def _shares(
     chain: Chain,
     states: States,
@@ -128,15 +126,46 @@ def _shares(
     axes = states.q.shape[1]
     state, twist = np.empty((3, axes)), np.empty((2, 6))
     few, many = np.zeros((2 * axes + 2, _FEW.size)), np.zeros((2 * axes + 2, _MANY.size))
-    for k in intervals:
+    limits = velocity, acceleration
+    given = chain, states, spacing, x, intervals, left, owner, *limits, most, row
+    _fill_shares(*given, _FEW, _AT_FEW, _MANY, _AT_MANY, state, twist, few, many)
+
+
+@lean
+def _fill_shares(
+    chain: Chain,
+    states: States,
+    spacing: FloatArray,
+    x: FloatArray,
+    intervals: IntArray,
+    left: IntArray,
+    owner: IntArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    most: FloatArray,
+    row: IntArray,
+    at_few: FloatArray,
+    weights_few: FloatArray,
+    at_many: FloatArray,
+    weights_many: FloatArray,
+    state: FloatArray,
+    twist: FloatArray,
+    few: FloatArray,
+    many: FloatArray,
+) -> None:
+    axes = states.q.shape[1]
+    for n in range(intervals.size):
+        k = intervals[n]
         s, own = left[k], (spacing[k], x[k], x[k + 1])
         limits = velocity[owner[k]], acceleration[owner[k]]
-        for m in range(_FEW.size):
-            _look(chain, states, s, *own, _FEW[m], _AT_FEW[m], *limits, state, twist, few[:, m])
+        for m in range(at_few.size):
+            at = at_few[m], weights_few[m]
+            _look(chain, states, s, *own, *at, *limits, state, twist, few[:, m])
         if not _may_pass(few):
             continue
-        for m in range(_MANY.size):
-            _look(chain, states, s, *own, _MANY[m], _AT_MANY[m], *limits, state, twist, many[:, m])
+        for m in range(at_many.size):
+            at = at_many[m], weights_many[m]
+            _look(chain, states, s, *own, *at, *limits, state, twist, many[:, m])
         for j in range(2 * axes + 2):
             peak = _peak(many, j)
             if peak > most[k]:

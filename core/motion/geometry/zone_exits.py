@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from ...arrays import FloatArray
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import jacobian, pose
-from ...robot.kinematics.lean import inner
+from ...robot.kinematics.lean import inner, lean
 
 
-@njit(cache=True, error_model="numpy")
 def first_exit(
     chain: Chain, q_wp: FloatArray, q_other: FloatArray, radius: float, limit: float
 ) -> float:
@@ -31,8 +29,22 @@ def first_exit(
     Returns:
         The share, or -1 if the TCP stays inside up to ``limit``.
     """
-    size = q_wp.size
-    R, p0, p, q = np.empty((3, 3)), np.empty(3), np.empty(3), np.empty(size)
+    scratch = np.empty((2, 3)), np.empty(q_wp.size)
+    return float(_first_exit(chain, q_wp, q_other, radius, limit, np.empty((3, 3)), *scratch))
+
+
+@lean
+def _first_exit(
+    chain: Chain,
+    q_wp: FloatArray,
+    q_other: FloatArray,
+    radius: float,
+    limit: float,
+    R: FloatArray,
+    places: FloatArray,
+    q: FloatArray,
+) -> float:
+    p0, p = places[0], places[1]
     pose(chain, q_wp, R, p0)
     arm, fastest = 0.0, 0.0
     # No joint carries the TCP further than the chain's links and slides are long together.
@@ -95,7 +107,6 @@ def _distance(
     return math.sqrt(square)
 
 
-@njit(cache=True, error_model="numpy")
 def tcp_apart(
     chain: Chain, q_wp: FloatArray, q_other: FloatArray, share: float
 ) -> tuple[float, FloatArray, FloatArray]:
@@ -111,19 +122,35 @@ def tcp_apart(
         waypoint; zero where the distance is.
     """
     size = q_wp.size
+    pull, pull_wp = np.zeros(size), np.zeros(size)
     q = (1 - share) * q_wp + share * q_other
-    R, p, J = np.empty((3, 3)), np.empty(3), np.empty((6, size))
-    p_wp, J_wp = np.empty(3), np.empty((6, size))
+    J, R = np.empty((2, 6, size)), np.empty((3, 3))
+    distance = _tcp_apart(chain, q_wp, q, R, np.empty((2, 3)), J, pull, pull_wp)
+    return float(distance), pull, pull_wp
+
+
+@lean
+def _tcp_apart(
+    chain: Chain,
+    q_wp: FloatArray,
+    q: FloatArray,
+    R: FloatArray,
+    places: FloatArray,
+    columns: FloatArray,
+    pull: FloatArray,
+    pull_wp: FloatArray,
+) -> float:
+    p, p_wp, J, J_wp = places[0], places[1], columns[0], columns[1]
+    size = q.size
     jacobian(chain, q_wp, R, p_wp, J_wp)
     jacobian(chain, q, R, p, J)
     square = 0.0
     for i in range(3):
         square += (p[i] - p_wp[i]) ** 2
     distance = math.sqrt(square)
-    pull, pull_wp = np.zeros(size), np.zeros(size)
     if distance > 0.0:
         for j in range(size):
             for i in range(3):
                 pull[j] += (p[i] - p_wp[i]) / distance * J[i, j]
                 pull_wp[j] += (p[i] - p_wp[i]) / distance * J_wp[i, j]
-    return distance, pull, pull_wp
+    return distance

@@ -26,7 +26,7 @@ from ...robot.kinematics.chain_kernels import (
     walk_motion,
     walk_speeds,
 )
-from ...robot.kinematics.lean import inner
+from ...robot.kinematics.lean import inner, lean
 from ...robot.kinematics.vectors import cross, dot, subtract
 from ...robot.model import Robot
 
@@ -69,7 +69,8 @@ def mass_loads(
     at, weight = _weights(robot, masses, key, q.shape[1])
     if len(at):
         states = (np.ascontiguousarray(array) for array in (q, dq, ddq))
-        _load(robot.chain, at, weight, np.array(robot.gravity), *states, *loads)
+        walk = np.empty((robot.chain.joint.size + 1, COLUMNS, 3))
+        _load(robot.chain, at, weight, np.array(robot.gravity), *states, *loads, walk)
     return loads
 
 
@@ -109,7 +110,7 @@ def _weights(
     return at, weight[at]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _load(
     chain: Chain,
     at: IntArray,
@@ -121,8 +122,8 @@ def _load(
     along: FloatArray,
     across: FloatArray,
     held: FloatArray,
+    walk: FloatArray,
 ) -> None:
-    walk = np.empty((chain.joint.size + 1, COLUMNS, 3))
     for m in range(q.shape[0]):
         walk_motion(chain, q[m], dq[m], ddq[m], walk)
         for b in range(at.size):

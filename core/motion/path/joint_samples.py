@@ -13,16 +13,29 @@ from ...robot.kinematics.chain_kernels import (
     motion,
     velocity_gradient,
 )
+from ...robot.kinematics.lean import lean
 from ..geometry.curves import Curves, evaluate, pull
 from .tcp_samples import States
 
 
-@njit(cache=True, error_model="numpy")
 def sample_joint(
     chain: Chain, curves: Curves, piece: IntArray, sigma: FloatArray, states: States
 ) -> None:
     """Write the states at ``sigma`` (S,) on the curves ``piece`` (S,), D = N."""
-    basis, value = np.empty((6, 4)), np.empty((3, states.q.shape[1]))
+    value = np.empty((3, states.q.shape[1]))
+    _sample_joint(chain, curves, piece, sigma, states, np.empty((6, 4)), value)
+
+
+@lean
+def _sample_joint(
+    chain: Chain,
+    curves: Curves,
+    piece: IntArray,
+    sigma: FloatArray,
+    states: States,
+    basis: FloatArray,
+    value: FloatArray,
+) -> None:
     for k in range(sigma.size):
         evaluate(curves, piece[k], sigma[k], basis, value)
         for j in range(states.q.shape[1]):

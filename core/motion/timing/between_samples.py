@@ -15,11 +15,11 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from ...robot.kinematics.lean import inner
+from ...robot.kinematics.lean import inner, lean
 from ..geometry.pieces import PieceIndices
 from ..geometry.quintic import slopes
 from ..path.tcp_samples import States
-from .rates import pull_rates, rates
+from .rates import bind, pull_rates, rates
 
 BETWEEN = 1 << 20
 """From here on, what stands for a row in `limits.PathLimits.binding` codes row and place inside."""
@@ -81,7 +81,6 @@ def _inside(states: States, s: int, h: float, m: int, rate: FloatArray, twist: F
         rate[axes + part] = np.sqrt(square)
 
 
-@njit(cache=True, error_model="numpy")
 def lower_between(
     states: States,
     spacing: FloatArray,
@@ -100,10 +99,25 @@ def lower_between(
         ceiling: lowered.
         binding: (K + 1, 3), becomes (sample at the left of the interval, code, segment).
     """
+    scratch = np.empty((3, max(velocity.shape[1], 6)))
+    _lower_between(states, spacing, pieces, velocity, ceiling, binding, scratch, np.empty((2, 2)))
+
+
+@lean
+def _lower_between(
+    states: States,
+    spacing: FloatArray,
+    pieces: PieceIndices,
+    velocity: FloatArray,
+    ceiling: FloatArray,
+    binding: IntArray,
+    scratch: FloatArray,
+    ends: FloatArray,
+) -> None:
     first_sample, first_interval, segment = pieces
     size = velocity.shape[1]
-    rate, bend, twist = np.empty(size), np.empty(size), np.empty(6)
-    end, lowered = np.empty(2), np.empty(2)
+    rate, bend, twist = scratch[0, :size], scratch[1, :size], scratch[2, :6]
+    end, lowered = ends[0], ends[1]
     for p in range(segment.size):
         own, s = velocity[segment[p]], first_sample[p]
         rates(states, s, size - 2, rate, bend)
@@ -128,12 +142,12 @@ def lower_between(
                 if most > lowered[1 - high]:
                     if most < ceiling[i + high]:
                         ceiling[i + high] = most
-                        binding[i + high] = s, code, segment[p]
+                        bind(binding, i + high, s, code, segment[p])
                     continue
                 for e in range(2):
                     if x < ceiling[i + e]:
                         ceiling[i + e] = x
-                        binding[i + e] = s, code + 1, segment[p]
+                        bind(binding, i + e, s, code + 1, segment[p])
             s += 1
 
 

@@ -15,11 +15,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numba import njit
 
 from ...arrays import FloatArray, IntArray
 from ...program.speed import Speed
 from ...robot.joint import JointKind
+from ...robot.kinematics.lean import lean
 from ...robot.model import Robot
 from ..geometry.pieces import PieceIndices, Pieces
 from ..geometry.segments import JOINT_SEGMENT, Segments
@@ -28,7 +28,7 @@ from ..model.motion_model import MotionModel
 from ..path.tcp_samples import States
 from . import stamping
 from .between_samples import lower_between
-from .rates import rates, sideways
+from .rates import bind, rates, sideways
 from .stamping_kernels import StampRows
 from .superposed_legs import SuperposedZones, lower_ceilings, room_along
 from .torque_rows import Shares, torque_rows
@@ -153,7 +153,7 @@ def _limits(
     return velocity, [*acceleration, tcp, turn]
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _fill(
     states: States,
     pieces: PieceIndices,
@@ -165,6 +165,7 @@ def _fill(
     rows: StampRows,
     ceiling: FloatArray,
     binding: IntArray,
+    scratch: FloatArray,
 ) -> None:
     """Write rows (K, 2, …), but for lower bounds, and ceilings (K + 1,) with what binds them.
 
@@ -172,7 +173,7 @@ def _fill(
     """
     first_sample, first_interval, segment = pieces
     axes = states.q.shape[1]
-    rate, bend = np.empty(axes + 2), np.empty(axes + 2)
+    rate, bend = scratch[0], scratch[1]
     for p in range(segment.size):
         s = segment[p]
         count = first_interval[p + 1] - first_interval[p]
@@ -185,11 +186,11 @@ def _fill(
                     x = (velocity[s, j] / rate[j]) ** 2
                     if x < ceiling[knot]:
                         ceiling[knot] = x
-                        binding[knot] = k, j, s
+                        bind(binding, knot, k, j, s)
             most = centripetal * acceleration[s, axes]
             if most < np.inf and sideways(states, k) * ceiling[knot] > most:
                 ceiling[knot] = most / sideways(states, k)
-                binding[knot] = k, CENTRIPETAL, s
+                bind(binding, knot, k, CENTRIPETAL, s)
             for end in range(2):
                 interval = knot - end
                 if interval < first_interval[p] or interval >= first_interval[p + 1]:
@@ -263,7 +264,8 @@ def path_limits(
     velocity, acceleration = limits.velocity, limits.acceleration
     room = room_along(zones, pieces)
     indices, most = pieces.indices, limits.centripetal
-    _fill(states, indices, velocity, acceleration, most, room, place, rows, ceiling, binding)
+    given = states, indices, velocity, acceleration, most, room, place
+    _fill(*given, rows, ceiling, binding, np.empty((2, velocity.shape[1])))
     stops = pieces.first_interval[pieces.stop]
     ceiling[stops] = 0.0
     binding[stops] = -1

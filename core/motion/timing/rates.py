@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from ...arrays import FloatArray
+from ...arrays import FloatArray, IntArray
 from ...robot.kinematics.lean import inner
 from ..path.tcp_samples import States
 
@@ -31,6 +31,13 @@ def rates(states: States, k: int, axes: int, rate: FloatArray, bend: FloatArray)
             rate[axes + part], bend[axes + part] = size, mixed / size
         else:
             rate[axes + part] = bend[axes + part] = 0.0
+
+
+@inner
+def bind(binding: IntArray, knot: int, sample: int, code: int, index: int) -> None:
+    """Note what binds at a knot."""
+    # One by one: an assignment to the row would be compiled with all that NumPy says of shapes.
+    binding[knot, 0], binding[knot, 1], binding[knot, 2] = sample, code, index
 
 
 @inner

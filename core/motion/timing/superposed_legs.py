@@ -27,13 +27,13 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from ...robot.kinematics.lean import inner
+from ...robot.kinematics.lean import inner, lean
 from ..geometry.corners import POSITION, TCP_CORNER
 from ..geometry.curves import ARC, Curves
 from ..geometry.layout import Layout
 from ..geometry.pieces import PieceIndices, Pieces
 from ..path.tcp_samples import States
-from .rates import pull_rates, rates
+from .rates import bind, pull_rates, rates
 
 ZONE = -2
 """What stands for a row in `limits.PathLimits.binding` where the ceiling is a zone's."""
@@ -152,7 +152,6 @@ def _asked(
     return least, side, most, row
 
 
-@njit(cache=True, error_model="numpy")
 def lower_ceilings(
     states: States,
     spacing: FloatArray,
@@ -173,8 +172,24 @@ def lower_ceilings(
         ceiling: lowered.
         binding: (K + 1, 3), becomes (`ZONE`, `ZONE`, index of the zone).
     """
+    if len(zones.at):
+        scratch = np.empty((2, acceleration.shape[1]))
+        _lower_ceilings(states, spacing, pieces, acceleration, zones, ceiling, binding, scratch)
+
+
+@lean
+def _lower_ceilings(
+    states: States,
+    spacing: FloatArray,
+    pieces: PieceIndices,
+    acceleration: FloatArray,
+    zones: SuperposedZones,
+    ceiling: FloatArray,
+    binding: IntArray,
+    scratch: FloatArray,
+) -> None:
     first_sample, first_interval, _ = pieces
-    rate, bend = np.empty(acceleration.shape[1]), np.empty(acceleration.shape[1])
+    rate, bend = scratch[0], scratch[1]
     for z in range(zones.at.shape[0]):
         samples, owners, extents = _ends(spacing, pieces, zones.at[z])
         arc, planned = zones.at[z, 3], zones.planned[z]
@@ -197,7 +212,7 @@ def lower_ceilings(
                     x = begin + (end - begin) * way / (before + after)
                 if x < ceiling[knot]:
                     ceiling[knot] = x
-                    binding[knot] = first_sample[p] + i, ZONE, z
+                    bind(binding, knot, first_sample[p] + i, ZONE, z)
 
 
 @njit(cache=True, error_model="numpy")

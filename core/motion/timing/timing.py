@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from ...arrays import FloatArray, IntArray
 from ...display import counted, in_line
 from ...errors import MotionError
+from ...robot.kinematics.lean import lean
 from ..model.rules import Pace
 from ..path.path import Path
 from ..path.tcp_samples import States
@@ -203,7 +203,7 @@ class Timing:
         return np.clip(np.searchsorted(self.begin, t, side="right") - 1, 0, None)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _drive(
     t: FloatArray,
     interval: IntArray,
@@ -226,7 +226,7 @@ def _drive(
             ddq[i, j] = bend * rate * rate + slope * change
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _places(
     t: FloatArray,
     interval: IntArray,

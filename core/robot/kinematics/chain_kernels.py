@@ -365,7 +365,6 @@ def pull_acceleration(
         grad_dq[chain.joint[k]] += dot(force, linear) + dot(torque, angular)
 
 
-@njit(cache=True, error_model="numpy")
 def poses(chain: Chain, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Rotations (M, 3, 3) and positions (M, 3) m of configurations (M, N)."""
     R, p = np.empty((q.shape[0], 3, 3)), np.empty((q.shape[0], 3))
@@ -373,7 +372,7 @@ def poses(chain: Chain, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     return R, p
 
 
-@inner
+@lean
 def _fill_poses(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray) -> None:
     for m in range(q.shape[0]):
         pose(chain, q[m], R[m], p[m])

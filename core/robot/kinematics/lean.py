@@ -33,9 +33,7 @@ def inner(function: Any) -> Any:
         return register_jitable(**plain)(function)
     from .linked import LinkedCompiler
 
+    # With the flags of `lean`: numba compiles anew for each caller that has others.
     return register_jitable(
-        **plain,
-        no_cpython_wrapper=True,
-        no_cfunc_wrapper=True,
-        pipeline_class=LinkedCompiler,
+        **plain, no_cfunc_wrapper=True, no_cpython_wrapper=False, pipeline_class=LinkedCompiler
     )(function)

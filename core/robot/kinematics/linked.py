@@ -12,7 +12,7 @@ from numba import _dynfunc
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_machinery import LoweringPass, register_pass
-from numba.core.typed_passes import NativeLowering
+from numba.core.typed_passes import AnnotateTypes, NativeLowering
 
 
 class _Intermediate(JITCodeLibrary):  # type: ignore[misc]
@@ -49,6 +49,24 @@ class _Linkable(LoweringPass):  # type: ignore[misc]
         return True
 
 
+@register_pass(mutates_CFG=False, analysis_only=False)
+class _Unwrapped(LoweringPass):  # type: ignore[misc]
+    """Has no wrapper made for Python, and no machine code.
+
+    Only now: what a kernel calls is compiled once more for a caller with other flags.
+    """
+
+    _name = "flyby_unwrapped"
+
+    def __init__(self) -> None:
+        super().__init__()
+
+    def run_pass(self, state: Any) -> bool:
+        state.flags.no_cpython_wrapper = True
+        state.flags.no_compile = True
+        return True
+
+
 class LinkedCompiler(Compiler):  # type: ignore[misc]
     """Compiles as far as callers need it: to code that can be linked."""
 
@@ -62,13 +80,13 @@ class LinkedCompiler(Compiler):  # type: ignore[misc]
         flags: Any,
         locals: Any,
     ) -> None:
-        flags.no_compile = True
         library = _Intermediate(targetctx.codegen(), "inner")
         super().__init__(typingctx, targetctx, library, args, return_type, flags, locals)
 
     def define_pipelines(self) -> Any:
         made = super().define_pipelines()
         for passes in made:
+            passes.add_pass_after(_Unwrapped, AnnotateTypes)
             passes.add_pass_after(_Linkable, NativeLowering)
             passes.finalize()
         return made

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from ...arrays import FloatArray
 from .arm_geometry import ArmGeometry
@@ -26,11 +25,11 @@ from .closed_form import (
     wrapped,
     wrist_target,
 )
-from .lean import inner
+from .lean import inner, lean
 from .vectors import Rotation, compose, cross, dot, rotation_about, turn
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def solve_spherical_wrist(
     arm: ArmGeometry, R: FloatArray, p: FloatArray, q: FloatArray, measures: FloatArray
 ) -> float:
