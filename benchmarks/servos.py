@@ -4,9 +4,10 @@
 
 Runs of the real IRB 6640-180/2.55 are emulated as its type is driven (the shipped motion model),
 then with figures that were fitted to the other kinds of runs: lags of all joints
-(``elasticity.lag_s``), friction of joints 2 and 3 (``servo``), and both. They are fitted to the
-joints' path, time aside, by linear least squares with the weights of `flyby identify`; the two ways
-of friction are those of nine pairs that leave the others the least. A kind are the runs of like
+(``elasticity.lag_s``), friction of joints 2 and 3 and transients of joints 1 to 3 (``servo``), and
+several of them. They are fitted to the joints' path, time aside, by linear least squares with the
+weights of `flyby identify`, to runs whose times the emulation holds; the two ways of friction are
+those of nine pairs that leave the others the least. A kind are the runs of like
 speeds (``by speed``), or of one program (``by program``). Cases are the kinds of speed; figures are
 means over their runs of an error over that without the servos' figures: of the TCP's path the
 greatest, 99 % and root mean square, of the joints' path the root mean square. Of distances medians
@@ -29,7 +30,7 @@ from scipy.ndimage import median_filter
 
 from flyby.core.arrays import FloatArray
 from flyby.core.motion.command.commanded_motion import stamped_motion
-from flyby.core.motion.command.servo import friction_at
+from flyby.core.motion.command.servo import friction_at, transient_at
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.model.servo import Servo
 from flyby.core.registry import find_robot, find_vendor
@@ -46,6 +47,12 @@ FOLDER = "abb_irb6640_real"
 SPEEDS = {"50": "50", "300": "300-500", "500": "300-500", "1000": "1000", "max": "max"}
 RUBBED = (1, 2)
 """Joints, counted from zero, that turn back in runs of more than one kind."""
+GIVING = (0, 1, 2)
+"""Joints, counted from zero, that carry the arm."""
+BACK = 0.15
+"""s that a servo takes to make up for a torque."""
+IN_TIME = np.radians(1.0)
+"""By how much joints may be off at their time in runs that figures are fitted to."""
 WAYS = tuple(product((1e-4, 2e-4, 5e-4), (4e-3, 8e-3, 1.6e-2)))
 UNIT = 1e-3
 """rad of friction, or s of lag, that columns are made with."""
@@ -57,8 +64,13 @@ MOST = 800
 SLOWEST = 0.02
 """Share of the greatest speed below which a sample tells no direction."""
 ERRORS = ("path_max", "path_p99", "path_rms", "joint_path_rms")
-SETS = {"lag": (True, False), "friction": (False, True), "both": (True, True)}
-"""Which figures there are: lags, friction."""
+SETS = {
+    "lag": (True, False, False),
+    "friction": (False, True, False),
+    "both": (True, True, False),
+    "all": (True, True, True),
+}
+"""Which figures there are: lags, friction, transients."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +79,7 @@ class Regression:
 
     values: FloatArray
     lag: FloatArray
+    transient: FloatArray
     friction: dict[tuple[float, float], FloatArray]
 
 
@@ -131,25 +144,42 @@ def regression(name: str) -> Regression:
         servo = Servo((UNIT,) * ROBOT.size, rise, fade)
         rubbed = friction_at(servo, smoothing, stamped, coarse, states)
         friction[rise, fade] = columns(then(rubbed, coarse), RUBBED)
+    giving = Servo(transient=(UNIT,) * ROBOT.size, transient_time=BACK)
+    given = then(transient_at(giving, smoothing, stamped, coarse, states)[0], coarse)
     off = median_filter(found.alignment.off, (MEDIAN, 1), mode="nearest")
-    return Regression(aside(off), columns(UNIT * speed, range(ROBOT.size)), friction)
+    lag = columns(UNIT * speed, range(ROBOT.size))
+    return Regression(aside(off), lag, columns(given, GIVING), friction)
 
 
-def fitted(names: Sequence[str], lags: bool, rubs: bool) -> MotionModel:
+@cache
+def in_time(name: str) -> bool:
+    """Whether the emulation holds a run's times."""
+    return emulated(name, TYPE).figures.joint_time_p99 < IN_TIME
+
+
+def fitted(names: Sequence[str], lags: bool, rubs: bool, gives: bool) -> MotionModel:
     """The motion model with figures that are fitted to runs."""
-    rows = [regression(name) for name in names]
+    rows = [regression(name) for name in names if in_time(name)]
     best = np.inf, TYPE
     for ways in WAYS if rubs else WAYS[:1]:
-        parts = [np.hstack([r.lag] * lags + [r.friction[ways]] * rubs) for r in rows]
+        parts = [
+            np.hstack([r.lag] * lags + [r.friction[ways]] * rubs + [r.transient] * gives)
+            for r in rows
+        ]
         found, loss = robust(np.vstack(parts), rows)
-        lag, friction = found[: ROBOT.size * lags], np.zeros(ROBOT.size)
-        friction[list(RUBBED)] = found[ROBOT.size :] if lags and rubs else found if rubs else 0.0
+        lag, rest = np.split(found, [ROBOT.size * lags])
+        friction, transient = np.zeros(ROBOT.size), np.zeros(ROBOT.size)
+        if rubs:
+            friction[list(RUBBED)] = rest[: len(RUBBED)]
+        if gives:
+            transient[list(GIVING)] = rest[len(RUBBED) * rubs :]
         model = TYPE
         if lags:
             shifts = tuple(map(float, UNIT * (lag - lag.mean())))
             model = replace(model, elasticity=replace(model.elasticity, lag=shifts))
-        if rubs:
-            model = replace(model, servo=Servo(tuple(map(float, UNIT * friction)), *ways))
+        if rubs or gives:
+            held, given = (tuple(map(float, UNIT * one)) for one in (friction, transient))
+            model = replace(model, servo=Servo(held, *ways, given, BACK))
         best = min(best, (loss, model), key=lambda pair: pair[0])
     return best[1]
 
@@ -187,7 +217,12 @@ def measure(case: str) -> Iterator[Figure]:
     if case == "fitted":
         for figures in SETS:
             model = fitted(list(runs()), *SETS[figures])
-            told = {"lag": model.elasticity.lag, "friction": model.servo.friction}
+            servo = model.servo
+            told = {
+                "lag": model.elasticity.lag,
+                "friction": servo.friction,
+                "transient": servo.transient,
+            }
             for key, values in told.items():
                 for joint, value in enumerate(values):
                     if value:

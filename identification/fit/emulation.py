@@ -15,7 +15,7 @@ import numpy as np
 from ...core.arrays import FloatArray
 from ...core.motion.command.commanded_motion import stamped_motion
 from ...core.motion.command.elasticity import leads
-from ...core.motion.command.servo import friction_at
+from ...core.motion.command.servo import friction_at, transient_at
 from ...core.motion.command.smoothing import JointMotion, Smoothing, States
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.geometry.pieces import Sampling
@@ -281,7 +281,9 @@ def led(
     states: States,
 ) -> FloatArray:
     """The same where the smoothed motion has states then (K, N)."""
-    q = states[0] + friction_at(controller.model.servo, smoothing, stamped, t, states)
+    servo = controller.model.servo
+    q = states[0] + friction_at(servo, smoothing, stamped, t, states)
+    q += transient_at(servo, smoothing, stamped, t, states)[0]
     if controller.model.elasticity == RIGID:
         return q
     return q + leads(controller.model.elasticity, controller.robot, *states)

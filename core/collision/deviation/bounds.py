@@ -28,9 +28,10 @@ from ...motion.command.smoothing import Smoothing
 from ...motion.emulator.controller import Controller
 from ...motion.emulator.run import Run
 from ...motion.model.point_masses import filled
+from ...motion.model.servo import Servo
 from ...motion.path.path import Path
 from ...motion.timing.timing import Timing
-from .averaging import Averages
+from .averaging import Averages, Rates, near
 from .earliest_times import EarliestTimes
 from .speed_bounds import Allowed, greatest
 
@@ -146,7 +147,7 @@ class Deviation:
         """Of a run."""
         smoothing = controller.smoothing(run.program, run.path)
         model = controller.model
-        nowhere = not smoothing.widths and not any(model.elasticity.lag) and not model.servo.rubs
+        nowhere = not smoothing.widths and not any(model.elasticity.lag) and model.servo.still
         return cls(controller, run, smoothing, () if nowhere else _bands(controller, run))
 
     def over(self, first: int, last: int) -> tuple[DeviationBounds, ...]:
@@ -195,7 +196,8 @@ def _within(known: Deviation, band: _Band, first: int, last: int) -> DeviationBo
     size = timing.path.q.shape[1]
     reach = smoothing.window + timing.ramp
     step = band.coarser * (reach / _CELLS if reach > 0.0 else _STEP)
-    away = max(reach, step)
+    servo = model.servo
+    away = max(reach, step) + (servo.transient_time if servo.gives else 0.0)
     first, last = _with_what_counts(timing, band.most, first, last, _ASIDE * away)
     allowed = Allowed.of(timing, band.most, first, last)
     course = EarliestTimes.of(timing, allowed, band.rests, step, away)
@@ -205,14 +207,15 @@ def _within(known: Deviation, band: _Band, first: int, last: int) -> DeviationBo
     averages = Averages(course, smoothing, timing.ramp)
     offsets = averages.offsets()
     ways, share, rest = offsets.axis[:, None], offsets.along[:, None], offsets.aside
-    if any(lag):
+    if any(lag) or servo.gives:
         rates, late = averages.rates(), filled(lag, size)
+        rest += _transients(servo, course, rates)
         speed = np.stack([np.zeros_like(rates.speed), rates.speed], -1)
         ways = np.concatenate([ways, (late * course.tangent)[:, None]], axis=1)
         share = np.concatenate([share, speed[:, None]], axis=1)
         late_ones = late != 0.0
         rest[:, late_ones] += np.abs(late[late_ones]) * rates.veer[:, late_ones]
-    rest += friction_bound(model.servo, size)
+    rest += friction_bound(servo, size)
     most = rest + np.einsum("cwn,cw->cn", np.abs(ways), np.abs(share).max(axis=2))
     # What is not known is not small.
     unknown = ~np.isfinite(most).all(axis=1)
@@ -220,6 +223,17 @@ def _within(known: Deviation, band: _Band, first: int, last: int) -> DeviationBo
     moves = course.moves
     edge = np.append(course.sigma[:-1][moves], course.sigma[-1])
     return DeviationBounds(edge, ways[moves], share[moves], rest[moves], most[moves])
+
+
+def _transients(servo: Servo, course: EarliestTimes, rates: Rates) -> FloatArray:
+    """(C, N), bounds of what joints are off by where their velocities change: those of a velocity,
+    and of its mean over what was passed in a while."""
+    per = np.abs(filled(servo.transient, rates.veer.shape[1]))
+    found = np.zeros_like(rates.veer)
+    for j in np.flatnonzero(per):
+        fastest = np.abs(course.tangent[:, j]) * rates.speed + rates.veer[:, j]
+        found[:, j] = per[j] * (fastest + near(course, fastest, servo.transient_time))
+    return found
 
 
 def _with_what_counts(

@@ -20,7 +20,7 @@ from ..model.motion_model import MotionModel
 from ..timing.timing import Timing
 from .elasticity import derivatives_of, lead_states, lead_step, links_of
 from .ramp import ramped
-from .servo import FrictionMemory
+from .servo import FrictionMemory, transient_at
 from .smoothing import STEP, JointMotion, Smoothing, States, even_times, knot_step
 from .trajectory import Leads, no_leads, sample_times
 
@@ -61,30 +61,38 @@ def commanded_motion(
     q, dq, ddq, sigma = (*(np.empty(shape) for _ in range(3)), np.empty(len(t)))
     elasticity = model.elasticity
     lead = None if elasticity == RIGID else no_leads(shape)
-    friction = FrictionMemory(model.servo, smoothing, shape[1]) if model.servo.rubs else None
+    servo = model.servo
+    friction = FrictionMemory(servo, smoothing, shape[1]) if servo.rubs else None
+    back = servo.transient_time if servo.gives else 0.0
+    needs_jerk = servo.gives or any(elasticity.lag)
     step = lead_step(smoothing.window + timing.ramp)
     for part in stretches(t):
         sigma[part] = timing.place_at(np.clip(t[part] - timing.lag, 0.0, timing.duration))
-        if smoothing.window == 0.0 and timing.ramp == 0.0 and lead is None and friction is None:
+        if smoothing.window == 0.0 and timing.ramp == 0.0 and lead is None and servo.still:
             q[part], dq[part], ddq[part] = timing.driven_at(t[part])
             continue
         begin, end = t[part][0] - _ASIDE * step, t[part][-1] + _ASIDE * step
-        first = begin if friction is None else min(begin, friction.known_to)
+        first = min(begin, t[part][0] - back)
+        if friction is not None:
+            first = min(first, friction.known_to)
         stamped = stamped_motion(timing, first - smoothing.window, end)
         smooth = smoothing.command(stamped, t[part])
         q[part], dq[part], ddq[part] = smooth
-        off = None if friction is None else friction.over(stamped, t[part], smooth)
-        if lead is not None:
+        offs = [] if friction is None else [friction.over(stamped, t[part], smooth)]
+        if lead is not None or needs_jerk:
             even = even_times(max(begin, 0.0), min(end, timing.duration), step)
             known = smoothing.command(stamped, even)
-            if any(elasticity.lag):
-                jerk = derivatives_of(even, known[2], t[part])[1]
-                q[part], dq[part], ddq[part] = links_of(elasticity, smooth, jerk)
+        if needs_jerk:
+            jerk = derivatives_of(even, known[2], t[part])[1]
+            q[part], dq[part], ddq[part] = links_of(elasticity, smooth, jerk)
+            if servo.gives:
+                offs.append(transient_at(servo, smoothing, stamped, t[part], smooth, jerk))
+        if lead is not None:
             for made, own in zip(
                 lead, lead_states(elasticity, robot, even, known, t[part]), strict=True
             ):
                 made[part] = own
-        if off is not None:
+        for off in offs:
             for links, own in zip((q, dq, ddq), off, strict=True):
                 links[part] += own
     return CommandedMotion((q, dq, ddq), lead, sigma)

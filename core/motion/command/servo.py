@@ -1,4 +1,6 @@
-"""How far friction sets the joints of one robot off where they begin to move or turn back.
+"""How far the servos of one robot let its joints be off what is commanded.
+
+**Friction**, where they begin to move or turn back.
 
 What friction holds follows the way that a joint goes, whatever its speed (P. Dahl, "A solid
 friction model", Aerospace Corporation TOR-158(3107-18), 1968): over a way d it comes to the side
@@ -10,6 +12,15 @@ A servo does not know at once. What of it is not made up for is taken as the dif
 states, one over a short way and one over a long one: the joint is off by friction · (z_rise −
 z_fade), which sets in as it turns back, stays within twice the friction, and fades. Motors and the
 links with them are off alike. As it depends on ways alone, it is the same at every speed.
+
+**Transients**, where their velocities change. A servo gives way to a torque that it does not know
+of, until its integral part has made up for that: to a step of it within about its integral time,
+w. Where the torque is one of inertia, each joint is off by
+
+    transient · (q̇ − (q(t) − q(t − w)) / w),
+
+its velocity less the mean over the last w seconds, which is what an acceleration makes of it
+meanwhile. At even speed nothing is left.
 """
 
 from __future__ import annotations
@@ -83,6 +94,37 @@ def friction_at(
     if not servo.rubs or not len(t):
         return np.zeros_like(states[0])
     return FrictionMemory(servo, smoothing, states[0].shape[1]).over(stamped, t, states)[0]
+
+
+def transient_at(
+    servo: Servo,
+    smoothing: Smoothing,
+    stamped: JointMotion,
+    t: FloatArray,
+    states: States,
+    jerk: FloatArray | None = None,
+) -> States:
+    """How far joints are off where their velocities change, with two derivatives, (T, N) each.
+
+    Args:
+        servo: of the robot.
+        smoothing: that the stamped motion goes through.
+        stamped: it, from a window and `Servo.transient_time` before the first time on.
+        t: (T,) s, not decreasing.
+        states: (T, N) each, of the smoothed motion then.
+        jerk: (T, N), its third derivative; without, the second of what joints are off is not known.
+    """
+    if not servo.gives or not len(t):
+        return np.zeros_like(states[0]), np.zeros_like(states[0]), np.zeros_like(states[0])
+    per, back = filled(servo.transient, states[0].shape[1]), servo.transient_time
+    before = smoothing.command(stamped, t - back)
+    third = np.full_like(states[0], np.nan) if jerk is None else jerk
+    ahead = (states[1], states[2], third)
+    made = (
+        per * (one - (now - then) / back)
+        for one, now, then in zip(ahead, states, before, strict=True)
+    )
+    return next(made), next(made), next(made)
 
 
 def friction_bound(servo: Servo, size: int) -> FloatArray:

@@ -292,9 +292,9 @@ class Controller:
     def _torques_taken(self, timing: Timing, trajectory: Trajectory) -> FloatArray:
         """(M, L), the greatest shares of limits of torque on each move.
 
-        Where servos lag or rub, or time comes up to speed, those of the motion as stamped.
+        Where servos are off the command, or time comes up to speed, those of the motion as stamped.
         """
-        servos = any(self.model.elasticity.lag) or self.model.servo.rubs
+        servos = any(self.model.elasticity.lag) or not self.model.servo.still
         stamped = servos or timing.ramp > 0.0 or timing.start != SUDDEN
         torque = self.model.torque
         taken = np.zeros((int(trajectory.move.max()) + 1, len(torque.own)))

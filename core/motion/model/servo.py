@@ -46,6 +46,25 @@ class Servo:
         default=8e-3,
         fit=_TRAVEL,
     )
+    transient: tuple[float, ...] = figure(
+        "transient_s",
+        Row(FINITE),
+        Stage.LEAD,
+        "how far a joint is ahead where it is faster than it was on average of late, per velocity "
+        "(below zero: behind); joints beyond are not",
+        unit="s",
+        default=(),
+        fit=FitRange(-0.02, 0.02, 1e-3),
+    )
+    transient_time: float = figure(
+        "transient_time_s",
+        RealNumber(POSITIVE),
+        Stage.LEAD,
+        "how far that average goes back: by then the servo has made up for it",
+        unit="s",
+        default=0.15,
+        fit=FitRange(0.01, 1.0, 0.05),
+    )
 
     def __post_init__(self) -> None:
         check_figures(self, "servo.")
@@ -54,6 +73,16 @@ class Servo:
     def rubs(self) -> bool:
         """Whether friction sets any joint off."""
         return any(self.friction)
+
+    @property
+    def gives(self) -> bool:
+        """Whether any joint is off where its velocity changes."""
+        return any(self.transient)
+
+    @property
+    def still(self) -> bool:
+        """Whether no joint is ever off."""
+        return not (self.rubs or self.gives)
 
 
 IDEAL = Servo()

@@ -57,6 +57,7 @@ RICH = {
     "elasticity.weight": (0.0, 1.0),
     "elasticity.spring_rad": (1e-4,),
     "servo.friction_rad": (0.0, 1e-3),
+    "servo.transient_s": (1e-3,),
 }
 """What others need to show."""
 CORNERS = {"blend.tcp.kind": "arc", "zone.pace": "superposed", "limit.centripetal": 1.2}
@@ -109,6 +110,8 @@ EXAMPLES: dict[str, tuple[Any, dict[str, Any]]] = {
     "servo.friction_rad": ((0.0, 5e-4), {}),
     "servo.friction_rise_rad": (1e-3, {}),
     "servo.friction_fade_rad": (0.02, {}),
+    "servo.transient_s": ((0.0, 2e-3), {}),
+    "servo.transient_time_s": (0.3, {}),
 }
 """Another value of every figure, and what it needs beside it to show."""
 WITHOUT_EFFECT = {"blend.joint.kind", "blend.orientation.kind"}

@@ -124,7 +124,7 @@ OTHER = MotionModel(
         (0.5,),
         (Coupled(3, 2, 0.125),),
     ),
-    servo=Servo((1e-4,), 1e-4, 4e-3),
+    servo=Servo((1e-4,), 1e-4, 4e-3, (1e-3, -2e-3), 0.2),
     jerk=12.0,
 )
 

@@ -1,4 +1,4 @@
-"""How far friction sets joints off where they begin to move or turn back."""
+"""How far servos let joints be off: friction, and where velocities change."""
 
 from __future__ import annotations
 
@@ -10,7 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.motion.command.servo import FrictionMemory, friction_at, friction_bound
+from flyby.core.motion.command.servo import (
+    FrictionMemory,
+    friction_at,
+    friction_bound,
+    transient_at,
+)
 from flyby.core.motion.command.smoothing import JointMotion, Smoothing
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.model.servo import IDEAL, Servo
@@ -84,6 +89,52 @@ def test_its_derivatives_are_those_of_it() -> None:
     for k in (0, 1):
         slope = (behind[k] - before[k]) / (2 * h)
         assert np.abs(slope - made[k + 1])[fast].max() < 1e-4 * np.abs(slope).max()
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=st.integers(0, 1000), back=st.floats(0.02, 0.5), width=st.floats(0.02, 0.2))
+def test_transients_are_what_velocities_exceed_their_means_by(seed, back, width) -> None:
+    servo, smoothing = Servo(transient=(2e-3, -1e-3), transient_time=back), Smoothing((width,))
+    driven, t = motion(seed), np.linspace(0.05, 7.95, 401)
+    states = smoothing.command(driven, t)
+    made = transient_at(servo, smoothing, driven, t, states)[0]
+    since = t[:, None] + back * (np.arange(400) + 0.5) / 400 - back
+    order = np.argsort(since.ravel())
+    speed = np.empty((since.size, 2))
+    speed[order] = smoothing.command(driven, since.ravel()[order])[1]
+    mean = speed.reshape(*since.shape, 2).mean(axis=1)
+    expected = servo.transient * (states[1] - mean)
+    np.testing.assert_allclose(made, expected, rtol=0, atol=2e-5 * np.abs(states[1]).max())
+
+
+def test_transients_vanish_at_even_speed() -> None:
+    driven = JointMotion(
+        np.array([0.0, 1.0, 9.0]), np.array([[0.0], [0.5], [8.5]]), np.ones((3, 1))
+    )
+    servo, t = Servo(transient=(1e-3,), transient_time=0.2), np.linspace(1.3, 8.9, 50)
+    made = transient_at(servo, NONE, driven, t, driven.at(t))[0]
+    np.testing.assert_allclose(made, 0.0, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("model", [MotionModel(smoothing=(0.05, 0.03)), MotionModel(ramp=0.05)])
+def test_transients_are_driven_with_their_derivatives(abb, model) -> None:
+    speed = Speed(tcp=0.4, reorientation=5.0)
+    moves = (
+        MoveL(abb.target((1, 0, 0)), speed, Radius(0.2 * abb.leg)),
+        MoveJ(abb.target((0, 1, 0.4)), speed, FINE),
+    )
+    program = Program(moves, start=abb.start)
+    giving = replace(model, servo=Servo(transient=(4e-3, -4e-3, 2e-3), transient_time=0.1))
+    plain, off = (
+        abb.controller(one).run(program, period=1e-3).trajectory for one in (model, giving)
+    )
+    away, rate = off.q - plain.q, off.dq - plain.dq
+    assert np.abs(away).max() > 1e-4
+    np.testing.assert_array_equal(away[:, 3:], 0.0)
+    slope = (away[2:] - away[:-2]) / 2e-3
+    assert np.median(np.abs(slope - rate[1:-1])) < 1e-3 * np.abs(rate).max()
+    bend, change = (rate[2:] - rate[:-2]) / 2e-3, (off.ddq - plain.ddq)[1:-1]
+    assert np.median(np.abs(bend - change)) < 2e-2 * np.abs(change).max()
 
 
 def test_links_and_motors_are_off_alike(abb) -> None:
