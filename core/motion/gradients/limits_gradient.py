@@ -167,6 +167,7 @@ def pull_path_limits(
     a_bar[:, :, made.limited] = bar.a[:, :, :plain]
     b_bar[:, :, made.limited] = bar.b[:, :, :plain]
     bound_bar[:, :, made.limited] = (bar.upper - bar.lower)[:, :, :plain]
+    made.stretches.pull(made.rows.spacing, made.binding, bar.ceiling, bar.spacing)
     pull_between(
         states,
         made.rows.spacing,

@@ -108,6 +108,15 @@ class MotionModel:
     pace: Pace = figure(
         "zone.pace", Choice(Pace), Stage.PATH, "how fast zones are driven", default=Pace.LIMITS
     )
+    zone_time: float = figure(
+        "zone.least_time_s",
+        RealNumber(_WAIT),
+        Stage.TIMING,
+        "how long a zone takes at least, and each part of a wider one in which the tool turns",
+        unit="s",
+        default=0.0,
+        fit=FitRange(0.0, 0.1, 1e-3),
+    )
     duration: DurationRule = figure(
         "time.duration",
         Choice(DurationRule),

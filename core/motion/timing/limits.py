@@ -5,7 +5,7 @@ Accelerations are rows on u = σ̈ and x: joints q' u + q'' x, and along the pat
 TCP's speed |p'| u + (p' · p'' / |p'|) x and of the tool's rate of turn likewise. Joints that torque
 limits (`torque.Torque`) have rows of their own behind these. Centripetal acceleration |p''⊥| x is a
 ceiling again, and so are what velocities between samples allow (`between_samples`) and how fast
-legs that overlap drive zones (`superposed_legs`).
+legs that overlap drive zones (`superposed_legs`), and what zones take at least (`zone_times`).
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ from .rates import bind, rates, sideways
 from .stamping_kernels import StampRows
 from .superposed_legs import SuperposedZones, lower_ceilings, room_along
 from .torque_rows import Shares, torque_rows
+from .zone_times import ZoneStretches
 
 _TOGETHER = 20_000
 """Intervals whose rows of torque are made in one go."""
@@ -216,9 +217,11 @@ class PathLimits:
             are limited somewhere.
         shares: (S, L), what the rows of torque are made of; None where torque limits nothing.
         zones: those that legs drive superposed.
+        stretches: those that take at least a while.
         binding: (K + 1, 3), at each knot the sample, the row and the segment whose velocity
             limit is the ceiling; `CENTRIPETAL` in the place of the row where that is; `ZONE` with
-            the zone in the place of the segment where a zone is; a code from `BETWEEN` on where
+            the zone in the place of the segment where a zone is; `LEAST_TIME` likewise with the
+            stretch; a code from `BETWEEN` on where
             limits between samples are; -1 at stops.
     """
 
@@ -226,6 +229,7 @@ class PathLimits:
     limited: IntArray
     shares: Shares | None
     zones: SuperposedZones
+    stretches: ZoneStretches
     binding: IntArray
 
 
@@ -235,6 +239,7 @@ def path_limits(
     pieces: Pieces,
     limits: SegmentLimits,
     zones: SuperposedZones,
+    stretches: ZoneStretches,
     shares: Shares | None = None,
     known: PathLimits | None = None,
 ) -> PathLimits:
@@ -246,6 +251,7 @@ def path_limits(
         pieces: the path's pieces.
         limits: of the segments.
         zones: those that legs drive superposed.
+        stretches: those that take at least a while.
         shares: (S, L), what share of its torque's limit each joint takes; None if none is limited.
         known: of the same path with the same limits but of velocities; its rows are taken.
     """
@@ -271,6 +277,7 @@ def path_limits(
     binding[stops] = -1
     lower_between(states, spacing, indices, velocity, ceiling, binding)
     lower_ceilings(states, spacing, indices, acceleration, zones, ceiling, binding)
+    stretches.lower(spacing, ceiling, binding)
     if known is None:
         np.negative(rows.upper, out=rows.lower)
     if known is None and shares is not None:
@@ -281,7 +288,7 @@ def path_limits(
             for whole, own in zip(rows, made, strict=True):
                 whole[part, :, plain:] = own
     found = stamping.StampLimits(spacing, *rows, ceiling)
-    return PathLimits(found, limited, shares, zones, binding)
+    return PathLimits(found, limited, shares, zones, stretches, binding)
 
 
 def torque_left(pieces: Pieces, limits: SegmentLimits) -> FloatArray:

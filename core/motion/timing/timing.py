@@ -21,6 +21,7 @@ from .stamping import Stamp, StampingError, stamp
 from .start_ramp import SUDDEN, StartRamp
 from .superposed_legs import SuperposedZones
 from .torque_rows import Shares
+from .zone_times import ZoneStretches
 
 _ROUNDING = 1e-12
 """s, by which times may be off."""
@@ -268,7 +269,10 @@ def stamp_path(
     zones = SuperposedZones.none()
     if path.model.pace is Pace.SUPERPOSED:
         zones = SuperposedZones.of(path.layout, path.pieces, path.tcp.curves.position)
-    made = path_limits(along.states, along.spacing, path.pieces, limits, zones, shares, known)
+    stretches = ZoneStretches.of(path.layout, path.pieces, along.states, path.model.zone_time)
+    made = path_limits(
+        along.states, along.spacing, path.pieces, limits, zones, stretches, shares, known
+    )
     try:
         found = stamp(made.rows)
     except StampingError as error:

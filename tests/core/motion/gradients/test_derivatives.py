@@ -130,6 +130,7 @@ MODELS = {
         tcp_acceleration=2.0,
         reorientation_acceleration=3.0,
     ),
+    "zone times": replace(VENDOR.motion(), zone_time=0.08),
     "torque": replace(
         VENDOR.motion(),
         torque=Torque(
