@@ -9,6 +9,7 @@ from ..timing.between_samples import BETWEEN, row_between
 from ..timing.limits import CENTRIPETAL, PathLimits
 from ..timing.stamping_kernels import CEILING, NEXT
 from ..timing.superposed_legs import ZONE
+from ..timing.timed_zones import TIMED
 from ..timing.zone_times import LEAST_TIME
 from .run import Run
 
@@ -72,7 +73,7 @@ def row_names(limits: PathLimits, axis_names: Sequence[str]) -> tuple[str, ...]:
 def _velocity(run: Run, knot: int, axis_names: Sequence[str]) -> str:
     """The velocity limit that is the ceiling at a knot."""
     _, row, owner = (int(i) for i in run.timing.path_limits.binding[knot])
-    if row in (ZONE, LEAST_TIME):
+    if row in (ZONE, LEAST_TIME, TIMED):
         return CORNER
     if row == CENTRIPETAL:
         return "centripetal acceleration"

@@ -23,7 +23,6 @@ from ..command.trajectory import Trajectory, sample_times
 from ..geometry.pieces import Sampling
 from ..model.consumption import SQUARED_TORQUE, Consumption
 from ..model.motion_model import MotionModel
-from ..model.rules import DurationRule
 from ..model.torque import WITHOUT_LIMIT
 from ..path.building import build_path
 from ..path.path import OverlapError, Path
@@ -31,7 +30,7 @@ from ..path.route import RouteFinder
 from ..timing.arc_length import ArcLength
 from ..timing.energy import Energy, energy, loads_of
 from ..timing.limits import SegmentLimits
-from ..timing.programmed_durations import hold_durations, stamp_in_thirds
+from ..timing.programmed_durations import hold_durations, stamp_ramped
 from ..timing.rests import InPosition
 from ..timing.start_ramp import SUDDEN, StartRamp
 from ..timing.timing import Settling, Timing, along_path, stamp_path
@@ -157,10 +156,12 @@ class Controller:
             if not timed:
                 return stamp_path(path, along, limits, shares, settling)
             wanted = np.array([moves[k].speed.duration for k in timed], dtype=float)
-            if self.model.duration is DurationRule.THIRDS:
-                timing = stamp_in_thirds(path, along, limits, shares, settling, timed, wanted)
-            else:
+            ramp = self.model.duration.ramp
+            if ramp is None:
                 timing = stamp_path(path, along, limits, shares, settling)
+            else:
+                wanted_at = dict(zip(timed, wanted, strict=True))
+                timing = stamp_ramped(path, along, limits, shares, settling, wanted_at, ramp)
             return hold_durations(timing, timed, wanted, settling)
         except MotionError as error:
             raise _located(error, program) from error

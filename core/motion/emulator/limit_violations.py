@@ -15,6 +15,7 @@ from ...robot.kinematics.lean import inner, lean
 from ..geometry.quintic import basis, bends, slopes
 from ..path.tcp_samples import States
 from ..timing.limits import SegmentLimits
+from ..timing.timed_zones import ROOM
 from ..timing.timing import Timing
 
 _EXCESS = 1.004
@@ -44,6 +45,11 @@ def excesses(timing: Timing, limits: SegmentLimits, axis_names: Sequence[str]) -
     path, owner = timing.path, timing.interval_segments
     left = path.pieces.interval_samples
     most, row = np.zeros(len(owner)), np.full(len(owner), -1)
+    # Zones that are blended in time have limits of their own, behind those of the segments.
+    timed = timing.path_limits.timed.timed[path.pieces.interval_pieces]
+    zoned = owner + np.where(timed, len(limits.velocity), 0)
+    velocity = np.concatenate([limits.velocity, limits.velocity])
+    acceleration = np.concatenate([limits.acceleration, ROOM * limits.acceleration])
     chains = path.route.chains
     turns = np.flatnonzero([a is not b for a, b in pairwise(chains)]) + 1
     edges = np.searchsorted(owner, np.concatenate([[0], turns, [len(chains)]]))
@@ -55,9 +61,9 @@ def excesses(timing: Timing, limits: SegmentLimits, axis_names: Sequence[str]) -
             timing.stamp.x,
             np.arange(first, last),
             left,
-            owner,
-            limits.velocity,
-            limits.acceleration,
+            zoned,
+            velocity,
+            acceleration,
             most,
             row,
         )

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ...arrays import FloatArray
 from ...errors import Note
 from .reach import Reach
+from .timed_blends import TimedBlend
 
 STOP, TCP_CORNER, JOINT_CORNER = 0, 1, 2
 POSITION, TURNING, PRESCRIBED = 0, 1, 2
@@ -41,6 +42,7 @@ class Corners:
             `smaller_blends`.
         overlapping: corners to be left out under `Overlap.SKIP`, because their zones overlap.
         notes: zones cut short and refused.
+        timed: corners of joint moves that are blended in time, by corner.
     """
 
     kind: NDArray[np.int64]
@@ -49,6 +51,7 @@ class Corners:
     kept: dict[int, Reach] = field(default_factory=dict)
     overlapping: tuple[int, ...] = ()
     notes: list[Note] = field(default_factory=list)
+    timed: dict[int, TimedBlend] = field(default_factory=dict)
 
 
 @dataclass

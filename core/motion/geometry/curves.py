@@ -189,6 +189,29 @@ def _basis(curves: Curves, piece: int, s: float, basis: FloatArray) -> int:
     return len(curves.coefficients)
 
 
+def pull_parameter_slopes(
+    window: FloatArray, sigma: FloatArray, bar: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Reverse of `parameter_slopes`: the gradients of windows (P, 4) and σ (P,)."""
+    window_bar, sigma_bar = np.empty(window.shape), np.empty(len(sigma))
+    _fill_slope_gradients(np.ascontiguousarray(window), sigma, window_bar, sigma_bar)
+    return bar[:, None] * window_bar, bar * sigma_bar
+
+
+@lean
+def _fill_slope_gradients(
+    window: FloatArray, sigma: FloatArray, by_window: FloatArray, by_sigma: FloatArray
+) -> None:
+    for k in range(sigma.size):
+        _, s1, s2, _ = parameter_jet(window[k], sigma[k])
+        length = window[k, 1]
+        by_sigma[k] = s2
+        by_window[k, 0] = -s2
+        by_window[k, 1] = -((sigma[k] - window[k, 0]) * s2 + s1) / length
+        by_window[k, 2] = _slope_jet(window[k], sigma[k], 0)[1]
+        by_window[k, 3] = _slope_jet(window[k], sigma[k], 1)[1]
+
+
 @lean
 def evaluate(
     curves: Curves, piece: int, sigma: float, basis: FloatArray, value: FloatArray

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import FloatArray
-from ..model.blend import Blend, BlendGradient
-from .corners import JOINT_CORNER, POSITION
+from ..model.blend import HERMITE, Blend, BlendGradient
+from .corners import JOINT_CORNER, POSITION, Corners
 from .curves import POLYNOMIAL, Curves
 from .layout import (
     Layout,
@@ -24,6 +24,9 @@ from .layout import (
     segment_windows,
 )
 from .segments import JOINT_SEGMENT, EndsGradient, SegmentsGradient
+
+_PARABOLA = np.array([[2, 0, 0], [0, 2, 0], [0, 0, 1], [-8, -4, 6], [4, 8, -6]], dtype=float)
+"""As `quintics` of one corner: the parabola, and 3s² − 2s³ times the gap between the tangents."""
 
 
 @dataclass
@@ -78,11 +81,26 @@ def pull_joint_legs(
         segments_bar.scale[which] -= np.sum(dq_bar * step, 1) / scale[:, 0] ** 2
 
 
+def quintics(corners: Corners) -> FloatArray:
+    """(M − 1, 5, 3), derivatives at entry and exit, way and second derivatives there of quintics
+    over s, by the legs' tangents in the zone and the way from its entry to its exit.
+
+    Those of corners that are blended in time, elsewhere the parabola.
+    """
+    shape = np.tile(_PARABOLA, (len(corners.kind), 1, 1))
+    for i, blend in corners.timed.items():
+        (m0, m1), (n0, n1) = blend.rates, blend.bends
+        shape[i] = 0.0
+        shape[i, [0, 1, 2, 3, 4], [0, 1, 2, 0, 1]] = m0.value, m1.value, 1.0, n0.value, n1.value
+    return shape
+
+
 def make_joint_curves(layout: Layout, blend: Blend, edges: CornerEdges) -> Curves:
     """2 M − 1 curves: the joint moves', and from M on the corners'."""
     s = layout.segments
     count = len(s.scale)
-    curves = Curves.empty(2 * count - 1, s.delta_q.shape[1], blend.coefficients)
+    basis = HERMITE if blend.kind == "quintic" else blend.coefficients
+    curves = Curves.empty(2 * count - 1, s.delta_q.shape[1], basis)
     joint = (s.ends.kind == JOINT_SEGMENT)[:, None]
     curves.control[:count, 0] = np.where(joint, s.ends.q[:, 0], 0.0)
     curves.control[:count, 1] = s.delta_q
@@ -90,13 +108,20 @@ def make_joint_curves(layout: Layout, blend: Blend, edges: CornerEdges) -> Curve
     before, after = layout.extent[:, POSITION, :1], layout.extent[:, POSITION, 1:]
     entry, leave = before * edges.dq[:, 0], after * edges.dq[:, 1]
     curves.control[count:, 0] = edges.q[:, 0]
+    curves.window[:count] = segment_windows(layout)
+    if blend.kind == "quintic":
+        shape = quintics(layout.corners)
+        legs = np.stack([entry, leave, edges.q[:, 1] - edges.q[:, 0]], 1)
+        curves.control[count:, 1:] = shape @ legs
+        slopes = np.ascontiguousarray(shape[:, [0, 1], [0, 1]])
+        curves.window[count:] = blend_windows(layout, POSITION, slopes)
+        return curves
     curves.control[count:, 1] = entry
     curves.control[count:, 2] = leave
     curves.control[count:, 3] = edges.q[:, 1] - edges.q[:, 0] - entry - leave
     if blend.meets_curvature:
         curves.control[count:, 4] = before**2 * edges.ddq[:, 0]
         curves.control[count:, 5] = after**2 * edges.ddq[:, 1]
-    curves.window[:count] = segment_windows(layout)
     curves.window[count:] = blend_windows(layout, POSITION, blend.slopes(count - 1))
     return curves
 
@@ -110,8 +135,10 @@ def pull_joint_curves(
     segments_bar: SegmentsGradient,
     ends_bar: EndsGradient,
     blend_bar: BlendGradient,
+    timed_bar: FloatArray,
 ) -> CornerEdges:
-    """Reverse of `make_joint_curves`; returns the edges' gradient."""
+    """Reverse of `make_joint_curves`; returns the edges' gradient and adds to that (M − 1, 4) of
+    the rates and bends of blends in time."""
     s = layout.segments
     count = len(s.scale)
     dead = layout.corners.kind != JOINT_CORNER
@@ -123,6 +150,8 @@ def pull_joint_curves(
     ends_bar.q[:, 0] += bar.control[:count, 0]
     segments_bar.delta_q += bar.control[:count, 1]
     pull_segment_windows(bar.window[:count], layout_bar, segments_bar)
+    if blend.kind == "quintic":
+        return _pull_quintics(layout, edges, bar, layout_bar, timed_bar)
     slopes = blend.slopes(count - 1)
     slopes_bar = pull_blend_windows(layout, POSITION, slopes, bar.window[count:], layout_bar)
     blend_bar.slopes += slopes_bar.sum(0)
@@ -142,4 +171,29 @@ def pull_joint_curves(
             layout_bar.extent[:, POSITION, side] += np.sum(
                 2 * extent * bend_bar * edges.ddq[:, side], 1
             )
+    return out
+
+
+def _pull_quintics(
+    layout: Layout,
+    edges: CornerEdges,
+    bar: Curves,
+    layout_bar: LayoutGradient,
+    timed_bar: FloatArray,
+) -> CornerEdges:
+    count = len(layout.segments.scale)
+    shape, out = quintics(layout.corners), CornerEdges.zeros_like(edges)
+    slopes = np.ascontiguousarray(shape[:, [0, 1], [0, 1]])
+    timed_bar[:, :2] += pull_blend_windows(layout, POSITION, slopes, bar.window[count:], layout_bar)
+    control_bar = bar.control[count:, 1:]
+    extent = layout.extent[:, POSITION]
+    legs_bar = np.swapaxes(shape, 1, 2) @ control_bar
+    out.q[:, 0] += bar.control[count:, 0] - legs_bar[:, 2]
+    out.q[:, 1] += legs_bar[:, 2]
+    for side in range(2):
+        out.dq[:, side] += extent[:, side, None] * legs_bar[:, side]
+        layout_bar.extent[:, POSITION, side] += np.sum(legs_bar[:, side] * edges.dq[:, side], 1)
+        leg = extent[:, side, None] * edges.dq[:, side]
+        timed_bar[:, side] += np.sum(control_bar[:, side] * leg, 1)
+        timed_bar[:, 2 + side] += np.sum(control_bar[:, 3 + side] * leg, 1)
     return out

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from ...arrays import FloatArray
@@ -27,6 +28,15 @@ class Reach:
     def mapped(self, value: float, slope: float) -> Reach:
         """A function of it, with that value and that derivative."""
         return Reach(value, tuple((n, i, p * slope) for n, i, p in self.parts))
+
+    def scaled(self, factor: float) -> Reach:
+        """A multiple of it."""
+        return self.mapped(factor * self.value, factor)
+
+    def root(self) -> Reach:
+        """√self, without a derivative at zero."""
+        value = math.sqrt(self.value)
+        return self.mapped(value, 0.5 / value if value > 0.0 else 0.0)
 
     def inverse(self) -> Reach:
         """1 / self."""

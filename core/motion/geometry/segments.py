@@ -48,6 +48,8 @@ class Ends:
         swivels: (M,) bool, lines whose tool turns by swivel and rotation.
         speed: (M,) m/s, programmed of the TCP; inf where none is.
         acceleration: (M,) m/s², programmed of the TCP along its path; inf where none is.
+        joint_speed: (M,) rad/s, programmed of the leading joint of joint moves; inf where none is.
+        joint_acceleration: (M,) rad/s², likewise.
     """
 
     kind: IntArray
@@ -61,6 +63,8 @@ class Ends:
     swivels: NDArray[np.bool_]
     speed: FloatArray
     acceleration: FloatArray
+    joint_speed: FloatArray
+    joint_acceleration: FloatArray
 
 
 @dataclass
@@ -74,6 +78,8 @@ class EndsGradient:
     via: FloatArray
     speed: FloatArray
     acceleration: FloatArray
+    joint_speed: FloatArray
+    joint_acceleration: FloatArray
 
     @classmethod
     def zeros(cls, ends: Ends) -> EndsGradient:
@@ -87,6 +93,8 @@ class EndsGradient:
             np.zeros_like(ends.via),
             np.zeros_like(ends.speed),
             np.zeros_like(ends.acceleration),
+            np.zeros_like(ends.joint_speed),
+            np.zeros_like(ends.joint_acceleration),
         )
 
 

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...arrays import IntArray
 from ...errors import MotionError, Note
 from ...program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction, Zone
 from ...robot.kinematics.chain import Chain
@@ -22,6 +23,7 @@ from .neighbour_zones import STILL, way_towards_neighbour
 from .reach import Part, Reach, least
 from .segments import ARC_SEGMENT, JOINT_SEGMENT, Segments
 from .smaller_blends import share_kept
+from .timed_blends import TimedBlend, timed_blend
 from .zone_exits import first_exit, tcp_apart
 
 _NOTHING = 1e-9
@@ -79,7 +81,19 @@ class ZonePlanner:
             reach[i] = [[pair[0].value, pair[1].value] for pair in pairs]
             if reach[i, POSITION].min() > _NOTHING:
                 kind[i] = self._kind(i)
-        return Corners(kind, reach, wanted, self._kept, overlapping, self._notes)
+        timed = self._timed(kind, wanted)
+        return Corners(kind, reach, wanted, self._kept, overlapping, self._notes, timed)
+
+    def _timed(self, kind: IntArray, wanted: Sequence[_Reaches]) -> dict[int, TimedBlend]:
+        """The corners of joint moves that the vendor blends in time."""
+        if self._model.joint.kind != "quintic":
+            return {}
+        factor = self._model.blend_acceleration
+        found = {
+            i: timed_blend(self._segments, i, wanted[i][POSITION], factor)
+            for i in map(int, np.flatnonzero(kind == JOINT_CORNER))
+        }
+        return {i: blend for i, blend in found.items() if blend is not None}
 
     def rooms(self, zones: Sequence[Zone]) -> list[Room]:
         """What room the vendor's rules on neighbouring zones leave.

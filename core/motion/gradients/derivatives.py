@@ -141,7 +141,7 @@ class Derivatives:
         pull_rests(timing, seeds)
         bar = stamp_adjoint(timing.stamp, seeds.x, seeds.t)
         bar.spacing[:] += seeds.spacing
-        shares_bar, turning_bar, kept_bar = pull_path_limits(
+        shares_bar, turning_bar, kept_bar, timed_bar = pull_path_limits(
             timing.along.states,
             path.pieces,
             timing.limits,
@@ -163,7 +163,7 @@ class Derivatives:
             path.pieces, path.sigma, path.states, seeds.states, bar.spacing, sigma_bar
         )
         turn_bar = pull_turning(path.segments, turning_bar)
-        route_bar = pull_path(path, states_bar, sigma_bar, turn_bar, kept_bar)
+        route_bar = pull_path(path, states_bar, sigma_bar, turn_bar, kept_bar, timed_bar)
         return self._gather(route_bar, speeds)
 
     def _gather(self, route_bar: RouteGradient, speeds: SpeedGradient) -> ProgramGradient:
@@ -177,6 +177,8 @@ class Derivatives:
             np.add.at(getattr(zone, name), owners, getattr(route_bar.zones, name))
         speeds.tcp += route_bar.ends.speed
         speeds.tcp_acceleration += route_bar.ends.acceleration
+        speeds.joint += route_bar.ends.joint_speed
+        speeds.joint_acceleration += route_bar.ends.joint_acceleration
         by_move = SpeedGradient.zeros(count)
         for name in SpeedGradient.__dataclass_fields__:
             np.add.at(getattr(by_move, name), moves, getattr(speeds, name))

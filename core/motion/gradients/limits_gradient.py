@@ -14,9 +14,10 @@ from ..geometry.segments import Segments
 from ..geometry.swivel import pull_turn_shares
 from ..path.tcp_samples import States
 from ..timing.between_samples import pull_between
-from ..timing.limits import CENTRIPETAL, PathLimits, SegmentLimits, torque_left
+from ..timing.limits import CENTRIPETAL, PathLimits, SegmentLimits, rooms, torque_left
 from ..timing.rates import pull_rates, pull_sideways, rates, sideways
-from ..timing.superposed_legs import pull_ceilings, room_along
+from ..timing.superposed_legs import pull_ceilings
+from ..timing.timed_zones import TimedGradient
 from ..timing.torque_rows import Shares
 from .stamping_adjoint import StampGradient
 
@@ -137,7 +138,7 @@ def _pull_fill(
                     if acceleration[s, j] < np.inf:
                         rate_bar[j] += a_bar[interval, end, j]
                         bend_bar[j] += b_bar[interval, end, j]
-                        times = room[p] if j >= axes else 1.0
+                        times = room[p, 1 if j >= axes else 0]
                         acceleration_bar[s, j] += times * bound_bar[interval, end, j]
             pull_rates(states, k, axes, rate_bar, bend_bar, states_bar)
 
@@ -150,12 +151,12 @@ def pull_path_limits(
     bar: StampGradient,
     states_bar: States,
     speeds_bar: SpeedGradient,
-) -> tuple[Shares | None, FloatArray, FloatArray]:
+) -> tuple[Shares | None, FloatArray, FloatArray, TimedGradient]:
     """Reverse of `path_limits`; adds to the gradients of states, speeds and, in ``bar``, spacing.
 
     Returns:
-        The gradients of the shares of torque, None without, of the segments' `turning` (M,) and
-        of what corners keep of their blends (M − 1,).
+        The gradients of the shares of torque, None without, of the segments' `turning` (M,), of
+        what corners keep of their blends (M − 1,), and of those that are blended in time.
     """
     velocity_bar = np.zeros_like(limits.velocity)
     acceleration_bar = np.zeros_like(limits.acceleration)
@@ -180,6 +181,8 @@ def pull_path_limits(
         bar.spacing,
         velocity_bar,
     )
+    timed_bar = TimedGradient.zeros(len(states.q), len(limits.velocity) - 1)
+    made.timed.pull(bar.ceiling, made.binding, timed_bar)
     pull_ceilings(
         states,
         made.rows.spacing,
@@ -199,7 +202,7 @@ def pull_path_limits(
         limits.velocity,
         limits.acceleration,
         limits.centripetal,
-        room_along(made.zones, pieces),
+        rooms(made.zones, made.timed, pieces),
         made.binding,
         a_bar,
         b_bar,
@@ -218,7 +221,7 @@ def pull_path_limits(
         limits, velocity_bar, acceleration_bar, torque_bar, speeds_bar
     )
     kept_bar = made.zones.pull_planned(planned_bar, len(limits.velocity) - 1)
-    return shares_bar, turning_bar, kept_bar
+    return shares_bar, turning_bar, kept_bar, timed_bar
 
 
 def pull_turning(segments: Segments, turning_bar: FloatArray) -> tuple[FloatArray, FloatArray]:

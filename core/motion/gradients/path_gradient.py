@@ -18,6 +18,7 @@ from ..path.building import edge_runs, stretches
 from ..path.joint_samples import pull_joint
 from ..path.path import Path
 from ..path.tcp_samples import States, pull_tcp
+from ..timing.timed_zones import TimedGradient
 
 
 @dataclass
@@ -37,6 +38,7 @@ def pull_path(
     sigma_bar: FloatArray,
     turn_bar: tuple[FloatArray, FloatArray],
     kept_bar: FloatArray,
+    timed_bar: TimedGradient,
 ) -> RouteGradient:
     """Carry a gradient with respect to the samples back to the route.
 
@@ -49,6 +51,8 @@ def pull_path(
             enter directly (limits of their parts).
         kept_bar: (M − 1,), gradient with respect to what corners keep of their blends where that
             enters directly (speeds of arcs).
+        timed_bar: gradient with respect to corners that are blended in time, where they enter
+            directly (ceilings of speed); added to.
     """
     route, layout, pieces = path.route, path.layout, path.pieces
     model = path.model
@@ -65,6 +69,8 @@ def pull_path(
         BlendGradient.zeros(model.orientation),
     )
     joint_bar = path.joint.zeros_like()
+    joint_bar.window[len(route.moves) :] += timed_bar.window
+    sigma_bar += timed_bar.sigma
     curves = path.tcp.curves
     tcp_bar = TcpCurves(
         curves.position.zeros_like(),
@@ -113,6 +119,7 @@ def pull_path(
         segments_bar,
         gradient.ends,
         gradient.joint,
+        timed_bar.blends,
     )
     pull_joint_legs(layout, edges_bar, reach_bar, segments_bar, gradient.ends)
     _pull_edges(path, edges_bar, tcp_bar, layout_bar)
@@ -127,7 +134,9 @@ def pull_path(
         gradient.orientation,
     )
     reach_bar += pull_layout(layout, layout_bar, segments_bar)
-    pull_corners(layout.corners, reach_bar, kept_bar, segments_bar, gradient.ends, gradient.zones)
+    pull_corners(
+        layout.corners, reach_bar, kept_bar, timed_bar, segments_bar, gradient.ends, gradient.zones
+    )
     pull_segments(layout.segments, segments_bar, gradient.ends)
     return gradient
 
@@ -136,12 +145,13 @@ def pull_corners(
     corners: Corners,
     reach_bar: FloatArray,
     kept_bar: FloatArray,
+    timed_bar: TimedGradient,
     segments_bar: SegmentsGradient,
     ends_bar: EndsGradient,
     zones_bar: ZoneGradient,
 ) -> None:
-    """Reverse of `ZonePlanner.corners`: carry the gradients (M − 1, 3, 2) of the reaches and
-    (M − 1,) of what is kept of them back."""
+    """Reverse of `ZonePlanner.corners`: carry the gradients (M − 1, 3, 2) of the reaches,
+    (M − 1,) of what is kept of them, and of blends in time back."""
     targets: dict[str, FloatArray] = {
         "length": segments_bar.length,
         "angle": zones_bar.angle,
@@ -156,7 +166,14 @@ def pull_corners(
         "position1": ends_bar.position[:, 1],
         "speed": ends_bar.speed,
         "acceleration": ends_bar.acceleration,
+        "joint_speed": ends_bar.joint_speed,
+        "joint_acceleration": ends_bar.joint_acceleration,
     }
+    for i, blend in corners.timed.items():
+        bars = timed_bar.duration[i], *timed_bar.blends[i]
+        for reach, bar in zip((blend.duration, *blend.parts), bars, strict=True):
+            for name, index, part in reach.parts:
+                targets[name][index] += bar * part
     for i, kept in corners.kept.items():
         for name, index, part in kept.parts:
             targets[name][index] += kept_bar[i] * part

@@ -5,7 +5,8 @@ A place is a share of the straight part of a segment, or of the stretch inside a
 joint moves alone q is linear in the waypoints and in how far the zones reach,
 
     straight part   q = q₀ + (ρ_out + λ (1 − ρ_out − ρ_in)) Δq
-    zone            q = q_wp − ρ_in Δq₀ (1 − f(s)) + ρ_out Δq₁ g(s)     (see `blend`)
+    zone            q = q_wp − ρ_in Δq₀ (1 − f(s)) + ρ_out Δq₁ g(s)     (see `blend`;
+                    f and g are each corner's own where it is blended in time)
 
 so that the derivatives follow from those of ρ, which `zones.Reach` brings along. On other paths
 places are found between the path's samples, and there is no derivative.
@@ -19,8 +20,10 @@ import numpy as np
 
 from ...arrays import FloatArray, IntArray
 from ..geometry.corners import POSITION, STOP
+from ..geometry.joint_curves import quintics
 from ..geometry.reach import Reach
 from ..geometry.segments import JOINT_SEGMENT
+from ..model.blend import HERMITE
 from ..path.path import Path
 
 _GRID, _ZOOMS = 41, 3
@@ -107,12 +110,18 @@ def tangents(path: Path, places: PathPlaces, directions: Directions) -> FloatArr
     if not has_tangents(path):
         raise ValueError("tangents are known for paths of joint moves alone")
     base, entering, leaving = _weights(path, places)
+    entering_dot, leaving_dot = _weight_dots(path, places, directions)
     steps = np.diff(_waypoints(path), axis=0)
     steps_dot = np.diff(directions.waypoints, axis=0)
     before, after = _neighbours(path, places)
     reach, reach_dot = _reach(path, places), _reach_dots(path, places, directions)
     out = directions.waypoints[base].copy()
-    for side, weight, segment in ((0, entering, before), (1, leaving, after)):
+    for side, weight, weight_dot, segment in (
+        (0, entering, entering_dot, before),
+        (1, leaving, leaving_dot, after),
+    ):
+        moved = reach[:, side, None] * steps[segment]
+        out += moved[:, :, None] * weight_dot[:, None, :]
         out += (reach[:, side] * weight)[:, None, None] * steps_dot[segment]
         out += (weight[:, None] * steps[segment])[:, :, None] * reach_dot[:, side][:, None, :]
     return np.asarray(out)
@@ -126,7 +135,7 @@ def reach_tangent(reach: Reach, directions: Directions) -> FloatArray:
             total += part * directions.radii[index]
         elif name in ("q0", "q1"):
             total += np.asarray(part) @ directions.waypoints[index + int(name[1])]
-        else:
+        elif name not in ("joint_speed", "joint_acceleration"):
             raise ValueError(f"no tangent is known of {name}")
     return total
 
@@ -160,11 +169,39 @@ def _weights(path: Path, places: PathPlaces) -> tuple[IntArray, FloatArray, Floa
     """
     count = len(path.segments.scale)
     zone = places.part >= count
-    basis = path.model.joint.coefficients
-    powers = places.share[:, None] ** np.arange(basis.shape[1])
-    f, g = powers @ basis[1], powers @ basis[2]
+    timed = path.model.joint.kind == "quintic"
+    basis = HERMITE if timed else path.model.joint.coefficients
+    values = places.share[:, None] ** np.arange(basis.shape[1]) @ basis.T
+    f, g = values[:, 1], values[:, 2]
+    if timed:
+        shape = _quintics(path, places)
+        f, g = (
+            np.sum(values[:, 1:] * (shape[:, :, leg] + shape[:, :, 2]), axis=1) for leg in (0, 1)
+        )
     base = np.where(zone, places.part - count + 1, places.part)
     return base, np.where(zone, f - 1.0, places.share), np.where(zone, g, 1.0)
+
+
+def _quintics(path: Path, places: PathPlaces) -> FloatArray:
+    """(L, 5, 3), see `quintics`; of places in zones alone."""
+    corner = places.part - len(path.segments.scale)
+    return quintics(path.corners)[np.where(corner >= 0, corner, 0)]
+
+
+def _weight_dots(
+    path: Path, places: PathPlaces, directions: Directions
+) -> tuple[FloatArray, FloatArray]:
+    """(L, K) each, derivatives of f and g in corners that are blended in time; else zero."""
+    dots = np.zeros((2, len(places.part), directions.radii.shape[1]))
+    for i, blend in path.corners.timed.items():
+        rows = np.flatnonzero(places.part == len(path.segments.scale) + i)
+        powers = places.share[rows, None] ** np.arange(HERMITE.shape[1])
+        for leg in range(2):
+            for basis, reach in ((1 + leg, blend.rates[leg]), (4 + leg, blend.bends[leg])):
+                dots[leg, rows] += np.outer(
+                    powers @ HERMITE[basis], reach_tangent(reach, directions)
+                )
+    return dots[0], dots[1]
 
 
 def _reach(path: Path, places: PathPlaces) -> FloatArray:

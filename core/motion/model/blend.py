@@ -35,6 +35,18 @@ BASIS = 6
 """Control vectors of a blend: e, E, X, c, K₁, K₂."""
 _SMOOTHSTEP = np.array([0.0, 0.0, 3.0, -2.0])
 _BUMP = np.array([0.0, 0.0, 1.0, -2.0, 1.0])
+HERMITE = np.array(
+    [
+        [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0, -6.0, 8.0, -3.0],
+        [0.0, 0.0, 0.0, -4.0, 7.0, -3.0],
+        [0.0, 0.0, 0.0, 10.0, -15.0, 6.0],
+        [0.0, 0.0, 0.5, -1.5, 1.5, -0.5],
+        [0.0, 0.0, 0.0, 0.5, -1.0, 0.5],
+    ]
+)
+"""Power-basis coefficients (6, 6) of a quintic: of its first value, its first derivatives at 0 and
+1, what it changes by, and its second derivatives at 0 and 1."""
 
 
 @dataclass(frozen=True)
@@ -45,12 +57,13 @@ class Blend:
         InputError: α does not run from 0 to 1, or a leg would be driven backwards at its edge.
     """
 
-    kind: Literal["polynomial", "arc"] = figure(
+    kind: Literal["polynomial", "arc", "quintic"] = figure(
         "kind",
-        Choice(("polynomial", "arc")),
+        Choice(("polynomial", "arc", "quintic")),
         Stage.PATH,
-        "polynomial, or the circle tangent to both legs (positions on straight legs only; "
-        "everything else then follows the polynomial)",
+        "polynomial; the circle tangent to both legs (positions on straight legs only); or the "
+        "quintic in time that meets both legs (corners of joint moves with programmed speeds and "
+        "accelerations only); everything else then follows the polynomial",
         default="polynomial",
         always=True,
     )
@@ -80,6 +93,8 @@ class Blend:
             raise InputError(f"α must run from 0 to 1, but its coefficients are {self.alpha}")
         if min(self.entry_slope, self.exit_slope) <= 0:
             raise InputError(f"α' below −1 at an end drives the leg backwards: {self.alpha}")
+        if self.kind == "quintic" and (self.alpha != (0.0, 1.0) or any(self.beta)):
+            raise InputError("a quintic blend has the parabola beside it: α = s, and no β")
 
     @cached_property
     def entry_slope(self) -> float:

@@ -222,6 +222,16 @@ class MotionModel:
         default=None,
         fit=FitRange(),
     )
+    blend_acceleration: float = figure(
+        "limit.blend_acceleration",
+        RealNumber(POSITIVE),
+        Stage.PATH,
+        'what quintic blends of joint moves (blend.joint.kind "quintic") count as greatest '
+        "acceleration of a joint, as a multiple of the programmed one: it gives the time they take",
+        unit="1",
+        default=1.0,
+        fit=FitRange(),
+    )
     joint_acceleration_scale: tuple[float, ...] = figure(
         "limit.joint_acceleration_scale",
         Row(Range(1e-4, 1e4), neutral=1.0),

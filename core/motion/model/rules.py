@@ -75,4 +75,11 @@ class DurationRule(StrEnum):
     SCALED = "scaled"
     """As without, all its speeds slowed in common."""
     THIRDS = "thirds"
-    """Accelerating over the first third of the time, braking over the last (UR)."""
+    """Accelerating over the first third of the time, braking over the last (UR, CB3)."""
+    HALVES = "halves"
+    """Accelerating over the first half of the time, braking over the second (UR, e-Series)."""
+
+    @property
+    def ramp(self) -> float | None:
+        """The share of the time over which it accelerates, and again brakes."""
+        return {DurationRule.THIRDS: 1 / 3, DurationRule.HALVES: 0.5}.get(self)

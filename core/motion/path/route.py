@@ -255,8 +255,11 @@ class RouteFinder:
             via_rotation,
             follows,
             (kind == LINE_SEGMENT) & (self._line_turn is LineTurn.SWIVEL),
-            np.array([math.inf if v.tcp is None else v.tcp for v in speeds]),
-            np.array([math.inf if (a := v.tcp_acceleration) is None else a for v in speeds]),
+            _programmed([v.tcp for v in speeds]),
+            _programmed([v.tcp_acceleration for v in speeds]),
+            # A time takes the place of speeds.
+            _programmed([None if v.duration is not None else v.joint for v in speeds]),
+            _programmed([None if v.duration is not None else v.joint_acceleration for v in speeds]),
         )
 
     def _joint_end(self, move: Move, i: int, q: FloatArray) -> FloatArray:
@@ -376,6 +379,11 @@ def _waypoints(program: Program) -> dict[int, _Waypoint]:
             index += 1
             found[index] = _Waypoint(statement.zone)
     return found
+
+
+def _programmed(values: Sequence[float | None]) -> FloatArray:
+    """(M,), inf where none is."""
+    return np.array([math.inf if value is None else value for value in values])
 
 
 def _joined(parts: Sequence[Ends]) -> Ends:

@@ -31,6 +31,7 @@ from .between_samples import lower_between
 from .rates import bind, rates, sideways
 from .stamping_kernels import StampRows
 from .superposed_legs import SuperposedZones, lower_ceilings, room_along
+from .timed_zones import ROOM, TimedZones
 from .torque_rows import Shares, torque_rows
 from .zone_times import ZoneStretches
 
@@ -203,7 +204,7 @@ def _fill(
                     limited = acceleration[s, j] < np.inf
                     rows.a[interval, end, row] = rate[j] if limited else 0.0
                     rows.b[interval, end, row] = bend[j] if limited else 0.0
-                    most = acceleration[s, j] * (room[p] if j >= axes else 1.0)
+                    most = acceleration[s, j] * room[p, 1 if j >= axes else 0]
                     rows.upper[interval, end, row] = most
 
 
@@ -218,11 +219,12 @@ class PathLimits:
         shares: (S, L), what the rows of torque are made of; None where torque limits nothing.
         zones: those that legs drive superposed.
         stretches: those that take at least a while.
+        timed: those that are blended in time.
         binding: (K + 1, 3), at each knot the sample, the row and the segment whose velocity
             limit is the ceiling; `CENTRIPETAL` in the place of the row where that is; `ZONE` with
-            the zone in the place of the segment where a zone is; `LEAST_TIME` likewise with the
-            stretch; a code from `BETWEEN` on where
-            limits between samples are; -1 at stops.
+            the zone in the place of the segment where a zone is, `LEAST_TIME` with the stretch
+            and `TIMED` with the corner; a code from `BETWEEN` on where limits between samples
+            are; -1 at stops.
     """
 
     rows: stamping.StampLimits
@@ -230,6 +232,7 @@ class PathLimits:
     shares: Shares | None
     zones: SuperposedZones
     stretches: ZoneStretches
+    timed: TimedZones
     binding: IntArray
 
 
@@ -240,6 +243,7 @@ def path_limits(
     limits: SegmentLimits,
     zones: SuperposedZones,
     stretches: ZoneStretches,
+    timed: TimedZones,
     shares: Shares | None = None,
     known: PathLimits | None = None,
 ) -> PathLimits:
@@ -252,6 +256,7 @@ def path_limits(
         limits: of the segments.
         zones: those that legs drive superposed.
         stretches: those that take at least a while.
+        timed: those that are blended in time.
         shares: (S, L), what share of its torque's limit each joint takes; None if none is limited.
         known: of the same path with the same limits but of velocities; its rows are taken.
     """
@@ -268,7 +273,7 @@ def path_limits(
     ceiling = np.full(count + 1, np.inf)
     binding = np.full((count + 1, 3), -1, dtype=np.int64)
     velocity, acceleration = limits.velocity, limits.acceleration
-    room = room_along(zones, pieces)
+    room = rooms(zones, timed, pieces)
     indices, most = pieces.indices, limits.centripetal
     given = states, indices, velocity, acceleration, most, room, place
     _fill(*given, rows, ceiling, binding, np.empty((2, velocity.shape[1])))
@@ -278,6 +283,7 @@ def path_limits(
     lower_between(states, spacing, indices, velocity, ceiling, binding)
     lower_ceilings(states, spacing, indices, acceleration, zones, ceiling, binding)
     stretches.lower(spacing, ceiling, binding)
+    timed.lower(ceiling, binding)
     if known is None:
         np.negative(rows.upper, out=rows.lower)
     if known is None and shares is not None:
@@ -288,7 +294,13 @@ def path_limits(
             for whole, own in zip(rows, made, strict=True):
                 whole[part, :, plain:] = own
     found = stamping.StampLimits(spacing, *rows, ceiling)
-    return PathLimits(found, limited, shares, zones, stretches, binding)
+    return PathLimits(found, limited, shares, zones, stretches, timed, binding)
+
+
+def rooms(zones: SuperposedZones, timed: TimedZones, pieces: Pieces) -> FloatArray:
+    """(P, 2), what limits of acceleration are multiplied by in each piece: of joints, and along
+    the path."""
+    return np.stack([np.where(timed.timed, ROOM, 1.0), room_along(zones, pieces)], -1)
 
 
 def torque_left(pieces: Pieces, limits: SegmentLimits) -> FloatArray:

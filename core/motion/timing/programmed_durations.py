@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -16,29 +17,31 @@ from .torque_rows import Shares
 
 _DURATION_ROUNDS = 60
 _DURATION_MET = 1e-6
-_THIRDS_ROUNDS = 4
+_RAMPED_ROUNDS = 4
 _MOST_OFF = 0.05
 """Share of a time by which it is aimed beside it: more is no matter of samples."""
 
 
-def stamp_in_thirds(
+def stamp_ramped(
     path: Path,
     along: ArcLength,
     limits: SegmentLimits,
     shares: Shares | None,
     settling: Settling,
-    timed: list[int],
-    wanted: FloatArray,
+    times: Mapping[int, float],
+    ramp: float,
 ) -> Timing:
-    """The timing in which timed segments are driven in thirds of their time; see `in_thirds`.
+    """The timing in which timed segments accelerate and brake over a share of their time; see
+    `ramped`.
 
     A stamp reaches its greatest speed at a sample and not between two: what this costs, and it is
     a per cent on coarse paths, is taken off the times that are aimed at.
     """
+    timed, wanted = list(times), np.array(list(times.values()))
     aim = wanted
-    for _ in range(_THIRDS_ROUNDS):
-        thirds = in_thirds(limits, path.layout.segments, timed, aim)
-        timing = stamp_path(path, along, thirds, shares, settling)
+    for _ in range(_RAMPED_ROUNDS):
+        within = ramped(limits, path.layout.segments, timed, aim, ramp)
+        timing = stamp_path(path, along, within, shares, settling)
         share = wanted / timing.segment_durations()[timed]
         if (np.abs(share - 1.0) <= _DURATION_MET).all():
             break
@@ -46,26 +49,30 @@ def stamp_in_thirds(
     return timing
 
 
-def in_thirds(
-    limits: SegmentLimits, segments: Segments, timed: list[int], wanted: FloatArray
+def ramped(
+    limits: SegmentLimits, segments: Segments, timed: list[int], wanted: FloatArray, ramp: float
 ) -> SegmentLimits:
-    """Limits within which timed segments from stop to stop are driven in thirds of their time.
+    """Limits within which timed segments from stop to stop accelerate and brake over a share each
+    of their time.
 
-    Over the way D in the time T that is a speed of up to 3/2 D/T and an acceleration of 9/2 D/T².
-    They bound what goes furthest: a joint of a joint move, else the TCP or the tool's turn.
+    Over the way D in the time T, with the share r, that is a speed of up to D / ((1 − r) T) and an
+    acceleration of D / (r (1 − r) T²). They bound what goes furthest: a joint of a joint move, else
+    the TCP or the tool's turn.
 
     Args:
         limits: otherwise.
         segments: all of the path.
         timed: those with a time.
         wanted: their times, s.
+        ramp: r.
     """
     velocity, acceleration = limits.velocity.copy(), limits.acceleration.copy()
     for k, time in zip(timed, wanted, strict=True):
         row, way = _furthest(segments, k)
         if way > 0.0:
-            velocity[k, row] = min(velocity[k, row], 1.5 * way / time)
-            acceleration[k, row] = min(acceleration[k, row], 4.5 * way / time**2)
+            speed = way / ((1 - ramp) * time)
+            velocity[k, row] = min(velocity[k, row], speed)
+            acceleration[k, row] = min(acceleration[k, row], speed / (ramp * time))
     return replace(limits, velocity=velocity, acceleration=acceleration)
 
 

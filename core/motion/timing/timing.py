@@ -20,6 +20,7 @@ from .rests import InPosition, Rests
 from .stamping import Stamp, StampingError, stamp
 from .start_ramp import SUDDEN, StartRamp
 from .superposed_legs import SuperposedZones
+from .timed_zones import TimedZones
 from .torque_rows import Shares
 from .zone_times import ZoneStretches
 
@@ -270,8 +271,9 @@ def stamp_path(
     if path.model.pace is Pace.SUPERPOSED:
         zones = SuperposedZones.of(path.layout, path.pieces, path.tcp.curves.position)
     stretches = ZoneStretches.of(path.layout, path.pieces, along.states, path.model.zone_time)
+    timed = TimedZones.of(path.layout, path.pieces, path.sigma, path.joint)
     made = path_limits(
-        along.states, along.spacing, path.pieces, limits, zones, stretches, shares, known
+        along.states, along.spacing, path.pieces, limits, zones, stretches, timed, shares, known
     )
     try:
         found = stamp(made.rows)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -95,6 +96,7 @@ EXAMPLES: dict[str, tuple[Any, dict[str, Any]]] = {
     "limit.tcp_acceleration": (3.5, CORNERS),
     "limit.reorientation_acceleration": (2.0, {}),
     "limit.centripetal": (1.5, CORNERS),
+    "limit.blend_acceleration": (2.0, {"blend.joint.kind": "quintic"}),
     "limit.joint_acceleration_scale": ((1.0, 1.0, 1.0, 0.25, 0.25, 0.25), {}),
     "torque.own_s2": ((0.9, 4.0, 0.8), {}),
     "torque.carried": ((Borne(3, (0.06, 0.05)),), {}),
@@ -147,6 +149,7 @@ def everything() -> Program:
         return JointTarget(tuple(map(float, HOME + np.array(change))))
 
     told = Speed(tcp=0.6, reorientation=1.5)
+    swift = replace(told, joint=2.0, joint_acceleration=20.0)
     wide = Radius(0.06, 0.1, 0.1, 0.1)
     moves = (
         MoveL(there(0.0, -0.25, 0.0, 0.2, 0.1, 0.0), told, wide),
@@ -160,8 +163,8 @@ def everything() -> Program:
             via=there(0.25, 0.1, 0.05),
             orientation=ArcOrientation.FOLLOWS_ARC,
         ),
-        MoveJ(near(0.1, 0.1, -0.1, 0.1, 0.1, 0.1), told, wide),
-        MoveJ(near(-0.1, 0.0, 0.1, 0.1, 0.2, 0.1), told, wide),
+        MoveJ(near(0.1, 0.1, -0.1, 0.1, 0.1, 0.1), swift, wide),
+        MoveJ(near(-0.1, 0.0, 0.1, 0.1, 0.2, 0.1), swift, wide),
         MoveL(there(0.1, -0.1, 0.0), told, FINE),
         MoveL(there(0.1, 0.1, 0.0), Speed(duration=1.5), FINE),
         MoveJ(JointTarget(tuple(HOME)), told, FINE),

@@ -115,6 +115,7 @@ MODELS = {
         VENDOR.motion(), tcp=SMOOTHSTEP, joint=SMOOTHSTEP, orientation=SMOOTHSTEP
     ),
     "arc": replace(VENDOR.motion(), tcp=Blend(kind="arc")),
+    "quintic": replace(VENDOR.motion(), joint=Blend(kind="quintic")),
     "superposed": replace(
         VENDOR.motion(),
         pace=Pace.SUPERPOSED,

@@ -37,6 +37,8 @@ from flyby.core.spatial.pose import Pose
 
 ROBOT = find_robot("abb/irb6640-180-255")
 SECOND_ORDER = Blend(alpha=(0.0, 0.0, 0.0, 10.0, -15.0, 6.0))
+QUINTIC = Blend(kind="quintic")
+SAID = Speed(tcp=1.0, joint=0.8, joint_acceleration=1.5)
 WAYPOINTS = 4
 STEP = 1e-6
 
@@ -53,7 +55,7 @@ def program(q: FloatArray, zones: FloatArray) -> Program:
     moves = [
         MoveJ(
             target=target,
-            speed=Speed(tcp=1.0),
+            speed=SAID,
             zone=FINE if k == len(targets) - 2 else Radius(float(zones[k])),
         )
         for k, target in enumerate(targets[1:])
@@ -62,7 +64,8 @@ def program(q: FloatArray, zones: FloatArray) -> Program:
 
 
 def controller(blend: Blend, overlap: Overlap = Overlap.HALF) -> Controller:
-    model = MotionModel(tcp=blend, joint=blend, orientation=blend, overlap=overlap)
+    tcp = PARABOLA if blend == QUINTIC else blend
+    model = MotionModel(tcp=tcp, joint=blend, orientation=tcp, overlap=overlap)
     return Controller(find_vendor("abb"), ROBOT, model)
 
 
@@ -82,7 +85,7 @@ def spread_out(q: FloatArray) -> bool:
     return bool((np.abs(np.diff(q, axis=0)).max(axis=1) > 0.2).all())
 
 
-@pytest.mark.parametrize("blend", [PARABOLA, SECOND_ORDER])
+@pytest.mark.parametrize("blend", [PARABOLA, SECOND_ORDER, QUINTIC])
 @given(angles=angles, radii=radii, overlap=overlaps, seed=st.integers(0, 2**32 - 1))
 @settings(max_examples=25, deadline=None)
 def test_tangents_are_difference_quotients(

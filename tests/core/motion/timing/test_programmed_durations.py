@@ -29,20 +29,24 @@ def drive(arm, *moves, model=THIRDS):
     return controller.run(Program(moves, start=arm.start), period=0.002)
 
 
-def way(t: np.ndarray, duration: float) -> np.ndarray:
-    """Share of the way of a trapezoid in thirds."""
+def way(t: np.ndarray, duration: float, ramp: float = 1 / 3) -> np.ndarray:
+    """Share of the way of a trapezoid that accelerates and brakes over a share each of its time."""
     s = np.clip(t / duration, 0.0, 1.0)
-    middle = 0.25 + 1.5 * (s - 1 / 3)
-    return np.where(s < 1 / 3, 2.25 * s**2, np.where(s > 2 / 3, 1 - 2.25 * (1 - s) ** 2, middle))
+    a, speed = 1 / (ramp * (1 - ramp)), 1 / (1 - ramp)
+    middle = speed * (s - 0.5 * ramp)
+    ends = np.where(s < ramp, 0.5 * a * s**2, 1 - 0.5 * a * (1 - s) ** 2)
+    return np.where((s >= ramp) & (s <= 1 - ramp), middle, ends)
 
 
+@pytest.mark.parametrize("rule", [DurationRule.THIRDS, DurationRule.HALVES])
 @settings(max_examples=6, deadline=None)
 @given(duration=st.floats(2.0, 20.0), seed=st.integers(0, 100))
-def test_a_joint_move_is_driven_in_thirds(arm, duration, seed) -> None:
+def test_a_joint_move_is_driven_in_thirds_or_halves(arm, rule, duration, seed) -> None:
     change = np.random.default_rng(seed).uniform(-0.5, 0.5, len(arm.home))
-    made = drive(arm, MoveJ(arm.joints(change), Speed(duration=duration))).trajectory
+    move, model = MoveJ(arm.joints(change), Speed(duration=duration)), MotionModel(duration=rule)
+    made = drive(arm, move, model=model).trajectory
     assert made.duration == pytest.approx(duration, rel=1e-4)
-    expected = arm.home + way(made.t, duration)[:, None] * change
+    expected = arm.home + way(made.t, duration, rule.ramp)[:, None] * change
     np.testing.assert_allclose(made.q, expected, atol=1e-4 * np.abs(change).max())
 
 
@@ -90,6 +94,6 @@ def test_the_rule_is_read_and_needs_a_source(tmp_path) -> None:
     model = load_motion_model(file)
     assert model.duration is DurationRule.THIRDS and "time.duration" in model.figures
     assert "time.duration" not in MotionModel().figures
-    file.write_text('[time]\nduration = "halves"\n')
+    file.write_text('[time]\nduration = "fifths"\n')
     with pytest.raises(InputError, match=r"time\.duration"):
         load_motion_model(file)
