@@ -54,6 +54,7 @@ class Vendor:
         emulation_only: robots that the vendor's language does not drive, with the reason.
         speaks: what the language can say, for programs that are translated into it; None if it
             says everything that a `Program` holds.
+        machine_data: a robot as a file of its own controller describes it; None if none is read.
 
     Raises:
         InputError: a part is missing, or of a wrong kind.
@@ -72,6 +73,7 @@ class Vendor:
     robot_motion: Mapping[str, MotionLayer] = field(default_factory=dict)
     emulation_only: Mapping[str, str] = field(default_factory=dict)
     speaks: Dialect | None = None
+    machine_data: Callable[[Robot, Path], Robot] | None = None
 
     def __post_init__(self) -> None:
         _check_name("a vendor", self.name)
@@ -113,6 +115,16 @@ class Vendor:
         model = load_motion_model(file, self.motion_of(robot), robot.name)
         own = robot.name.removeprefix(f"{self.name}/")
         return replace(self, robot_motion={**self.robot_motion, own: lambda _: model})
+
+    def as_described(self, robot: Robot, file: Path) -> Robot:
+        """A robot as a file of its own controller describes it.
+
+        Raises:
+            InputError: none is read of this vendor, or the file cannot be, or is another robot's.
+        """
+        if self.machine_data is None:
+            raise InputError(f"{file}: no machine data are read of robots of {self.name}")
+        return self.machine_data(robot, file)
 
     def read(
         self,
@@ -265,7 +277,8 @@ def vendor_of(package: str, folder: Path, language: Language, **others: Any) -> 
 
     Args:
         package: its name; the function ``label`` of its module ``motion.configuration`` is the
-            vendor's.
+            vendor's, and ``with_machine_data`` of a module ``machine_data``, where there is one,
+            reads the files of its controllers.
         folder: where it is; robots and motion files stand in ``data``.
         language: reader, writer, patcher and recorder.
         others: see `Vendor`.
@@ -275,6 +288,10 @@ def vendor_of(package: str, folder: Path, language: Language, **others: Any) -> 
     def label(robot: Robot, q: NDArray[np.float64]) -> Configuration | None:
         labelling = import_module(".motion.configuration", package)  # takes time
         return cast("Configuration | None", labelling.label(robot, q))
+
+    def described(robot: Robot, file: Path) -> Robot:
+        reading = import_module(".machine_data", package)  # seldom needed
+        return cast("Robot", reading.with_machine_data(robot, file))
 
     return Vendor(
         name=folder.name,
@@ -286,6 +303,7 @@ def vendor_of(package: str, folder: Path, language: Language, **others: Any) -> 
         writer=language,
         patcher=language,
         recorder=language,
+        machine_data=described if (folder / "machine_data.py").is_file() else None,
         **others,
     )
 

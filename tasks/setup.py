@@ -38,6 +38,12 @@ class RobotOptions(TaskOptions):
     motion: str | Path | None = value(
         None, "How the robot is driven, as `identify` writes it (TOML).", kind=Path
     )
+    machine_data: str | Path | None = value(
+        None,
+        "What the robot's own controller says of this arm: calibration.conf (UR), $machine.dat "
+        "(KUKA).",
+        kind=Path,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,10 +103,18 @@ def setup_of(options: RobotOptions) -> Setup:
     Raises:
         InputError: none is named, robot and cell contradict each other, or a file is unusable.
     """
-    made = _stated(options)
-    if options.motion is None:
-        return made
-    return replace(made, vendor=made.vendor.driven_by(Path(options.motion), made.robot))
+    return _laid_on(_stated(options), options)
+
+
+def _laid_on(made: Setup, options: RobotOptions) -> Setup:
+    """A setup with the user's files of this one robot on top."""
+    if options.machine_data is not None:
+        robot = made.vendor.as_described(made.robot, Path(options.machine_data))
+        cell = None if made.cell is None else replace(made.cell, robot=robot)
+        made = replace(made, robot=robot, cell=cell)
+    if options.motion is not None:
+        made = replace(made, vendor=made.vendor.driven_by(Path(options.motion), made.robot))
+    return made
 
 
 def _stated(options: RobotOptions) -> Setup:
@@ -210,9 +224,11 @@ def with_setup(program: Program, options: RobotOptions) -> tuple[Program, Setup]
         if own is None:
             setup_of(options)  # asks for the robot
         assert own is not None
-        if options.motion is None:
+        made = _laid_on(own, options)
+        if made is own:
             return program, own
-        made = replace(own, vendor=own.vendor.driven_by(Path(options.motion), own.robot))
+        if made.robot is not own.robot:
+            return in_setup(program, made), made
         return replace(program, setup=made), made
     made = setup_of(options)
     said = options.motion is not None or (made.cell is not None and made.cell.motion is not None)

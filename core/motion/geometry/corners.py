@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from ...arrays import FloatArray
 from ...errors import Note
 from .reach import Reach
-from .timed_blends import TimedBlend
 
 STOP, TCP_CORNER, JOINT_CORNER = 0, 1, 2
 POSITION, TURNING, PRESCRIBED = 0, 1, 2
@@ -27,6 +26,26 @@ class Room:
 
     left: Reach
     corner: int
+
+
+@dataclass(frozen=True)
+class TimedBlend:
+    """How a corner is blended in time; see `timed_blends`.
+
+    Args:
+        duration: T in s.
+        rates: by how many times its extent in the zone each leg would go on in T, at its edge.
+        bends: by how many times that rate changes in T.
+    """
+
+    duration: Reach
+    rates: tuple[Reach, Reach]
+    bends: tuple[Reach, Reach]
+
+    @property
+    def parts(self) -> tuple[Reach, ...]:
+        """Rates, then bends."""
+        return *self.rates, *self.bends
 
 
 @dataclass

@@ -26,28 +26,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import FloatArray
+from .corners import TimedBlend
 from .reach import Reach, least
 from .segments import JOINT_SEGMENT, Segments
-
-
-@dataclass(frozen=True)
-class TimedBlend:
-    """How a corner is blended in time.
-
-    Args:
-        duration: T in s.
-        rates: by how many times its extent in the zone each leg would go on in T, at its edge.
-        bends: by how many times that rate changes in T.
-    """
-
-    duration: Reach
-    rates: tuple[Reach, Reach]
-    bends: tuple[Reach, Reach]
-
-    @property
-    def parts(self) -> tuple[Reach, ...]:
-        """Rates, then bends."""
-        return *self.rates, *self.bends
 
 
 @dataclass(frozen=True)

@@ -18,12 +18,12 @@ from ...program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction,
 from ...robot.kinematics.chain import Chain
 from ..model.motion_model import MotionModel
 from ..model.rules import OrientationZone, Overlap, Pace, Space
-from .corners import JOINT_CORNER, POSITION, TCP_CORNER, Corners, Room
+from .corners import JOINT_CORNER, POSITION, TCP_CORNER, Corners, Room, TimedBlend
 from .neighbour_zones import STILL, way_towards_neighbour
 from .reach import Part, Reach, least
 from .segments import ARC_SEGMENT, JOINT_SEGMENT, Segments
 from .smaller_blends import share_kept
-from .timed_blends import TimedBlend, timed_blend
+from .timed_blends import timed_blend
 from .zone_exits import first_exit, tcp_apart
 
 _NOTHING = 1e-9
