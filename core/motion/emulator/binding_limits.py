@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..timing.between_samples import BETWEEN, row_between
+from ..timing.least_zone_times import LEAST_TIME
 from ..timing.limits import CENTRIPETAL, PathLimits
 from ..timing.stamping_kernels import CEILING, NEXT
 from ..timing.superposed_legs import ZONE
 from ..timing.timed_zones import TIMED
-from ..timing.zone_times import LEAST_TIME
 from .run import Run
 
 STOP, CORNER = "stop", "corner"

@@ -4,8 +4,8 @@ Velocities bound x = σ̇² at the knots: joints |q'| √x ≤ v, TCP |p'| √x 
 Accelerations are rows on u = σ̈ and x: joints q' u + q'' x, and along the path the change of the
 TCP's speed |p'| u + (p' · p'' / |p'|) x and of the tool's rate of turn likewise. Joints that torque
 limits (`torque.Torque`) have rows of their own behind these. Centripetal acceleration |p''⊥| x is a
-ceiling again, and so are what velocities between samples allow (`between_samples`) and how fast
-legs that overlap drive zones (`superposed_legs`), and what zones take at least (`zone_times`).
+ceiling again, and so are what velocities between samples allow (`between_samples`), how fast legs
+that overlap drive zones (`superposed_legs`), and what zones take at least (`least_zone_times`).
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from ..model.motion_model import MotionModel
 from ..path.tcp_samples import States
 from . import stamping
 from .between_samples import lower_between
+from .least_zone_times import ZoneStretches
 from .rates import bind, rates, sideways
 from .stamping_kernels import StampRows
 from .superposed_legs import SuperposedZones, lower_ceilings, room_along
 from .timed_zones import ROOM, TimedZones
 from .torque_rows import Shares, torque_rows
-from .zone_times import ZoneStretches
 
 _TOGETHER = 20_000
 """Intervals whose rows of torque are made in one go."""

@@ -15,6 +15,7 @@ from ..path.path import Path
 from ..path.tcp_samples import States
 from .arc_length import ArcLength
 from .interval import Intervals, joint_at, progress, sigma_at
+from .least_zone_times import ZoneStretches
 from .limits import PathLimits, SegmentLimits, path_limits
 from .rests import InPosition, Rests
 from .stamping import Stamp, StampingError, stamp
@@ -22,7 +23,6 @@ from .start_ramp import SUDDEN, StartRamp
 from .superposed_legs import SuperposedZones
 from .timed_zones import TimedZones
 from .torque_rows import Shares
-from .zone_times import ZoneStretches
 
 _ROUNDING = 1e-12
 """s, by which times may be off."""

@@ -21,6 +21,7 @@ from flyby.core.motion.geometry.zones import ZonePlanner
 from flyby.core.motion.gradients.path_gradient import pull_corners
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.model.rules import OrientationZone, Overlap
+from flyby.core.motion.timing.timed_zones import TimedGradient
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -179,7 +180,7 @@ def test_the_reverse_of_the_reaches_is_the_gradient(abb, model) -> None:
         EndsGradient.zeros(ends),
         ZoneGradient.zeros(5),
     )
-    pull_corners(corners, weights, np.zeros(5), bar, out, by_zone)
+    pull_corners(corners, weights, np.zeros(5), TimedGradient.zeros(0, 5), bar, out, by_zone)
     h = 1e-6
     zones = list(route.zones)
     for i, name in ((0, "tcp"), (3, "tcp"), (4, "tcp"), (0, "reorientation"), (2, "angle")):

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from flyby.core.motion.emulator.binding_limits import limit_shares
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.model.rules import OrientationZone
-from flyby.core.motion.timing.zone_times import LEAST_TIME
+from flyby.core.motion.timing.least_zone_times import LEAST_TIME
 from flyby.core.program.move import MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
