@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ..core.door import spelt
 from ..core.errors import FlybyError, InputError, OptionError, ParseError
-from .options.entries import TaskOptions, value
+from .options.entries import TaskOptions, count, value
 from .options.keywords import by_keywords
 from .options.texts import joint_target
 from .setup import RobotOptions, Setup, check_language, setup_of
@@ -30,6 +30,7 @@ class TextOptions(TaskOptions):
         "Answers to what the program asks of signals and operators (TOML).",
         kind=Path,
     )
+    cycles: int = count(1, "Passes of a production loop, one that nothing known ends.", least=1)
     others: Sequence[str | Path] = value(
         (),
         "A further file of the program; may be given several times.",
@@ -44,6 +45,7 @@ class TextOptions(TaskOptions):
             cell=cell,
             entry=self.entry,
             answers=self.answers,
+            cycles=self.cycles,
             others=self.others,
             report=self.report,
         )
@@ -97,12 +99,12 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
 read = by_keywords(read_with, SourceOptions)
 
 
-def _answers(options: SourceOptions) -> Answers | None:
-    if not isinstance(options.answers, str | Path):
-        return options.answers
-    from ..core.source.execution.answers import load_answers
+def _answers(options: SourceOptions) -> Answers:
+    from ..core.source.execution.answers import Answers, load_answers
 
-    return load_answers(options.answers)
+    given = options.answers
+    answers = load_answers(given) if isinstance(given, str | Path) else given or Answers()
+    return replace(answers, cycles=options.cycles)
 
 
 def _program_in(folder: Path, setup: Setup, options: SourceOptions) -> Path:

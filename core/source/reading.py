@@ -9,8 +9,9 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from ..display import counted, in_line
+from ..errors import Note
 from .execution.answers import Answers
-from .execution.limits import Executed, ExecutionLimits
+from .execution.limits import EndlessError, Executed, ExecutionLimits
 from .text.files import SourceFile, stray_return
 
 if TYPE_CHECKING:
@@ -111,7 +112,35 @@ def read_with(
         options: how.
         read: a vendor's function from files to a program.
     """
-    program = read(files, main, options)
+    program = _to_an_end(files, main, options, read)
     stray = filter(None, map(stray_return, files.values()))
     reading = Reading(dict(files), main, options, read)
     return replace(program, notes=(*program.notes, *stray), reading=reading)
+
+
+def _to_an_end(
+    files: Files,
+    main: str,
+    options: ReadOptions,
+    read: Callable[[Files, str, ReadOptions], Program],
+) -> Program:
+    """Read; of loops that go on for more moves than a program may have, one pass is read.
+
+    Raises:
+        SourceError: it cannot be read, or goes on without a loop.
+    """
+    notes: list[Note] = []
+    while True:
+        try:
+            program = read(files, main, options)
+            return replace(program, notes=(*notes, *program.notes))
+        except EndlessError as error:
+            answers, place = options.answers, error.loop and f"{error.loop.file}:{error.loop.line}"
+            if place is None or answers.at("passes", place) is not None:
+                raise
+            count = answers.cycles
+            passes = "one pass" if count == 1 else f"{count} passes"
+            message = f"the loop goes on for more moves than are read: {passes} of it, and on"
+            notes.append(Note(message, span=error.loop))
+            answers = answers.with_passes(place, count)
+            options = replace(options, answers=answers)

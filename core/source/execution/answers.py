@@ -14,7 +14,7 @@ A file of answers is TOML::
     [branches]                   # at a line: the branch taken, 1 for the first, 0 for ELSE or none
     "main.mod:120" = 1
 
-    [passes]                     # at a line: how often a loop runs that nothing known ends
+    [passes]                     # at a line: how often a loop runs
     "main.mod:200" = 3
 
     [calls]                      # routines whose text is not at hand and that move nothing
@@ -27,11 +27,12 @@ Without an answer waits are satisfied at once, and branches and loops are decide
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ...errors import InputError, Note, Span, UnknownNameError
 from ...files.reading import read_toml
+from ...program.cycle import Cycle
 
 Answer = bool | float | str | tuple["Answer", ...]
 """A value in the language's own units; arrays and records are tuples."""
@@ -52,6 +53,7 @@ class Answers:
         passes: number of passes.
         skipped: names of routines that are not at hand and are stepped over.
         file: where they come from, for messages.
+        cycles: passes of a loop without an end that moves the robot.
     """
 
     values: Mapping[str, Answer] = field(default_factory=dict)
@@ -60,6 +62,7 @@ class Answers:
     passes: Mapping[str, int] = field(default_factory=dict)
     skipped: frozenset[str] = frozenset()
     file: str = ""
+    cycles: int = 1
 
     def names(self, table: str) -> Iterable[str]:
         """What a table of the file has answers to, in their order."""
@@ -71,6 +74,17 @@ class Answers:
             "calls": sorted(self.skipped),
         }
         return own[table]
+
+    def with_passes(self, place: str, count: int) -> Answers:
+        """The same, with the passes of one more loop."""
+        return replace(self, passes={**self.passes, _place(place): count})
+
+    def at(self, table: str, place: str) -> int | None:
+        """The branch or the passes at a place, ``file:line``, by the file's path or name alone."""
+        entries = self.branches if table == "branches" else self.passes
+        file, _, line = _place(place).rpartition(":")
+        found = (entries.get(f"{name}:{line}") for name in (file, file.rpartition("/")[2]))
+        return next((count for count in found if count is not None), None)
 
 
 def load_answers(path: str | Path) -> Answers:
@@ -146,10 +160,12 @@ class Course:
 
     Attributes:
         turned: how often an answer in turn was another one than that before it.
+        cycle: the last pass of a loop that production runs in; None if there is none.
     """
 
     answers: Answers = field(default_factory=Answers)
     turned: int = 0
+    cycle: Cycle | None = None
     _asked: set[tuple[str, str]] = field(default_factory=set)
     _turns: dict[str, int] = field(default_factory=dict)
     _decided: dict[tuple[str, int, str], tuple[Note, int]] = field(default_factory=dict)
@@ -186,7 +202,7 @@ class Course:
         Raises:
             InputError: there is no such branch.
         """
-        answer = self._at("branches", self.answers.branches, span)
+        answer = self._at("branches", span)
         if answer is not None and answer > count:
             there = "there is 1 branch" if count == 1 else f"there are {count} branches"
             raise InputError(
@@ -196,7 +212,7 @@ class Course:
 
     def answered_passes(self, span: Span) -> int | None:
         """How often the user says that the loop at a place runs."""
-        return self._at("passes", self.answers.passes, span)
+        return self._at("passes", span)
 
     def passes(
         self, span: Span, reason: str, moving: bool, driven: int = 0, leaves: bool = False
@@ -247,15 +263,12 @@ class Course:
             )
         return tuple(told)
 
-    def _at(self, table: str, entries: Mapping[str, int], span: Span) -> int | None:
-        """The entry for a place, by the file's path or its name alone."""
+    def _at(self, table: str, span: Span) -> int | None:
+        """The entry for a place."""
         file = _place(span.file)
         for name in (file, file.rpartition("/")[2]):
-            place = f"{name}:{span.line}"
-            self._asked.add((table, place))
-            if place in entries:
-                return entries[place]
-        return None
+            self._asked.add((table, f"{name}:{span.line}"))
+        return self.answers.at(table, f"{file}:{span.line}")
 
     def decided(self, span: Span, message: str) -> None:
         """Note what was decided without an answer; how often is counted."""

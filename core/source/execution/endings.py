@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Generic
 
 from ...errors import Span
+from ...program.cycle import Cycle
 from .analysis import Analysis
 from .branches import Branches, Skip
 from .host import Host, Snapshot
@@ -36,6 +37,7 @@ class Loop(Generic[Block]):
         asks: whether routines of the program have a part in its condition.
         writes: names of the data that the loop itself steps on.
         endless: whether no condition ends it.
+        counts: whether it counts to an end by itself, whatever its body does.
         labels: that stand in it beside those of its body.
         ended: gives the data that its condition reads values with which it does not let the loop
             go on, for a loop that is left though they say that it goes on.
@@ -48,6 +50,7 @@ class Loop(Generic[Block]):
     asks: bool = False
     writes: frozenset[str] = NOTHING
     endless: bool = False
+    counts: bool = False
     labels: frozenset[str] = NOTHING
     ended: Callable[[], None] = _nothing
 
@@ -60,11 +63,13 @@ class Start:
         skips: branches that were not taken.
         asked: see `Outputs.mark`.
         moves: that were read.
+        statements: in a row without a move, so far.
     """
 
     skips: int
     asked: int
     moves: int
+    statements: int
 
 
 @dataclass(slots=True)
@@ -85,6 +90,7 @@ class Passes(Generic[Block]):
         snapshot, turned, asked, place, held: this state: data, answers in turn, questions for the
             position, the position, and outputs.
         still: all data that a pass may write, while it has not moved the robot and might.
+        begun: for each pass, how many moves had been read before it.
         left_to_others: whether outputs that its condition reads have just been left to others: it
             is to be asked again.
     """
@@ -104,6 +110,7 @@ class Passes(Generic[Block]):
     place: object = None
     held: dict[str, bool | float] = field(default_factory=dict)
     still: Snapshot | None = None
+    begun: list[int] = field(default_factory=list)
     left_to_others: bool = False
 
     def __post_init__(self) -> None:
@@ -123,11 +130,13 @@ class Endings(Generic[Block]):
         self._analysis = analysis
         self._host = host
         self._branches = branches
+        self._long: set[Span] = set()
 
     def start(self) -> Start:
         """Now."""
         host = self._host
-        return Start(self._branches.skips, host.outputs.mark(), host.meter.moves)
+        meter = host.meter
+        return Start(self._branches.skips, host.outputs.mark(), meter.moves, meter.row)
 
     def most(self, passes: Passes[Block], reason: str) -> int:
         """How often a loop runs whose condition is not known; asked once in an execution."""
@@ -141,6 +150,7 @@ class Endings(Generic[Block]):
         """A pass begins: remember what decides when the loop ends, as it is now."""
         host, loop = self._host, passes.loop
         passes.mark = host.outputs.mark()
+        passes.begun.append(host.meter.moves)
         if not passes.looked or passes.skips != self._branches.skips:
             passes.watched = self._deciding(passes)
             passes.written = self._analysis.written(loop.body) | loop.writes
@@ -179,6 +189,8 @@ class Endings(Generic[Block]):
     def _gets_on(self, passes: Passes[Block]) -> bool:
         """Whether a pass has changed what decides when a loop ends."""
         host = self._host
+        if passes.loop.counts:
+            return True
         if passes.looked:
             if host.course.turned != passes.turned:
                 return True
@@ -246,17 +258,20 @@ class Endings(Generic[Block]):
             if gets_on and answer is None and passes.count < followed:
                 return False
             if passes.most is None:
-                passes.most = host.course.passes(
-                    loop.span, skip.reason, True, passes.count, leaves=True
-                )
+                driven = passes.count
+                if answer is None and moved and loop.endless:
+                    driven = max(driven, host.course.answers.cycles)
+                passes.most = host.course.passes(loop.span, skip.reason, True, driven, leaves=True)
             if passes.count < passes.most:
                 return False
+            if moved and loop.endless:
+                self._cycle(passes)
             self._leave_by(skip, loop, run)
             if not self._leaves(skip, loop):
                 loop.ended()
             return True
         if gets_on:
-            return False
+            return self._passed(passes, answer) or self._too_long(passes)
         if self._left_to_others(passes):
             passes.left_to_others = True
             passes.mark = host.outputs.mark()
@@ -268,6 +283,51 @@ class Endings(Generic[Block]):
             return False
         self._satisfy(loop, moving, run)
         return True
+
+    def enters(self, loop: Loop[Block]) -> bool:
+        """Whether a loop whose condition lets it go on is entered: the user may say that not."""
+        if loop.endless or self._host.course.answered_passes(loop.span) != 0:
+            return True
+        loop.ended()
+        return False
+
+    def _passed(self, passes: Passes[Block], answer: int | None) -> bool:
+        """Whether the user says that a loop which goes on has gone on enough."""
+        if answer is None or passes.count < answer:
+            return False
+        passes.loop.ended()
+        return True
+
+    def _too_long(self, passes: Passes[Block]) -> bool:
+        """Whether a loop counts on and on without a move: it passes time, or waits for others.
+
+        It is left once as many statements are executed as a program may execute in a row; from then
+        on after its first pass.
+        """
+        host, loop = self._host, passes.loop
+        meter = host.meter
+        if self._has_moved(passes):
+            return False
+        if loop.span not in self._long and meter.row - passes.start.statements < meter.patience:
+            return False
+        if loop.span not in self._long:
+            self._long.add(loop.span)
+            host.note_once(
+                f"long {loop.span.file}:{loop.span.start}",
+                f"the loop ({loop.words}) has run {passes.count} times without a move and goes on: "
+                "it is left, as one that only passes time",
+                loop.span,
+            )
+        meter.row = passes.start.statements
+        loop.ended()
+        return True
+
+    def _cycle(self, passes: Passes[Block]) -> None:
+        """The last pass of a loop that production runs in: what a cycle is."""
+        begun = passes.begun[-1] if passes.count > 1 else passes.start.moves
+        moves = self._host.meter.moves
+        if moves > begun:
+            self._host.course.cycle = Cycle(begun, moves, passes.count, passes.loop.span)
 
     def _satisfy(self, loop: Loop[Block], moving: bool, run: Callable[[Block], bool]) -> None:
         """Leave a loop that waits for others."""
@@ -321,8 +381,10 @@ class Endings(Generic[Block]):
 
     def _endless(self, passes: Passes[Block], moving: bool, answer: int | None) -> None:
         """End the program, if enough of an endless loop has been read."""
-        if passes.count < (answer or 1):
+        cycles = self._host.course.answers.cycles if moving and self._has_moved(passes) else 1
+        if passes.count < (answer or cycles):
             return
+        self._cycle(passes)
         loop = passes.loop
         words, what = f"({loop.words})", "the program ends there"
         if moving and self._has_moved(passes):

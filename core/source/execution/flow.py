@@ -21,7 +21,10 @@ after a pass than before. If it does not get on, the first of these is so:
 - It reads outputs that only others can change: from now on these may have changed.
 - It does not move the robot: it waits for others, and is left, as all waits are satisfied at once;
   what its condition reads has values afterwards that end it, as after a wait.
-- It is endless. One pass is read, and the program ends there.
+- It is endless. One pass is read (`Answers.cycles`), and the program ends there.
+
+A loop that gets on without a move, for more statements than a program may execute in a row, passes
+time or waits for others, and is left.
 
 A loop that neither has a condition nor a way out is endless, whether it moves the robot or not. A
 jump back closes a loop whose body is what stands between the label and the jump.
@@ -37,6 +40,7 @@ from .analysis import Analysis
 from .branches import ActiveBlocks, Branches
 from .endings import Endings, Loop, Passes, Start
 from .host import Host, Undecided
+from .limits import EndlessError
 from .steps import Block
 
 
@@ -55,7 +59,7 @@ class Flow(Generic[Block]):
         self._endings = Endings(analysis, host, self._branches)
         self.choose = self._branches.choose
         self._jumps: dict[tuple[int, object, object], Passes[Block]] = {}
-        self._reached: dict[tuple[int, object], Start] = {(0, None): Start(0, 0, 0)}
+        self._reached: dict[tuple[int, object], Start] = {(0, None): Start(0, 0, 0, 0)}
 
     def loop(
         self,
@@ -76,21 +80,26 @@ class Flow(Generic[Block]):
         """
         nesting = self._nesting
         outer, nesting.loop = nesting.loop, nesting.number()
+        passes = Passes(loop, self._endings.start())
         try:
-            self._run(loop, goes_on, run, run_pass or (lambda: run(loop.body)), tested_first)
+            self._run(passes, goes_on, run, run_pass or (lambda: run(loop.body)), tested_first)
+        except EndlessError as error:
+            _goes_on(error, passes)
+            raise
         finally:
             nesting.loop = outer
 
     def _run(
         self,
-        loop: Loop[Block],
+        passes: Passes[Block],
         goes_on: Callable[[], bool | Undecided],
         run: Callable[[Block], bool],
         run_pass: Callable[[], bool],
         tested: bool,
     ) -> None:
-        host = self._host
-        passes = Passes(loop, self._endings.start())
+        host, loop = self._host, passes.loop
+        if tested and not self._endings.enters(loop):
+            return
         while True:
             if tested or passes.count:
                 holds = goes_on()
@@ -161,9 +170,20 @@ class Flow(Generic[Block]):
         nesting.depth += 1
         try:
             yield
+        except EndlessError as error:
+            for place, passes in self._jumps.items():
+                if place[0] == nesting.routine:
+                    _goes_on(error, passes)
+            raise
         finally:
             nesting.depth -= 1
             own = nesting.routine
             self._jumps = {p: found for p, found in self._jumps.items() if p[0] != own}
             self._reached = {r: found for r, found in self._reached.items() if r[0] != own}
             nesting.routine, nesting.loop = outer
+
+
+def _goes_on(error: EndlessError, passes: Passes[Block]) -> None:
+    """A program without an end was in this loop, again and again: of several the outermost."""
+    if passes.count > 1:
+        error.loop = passes.loop.span

@@ -28,6 +28,16 @@ class ExecutionLimits:
     calls: int = 40
 
 
+class EndlessError(SourceError):
+    """A program goes on and on.
+
+    Attributes:
+        loop: the outermost one that was under way again and again; None if there is none.
+    """
+
+    loop: Span | None = None
+
+
 class Meter:
     """Counts what is executed.
 
@@ -37,15 +47,22 @@ class Meter:
 
     Attributes:
         moves: that were executed.
+        row: statements that were executed since the last move.
     """
 
     def __init__(self, limits: ExecutionLimits, executed: Executed | None = None) -> None:
         self._limits = limits
         self._executed = executed
-        self._statements = 0
+        self.row = 0
         self.moves = 0
         self._repeats: dict[tuple[str, int, int], int] = {}
         self._calls = 0
+
+    @property
+    def patience(self) -> int:
+        """Statements of a loop in a row without a move, after which it is left: few enough that
+        what comes behind it has room."""
+        return self._limits.statements // 2
 
     def statement(self, span: Span) -> None:
         """A statement, or a pass of a loop.
@@ -53,10 +70,10 @@ class Meter:
         Raises:
             SourceError: there are too many since the last move.
         """
-        self._statements += 1
+        self.row += 1
         if self._executed is not None:
             self._executed(span)
-        if self._statements > self._limits.statements:
+        if self.row > self._limits.statements:
             raise _endless(f"{self._limits.statements} statements are executed in a row", span)
 
     def move(self, span: Span) -> None:
@@ -66,7 +83,7 @@ class Meter:
             SourceError: there are too many.
         """
         self.moves += 1
-        self._statements = 0
+        self.row = 0
         if self.moves > self._limits.moves:
             raise _endless(f"{self._limits.moves} moves are executed", span)
         place = (span.file, span.line, span.column)
@@ -93,8 +110,8 @@ class Meter:
         self._calls -= 1
 
 
-def _endless(what: str, span: Span) -> SourceError:
-    return SourceError(
+def _endless(what: str, span: Span) -> EndlessError:
+    return EndlessError(
         f"{what} and the program has not ended: a loop without end? Give it an end, choose a "
         "routine without it as the entry, or raise the limit",
         span,

@@ -10,7 +10,6 @@ from flyby.core.errors import InputError, SourceError
 from flyby.core.program.move import Opaque, Wait
 from flyby.core.registry import find_vendor
 from flyby.core.source.execution.answers import Answers, key
-from flyby.core.source.execution.limits import ExecutionLimits
 from flyby.core.source.reading import ReadOptions
 from flyby.vendors.kuka.language import Krl
 from flyby.vendors.kuka.write import writer
@@ -180,11 +179,6 @@ def test_characters_are_numbers(krl):
 
 
 def test_loops_without_end_are_stopped(krl):
-    with pytest.raises(SourceError, match="without end"):
-        krl(INIT + "WHILE count>=0\ncount=count+1\nENDWHILE", "INT count=0")
-    with pytest.raises(SourceError, match="20 moves are executed"):
-        body = f"WHILE count>=0\n{P[1]}\ncount=count+1\nENDWHILE"
-        krl(INIT + body, "INT count=0", limits=ExecutionLimits(moves=20))
     with pytest.raises(SourceError, match="recursion"):
         krl(src="DEF demo( )\nother()\nEND\nDEF other( )\ndemo()\nEND")
 

@@ -9,7 +9,6 @@ from flyby.core.program.move import Opaque, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.source.execution.answers import Answer, Answers, key
-from flyby.core.source.execution.limits import ExecutionLimits
 from flyby.core.source.reading import ReadOptions
 from flyby.vendors.ur.run.reader import read
 
@@ -155,12 +154,6 @@ BUMP = "def bump():\n  n = n + 1\n  if n >= 3:\n    on = False\n  end\nend\n"
 def test_a_loop_goes_on_until_what_it_counts_lowers_its_flag(before: str, lower: str) -> None:
     text = f"on = True\nn = 0\n{before}while on:\n {lower}\n {GO.format('n')}\nend\n{GO.format(9)}"
     assert joints(text) == [1, 2, 3, 9]
-
-
-def test_endless_loops_are_refused_with_their_line() -> None:
-    text = f"i = 0\nwhile i >= 0:\n  i = i + 1\n  {GO.format(1)}\nend"
-    with pytest.raises(SourceError, match=r"t\.script:4:3: 50 moves are executed"):
-        read(text, "t.script", ReadOptions(limits=ExecutionLimits(moves=50)))
 
 
 # -------------------------------------------------------------------------- threads

@@ -255,7 +255,6 @@ def test_ends_of_line_of_all_systems(ending: str) -> None:
         ("x = inv([[1, 1], [1, 1]])", "1:5", "the matrix has no inverse"),
         ("x = [[1, 2], [3, 4]] * [1, 2, 3]", "1:5", "sizes of the matrices"),
         ('x = to_num("abc")', "1:5", '"abc" is no number'),
-        ("x = 1\nwhile x > 0:\n  x = x + 1\nend", "3:3", "statements are executed in a row"),
         (
             "x = [1]\nwhile True:\n  x = [x]\nif x == 1:\nbreak\nend\nend",
             "3:7",

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Protocol
 
 from ....core.errors import SourceError
@@ -122,38 +122,43 @@ def _choose(
         run.run_block(choice.block, scope)
 
 
-def run_for(run: Carrying, loop: For, scope: Scope) -> None:
+def run_for(run: Carrying, statement: For, scope: Scope) -> None:
     """``FOR``; without STEP the controller counts down where it has to."""
-    bounds = [run.evaluator.evaluate(e, scope) for e in (loop.start, loop.stop)]
-    given = run.evaluator.evaluate(loop.step, scope) if loop.step is not None else None
-    counter = Variable(loop.name, NUM, constant=True)  # programs may only read it
-    inner = Scope(scope.where, {loop.name: counter}, scope, scope.home)
-    for value in _counts(run, loop, bounds[0], bounds[1], given):
-        counter.value = value
-        run.run_block(loop.body, inner)
-        run.meter.statement(loop.span)
-
-
-def _counts(
-    run: Carrying, loop: For, start: Value, stop: Value, given: Value | None
-) -> Iterator[Value]:
-    """The values that the loop's variable takes."""
-    values = (start, stop, 0.0 if given is None else given)
-    unknown = next((v for v in values if isinstance(v, Unknown)), None)
-    first, last, step = (_number_or_none(run, value, loop) for value in values)
-    if given is None:
+    bounds = [run.evaluator.evaluate(e, scope) for e in (statement.start, statement.stop)]
+    given = 0.0 if statement.step is None else run.evaluator.evaluate(statement.step, scope)
+    unknown = next((v for v in (*bounds, given) if isinstance(v, Unknown)), None)
+    first, last, step = (_number_or_none(run, value, statement) for value in (*bounds, given))
+    if statement.step is None:
         step = -1.0 if first is not None and last is not None and first > last else 1.0
     if step == 0:
-        raise SourceError("STEP is zero: the loop has no end", loop.span)
-    if unknown is None:
-        assert first is not None and last is not None and step is not None
-        while first <= last if step > 0 else first >= last:
-            yield first
-            first += step
-        return
-    moving = run.analysis.moves(loop.body)
-    for number in range(run.course.passes(loop.stop.span, unknown.reason, moving)):
-        yield unknown if first is None or step is None else first + number * step
+        raise SourceError("STEP is zero: the loop has no end", statement.span)
+    counter = Variable(statement.name, NUM, constant=True)  # programs may only read it
+    inner = Scope(scope.where, {statement.name: counter}, scope, scope.home)
+    reached = first
+
+    def goes_on() -> bool | Undecided:
+        if unknown is not None:
+            return Undecided(unknown.reason)
+        assert reached is not None and last is not None and step is not None
+        return reached <= last if step > 0 else reached >= last
+
+    def carry_out(block: Block) -> bool:
+        run.run_block(block, inner)
+        return True
+
+    def run_pass() -> bool:
+        nonlocal reached
+        if reached is None or step is None:
+            assert unknown is not None
+            counter.value = unknown
+        else:
+            counter.value, reached = reached, reached + step
+        run.run_block(statement.body, inner)
+        return True
+
+    words = f"FOR {statement.name}"
+    loop = Loop(statement.body, statement.stop.span, words, counts=True)
+    run.flow.loop(loop, goes_on, carry_out, run_pass)
 
 
 def _number_or_none(run: Carrying, value: Value, loop: For) -> float | None:

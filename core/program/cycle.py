@@ -1,0 +1,24 @@
+"""The cycle of a program that runs in a loop without an end, as production does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..errors import Span
+
+
+@dataclass(frozen=True, slots=True)
+class Cycle:
+    """The last pass that was read of a loop which nothing known ends.
+
+    Args:
+        begin: index of its first move.
+        end: index behind its last move.
+        passes: that were read of the loop.
+        span: of the loop.
+    """
+
+    begin: int
+    end: int
+    passes: int
+    span: Span
