@@ -270,6 +270,11 @@ class Course:
             self._asked.add((table, f"{name}:{span.line}"))
         return self.answers.at(table, f"{file}:{span.line}")
 
+    @property
+    def guessed(self) -> bool:
+        """Whether anything was decided without an answer."""
+        return bool(self._decided)
+
     def decided(self, span: Span, message: str) -> None:
         """Note what was decided without an answer; how often is counted."""
         place = (span.file, span.start, message)

@@ -161,10 +161,11 @@ def test_arcs_and_singularities():
     assert move(arc).orientation is ArcOrientation.FOLLOWS_ARC
     fixed = move(f"CirPathMode \\ObjectFrame;\n{arc}")
     assert fixed.orientation is ArcOrientation.FIXED_FRAME
-    assert "CirPathMode" in refusal(f"CirPathMode \\CirPointOri;\n{arc}")
+    other = program(f"CirPathMode \\CirPointOri;\n{arc}")
+    assert "as with \\PathFrame" in other.notes[0].message
     notes = program("SingArea \\Wrist;\nMoveL p,v100,z10,tool0;").notes
     assert "emulated as \\Off" in notes[-1].message
-    assert "LockAxis4" in refusal(f"SingArea \\LockAxis4;\n{arc}")
+    assert "LockAxis4" in program(f"SingArea \\LockAxis4;\n{arc}").notes[0].message
     body = "SingArea\\Wrist;\nMoveJ p,v100,z10,tool0;\nSingArea\\Off;\nMoveL p,v100,z10,tool0;"
     assert len(program(body).moves) == 2
 
@@ -184,23 +185,15 @@ def test_program_displacement():
         ("AccSet 50,0;", "ramp"),
         ("AccSet 120,100;", "percentage"),
         ("VelSet 0,100;", "percentage"),
-        ("WorldAccLim\\On:=3;", "WorldAccLim"),
-        ("SpeedRefresh 50;", "SpeedRefresh"),
+        ("WorldAccLim\\On:=0;", "above zero"),
+        ("SpeedRefresh 150;", "0 to 100 percent"),
         ("PathAccLim TRUE,FALSE;", "\\accmax needs a value"),
         ("PathAccLim TRUE\\AccMax:=0,FALSE;", "above zero"),
         ("PDispOn p,tool0;", "present position, which is not known"),
-        ("StorePath;", "StorePath is refused"),
-        ("SyncMoveOn s,all;", "MultiMove"),
-        ("IndAMove M7,1\\ToAbsNum:=90,20;", "IndAMove is refused"),
         ("MoveExtJ home,v100,z10;", "leaves the arm where it is"),
         ("MoveL p,v100,z10;", "MoveL takes 4 arguments (ToPoint, Speed, Zone, Tool), not 3"),
-        ("MoveL p\\ID:=10,v100,z10,tool0;", "MultiMove"),
-        ("MoveL p,v100,z10,tool0\\Corr;", "\\CORR"),
         ("MoveL p,v100,z10,tool0\\WObjj:=wTable;", "did you mean wobj?"),
         ("MoveL p,v100,z10,tGunn;", "unknown tool 'tGunn': did you mean tGun?"),
-        ("MoveL p,v100,z10,tGun\\WObj:=wtabel;", "did you mean wTable?"),
-        ("MoveL p,v101,z10,tool0;", "unknown speed 'v101': did you mean v10"),
-        ("MoveL p,v100,z11,tool0;", "unknown zone 'z11'"),
         ("MoveL pp1,v100,z10,tool0;", "unknown target 'pp1'"),
         ("MoveL *,v100,z10,tool0;", "not in the text"),
         (
@@ -221,13 +214,64 @@ def test_program_displacement():
         (f"MoveL [[0,0,0],[1,0,0,0],[0,0,0,9],{UNUSED}],v100,z10,tool0;", "cfx"),
         (f"MoveL [[0,0,0],[1,0,0,0],[0,0.5,0,0],{UNUSED}],v100,z10,tool0;", "whole numbers"),
         (f"MoveAbsJ [[0,0,9E9,0,0,0],{UNUSED}],v100,z10,tool0;", "axis 3 of the arm"),
-        ("MoveL p,v100,z10,tPaint;", "unknown tool 'tPaint': declare it"),
-        ("MoveL p,v100,z10,tool1;", "did you mean tool0? If not: declare it"),
-        ("MoveL p,v100,z10,tool0\\WObj:=wJig;", "unknown work object 'wJig': declare it"),
     ],
 )
 def test_refusals(body, words):
     assert words in refusal(body)
+
+
+@pytest.mark.parametrize(
+    ("text", "as_if", "words"),
+    [
+        ("MoveL p,v100,z10,tPaint;", "MoveL p,v100,z10,tool0;", "unknown tool 'tPaint': declare"),
+        ("MoveL p,v100,z10,tool1;", "MoveL p,v100,z10,tool0;", "did you mean tool0? If not:"),
+        ("MoveL p,v100,z10,tool0\\WObj:=wJig;", "MoveL p,v100,z10,tool0;", "object 'wJig'"),
+        ("MoveL p,v101,z10,tool0;", "MoveL p,v100\\V:=101,z10,tool0;", "unknown speed 'v101'"),
+        ("MoveL p,v100,z12,tool0;", "MoveL p,v100,[FALSE,12,18,18,1.8,18,1.8],tool0;", "'z12'"),
+        ("MoveL p,vFast,z10,tool0;", "MoveL p,[1000,500,1,1],z10,tool0;", "speed 'vFast'"),
+        ("MoveL p\\ID:=10,v100,z10,tool0;", "MoveL p,v100,z10,tool0;", "MultiMove"),
+        ("MoveL p,v100,z10,tool0\\Corr;", "MoveL p,v100,z10,tool0;", "\\CORR"),
+        ("StorePath;\nMoveL p,v100,z10,tool0;", "MoveL p,v100,z10,tool0;", "StorePath"),
+        ("SyncMoveOn s,all;\nMoveL p,v100,z10,tool0;", "MoveL p,v100,z10,tool0;", "drives alone"),
+        ("IndAMove M7,1\\ToAbsNum:=9,20;\nMoveL p,v9,z1,tool0;", "MoveL p,v9,z1,tool0;", "IndA"),
+        ("SpeedRefresh 50;\nMoveL p,v100,z10,tool0;", "MoveL p,v100\\V:=50,z10,tool0;", ""),
+        ("WorldAccLim\\On:=3;\nMoveL p,v9,z1,tool0;",
+         "PathAccLim TRUE\\AccMax:=3,TRUE\\DecelMax:=3;\nMoveL p,v9,z1,tool0;", "in the world"),
+        ("EGMMoveL e,p,v100,z10,tool0;", "MoveL p,v100,z10,tool0;", "what a sensor changes"),
+        ("ContactL p,v100,tool0;", "MoveL p,v100,fine,tool0;", "what a sensor changes"),
+        ("FCPressL p,v100,20,z10,tool0;", "MoveL p,v100,z10,tool0;", "process data"),
+        ("DaProcML p,v100,d1,d2\\Any,tool0;", "MoveL p,v100,fine,tool0;", "process data"),
+    ],
+)  # fmt: skip
+def test_what_is_not_known_or_not_emulated_is_driven_otherwise_and_noted(text, as_if, words):
+    found, wanted = program(text), move(as_if)
+    (driven,) = found.moves
+    assert (driven.target, driven.zone) == (wanted.target, wanted.zone)
+    assert driven.tool.tcp == wanted.tool.tcp
+    assert driven.work_object.pose == wanted.work_object.pose
+    assert driven.speed.tcp == pytest.approx(wanted.speed.tcp)
+    assert driven.speed.tcp_acceleration == wanted.speed.tcp_acceleration
+    assert words in " ".join(note.message for note in found.notes)
+
+
+def test_a_datum_that_nothing_sets_is_named_at_its_declaration():
+    data = DATA + "VAR robtarget pNew;\nVAR speeddata vNew;\nPERS tooldata tNew;\n"
+    line = data.count("\n") + 1
+    for body, name in (
+        ("MoveL p,v100,fine,tool0;\nMoveL pNew,v100,fine,tool0;", "orientation of 'pNew'"),
+        ("MoveL p,vNew,fine,tool0;", "the speed of 'vNew'"),
+        ("MoveL p,v100,fine,tNew;", "robhold of 'tNew'"),
+    ):
+        found = program(body, data)
+        assert len(found.moves) == 1
+        (said,) = [n.message for n in found.notes if name in n.message]
+        assert (
+            "which nothing sets: line " in said and "of a.mod declares it without a value" in said
+        )
+        declared = next(k for k in range(line) if name.split("'")[1] in data.split("\n")[k])
+        assert f"line {declared + 2} of a.mod" in said
+    whole = "pNew.trans:=[1,2,3];\npNew.rot:=[1,0,0,0];\nMoveL pNew,v100,fine,tool0;"
+    assert move(whole, data).target.pose.position == pytest.approx((1e-3, 2e-3, 3e-3))
 
 
 def test_an_error_names_the_argument():
@@ -260,7 +304,11 @@ def test_external_axes():
     )
     assert joint.target.external == pytest.approx((1.5, math.pi / 2))
     assert "eax_a is sent to 1500" in refusal(target(two))
-    assert "1 external axes" in refusal(target(two), external_axes=("linear",))
+    stands = program(target(two), external_axes=("linear",))
+    assert "taken to stand there throughout" in stands.notes[0].message
+    other = target(two) + target("1500,95,9E9,9E9,9E9,9E9")
+    message = refusal(other, external_axes=("linear",))
+    assert "eax_b is moved from 90 to 95" in message and "[external_axis.eax_b]" in message
     hole = target("9E9,90,9E9,9E9,9E9,9E9")
     assert "9E9" in refusal(hole, external_axes=("linear", "rotating"))
     zero = program(target("0,0,0,0,0,0"))

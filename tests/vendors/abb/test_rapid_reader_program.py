@@ -16,6 +16,9 @@ UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 P = f"[[500,0,600],[0,0,1,0],[0,0,0,0],{UNUSED}]"
 
 
+LIFT = f"PROC at(num z)\nMoveL Offs({P},0,0,z-600),v100,fine,tool0;\nENDPROC\n"
+
+
 def program(body, data="", routines=""):
     text = f"MODULE M\n{data}\nPROC main()\n{body}\nENDPROC\n{routines}\nENDMODULE"
     return read(text, "a.mod")
@@ -23,8 +26,7 @@ def program(body, data="", routines=""):
 
 def heights(body, data="", routines=""):
     """z in mm of each target, where ``at x;`` is a move to height x."""
-    lift = f"PROC at(num z)\nMoveL Offs({P},0,0,z-600),v100,fine,tool0;\nENDPROC\n"
-    moves = program(body, data, lift + routines).moves
+    moves = program(body, data, LIFT + routines).moves
     return [round(move.target.pose.position[2] * 1000, 6) for move in moves]
 
 
@@ -201,20 +203,24 @@ def test_loops_without_end_are_refused():
     assert "called each other" in refused("f;", "PROC f()\nf;\nENDPROC")
 
 
-def test_unknown_values_travel_but_drive_nothing():
+def test_unknown_values_travel_and_drive_as_their_defaults():
     assert heights(
         "x := DInput(di1); y := x + 1; now := CTime(); at 1;",
         "VAR num x; VAR num y; VAR string now;",
     ) == [1]
     assert heights("IF FALSE AND di1 = 1 at 1;") == []
     data = "VAR num x; VAR robtarget p;"
-    for body, name in [
-        ("x := DInput(di1) + 1;\nat x;", "DInput"),
-        ("p := CRobT();\np.trans.z := 5;\nMoveJ p,v100,fine,tool0;", "CRobT"),
-        ('TPReadNum x, "how many";\nat x;', "TPReadNum"),
+    for body, z, name in [
+        ("x := DInput(di1) + 1;\nat x;", 1, "DInput"),
+        ('TPReadNum x, "how many";\nat 2*x-3;', -3, "TPReadNum"),
+        ("at n{GInput(gi1)};", 4, "GInput"),
+        ("at Max(StrLen(ReadStr(io)),Foo(1)+2);", 2, "ReadStr"),
     ]:
-        message = refusal(body, data)
-        assert name in message and "only the running controller knows" in message
+        found = program(body, data + " VAR num n{2}:=[4,5];", LIFT)
+        assert heights(body, data + " VAR num n{2}:=[4,5];") == [z]
+        assert any(name in note.message and "is taken" in note.message for note in found.notes)
+    message = refusal("p := CRobT();\np.trans.z := 5;\nMoveJ p,v100,fine,tool0;", data)
+    assert "no move can be driven" in message and "CRobT" in message
 
 
 @pytest.mark.parametrize(
@@ -234,23 +240,21 @@ def test_unknown_values_travel_but_drive_nothing():
         ("k := TRUE;", "a num is wanted"),
         ("p := [1,2];", "robtarget has 4 components, not 2"),
         ("c := 2;", "constant"),
-        ("kk.trans := [0,0,2]; at kk.trans.z;", "'kk', which is not declared"),
         ("two m:=1, 2;", "this argument of two is n, not m"),
         ("at loop;", "depends on itself"),
-        ("atx 2;", "did you mean at?"),
+        ("MoveLL p, v100, z10, tool0;", "did you mean movel?"),
         ("FOR i FROM 1 TO 2 STEP 0 DO ENDFOR", "STEP is zero"),
         ("GOTO nowhere;", "no label 'nowhere'"),
-        ("RAISE 1;", "error handlers are not run"),
+        ("RAISE 1;", "no ERROR handler takes the error 1"),
+        ("RETRY;", "RETRY stands outside an error handler"),
         ("at 1, 2;", "at takes 1 argument, not 2"),
         ("at 1\\q:=2;", "unknown argument of at 'q'"),
-        ("at Foo(1);", "unknown function 'Foo'"),
         ("k := Offs(p,0,0);", "Offs takes 4 arguments, not 3"),
         ("k := nothing(1);", "without RETURN"),
         ('%"nix"%;', "unknown routine 'nix'"),
         ("IF k at 1;", "a bool is wanted"),
-        ("SearchL di1, 5, p, v100, tool0;", "needs a robtarget to put its point in"),
+        ("SearchL di1, 5, p, v100, tool0;", "needs a datum to put its point in"),
         ("TriggL p, v100, z10, tool0;", "takes 5 arguments"),
-        ("rUnknown 5;", "it might move the robot"),
         ("MoveLDO p, v100, z10, tool0, do1;", "takes 6 arguments"),
     ],
 )
@@ -323,7 +327,7 @@ def test_values_of_types_that_are_not_read_stay_unknown():
         "r.c := 5; at r.c;",
         "s.inpos := 1; at s.inpos;",
     ):
-        assert "only the running controller knows" in refusal(body, data, routines)
+        assert heights(body, data, routines) == [0]
     assert heights("r.a := 3; at r.a;", data) == [3]
     function = "FUNC num wrong()\nRETURN TRUE;\nENDFUNC"
     assert "the value of wrong: a num is wanted" in refusal("at wrong();", "", function)

@@ -20,6 +20,7 @@ from ....core.source.execution.provenance import MovePart
 from ....core.source.execution.transcript import MoveParts, Transcript
 from ..syntax.tree import Expression, Invoke, Name
 from ..values.arguments import Bound, bind
+from ..values.defaults import nominal
 from ..values.evaluator import Evaluator
 from ..values.located import Located
 from ..values.provenance import Literal, source_of_literal
@@ -35,10 +36,12 @@ from ..values.types import (
     Type,
     Unknown,
     Value,
+    answerable,
+    find_unknown,
 )
 from .position import Position
 from .settings import SettingsInForce
-from .targets import Converter, undeclared
+from .targets import Converter, named_by_number, undeclared
 
 _COMMON_OPTIONS = ("conc", "v", "t", "z", "inpos", "wobj", "tload", "corr", "id")
 
@@ -54,6 +57,9 @@ class MovesRun(Protocol):
 
     def emit_move(self, move: Move, parts: MoveParts) -> None:
         """Put a move at the end of the program."""
+
+    def leave_out(self, invoke: Invoke, why: str) -> None:
+        """Step over a move that cannot be driven."""
 
 
 MovesHandler = Callable[[MovesRun, Invoke, Scope], None]
@@ -88,6 +94,10 @@ FORMS = {
 }
 
 
+class NotDriven(Exception):
+    """A move whose target nobody knows; the message says why."""
+
+
 Common = tuple[Speed, Zone, Tool, WorkObject, Load | None]
 """What every move has beside its target."""
 
@@ -100,7 +110,9 @@ class _MoveReader:
         self.scope = scope
         self.bound = bound
         self.record: Record = ()
-        _refuse_options(bound)
+        for option, why in _LEFT_OUT.items():
+            if option in bound.options:
+                run.out.notes.count(f"\\{option.upper()}: {why}", bound.option_spans[option])
 
     def pose_target(self, name: str, follow: bool) -> tuple[PoseTarget, MovePart]:
         expression = self.bound.named(name)
@@ -160,11 +172,21 @@ class _MoveReader:
         return (speed, zone, tool, work_object, load), speed_part, zone_part
 
     def _found(self, expression: Expression, kind: str, type_: Type) -> Located:
-        found = self.run.evaluator.locate(expression, self.scope)
-        if isinstance(expression, Name) and found.cell is None and isinstance(found.value, Unknown):
-            raise undeclared(kind, expression, type_, self.scope)
+        evaluator = self.run.evaluator
+        found = evaluator.locate(expression, self.scope)
         use = f"the {kind} of {self.bound.text}"
-        self.run.evaluator.check_located(found, type_, use, expression.span)
+        unknown = None if found.source is not None else find_unknown(found.value)
+        if unknown is not None:
+            if isinstance(expression, Name) and found.cell is None and not expression.path:
+                reason = undeclared(kind, expression, type_, self.scope)
+                known = named_by_number(expression.name, type_)
+                unknown = Unknown(reason, expression.span, expression.text, known)
+                found = replace(found, value=unknown)
+            if nominal(found.value, type_) is None:
+                raise NotDriven(f"{use} depends on {unknown.reason}{answerable(unknown)}")
+            value = evaluator.assumed(found.value, type_, use, expression.span)
+            found = replace(found, value=value, cell=None)
+        evaluator.check_located(found, type_, use, expression.span)
         return found
 
     def _tool(self) -> Tool:
@@ -194,8 +216,16 @@ class _MoveReader:
     def _option(self, name: str) -> float | None:
         if name not in self.bound.options:
             return None
-        use = f"{self.bound.text} \\{name.upper()}"
-        return self.run.evaluator.number(self.bound.option(name), self.scope, use)
+        use, evaluator = f"{self.bound.text} \\{name.upper()}", self.run.evaluator
+        expression = self.bound.option(name)
+        unknown = find_unknown(evaluator.evaluate(expression, self.scope))
+        if unknown is not None:
+            evaluator.answers.assumed(
+                expression.span,
+                f"{use} depends on {unknown.reason}: it is left out{answerable(unknown)}",
+            )
+            return None
+        return evaluator.number(expression, self.scope, use)
 
     def _speed(self) -> tuple[Speed, MovePart]:
         expression = self.bound.named("Speed")
@@ -209,7 +239,7 @@ class _MoveReader:
         settings = self.run.settings.now
         limit = settings.greatest_tcp
         capped = limit is not None and speed.tcp is not None and speed.tcp >= limit / PER_METRE
-        if settings.override == 1.0 and not capped:
+        if settings.speed_factor == 1.0 and not capped:
             return speed, part
         # Under VelSet the number in the text is not the speed: derived.
         for source in filter(None, part.sources):
@@ -254,17 +284,12 @@ def _part_of(span: Span, source: Literal | None, predefined: str | None = None) 
     return MovePart(span, () if source is None else (source,), predefined)
 
 
-def _refuse_options(bound: Bound) -> None:
-    reasons = {
-        "corr": "corrections from sensors come at run time",
-        "id": "synchronised robots (MultiMove) are not emulated",
-    }
-    for option, reason in reasons.items():
-        if option in bound.options:
-            raise SourceError(
-                f"{bound.text} \\{option.upper()}: {reason}; take the argument out",
-                bound.option_spans[option],
-            )
+_LEFT_OUT = {
+    "corr": "corrections from a sensor come at run time: the move is driven as it is programmed",
+    "id": "moves that other robots make at the same time (MultiMove) are not at hand: this robot "
+    "drives alone, at its own speed",
+}
+"""What an option asks for that is not emulated."""
 
 
 def _datum_name(found: Located, expression: Expression) -> str | None:
@@ -321,18 +346,22 @@ def drive(
     scope: Scope,
     events: tuple[Event, ...] = (),
     bound: Bound | None = None,
-) -> Record:
+) -> Record | None:
     """Carry a move instruction out.
 
     Args:
         bound: its arguments, if somebody has bound them already.
 
     Returns:
-        Its target.
+        Its target; None if nobody knows it: then the move is left out.
     """
     if bound is None:
         bound = bind_move(invoke, form)
-    move, parts, record = read_move(run, form, bound, scope, events)
+    try:
+        move, parts, record = read_move(run, form, bound, scope, events)
+    except NotDriven as left_out:
+        run.leave_out(invoke, str(left_out))
+        return None
     reads = run.evaluator.reads
     for part in (parts.target, parts.speed, parts.zone, parts.via):
         for source in filter(None, part.sources if part is not None else ()):
@@ -350,17 +379,13 @@ def _note_singularity(run: MovesRun, form: Form, bound: Bound) -> None:
     mode = run.settings.now.singularity
     if mode == "off" or form.kind not in ("linear", "circular"):
         return
-    name = {"wrist": "Wrist", "lockaxis4": "LockAxis4"}[mode]
-    if mode == "lockaxis4":
-        raise SourceError(
-            f"{bound.text} under SingArea \\{name} keeps axis 4 in place, which is not emulated: "
-            "use SingArea \\Off or \\Wrist",
-            bound.span,
-        )
+    turned = {
+        "wrist": "\\Wrist lets the controller turn the tool a little off between the points",
+        "lockaxis4": "\\LockAxis4 keeps axis 4 in place, and turns the tool for it",
+    }
     run.out.notes.once(
         "singularity",
-        f"SingArea \\{name} lets the controller turn the tool a little off between the points; it "
-        "is emulated as \\Off, with the programmed orientation",
+        f"SingArea {turned[mode]}; it is emulated as \\Off, with the programmed orientation",
         bound.span,
     )
 
@@ -369,10 +394,12 @@ def _arc_orientation(run: MovesRun, bound: Bound) -> ArcOrientation:
     arc = run.settings.now.arc
     if isinstance(arc, ArcOrientation):
         return arc
-    raise SourceError(
-        f"{bound.text} under CirPathMode \\{arc} is not emulated: use \\PathFrame or \\ObjectFrame",
+    run.out.notes.once(
+        "arc",
+        f"CirPathMode \\{arc} is not emulated: the tool turns on arcs as with \\PathFrame",
         bound.span,
     )
+    return ArcOrientation.FOLLOWS_ARC
 
 
 MOVES: dict[str, MovesHandler] = dict.fromkeys(FORMS, _plain)

@@ -18,8 +18,9 @@ class Settings:
         singularity: ``off``, ``wrist`` or ``lockaxis4``.
         acceleration: share of the robot's own, in (0, 1].
         ramp: share of the robot's own jerk, in (0, 1].
-        tcp_acceleration: limit, m/s².
-        override: factor on programmed speeds.
+        path_acceleration, world_acceleration: limits of the TCP's, m/s² (PathAccLim, WorldAccLim).
+        override: factor on programmed speeds (VelSet).
+        refreshed: another one (SpeedRefresh).
         greatest_tcp: limit on the TCP's speed, mm/s.
         load: carried by the gripper.
         displacement: program displacement, in the object frame.
@@ -32,13 +33,26 @@ class Settings:
     singularity: str = "off"
     acceleration: float = 1.0
     ramp: float = 1.0
-    tcp_acceleration: float | None = None
+    path_acceleration: float | None = None
+    world_acceleration: float | None = None
     override: float = 1.0
+    refreshed: float = 1.0
     greatest_tcp: float | None = None
     load: Load | None = None
     displacement: Pose | None = None
     offsets: tuple[float, ...] | None = None
     arc: ArcOrientation | str = ArcOrientation.FOLLOWS_ARC
+
+    @property
+    def tcp_acceleration(self) -> float | None:
+        """The smaller limit of the TCP's acceleration, m/s²; None for none."""
+        limits = (self.path_acceleration, self.world_acceleration)
+        return min((a for a in limits if a is not None), default=None)
+
+    @property
+    def speed_factor(self) -> float:
+        """On programmed speeds."""
+        return self.override * self.refreshed
 
 
 @dataclass(slots=True)

@@ -1,8 +1,7 @@
 """Instructions that set what holds for all moves until it is changed.
 
 "RAPID Reference Manual", instructions ConfJ, ConfL, SingArea, AccSet, VelSet, PathAccLim,
-WorldAccLim, CirPathMode, GripLoad, PDispSet. What would change the motion in a way that this
-reader has no words for is refused by name, as soon as it is set to anything but its default.
+WorldAccLim, SpeedRefresh, CirPathMode, GripLoad, PDispSet.
 """
 
 from __future__ import annotations
@@ -18,9 +17,9 @@ from ....core.spatial.pose import Pose
 from ..syntax.tree import Expression, Invoke
 from ..values.arguments import Bound, bind
 from ..values.evaluator import Evaluator
-from ..values.records import UNUSED_AXIS
+from ..values.records import UNUSED_AXIS, VMAX
 from ..values.scope import Scope
-from ..values.types import BOOL, EXTJOINT, POSE, ROBTARGET, find_unknown
+from ..values.types import BOOL, EXTJOINT, POSE, ROBTARGET, answerable, find_unknown
 from .kinematics import RobotFunctions
 from .settings import SettingsInForce
 from .targets import Converter
@@ -80,7 +79,7 @@ def _sing_area(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
 def _acc_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     bound = bind(invoke, ("Acc", "Ramp"), ("finepointramp",))
     acceleration = _percent(run, bound, 0, scope)
-    ramps = [bound.number(run.evaluator, 1, scope)]
+    ramps = [_number(run, bound, 1, 100.0, scope)]
     if "finepointramp" in bound.options:
         fine = bound.option("finepointramp")
         ramps.append(run.evaluator.number(fine, scope, "AccSet \\FinePointRamp"))
@@ -100,14 +99,25 @@ def _acc_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
 def _vel_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     bound = bind(invoke, ("Override", "Max"), ())
     override = _percent(run, bound, 0, scope)
-    greatest = bound.number(run.evaluator, 1, scope)
+    greatest = _number(run, bound, 1, VMAX[0], scope)
     if greatest <= 0:
         raise SourceError(f"VelSet: the greatest speed is above zero, not {greatest:g}", bound.span)
     run.settings.now = replace(run.settings.now, override=override / 100, greatest_tcp=greatest)
 
 
+def _number(run: SettingsRun, bound: Bound, index: int, otherwise: float, scope: Scope) -> float:
+    """A num; ``otherwise`` where it is not known."""
+    expression = bound.value(index)
+    unknown = find_unknown(run.evaluator.evaluate(expression, scope))
+    if unknown is None:
+        return bound.number(run.evaluator, index, scope)
+    message = f"{bound.text} depends on {unknown.reason}: {otherwise:g} is taken"
+    run.evaluator.answers.assumed(expression.span, message + answerable(unknown))
+    return otherwise
+
+
 def _percent(run: SettingsRun, bound: Bound, index: int, scope: Scope) -> float:
-    value = bound.number(run.evaluator, index, scope)
+    value = _number(run, bound, index, 100.0, scope)
     if not 0 < value <= 100:
         raise SourceError(f"{bound.text}: a percentage is in (0, 100], not {value:g}", bound.span)
     return value
@@ -130,7 +140,7 @@ def _path_acc_lim(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
             "taken for both",
             bound.span,
         )
-    run.settings.now = replace(run.settings.now, tcp_acceleration=min(limits, default=None))
+    run.settings.now = replace(run.settings.now, path_acceleration=min(limits, default=None))
 
 
 def _cir_path_mode(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
@@ -211,23 +221,34 @@ def _eoffs_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     run.settings.now = replace(run.settings.now, offsets=offsets)
 
 
-def _only_off(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
-    """Settings that may be switched off, which they are at the start."""
-    if [a.option for a in invoke.arguments] != ["off"]:
-        raise SourceError(
-            f"{invoke.text} other than \\Off changes the motion and is not emulated: take it out",
-            invoke.span,
+def _world_acc_lim(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    r"""``WorldAccLim \On := limit`` (m/s²) or ``\Off``"""
+    bound = bind(invoke, (), ("on", "off"))
+    limit = None
+    if "off" not in bound.options:
+        limit = run.evaluator.number(bound.option("on"), scope, "WorldAccLim \\On")
+        if limit <= 0:
+            raise SourceError("WorldAccLim: the limit is above zero", bound.span)
+        run.out.notes.once(
+            "worldacclim",
+            "WorldAccLim limits the TCP's acceleration in the world; it is taken as one along the "
+            "path, as PathAccLim's",
+            bound.span,
         )
+    run.settings.now = replace(run.settings.now, world_acceleration=limit)
 
 
 def _speed_refresh(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
+    """``SpeedRefresh percent``: from the move under way on; here from the next one."""
     bound = bind(invoke, ("Override",), ())
-    if bound.number(run.evaluator, 0, scope) != 100:
-        raise SourceError(
-            "SpeedRefresh changes the speed while the robot moves and is not emulated: take it "
-            "out, or scale with VelSet before the move",
-            invoke.span,
-        )
+    percent = _number(run, bound, 0, 100.0, scope)
+    if not 0 <= percent <= 100:
+        raise SourceError(f"SpeedRefresh takes 0 to 100 percent, not {percent:g}", bound.span)
+    if percent == 0:
+        why = "it holds the robot until another one comes; it is taken as not there"
+        run.out.notes.count(f"SpeedRefresh 0: {why}", bound.span)
+        return
+    run.settings.now = replace(run.settings.now, refreshed=percent / 100)
 
 
 SETTINGS: dict[str, SettingsHandler] = {
@@ -245,6 +266,6 @@ SETTINGS: dict[str, SettingsHandler] = {
     "eoffsset": _eoffs_set,
     "eoffson": _eoffs_on,
     "eoffsoff": _none("offsets"),
-    "worldacclim": _only_off,
+    "worldacclim": _world_acc_lim,
     "speedrefresh": _speed_refresh,
 }

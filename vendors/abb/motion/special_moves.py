@@ -1,8 +1,9 @@
 """Moves that a signal, external axes or a process take part in: SearchL, MoveExtJ, ArcL, SpotL.
 
-"RAPID Reference Manual", instructions SearchL, SearchC, MoveExtJ; the application manuals of arc
-welding, spot welding, dispensing and painting for the instructions of option packages. Those are
-read as the moves that they are; what their process data do to the motion is not emulated.
+"RAPID Reference Manual", instructions SearchL, SearchC, SearchExtJ, MoveExtJ; the application
+manuals of arc welding, spot welding, dispensing, painting, force control, SoftMove and externally
+guided motion for the instructions of option packages. Those are read as the moves that they are;
+what their process data do to the motion is not emulated.
 """
 
 from __future__ import annotations
@@ -13,8 +14,8 @@ from ....core.errors import SourceError
 from ....core.program.event import Event
 from ..syntax.tree import Invoke, Name
 from ..values.scope import Scope, Variable
-from ..values.types import ROBTARGET
-from .moves import Form, MovesHandler, MovesRun, bind_move, drive
+from ..values.types import JOINTTARGET, ROBTARGET, Unknown
+from .moves import OVER_POINT, TO_POINT, Form, MovesHandler, MovesRun, bind_move, drive
 
 # --------------------------------------------------------------------------- searches
 
@@ -30,7 +31,11 @@ _SEARCHES = {
         ("Signal", "SearchPoint", "CirPoint", "ToPoint", "Speed", "Tool"),
         (*_STOPS, *_FLANKS),
     ),
+    "searchextj": Form(
+        "external", ("Signal", "SearchPoint", "ToJointPos", "Speed"), (*_STOPS, *_FLANKS)
+    ),
 }
+"""They end where the search does, at a stop."""
 
 
 _FOUND = "what the search finds"
@@ -47,8 +52,8 @@ def _search(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     point = bound.named("SearchPoint")
     cell = run.evaluator.cell(point, scope) if isinstance(point, Name) else None
     if cell is None or cell.constant or not isinstance(point, Name):
-        raise SourceError(f"{invoke.text} needs a robtarget to put its point in", point.span)
-    end = bound.named("ToPoint")
+        raise SourceError(f"{invoke.text} needs a datum to put its point in", point.span)
+    end = bound.named("ToJointPos" if form.kind == "external" else "ToPoint")
     answer = run.evaluator.answers.ask(point.span, cell.type)
     where = "at its end; answer the point if the program computes with it"
     if answer is not None:
@@ -57,12 +62,18 @@ def _search(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     inner = scope
     if answer is not None and any(option in bound.options for option in _STOPS):
         inner = scope.inner(scope.where)
-        inner.cells[_FOUND] = Variable(_FOUND, ROBTARGET, value=answer)
+        kind = JOINTTARGET if form.kind == "external" else ROBTARGET
+        inner.cells[_FOUND] = Variable(_FOUND, kind, value=answer)
         there = Name(end.span, _FOUND, point.text)
         bound = replace(bound, required=tuple(there if e is end else e for e in bound.required))
     event = Event(f"{invoke.text} {run.out.text_of(bound.named('Signal').span)}", span=invoke.span)
     reached = drive(run, form, invoke, inner, (event,), bound)
-    run.evaluator.assign(point, reached if answer is None else answer, scope)
+    found = reached if answer is None else answer
+    if found is None:
+        reason = f"where {invoke.text} finds {point.text}"
+        run.evaluator.fill(point, Unknown(reason, invoke.span, point.text), scope)
+    else:
+        run.evaluator.assign(point, found, scope)
 
 
 # --------------------------------------------------------------- external axes alone
@@ -77,47 +88,50 @@ def _external(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
 # ------------------------------------------------------------------- option packages
 
 _ARC = ("", "start", "end", "1", "2", "1start", "1end", "2start", "2end")
-_PROCESS_OPTIONS = (
-    *("on", "off", "start", "end", "weave", "track", "seamname", "servroutine", "optaction"),
-    *("time", "preproc", "num", "noconc", "retract", "openhlift", "closehlift", "qualityparam"),
-    *("d", "d1", "d2", "d3", "speedref", "ra", "movestart", "moveend", "t1", "t2", "t3", "t4"),
-    *("t5", "t6", "t7", "t8", "t9", "t10", "startoffset", "stopoffset", "adaptid", "simulate"),
-)
+_WITH_ZONE = ("arc", "arcadapt", "arccalc", "disp", "paint", "cut", "lasercut", "cap", "glue")
+_TO_A_STOP = ("spot", "spotm", "nut", "calib", "measurewear", "daprocm")
 
 
 def _shapes() -> dict[str, tuple[str, bool]]:
     shapes: dict[str, tuple[str, bool]] = {}
-    for family in ("arc", "disp", "paint", "cut", "lasercut", "cap", "glue"):
+    for family in _WITH_ZONE:
         for suffix in _ARC:
             shapes[f"{family}l{suffix}"] = ("linear", True)
             shapes[f"{family}c{suffix}"] = ("circular", True)
     for letter, kind in (("l", "linear"), ("j", "joint"), ("c", "circular")):
         shapes[f"arcmove{letter}"] = (kind, True)
-    for family in ("spot", "nut", "spotm", "calib"):
-        shapes[f"{family}l"] = ("linear", False)
-        shapes[f"{family}j"] = ("joint", False)
-    return shapes
+        for family in _TO_A_STOP:
+            shapes[f"{family}{letter}"] = (kind, False)
+    shapes |= dict.fromkeys(("fcpress1lstart", "fcpressl", "paintlsig"), ("linear", True))
+    shapes |= dict.fromkeys(("fcpressend", "cssdeactmovel"), ("linear", False))
+    return {**shapes, "fcpressc": ("circular", True), "arcmoveabsj": ("absolute", True)}
 
 
 _PROCESSES = _shapes()
 """name → kind of move, and whether a zone stands before the tool; the others go to a stop."""
 
+_HEADS = {
+    "circular": ("CirPoint", "ToPoint", "Speed"),
+    "absolute": ("ToJointPos", "Speed"),
+}
+
 
 def _process(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     """``ArcL ToPoint, Speed, Seam, Weld, Zone, Tool`` and its like.
 
-    Their process data stand between the speed and the zone, and are as many as they are.
+    Their process data stand between the speed and the zone, and are as many as they are; so are
+    their options.
     """
     kind, zone = _PROCESSES[invoke.name]
-    head = ("CirPoint", "ToPoint", "Speed") if kind == "circular" else ("ToPoint", "Speed")
+    head = _HEADS.get(kind, ("ToPoint", "Speed"))
     tail = ("Zone", "Tool") if zone else ("Tool",)
     count = sum(a.option is None for a in invoke.arguments)
     data = tuple(f"Data{number + 1}" for number in range(count - len(head) - len(tail)))
-    form = Form(kind, (*head, *data, *tail), _PROCESS_OPTIONS)
+    form = Form(kind, (*head, *data, *tail), _own_options(invoke))
     bound = bind_move(invoke, form)
     run.out.notes.count(
         f"{invoke.text} is read as a move at its programmed speed: process data (a weld's own "
-        "speed, weaving, waiting times) are not emulated",
+        "speed, weaving, forces, waiting times) are not emulated",
         invoke.span,
     )
     text = ",".join(run.out.text_of(bound.named(name).span) for name in data)
@@ -125,8 +139,34 @@ def _process(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     drive(run, form, invoke, scope, (event,), bound)
 
 
+def _own_options(invoke: Invoke) -> tuple[str, ...]:
+    return tuple(a.option for a in invoke.arguments if a.option is not None)
+
+
+# ------------------------------------------------------------- moves that sensors correct
+
+_GUIDED = {
+    "egmmovel": ("linear", ("EGMid", *TO_POINT)),
+    "egmmovec": ("circular", ("EGMid", *OVER_POINT)),
+    "contactl": ("linear", ("ToPoint", "Speed", "Tool")),
+}
+
+
+def _guided(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
+    """``EGMMoveL``, ``ContactL``: a sensor says how far off the path, or how far, it goes."""
+    kind, names = _GUIDED[invoke.name]
+    form = Form(kind, names, _own_options(invoke))
+    run.out.notes.count(
+        f"{invoke.text} is driven to its end as it is programmed: what a sensor changes of it is "
+        "not known",
+        invoke.span,
+    )
+    drive(run, form, invoke, scope)
+
+
 SPECIAL_MOVES: dict[str, MovesHandler] = {
     **dict.fromkeys(_SEARCHES, _search),
-    "moveextj": _external,
+    **dict.fromkeys(("moveextj", "arcmoveextj"), _external),
+    **dict.fromkeys(_GUIDED, _guided),
     **dict.fromkeys(_PROCESSES, _process),
 }

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
 import math
+import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, TypeVar
 
@@ -22,6 +24,7 @@ from ..values.records import (
     LOAD0,
     PER_METRE,
     UNUSED_AXIS,
+    VMAX,
     Record,
     check_speed,
     load_value,
@@ -31,7 +34,18 @@ from ..values.records import (
     zone_value,
 )
 from ..values.scope import Scope, unknown_name
-from ..values.types import LOADDATA, ORIENT, POSE, TOOLDATA, WOBJDATA, RecordType, Type, Value
+from ..values.types import (
+    LOADDATA,
+    ORIENT,
+    POSE,
+    SPEEDDATA,
+    TOOLDATA,
+    WOBJDATA,
+    ZONEDATA,
+    RecordType,
+    Type,
+    Value,
+)
 from .configuration import AbbConfiguration
 from .settings import SettingsInForce
 
@@ -56,10 +70,15 @@ class Converter:
     Args:
         external_axes: ``"linear"`` or ``"rotating"`` for eax_a, eax_b, … of the robot; None if
             the robot is not known.
+        robot: None if it is not known.
     """
 
     def __init__(
-        self, settings: SettingsInForce, notes: Notes, external_axes: Sequence[str] | None
+        self,
+        settings: SettingsInForce,
+        notes: Notes,
+        external_axes: Sequence[str] | None,
+        robot: Robot | None = None,
     ) -> None:
         for kind in external_axes or ():
             if kind not in AXIS_KINDS:
@@ -67,6 +86,8 @@ class Converter:
         self._settings = settings
         self._notes = notes
         self._axes = external_axes
+        self._robot = robot
+        self._standing: dict[int, float] = {}  # values of axes that the robot has not
         self._quaternions: dict[Span, float] = {}
         self._made: dict[tuple[object, ...], object] = {}
 
@@ -109,10 +130,24 @@ class Converter:
                 "ufprog is FALSE, so a mechanical unit moves the work object, but ufmec names none",
                 expression.span,
             )
+        if not value[1] and not self._carries(value[2]):
+            cell = _cell_axis(value[2], self._robot)
+            self._notes.once(
+                f"carrier of {name}",
+                f"work object {name} is moved by {value[2]} (a conveyor?), which the robot has "
+                f"not: it is taken to stand where it is declared{cell}",
+                expression.span,
+            )
+            value = (value[0], True, *value[2:])
         return self._cached(
             ("work object", name, value),
             lambda: self._made_of(work_object_value, value, WOBJDATA, name, expression.span),
         )
+
+    def _carries(self, unit: str) -> bool:
+        """Whether the robot has an external axis of that name, or nobody knows."""
+        robot = self._robot
+        return robot is None or any(axis.name == unit for axis in robot.external_axes)
 
     def load(self, evaluator: Evaluator, expression: Expression, scope: Scope) -> Load | None:
         """A loaddata; None for ``load0``."""
@@ -182,7 +217,7 @@ class Converter:
         self._guard(span, lambda: check_speed(record, tcp, duration))
         v_tcp, v_ori, v_leax, v_reax = record
         programmed = (v_tcp if tcp is None else tcp, v_ori, v_leax, v_reax)
-        scaled = [v * settings.override for v in programmed]
+        scaled = [v * settings.speed_factor for v in programmed]
         if settings.greatest_tcp is not None:
             scaled[0] = min(scaled[0], settings.greatest_tcp)
         changed = duration is not None or tuple(scaled) != record
@@ -198,7 +233,7 @@ class Converter:
                 tcp_acceleration=settings.tcp_acceleration,
                 joint_acceleration_fraction=settings.acceleration,
                 jerk_fraction=settings.ramp,
-                duration=None if duration is None else duration / settings.override,
+                duration=None if duration is None else duration / settings.speed_factor,
                 name=None if changed else name,
             ),
         )
@@ -276,13 +311,9 @@ class Converter:
         if self._axes is None:
             return self._external_of_unknown_robot(extax, used, span)
         count = len(self._axes)
-        for number, value in enumerate(extax[count:], count):
-            if used[number] and value != 0:
-                raise SourceError(
-                    f"external axis eax_{'abcdef'[number]} is sent to {value:g}, but the robot has "
-                    f"{count} external axes",
-                    span,
-                )
+        for number in range(count, len(extax)):
+            if used[number]:
+                self._stands(number, extax[number], span)
         last = max((i for i in range(count) if used[i]), default=-1)
         if not all(used[: last + 1]):
             raise SourceError(
@@ -295,6 +326,27 @@ class Converter:
             extax[i] / PER_METRE if kinds[i] == "linear" else math.radians(extax[i])
             for i in range(last + 1)
         )
+
+    def _stands(self, number: int, value: float, span: Span) -> None:
+        """An axis that the robot has not, which must stay where it is."""
+        axis = f"eax_{'abcdef'[number]}"
+        stands = self._standing.setdefault(number, value)
+        if value != stands:
+            assert self._axes is not None
+            raise SourceError(
+                f"external axis {axis} is moved from {stands:g} to {value:g}, and the robot has "
+                f"{len(self._axes)} external axes{_cell_axis(axis, self._robot)}; if the arm has "
+                f"seven joints (IRB 14000 YuMi, IRB 14050), {axis} is one of them, and arms of "
+                "seven joints are not driven by RAPID programs here",
+                span,
+            )
+        if value != 0:
+            self._notes.once(
+                f"external axis {number}",
+                f"external axis {axis} is sent to {value:g}, and the robot has none of that "
+                "number: it is taken to stand there throughout, and left out",
+                span,
+            )
 
     def _external_of_unknown_robot(
         self, extax: Sequence[float], used: Sequence[bool], span: Span
@@ -353,6 +405,16 @@ def _quaternion(orient: Record) -> Quaternion:
     return (w, x, y, z)
 
 
+def _cell_axis(name: str, robot: Robot | None) -> str:
+    """What to write into a cell file for an external axis, to stand at the end of a message."""
+    arm = "vendor/robot" if robot is None else robot.name
+    return (
+        f'; to drive it, give a cell file ({spelt("cell")}): robot = "{arm}", '
+        f'[external_axis.{name}] with role = "table" or "track", kind = "revolute" or '
+        '"prismatic", axis, pose, range, speed and acceleration'
+    )
+
+
 def axis_kinds(robot: Robot | None) -> tuple[str, ...] | None:
     """How RAPID counts the robot's external axes, eax_a first; None without a robot to ask."""
     if robot is None:
@@ -363,13 +425,39 @@ def axis_kinds(robot: Robot | None) -> tuple[str, ...] | None:
     return tuple("linear" if kind is JointKind.PRISMATIC else "rotating" for kind in axes)
 
 
-def undeclared(kind: str, name: Name, type_: Type, scope: Scope) -> SourceError:
-    """The error that a datum of a move is not declared, with the nearest of its type."""
+_ALIKE = 0.85
+"""Share of its letters in which a name is like another one by mistake."""
+
+
+def undeclared(kind: str, name: Name, type_: Type, scope: Scope) -> str:
+    """That a datum of a move is not declared, with the nearest of its type.
+
+    Raises:
+        SourceError: it looks like one of them, mistyped; names that differ in their numbers do not.
+    """
     known: list[str] = []
     for inner in scope.outwards():
         known += [cell.name for cell in inner.cells.values() if cell.type == type_]
-    otherwise = (
-        "declare it, name the file that declares it, or put it beside this one, or answer it in a "
-        f"file ({spelt('answers')}): [values] {name.text} = …"
-    )
-    return SourceError(unknown_name(kind, name.text, known, otherwise), name.span)
+    otherwise = "declare it, name the file that declares it, or put it beside this one"
+    message = unknown_name(kind, name.text, known, otherwise)
+    folded = [other.lower() for other in known]
+    mistyped = difflib.get_close_matches(name.name, folded, 1, _ALIKE)
+    if mistyped and _DIGITS.sub("", mistyped[0]) != _DIGITS.sub("", name.name):
+        raise SourceError(message, name.span)
+    return message
+
+
+_DIGITS = re.compile(r"[0-9]+")
+_BY_NUMBER = re.compile(r"(?P<kind>[vz])(?P<number>[0-9]{1,4})")
+
+
+def named_by_number(name: str, type_: Type) -> Record | None:
+    """What a speed or zone that nobody declares says by its name: ``v250``, ``z25``."""
+    found = _BY_NUMBER.fullmatch(name)
+    if found is None or type_ is not {"v": SPEEDDATA, "z": ZONEDATA}[found["kind"]]:
+        return None
+    number = float(found["number"])
+    if type_ is SPEEDDATA:
+        return (number, *VMAX[1:])
+    around = 1.5 * number
+    return (False, number, around, around, around / 10, around, around / 10)

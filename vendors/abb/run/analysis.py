@@ -6,16 +6,19 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.steps import NOTHING, Exit, Step
+from ....core.source.text.lexer import words
 from ..syntax import tree
 from ..syntax.traversal import calls_in, expressions_of, names_in
 from ..values.data import Globals
 from ..values.outputs import WRITING
 from ..values.scope import NOWHERE, Home
-from .instructions import KEPT, MOVING
+from .instructions import INTERPRETED, MOVING
+from .kept import KEPT
 
 _HALTING = frozenset({"stop", "systemstopaction"})
 _ENDING = frozenset({"exit", "raise"})
-_STEPPING = frozenset({"incr", "decr", "add", "clear", "bitset", "bitclear", "getdataval"})
+_LEAVING = frozenset({"exitcycle", "errraise", "raisetouser"})
+_STEPPING = words("incr decr add clear bitset bitclear getdataval getsysdata bookerrno")
 _WRITING_FUNCTIONS = frozenset({"strtoval", "getnextsym", "readdir"})
 
 
@@ -139,6 +142,7 @@ class RapidTree:
             writes = given.union(self._handed(name, statement.arguments, home))
             return Step(writes=writes, made_of=names, outputs=handed, calls=calls, asks=True)
         filled = name in _STEPPING or (name in KEPT and KEPT[name].writes)
+        filled = filled or (name not in INTERPRETED and name not in KEPT)  # by nobody knows what
         return Step(
             moves=name in MOVING,
             writes=handed | given if filled else given,
@@ -146,7 +150,7 @@ class RapidTree:
             outputs=handed if name in WRITING else NOTHING,
             calls=functions,
             asks=bool(functions),
-            exit=Exit.PROGRAM if name == "exitcycle" else None,
+            exit=Exit.PROGRAM if name in _LEAVING else None,
             halts=name in _HALTING,
         )
 

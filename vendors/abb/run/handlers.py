@@ -35,6 +35,9 @@ class Running(Protocol):
     def finish(self, message: str, span: Span) -> NoReturn:
         """End the program here, with a note."""
 
+    def book_error(self) -> float:
+        """A number for an error of the program's own."""
+
 
 KeepingHandler = Callable[[Keeping, Invoke, Scope], None]
 RunningHandler = Callable[[Running, Invoke, Scope], None]

@@ -1,13 +1,13 @@
 """Every instruction that the reader knows by name: interpreted, kept as it stands, or refused.
 
-An instruction that is in none of the tables, and no routine of the program, is refused: it might
-move the robot.
+An instruction that is in none of the tables, and no routine of the program, is stepped over with a
+note: what it does is not known.
 """
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Protocol
 
 from ....core.errors import InputError, SourceError
@@ -17,15 +17,26 @@ from ..motion.moves import MOVES, MovesRun
 from ..motion.settings_instructions import SETTINGS, SettingsRun
 from ..motion.special_moves import SPECIAL_MOVES
 from ..motion.triggers import TRIGGER_DEFINITIONS, TRIGGER_MOVES
-from ..syntax.tree import Expression, Invoke, Name
+from ..syntax.tree import Call, Expression, Invoke, Name
 from ..values.arguments import bind
 from ..values.data import Globals
+from ..values.errors import ProgramError
 from ..values.evaluator import Evaluator
 from ..values.operators import OperandError, apply
 from ..values.scope import Scope, unknown_name
 from ..values.text_functions import with_bit
-from ..values.types import NUM, STRING, Unknown, Value, find_unknown, mismatch
+from ..values.types import (
+    NUM,
+    STRING,
+    TOOLDATA,
+    WOBJDATA,
+    Unknown,
+    Value,
+    find_unknown,
+    mismatch,
+)
 from .handlers import Keeping, Running
+from .kept import KEPT, REFUSED
 from .signals import SIGNALS
 from .waits import WAIT_UNTIL, wait_until
 
@@ -35,124 +46,6 @@ class InstructionRun(MovesRun, SettingsRun, Keeping, Running, Protocol):
 
 
 Handler = Callable[[InstructionRun, Invoke, Scope], None]
-
-
-@dataclass(frozen=True, slots=True)
-class Kept:
-    """An instruction that stays in the program as it stands and is stepped over.
-
-    Args:
-        why: what it does, for the note; empty if nothing needs to be said.
-        stops: the robot comes to rest before it, or waits in it.
-        writes: data that it names get values that only the running controller has.
-    """
-
-    why: str
-    stops: bool = False
-    writes: bool = False
-
-
-_IO = Kept("I/O does not move the robot")
-_MESSAGE = Kept("messages and files do not move the robot")
-_INPUT = Kept("what it brings is not known", stops=True, writes=True)
-_CAMERA = Kept("cameras do not move the robot")
-_CLOCK = Kept("clocks do not move the robot")
-_INTERRUPT = Kept("interrupts are not emulated: their trap routines do not run")
-_WAITING = Kept("taken as satisfied at once: waiting takes no time here", stops=True)
-_HALT = Kept("taken as continued at once: waiting takes no time here", stops=True)
-_SUPERVISION = Kept("supervision does not change the programmed motion")
-_FILL = Kept("what it computes is not known", writes=True)
-
-
-_SERVO = Kept("how stiffly the servos follow is not emulated")
-_UNIT = Kept("switching a mechanical unit on or off does not move it", stops=True)
-_RESUMED = Kept("the stop is taken as resumed at once", stops=True)
-_TASK = Kept("other tasks are taken to be there at once", stops=True)
-_SENSOR = Kept("sensor-guided motion is prepared, and refused where it begins")
-_DATA = Kept("what it does to the trigger data is not carried out")
-_ZONES = Kept("supervision of zones does not change the programmed motion")
-_GRIPPER = Kept("a gripper's own motion is not emulated")
-_WEAVE = Kept("process equipment does not change the programmed motion")
-
-
-def _kept(kept: Kept, names: str) -> dict[str, Kept]:
-    return dict.fromkeys(words(names), kept)
-
-
-KEPT: dict[str, Kept] = {
-    **_kept(_IO, "set reset setdo setao setgo pulsedo invertdo ioenable iodisable"),
-    **_kept(_IO, "aliasio aliasioreset"),
-    **_kept(_MESSAGE, "tpwrite tperase tpshow errwrite errlog uishow uimsgwrite open close write"),
-    **_kept(_MESSAGE, "uimsgwriteabort writebin writestrbin writeanybin writerawbytes rewind"),
-    **_kept(_MESSAGE, "removefile renamefile copyfile makedir removedir opendir closedir"),
-    **_kept(_MESSAGE, "spywrite spystart spystop load unload save erasemodule"),
-    **_kept(_MESSAGE, "socketcreate socketbind socketlisten socketclose socketsend"),
-    **_kept(_MESSAGE, "rmqsendmessage rmqemptyqueue rmqfindslot"),
-    **_kept(_INPUT, "tpreadfk tpreadnum tpreaddnum uimsgbox readanybin readrawbytes readblock"),
-    **_kept(_INPUT, "socketaccept socketconnect socketreceive rmqreadwait"),
-    **_kept(_CAMERA, "camflush camloadjob camreqimage camsetexposure camsetparameter"),
-    **_kept(_CAMERA, "camsetprogrammode camsetrunmode camstartloadjob camwaitloadjob"),
-    **_kept(_INPUT, "camgetparameter camgetresult"),
-    **_kept(_CLOCK, "clkstart clkstop clkreset"),
-    **_kept(_INTERRUPT, "connect idelete idisable ienable isleep iwatch itimer ierror ipers"),
-    **_kept(_INTERRUPT, "irmqmessage isignaldi isignaldo isignalai isignalao isignalgi isignalgo"),
-    **_kept(_WAITING, "waituntil waitdi waitdo waitai waitao waitgi waitgo waittestandset"),
-    **_kept(_WAITING, "waitload"),
-    **_kept(Kept("", stops=True), "waitrob"),
-    **_kept(_HALT, "stop break"),
-    **_kept(_SUPERVISION, "motionsup cornerpathwarning bookerrno seterrno skipwarn setsysdata"),
-    **_kept(_SUPERVISION, "tunereset softdeact eoffsoff corrclear corrdiscon clearpath"),
-    **_kept(_SUPERVISION, "resetretrycount procerrrecovery"),
-    **_kept(_FILL, "getsysdata gettrapdata setdatasearch packrawbytes unpackrawbytes"),
-    **_kept(_FILL, "clearrawbytes copyrawbytes readcfgdata readerrdata"),
-    **_kept(_SERVO, "softact tuneservo pathresol mechunitload motionprocessmodeset"),
-    **_kept(_UNIT, "actunit deactunit"),
-    **_kept(_RESUMED, "stopmove startmove stopmovereset startmoveretry"),
-    **_kept(_TASK, "waitsynctask"),
-    **_kept(_SENSOR, "egmsetupuc egmsetupai egmsetupgi egmsetupao egmreset egmgetid egmstop"),
-    **_kept(_SENSOR, "egmstreamstart egmstreamstop"),
-    **_kept(_DATA, "triggdatareset triggdatacopy triggstopproc"),
-    **_kept(_MESSAGE, "tpwritednum uiclientshow textabinstall texttabinstall errraise"),
-    **_kept(_ZONES, "wzboxdef wzcyldef wzspheredef wzsphdef wzlimjointdef wzhomejointdef"),
-    **_kept(_GRIPPER, "g_init g_calibrate g_jogin g_jogout g_gripin g_gripout g_moveto g_stop"),
-    **_kept(_GRIPPER, "g_setmaxspd g_setforce g_vacuumon1 g_vacuumoff1 g_vacuumon2 g_vacuumoff2"),
-    **_kept(_GRIPPER, "g_blowon1 g_blowoff1 g_blowon2 g_blowoff2 hand_initialize hand_moveto"),
-    **_kept(_GRIPPER, "hand_gripinward hand_gripoutward hand_jogin hand_jogout hand_stop"),
-    **_kept(_GRIPPER, "hand_setmaxspeed hand_setforce hand_docalibration hand_turnonvacuum1"),
-    **_kept(_GRIPPER, "hand_turnoffvacuum1 hand_turnonvacuum2 hand_turnoffvacuum2"),
-    **_kept(_MESSAGE, "socketsendto startload cancelload checkprogref testsigndefine tryint"),
-    **_kept(_MESSAGE, "testsignreset deleteobject clearioboff hotedit iomessage writevar"),
-    **_kept(_FILL, "rmqgetmessage rmqgetmsgdata rmqgetmsgheader readvararr readvar"),
-    **_kept(_INPUT, "socketreceivefrom readblock"),
-    **_kept(_ZONES, "wzdoset wzlimsup wzenable wzdisable wzfree"),
-    **_kept(_WEAVE, "arcrefresh arckill arcweldon arcweldoff spotcontrol setbrush setbrushfac"),
-}
-"""name → why and how it is kept."""
-
-_AT_RUN_TIME = "its course is decided by sensors or signals at run time"
-_TASKS = "motion of several robots that wait for each other (MultiMove) is not emulated"
-_STOPPING = "leaving a path and coming back to it is not emulated"
-
-
-def _refused(why: str, names: str) -> dict[str, str]:
-    return dict.fromkeys(words(names), why)
-
-
-REFUSED: dict[str, str] = {
-    **_refused(_AT_RUN_TIME, "searchextj corrcon corrwrite contactl egmactjoint egmactpose"),
-    **_refused(_AT_RUN_TIME, "indcmove indamove indrmove inddmove egmactmove supsyncsensoron"),
-    **_refused(_AT_RUN_TIME, "egmrunjoint egmrunpose egmmovel egmmovec synctosensor waitsensor"),
-    **_refused(_TASKS, "syncmoveon syncmoveoff syncmoveundo syncmovesuspend syncmoveresume"),
-    **_refused("conveyors are not emulated", "waitwobj dropwobj"),
-    **_refused(_STOPPING, "storepath restopath pathrecstart pathrecstop pathrecmovebwd"),
-    **_refused(_STOPPING, "pathrecmovefwd stepbwdpath"),
-    "movepnp": "pick-and-place moves are not read yet",
-    "systemstopaction": "it stops the controller",
-    "manloadidproc": "it moves the robot to measure a load",
-    "loadid": "it moves the robot to measure a load",
-    "paridposvalid": "it moves the robot to measure a load",
-}
-"""name → why it is refused."""
 
 
 def _wait_time(run: Running, invoke: Invoke, scope: Scope) -> None:
@@ -248,6 +141,49 @@ def _call_by_var(run: Running, invoke: Invoke, scope: Scope) -> None:
     run.call_named(f"{name}{bound.number(run.evaluator, 1, scope):g}", (), scope, invoke.span)
 
 
+def _calibrate(run: Running, invoke: Invoke, scope: Scope) -> None:
+    """``MToolTCPCalib Pos1, …, Tool, MaxErr, MeanErr`` and its like: the tool stays as it is."""
+    why = "the tool keeps the value that it has, and how large the errors are is not known"
+    run.out.keep(invoke.span, invoke.text, why)
+    given = [a.value for a in invoke.arguments if a.option is None]
+    for error in given[-2:]:
+        if isinstance(error, Name) and scope.find(error.name) is not None:
+            reason = f"what {invoke.text} gave {error.text}"
+            run.evaluator.fill(error, Unknown(reason, invoke.span, error.text), scope)
+
+
+def _book_error(run: Running, invoke: Invoke, scope: Scope) -> None:
+    """``BookErrNo error``: the datum gets a number that no other error has."""
+    datum = bind(invoke, ("ErrorName",), ()).value(0)
+    if not isinstance(datum, Name):
+        raise SourceError("BookErrNo takes an errnum", datum.span)
+    run.evaluator.assign(datum, run.book_error(), scope)
+
+
+def _raise_error(run: Running, invoke: Invoke, scope: Scope) -> None:
+    """``ErrRaise "error", …`` and ``RaiseToUser \\ErrorNumber := error``"""
+    datum = invoke.arguments[0].value if invoke.arguments else None
+    named = None if datum is None else run.evaluator.evaluate(datum, scope)
+    if isinstance(named, str):
+        named = run.evaluator.evaluate(Name(invoke.span, named.lower(), named), scope)
+    number = named if isinstance(named, float) else 0.0
+    message = f"{invoke.text}: no ERROR handler takes this error, and the program stops"
+    raise ProgramError(message, invoke.span, number)
+
+
+def _system_data(run: Running, invoke: Invoke, scope: Scope) -> None:
+    """``GetSysData datum``: the tool or the work object in force, as CTool and CWObj give them."""
+    datum = bind(invoke, ("DestObject",), ("objectname",)).value(0)
+    cell = scope.find(datum.name) if isinstance(datum, Name) else None
+    kind = cell.type.name if cell is not None else ""
+    call = {TOOLDATA.name: "CTool", WOBJDATA.name: "CWObj"}.get(kind)
+    if call is None or not isinstance(datum, Name):
+        run.out.keep(invoke.span, invoke.text, "what is in force is not known")
+        return
+    present = Call(invoke.span, call.lower(), call, ())
+    run.evaluator.assign(datum, run.evaluator.evaluate(present, scope), scope)
+
+
 def _exit_cycle(run: Running, invoke: Invoke, scope: Scope) -> None:
     bind(invoke, (), ())
     run.finish("ExitCycle ends the cycle: one cycle is read", invoke.span)
@@ -265,12 +201,17 @@ INTERPRETED: dict[str, Handler] = {
     "bitset": _set_bit,
     "bitclear": _set_bit,
     "waittime": _wait_time,
+    **dict.fromkeys(words("mtooltcpcalib mtoolrotcalib stooltcpcalib stoolrotcalib"), _calibrate),
     WAIT_UNTIL: wait_until,
     **SIGNALS,
     "incr": _step,
     "decr": _step,
     "clear": _step,
     "add": _step,
+    "bookerrno": _book_error,
+    "errraise": _raise_error,
+    "raisetouser": _raise_error,
+    "getsysdata": _system_data,
     "exitcycle": _exit_cycle,
 }
 
@@ -279,19 +220,32 @@ MOVING = frozenset({*MOVES, *TRIGGER_MOVES, *SPECIAL_MOVES})
 """Names of instructions that move the robot."""
 
 
-def refusal(statement: Invoke, data: Globals) -> SourceError:
-    """Why an instruction, or a routine whose text is not at hand, is not stepped over."""
-    reason = REFUSED.get(statement.name)
+_ALIKE = 0.85
+"""Share of its letters in which the name of a routine is like that of a move by mistake."""
+
+
+def refusal(statement: Invoke, data: Globals) -> str:
+    """That a routine whose text is not at hand is stepped over.
+
+    Raises:
+        SourceError: it is an instruction that is refused, or looks like a move that is mistyped.
+    """
+    name = statement.name
+    reason = REFUSED.get(name)
     if reason is not None:
-        return SourceError(f"{statement.text} is refused: {reason}", statement.span)
+        raise SourceError(f"{statement.text} is refused: {reason}", statement.span)
+    answer = f"answer '{statement.text} = \"skip\"' in the table [calls] of the answers"
+    mistyped = difflib.get_close_matches(name, MOVING, 1, _ALIKE)
+    if mistyped:
+        raise SourceError(
+            f"unknown instruction or routine '{statement.text}': did you mean {mistyped[0]}? If it "
+            f"is a routine that does not move the robot, {answer}",
+            statement.span,
+        )
     known = {*data.routine_names("proc"), *INTERPRETED, *KEPT, *REFUSED}
-    hint = data.hint(statement.name)
-    message = unknown_name(
-        "instruction or routine", statement.text, known, hint or "its text is not at hand"
-    )
-    return SourceError(
-        f"{message}; it might move the robot, so it is not stepped over: name the module that "
-        f"declares it, or, if it does not move the robot, answer '{statement.text} = \"skip\"' "
-        "in the table [calls] of the answers",
-        statement.span,
+    hint = data.hint(name) or "its text is not at hand"
+    message = unknown_name("instruction or routine", statement.text, known, hint)
+    return (
+        f"{message}: it is stepped over; name the module that declares it if it moves the robot, "
+        f"or {answer}"
     )

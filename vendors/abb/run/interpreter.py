@@ -30,15 +30,18 @@ from ..motion.position import Position
 from ..motion.settings import SettingsInForce
 from ..motion.targets import Converter
 from ..syntax import tree
-from ..values.changes import Snapshot
 from ..values.data import Globals
+from ..values.defaults import nominal
+from ..values.errors import BOOKED, NO_ROUTINE, NUMBERS, ProgramError
 from ..values.evaluator import Evaluator
-from ..values.scope import NOWHERE, Home, Scope, Variable, unknown_name
-from ..values.types import STRING, Unknown, Value, interpreted, mismatch
+from ..values.scope import NOWHERE, Home, Scope, Snapshot, Variable, unknown_name
+from ..values.types import STRING, Scalar, Unknown, Value, interpreted, mismatch
 from .analysis import RapidTree
 from .calls import pass_arguments, present
 from .flow import run_for, run_if, run_test, run_while
-from .instructions import INTERPRETED, KEPT, MOVING, REFUSED, refusal
+from .instructions import INTERPRETED, MOVING, refusal
+from .kept import KEPT, REFUSED
+from .recovery import Frame, Retry, TryNext, raised, recover
 
 
 class _Returned(Exception):
@@ -63,6 +66,9 @@ class Interpreter:
         texts: source texts by file, from which kept statements are cut.
         options: answers, limits and the robot.
         external_axes: see `Converter`.
+
+    Attributes:
+        left_out: the first move of which nobody knows the target, and why.
     """
 
     def __init__(
@@ -77,7 +83,7 @@ class Interpreter:
         self.out = Transcript(lambda span: texts[span.file][span.start : span.end])
         self.course = Course(options.answers)
         self.meter = Meter(options.limits, options.executed)
-        self.convert = Converter(self.settings, self.out.notes, external_axes)
+        self.convert = Converter(self.settings, self.out.notes, external_axes, options.robot)
         self.position = Position(options.robot, external_axes, options.start)
         self.functions = RobotFunctions(self.position, self.convert, self.settings)
         # Expressions call routines, which evaluate expressions: no reference holds the two
@@ -90,7 +96,9 @@ class Interpreter:
         self.analysis = Analysis(self.tree)
         self.flow: Flow[tree.Block] = Flow(self.analysis, host)
         self.place: object = None
-        self._scopes: list[Scope] = []
+        self._frames: list[Frame] = []
+        self._booked = 0
+        self.left_out: Note | None = None
         self._loops: dict[int, tree.Block] = {}  # bodies of loops that a GOTO closes, by its id
 
     # --------------------------------------------------------------------- the run
@@ -118,7 +126,7 @@ class Interpreter:
     @property
     def home(self) -> Home:
         """The module of the routine that is being run."""
-        return self._scopes[-1].home if self._scopes else NOWHERE
+        return self._frames[-1].scope.home if self._frames else NOWHERE
 
     @property
     def outputs(self) -> Outputs:
@@ -132,7 +140,7 @@ class Interpreter:
 
     def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
         """See `core.source.execution.flow.Host.snapshot`."""
-        scopes = [*self._scopes[-1].outwards()]
+        scopes = [*self._frames[-1].scope.outwards()]
         if names is None:
             scopes += self.data.scopes()
         found = [s.cells[n] for s in scopes for n in names or written if n in s.cells]
@@ -164,6 +172,12 @@ class Interpreter:
         if move.target != self.place:
             self.place = move.target
 
+    def leave_out(self, invoke: tree.Invoke, why: str) -> None:
+        """Step over a move that cannot be driven."""
+        self.out.keep(invoke.span, invoke.text, "", stops=True)
+        self.course.decided(invoke.span, f"{why}: the move is left out")
+        self.left_out = self.left_out or Note(why, span=invoke.span)
+
     def finish(self, message: str, span: Span) -> NoReturn:
         """End the program here, with a note."""
         self.out.notes.once("end", message, span)
@@ -181,6 +195,10 @@ class Interpreter:
                 index += 1
             except _Jump as jump:
                 index = self._after_jump(block, index, jump.goto, scope)
+            except ProgramError as error:
+                self.evaluator.reader = ELSEWHERE
+                if not recover(self, self._frames[-1], statements[index], error):
+                    index += 1
 
     def _after_jump(self, block: tree.Block, index: int, goto: tree.Goto, scope: Scope) -> int:
         """Index of the statement where a block goes on after a jump out of one of its statements.
@@ -253,12 +271,26 @@ class Interpreter:
             message = "statements that are not filled in (<SMT>) are stepped over"
             self.out.notes.count(message, statement.span)
             return
-        what = {
-            "raise": "RAISE hands an error to a handler, and error handlers are not run",
-            "retry": "RETRY stands outside an error handler",
-            "trynext": "TRYNEXT stands outside an error handler",
-        }
-        raise SourceError(what[statement.word], statement.span)
+        frame = self._frames[-1]
+        if statement.word == "raise":
+            raise raised(self, frame, statement, scope)
+        if frame.error is None:
+            word = statement.word.upper()
+            raise SourceError(f"{word} stands outside an error handler", statement.span)
+        raise Retry if statement.word == "retry" else TryNext
+
+    def book_error(self) -> float:
+        """A number for an error of the program's own."""
+        self._booked = min(self._booked + 1, BOOKED)
+        return float(self._booked)
+
+    def set_error(self, number: float) -> None:
+        """What ``ERRNO`` holds."""
+        self.data.errno.value = number
+
+    def leave(self) -> NoReturn:
+        """RETURN without a value."""
+        raise _Returned(None)
 
     def _connect(self, trap: tree.Routine, span: Span) -> None:
         """What a trap routine writes is not known from now on."""
@@ -292,12 +324,39 @@ class Interpreter:
         routine = None if name in REFUSED else self.fetched(statement, scope)
         if routine is not None:
             self._call(routine, statement.arguments, scope, statement.span)
-        elif self.course.skips(statement.text):
-            self.evaluator.outputs.forget()
+        else:
+            self._missing(statement, scope)
+
+    def _missing(self, statement: tree.Invoke, scope: Scope) -> None:
+        """Step over a routine whose text is not at hand, and that is no instruction.
+
+        Raises:
+            SourceError: it is an instruction that is refused, or looks like a slip of the pen.
+        """
+        if self.course.skips(statement.text):
             why = "it is skipped, as the answers say"
             self.out.keep(statement.span, statement.text, why)
         else:
-            raise refusal(statement, self.data)
+            message = refusal(statement, self.data)
+            self.out.keep(statement.span, statement.text, "")
+            self.course.decided(statement.span, message)
+            self._leave_open(statement, scope)
+        self.evaluator.outputs.forget()
+
+    def _leave_open(self, statement: tree.Invoke, scope: Scope) -> None:
+        """Nobody knows what a routine that is not at hand makes of the data that it is given."""
+        for argument in statement.arguments:
+            name = argument.value
+            cell = scope.find(name.name) if isinstance(name, tree.Name) else None
+            if cell is None or cell.constant or not isinstance(cell.type, Scalar):
+                continue
+            assert isinstance(name, tree.Name)
+            if cell.dimensions and not name.path:
+                continue
+            reason = f"what {statement.text} may have made of {name.text}"
+            value = nominal(self.evaluator.evaluate(name, scope), cell.type)
+            unknown = Unknown(reason, statement.span, name.text, value)
+            self.evaluator.assign(name, unknown, scope)
 
     def fetched(self, statement: tree.Invoke, scope: Scope) -> tree.Routine | None:
         """A procedure of a module beside the program."""
@@ -365,7 +424,7 @@ class Interpreter:
                 self.evaluator.outputs.forget()
                 return
             known = self.data.routine_names("proc")
-            raise SourceError(unknown_name("routine", name, known), span)
+            raise ProgramError(unknown_name("routine", name, known), span, NUMBERS[NO_ROUTINE])
         self._call(routine, arguments, scope, span)
 
     def call_function(self, routine: tree.Routine, call: tree.Call, scope: Scope) -> Value:
@@ -391,10 +450,7 @@ class Interpreter:
             self.data.declare(declaration, scope)
         self.meter.call(routine.text, span)
         where, self.out.notes.where = self.out.notes.where, scope.where
-        self._scopes.append(scope)
-        if routine.handlers:
-            kinds = ", ".join(h.upper() for h in routine.handlers)
-            self.out.notes.once("handlers", f"handlers are not run: {kinds}", routine.span)
+        self._frames.append(Frame(routine, scope))
         try:
             with self.flow.routine():
                 self.run_block(self.tree.body(routine), scope)
@@ -407,7 +463,7 @@ class Interpreter:
         finally:
             self.meter.back()
             self.out.notes.where = where
-            self._scopes.pop()
+            self._frames.pop()
             for cell, target in back:
                 self._hand_back(cell, target, caller)
         return None

@@ -134,4 +134,6 @@ def _program(
     texts = {name: file.text for name, file in files.items()}
     run = Interpreter(data, texts, options, external_axes or axis_kinds(options.robot))
     run.run(entry)
+    if run.left_out is not None and not run.out.move_index:
+        raise SourceError(f"no move can be driven: {run.left_out.message}", run.left_out.span)
     return Program(run.statements(), data.module_of(entry).text, notes=(*notes, *run.notes()))

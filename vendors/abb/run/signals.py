@@ -84,5 +84,5 @@ SIGNALS: dict[str, KeepingHandler] = {
     "wzdoset": _supervised,
     **dict.fromkeys(words("waitdo waitao waitgo"), _waited),
     "aliasio": _alias,
-    **dict.fromkeys(words("aliasioreset iodisable clearioboff"), _unsettle),
+    **dict.fromkeys(words("aliasioreset iodisable cleariobuff clearioboff"), _unsettle),
 }

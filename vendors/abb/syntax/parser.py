@@ -14,7 +14,16 @@ from .cursor import Cursor
 from .expressions import parse_braces, parse_expression
 from .lexer import END, NAME, tokenize
 from .statements import parse_block
-from .tree import AliasDefinition, Declaration, Module, Parameter, RecordDefinition, Routine
+from .tree import (
+    AliasDefinition,
+    Declaration,
+    Expression,
+    Handler,
+    Module,
+    Parameter,
+    RecordDefinition,
+    Routine,
+)
 
 STORAGE = ("const", "var", "pers")
 HANDLERS = ("error", "undo", "backward")
@@ -125,7 +134,7 @@ def _routine(cursor: Cursor, start: int, local: bool) -> Routine:
     ends = frozenset({end, *HANDLERS})
     head = f"{kind.upper()} {text}"
     body = parse_block(cursor, ends, head, start)
-    handlers = _handlers(cursor, ends, head, start)
+    handler = _handler(cursor, ends, head, start)
     cursor.expect(end, f"to end {head}")
     return Routine(
         cursor.span_from(start),
@@ -136,22 +145,24 @@ def _routine(cursor: Cursor, start: int, local: bool) -> Routine:
         tuple(declarations),
         body,
         returns,
-        handlers,
+        handler,
         local,
     )
 
 
-def _handlers(cursor: Cursor, ends: frozenset[str], head: str, start: int) -> tuple[str, ...]:
-    """Handlers are checked for their form and left out of the tree."""
-    handlers = []
+def _handler(cursor: Cursor, ends: frozenset[str], head: str, start: int) -> Handler | None:
+    """The ERROR part; UNDO and BACKWARD are checked for their form and left out of the tree."""
+    handler = None
     while (kind := cursor.kind) in HANDLERS:
         cursor.advance()
+        numbers: tuple[Expression, ...] = ()
         if kind == "error" and cursor.accept("("):
-            cursor.listed(parse_expression)
+            numbers = cursor.listed(parse_expression)
             cursor.expect(")", "after the error numbers")
-        parse_block(cursor, ends, head, start)
-        handlers.append(kind)
-    return tuple(handlers)
+        body = parse_block(cursor, ends, head, start)
+        if kind == "error" and handler is None:
+            handler = Handler(numbers, body)
+    return handler
 
 
 def _parameters(cursor: Cursor) -> tuple[Parameter, ...]:

@@ -156,10 +156,9 @@ def _return(cursor: Cursor, start: int) -> tree.Return:
 def _word(cursor: Cursor, start: int) -> tree.Keyword:
     """``EXIT;``, ``RETRY;``, ``TRYNEXT;`` and ``RAISE`` with or without a number."""
     word = cursor.kinds[cursor.index - 1]
-    if word == "raise" and cursor.kind != ";":
-        parse_expression(cursor)
+    value = parse_expression(cursor) if word == "raise" and cursor.kind != ";" else None
     cursor.expect(";", f"after {word.upper()}")
-    return tree.Keyword(cursor.span_from(start), word)
+    return tree.Keyword(cursor.span_from(start), word, value=value)
 
 
 def _connect(cursor: Cursor, start: int) -> tree.Keyword:

@@ -178,9 +178,11 @@ class Keyword(nodes.Keyword):
 
     Args:
         name: of the trap routine that is connected, lower case.
+        value: the number that is raised.
     """
 
     name: str = ""
+    value: Expression | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,13 +225,25 @@ class Parameter(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Handler:
+    """``ERROR`` or ``ERROR (number, …)`` at the end of a routine.
+
+    Args:
+        numbers: the errors that it takes; empty for all.
+    """
+
+    numbers: tuple[Expression, ...]
+    body: Block
+
+
+@dataclass(frozen=True, slots=True)
 class Routine(Node):
     """A ``PROC``, ``FUNC`` or ``TRAP``.
 
     Args:
         kind: ``proc``, ``func`` or ``trap``.
         returns: type of a function's value.
-        handlers: which of ``error``, ``undo`` and ``backward`` it has; they are not kept.
+        handler: what its ERROR part runs; None if it has none. UNDO and BACKWARD are not kept.
         local: known in its own module only.
     """
 
@@ -240,7 +254,7 @@ class Routine(Node):
     declarations: tuple[Declaration, ...]
     body: Block
     returns: str | None = None
-    handlers: tuple[str, ...] = ()
+    handler: Handler | None = None
     local: bool = False
 
 

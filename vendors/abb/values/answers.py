@@ -41,6 +41,15 @@ class TypedAnswers:
             return None
         return _free(answer) if type_ is None else _typed(answer, type_, sizes, key, span)
 
+    def assumed(self, span: Span, message: str) -> None:
+        """Note what is taken where there is no answer."""
+        self._course.decided(span, message)
+
+    @property
+    def guessed(self) -> bool:
+        """Whether the program's course, or a value, was decided without an answer."""
+        return self._course.guessed
+
     def in_turn(self, span: Span) -> bool:
         """Whether the user answers the expression at a place in turn."""
         return self._course.changing(self.key(span))

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from ....core.errors import Note, SourceError, Span
 from ..syntax.tree import AliasDefinition, Declaration, Module, RecordDefinition, Routine
 from .library import Library
-from .predefined import CONSTANTS, RECORDS, USER_CLOCK, USER_NUMBERS
+from .predefined import CONSTANTS, ERRNO, RECORDS, USER_CLOCK, USER_NUMBERS
 from .scope import Home, Scope, Variable
 from .types import BUILT_IN, NUM, Foreign, RecordType, Type, Unknown
 
@@ -23,6 +23,9 @@ class Globals:
         modules: loaded from the beginning.
         library: modules that are taken in when they are needed.
 
+    Attributes:
+        errno: holds the error that a handler is run for.
+
     Raises:
         SourceError: a name is declared twice.
     """
@@ -35,7 +38,9 @@ class Globals:
         self._library = library
         self._missed: set[str] = set()
         self._names: set[str] = set()
-        self._shared = Scope("", outer=_controller())
+        controller = _controller()
+        self.errno = controller.cells[ERRNO]
+        self._shared = Scope("", outer=controller)
         self._scopes: dict[int, Scope] = {}
         self._load(modules)
 
@@ -191,6 +196,7 @@ def _controller() -> Scope:
         scope.cells[name] = Variable(name, type_, value=value, constant=True, predefined=name)
     for name in USER_NUMBERS:
         scope.cells[name] = Variable(name, NUM, value=0.0)
+    scope.cells[ERRNO] = Variable("ERRNO", NUM, value=0.0, constant=True)
     clock = Unknown(f"'{USER_CLOCK}', a clock", Span("", 1, 1, 0, 0))
     scope.cells[USER_CLOCK] = Variable(USER_CLOCK, Foreign("clock"), value=clock)
     return scope

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from ....core.errors import SourceError, Span
 from ..syntax.tree import Name
+from .errors import NUMBERS, OUT_OF_BOUNDS, ProgramError
 from .located import Located
 from .scope import Variable
 from .types import Foreign, Scalar, Type, Unknown, Value, interpreted, mismatch
@@ -18,7 +20,9 @@ ARRAY_LIMIT = 100_000
 def item(value: Value, index: int) -> Value:
     """A component or element by its place from 0; unknown of an unknown value."""
     if isinstance(value, Unknown):
-        return value
+        known = value.nominal
+        part = known[index] if isinstance(known, tuple) and index < len(known) else None
+        return replace(value, nominal=part)
     assert isinstance(value, tuple)
     item: Value = value[index]
     return item
@@ -35,7 +39,8 @@ def check_index(step: tuple[int, ...], dimensions: tuple[int, ...], name: Name) 
         )
     for index, size in zip(step, dimensions, strict=True):
         if not 1 <= index <= size:
-            raise SourceError(f"index {index} of {name.text} is outside 1 to {size}", name.span)
+            message = f"index {index} of {name.text} is outside 1 to {size}"
+            raise ProgramError(message, name.span, NUMBERS[OUT_OF_BOUNDS])
 
 
 def component(step: str, type_: Type, dimensions: tuple[int, ...], name: Name) -> tuple[int, Type]:
@@ -147,7 +152,8 @@ def _put(old: Value, places: list[int], new: Value) -> Value:
     if not places:
         return new
     if isinstance(old, Unknown):
-        return old
+        known = old.nominal
+        return replace(old, nominal=_put(known, places, new)) if isinstance(known, tuple) else old
     assert isinstance(old, tuple)
     items = list(old)
     items[places[0]] = _put(items[places[0]], places[1:], new)

@@ -14,6 +14,7 @@ from ....core.source.execution.suppose import is_open
 from ..syntax import tree
 from .answers import TypedAnswers, like_signals
 from .data import Globals
+from .defaults import default_of, nominal, unset
 from .elements import (
     array_mismatch,
     check_index,
@@ -24,21 +25,29 @@ from .elements import (
     located_part,
     replaced,
 )
+from .errors import NOT_PRESENT, NUMBERS, ProgramError
 from .function_calls import SPECIAL, Special, function_value
 from .located import Located
 from .operators import OperandError, apply, negate
+from .predefined import RECORDS
 from .provenance import Literal, source_of_literal
 from .scope import Scope, Variable
 from .types import (
     BOOL,
     NUM,
+    SPEEDDATA,
     Foreign,
+    RecordType,
     Type,
     Unknown,
     Value,
+    answerable,
     check_known,
     check_type,
+    describe,
+    find_unknown,
     interpreted,
+    refuse_unknown,
 )
 
 
@@ -100,7 +109,7 @@ class Evaluator:
             try:
                 return negate(expression.operator, operand)
             except OperandError as error:
-                raise SourceError(str(error), expression.span) from None
+                raise error.at(expression.span) from None
         if isinstance(expression, tree.Call):
             return function_value(self, self._host.call_function, self._special, expression, scope)
         return _star(expression)
@@ -120,17 +129,37 @@ class Evaluator:
         return Located(value, source_of_literal(expression, None), None)
 
     def known(self, expression: tree.Expression, scope: Scope, type_: Type, use: str) -> Value:
-        """A value that must be known and of a type.
+        """A value of a type; where it is not known, its default, with a note.
 
         Args:
             use: what depends on it, to stand at the beginning of a message.
 
         Raises:
-            SourceError: it is not.
+            SourceError: it is none of the type, or not known and has no default.
         """
-        value = self.evaluate(expression, scope)
+        value = self.assumed(self.evaluate(expression, scope), type_, use, expression.span)
         self.check(value, type_, use, expression.span)
         return value
+
+    def assumed(self, value: Value, type_: Type, use: str, span: Span) -> Value:
+        """A value with everything that is not known at its default.
+
+        Raises:
+            SourceError: there is none.
+        """
+        unknown = find_unknown(value)
+        if unknown is None:
+            return value
+        taken = nominal(value, type_)
+        if taken is None:
+            raise refuse_unknown(unknown, use, span)
+        if type_ is SPEEDDATA and isinstance(taken, tuple) and not taken[0] > 0:
+            taken = RECORDS["speeddata"]["v1000"]
+        shown = f": {describe(taken)} is taken" if not isinstance(taken, tuple) else ""
+        shown = shown or ", which is taken at its default"
+        message = f"{use} depends on {unknown.reason}{shown}{answerable(unknown)}"
+        self.answers.assumed(span, message)
+        return taken
 
     def check(self, value: Value, type_: Type, use: str, span: Span) -> None:
         """Raises:
@@ -173,7 +202,10 @@ class Evaluator:
         found = self.locate(target, scope, asking=False)
         sizes = found.cell.dimensions if found.cell is not None and not target.path else ()
         answer = self.answers.ask(target.span, found.type, sizes)
-        self.assign(target, unknown if answer is None else answer, scope)
+        if answer is None:
+            one = default_of(found.type)
+            answer = replace(unknown, nominal=None if one is None else filled(one, sizes))
+        self.assign(target, answer, scope)
 
     def signal(self, expression: tree.Expression | None, scope: Scope) -> str | None:
         """The signal that an expression means, lower case; None if that is not known."""
@@ -215,17 +247,28 @@ class Evaluator:
         if scope is None:
             raise SourceError(f"the value of {cell.name} depends on itself", declaration.span)
         cell.scope = None  # while it is evaluated
-        sizes = tuple(self._size(d, scope) for d in declaration.dimensions)
-        check_size(cell.name, sizes, declaration.span)
-        cell.dimensions = sizes
-        cell.value, cell.source, cell.predefined = self._initial(
-            declaration, cell.type, sizes, scope
-        )
+        try:
+            sizes = tuple(self._size(d, scope) for d in declaration.dimensions)
+            check_size(cell.name, sizes, declaration.span)
+            cell.dimensions = sizes
+            cell.value, cell.source, cell.predefined = self._initial(
+                declaration, cell.type, sizes, scope
+            )
+        except SourceError:
+            cell.scope = scope
+            raise
         cell.pending = None
         return cell.value
 
     def _size(self, expression: tree.Expression, scope: Scope) -> int:
-        size = self.number(expression, scope, "the size of an array")
+        given = self.evaluate(expression, scope)
+        if isinstance(given, Unknown):
+            message = f"the size of an array depends on {given.reason}: one element is taken"
+            self.answers.assumed(expression.span, message)
+            return 1
+        self.check(given, NUM, "the size of an array", expression.span)
+        assert isinstance(given, float)
+        size = given
         if size < 1 or size != int(size):
             raise SourceError(f"an array has one element or more, not {size:g}", expression.span)
         return int(size)
@@ -237,7 +280,8 @@ class Evaluator:
             reason = f"'{declaration.text}', a {type_.name}"
             return filled(Unknown(reason, declaration.span, declaration.text), sizes), None, None
         if declaration.value is None:
-            return filled(type_.default, sizes), None, None
+            value = unset(type_, declaration.text, declaration.span)
+            return filled(value, sizes), None, None
         found = self.locate(declaration.value, scope)
         value = found.value
         wrong = array_mismatch(value, type_, sizes)
@@ -276,15 +320,19 @@ class Evaluator:
     def _assign_part(self, cell: Variable, target: tree.Name, value: Value, scope: Scope) -> None:
         """An element or component is written."""
         old = self._settled(cell)
-        path = self._path(target, scope)
+        path, unknown = self._path(target, cell, scope)
         cell.predefined = None
-        if isinstance(path, Unknown):
-            cell.value, cell.source = replace(path, key=cell.name), None
-            cell.elements.clear()
+        if unknown is not None:
+            known = nominal(self.settle(cell))
+            cell.value, cell.source = replace(unknown, key=cell.name, nominal=known), None
             return
         first = path[0]
         if isinstance(first, tuple):
-            check_index(first, cell.dimensions, target)
+            try:
+                check_index(first, cell.dimensions, target)
+            except ProgramError as error:
+                self._tolerated(error)
+                return
             cell.elements[first] = replaced(element(cell, first), cell, path, value, target)
             cell.overwritten.add(first)
         else:
@@ -330,17 +378,27 @@ class Evaluator:
 
     def _locate_name(self, name: tree.Name, scope: Scope, asking: bool = True) -> Located:
         found = self._find(name, scope)
-        if asking and isinstance(found.value, Unknown):
+        if asking and self._is_open(found):
             held = self.output(name, name.span, scope)
             if held is not None:
                 return Located(held, None, None)
             sizes = found.cell.dimensions if found.cell is not None and not name.path else ()
             answer = self.answers.ask(name.span, found.type, sizes)
-            if answer is None and not name.path and found.value.key != name.text:
+            if (
+                answer is None
+                and not name.path
+                and isinstance(found.value, Unknown)
+                and found.value.key != name.text
+            ):
                 answer = self.answers.ask_by(found.value.key, name.span, found.type, sizes)
             if answer is not None:
                 return Located(answer, None, found.cell, type=found.type)
         return found
+
+    @staticmethod
+    def _is_open(found: Located) -> bool:
+        """Whether a value, or a part of it, is not known; what stands in a literal is."""
+        return found.source is None and find_unknown(found.value) is not None
 
     def _find(self, name: tree.Name, scope: Scope) -> Located:
         cell = self.cell(name, scope)
@@ -350,35 +408,69 @@ class Evaluator:
             reason = f"'{name.text}', which is not declared in what is at hand (a signal?)"
             return Located(Unknown(reason, name.span, self.answers.key(name.span)), None, None)
         if not cell.present:
-            raise SourceError(f"the optional argument {cell.name} was not given", name.span)
+            message = f"the optional argument {cell.name} was not given"
+            raise ProgramError(message, name.span, NUMBERS[NOT_PRESENT])
         if is_open(cell):
             reason = f"'{name.text}', which {cell.writer} writes"
-            unknown = Unknown(reason, name.span, self.answers.key(name.span))
+            known = None if name.path else nominal(self.settle(cell), cell.type)
+            unknown = Unknown(reason, name.span, self.answers.key(name.span), known)
             return Located(unknown, None, cell, type=None if name.path else cell.type)
         if not name.path:
             value = self.settle(cell)
             source = None if cell.overwritten else cell.source
             return Located(value, source, cell, cell.predefined, cell.type)
         value = self._settled(cell)
-        path = self._path(name, scope)
-        if isinstance(path, Unknown):
-            return Located(path, None, cell)
-        return located_part(cell, value, path, name)
+        path, unknown = self._path(name, cell, scope)
+        try:
+            found = located_part(cell, value, path, name)
+        except ProgramError as error:
+            outside, type_ = self._tolerated(error), cell.type
+            for step in path:
+                if isinstance(step, str) and isinstance(type_, RecordType):
+                    type_ = type_.components[step]
+            return Located(replace(outside, nominal=default_of(type_)), None, cell, type=type_)
+        if unknown is None:
+            return found
+        known = nominal(found.value, found.type)
+        return Located(replace(unknown, nominal=known), None, cell, type=found.type)
 
-    def _path(self, name: tree.Name, scope: Scope) -> list[str | tuple[int, ...]] | Unknown:
+    def _tolerated(self, error: ProgramError) -> Unknown:
+        """What stands outside an array, where nobody knows whether the program comes there.
+
+        Raises:
+            ProgramError: its course follows from the text itself.
+        """
+        if not self.answers.guessed or error.span is None:
+            raise error
+        message = str(error).removeprefix(f"{error.span}: ")
+        reason = f"{message}, on the course that is taken without answers"
+        self.answers.assumed(error.span, f"{reason}: it is left out")
+        return Unknown(reason, error.span, self.answers.key(error.span))
+
+    def _path(
+        self, name: tree.Name, cell: Variable, scope: Scope
+    ) -> tuple[list[str | tuple[int, ...]], Unknown | None]:
+        """Components and indices of a part of a datum, and what is not known of its indices.
+
+        For those, the defaults are given, within the array.
+        """
         path: list[str | tuple[int, ...]] = []
+        unknown: Unknown | None = None
         for step in name.path:
             if isinstance(step, str):
                 path.append(step)
                 continue
             indices = []
-            for expression in step:
+            for place, expression in enumerate(step):
                 value = self.evaluate(expression, scope)
                 if isinstance(value, Unknown):
-                    return value
+                    unknown, known = value, nominal(value, NUM)
+                    size = cell.dimensions[place] if place < len(cell.dimensions) else 1
+                    value = max(1.0, min(float(size), known if type(known) is float else 1.0))
+                    value = float(int(value))
                 indices.append(self.as_index(value, expression.span))
             path.append(tuple(indices))
-        return path
+        return path, unknown
 
     def as_index(self, value: Value, span: Span) -> int:
         """A known value as an index.
@@ -403,7 +495,7 @@ class Evaluator:
             try:
                 value = apply(symbol, value, right)
             except OperandError as error:
-                raise SourceError(str(error), operation.span) from None
+                raise error.at(operation.span) from None
         return value
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 from ....core.errors import SourceError, Span
@@ -15,8 +15,9 @@ from ..syntax.tree import Argument, Call, Expression, Name, Routine
 from .answers import TypedAnswers
 from .arguments import check_count
 from .data import Globals
+from .defaults import carried, default_of, nominal
 from .elements import array_mismatch
-from .functions import COMPUTED, STATE, euler_zyx
+from .functions import COMPUTED, IN_PRODUCTION, STATE, euler_zyx
 from .located import Located
 from .operators import OperandError, is_vector
 from .outputs import READING
@@ -105,9 +106,15 @@ def _value(
             held = evaluator.output(call.arguments[0].value, call.span, scope)
             if held is not None:
                 return held
+        if call.name in IN_PRODUCTION:
+            answer = evaluator.answers.ask(call.span, None)
+            return IN_PRODUCTION[call.name] if answer is None else answer
         if call.name in STATE:
             return Unknown(
-                f"the value of {call.text}()", call.span, evaluator.answers.key(call.span)
+                f"the value of {call.text}()",
+                call.span,
+                evaluator.answers.key(call.span),
+                default_of(STATE[call.name]),
             )
         own = data.fetched_routine(call.name, scope.home, call.span)
     if own is None:
@@ -143,7 +150,9 @@ def _computed(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
         values.append(0.0 if expression is None else evaluator.evaluate(expression, scope))
     unknown = find_unknown(tuple(values))
     if unknown is not None:
-        return unknown
+        kinds = (*types, *[NUM] * len(options))
+        known = [nominal(value, kind) for value, kind in zip(values, kinds, strict=True)]
+        return carried(unknown, lambda: _of_defaults(function, known))
     for value, type_ in zip(values, (*types, *[NUM] * len(options)), strict=True):
         wrong = mismatch(value, type_) if type_ is not None else None
         if wrong is not None:
@@ -151,11 +160,21 @@ def _computed(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
     try:
         return _checked(function(*values))
     except OperandError as error:
-        raise SourceError(f"{call.text}: {error}", call.span) from None
+        raise error.at(call.span, call.text) from None
     except (ValueError, ArithmeticError):
         raise SourceError(
             f"{call.text} has no finite value for these arguments", call.span
         ) from None
+
+
+def _of_defaults(function: Callable[..., Value], values: Sequence[Value | None]) -> Value | None:
+    """The value of a function with everything that is not known at its default."""
+    if None in values:
+        return None
+    try:
+        return _checked(function(*values))
+    except OperandError:
+        return None
 
 
 def _dim(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
@@ -193,7 +212,7 @@ def _euler(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
     try:
         return euler_zyx(switches[0], value)
     except OperandError as error:
-        raise SourceError(f"EulerZYX: {error}", call.span) from None
+        raise error.at(call.span, call.text) from None
 
 
 def _datum(evaluator: Evaluates, call: Call, scope: Scope) -> Variable:
@@ -242,6 +261,14 @@ def _present(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
     return cell.present
 
 
+def _module_exists(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
+    """``ModExist("module")``"""
+    given = [evaluator.evaluate(a.value, scope) for a in call.arguments if a.value is not None]
+    if len(given) != 1 or isinstance(given[0], Unknown):
+        return Unknown(f"the value of {call.text}()", call.span, evaluator.answers.key(call.span))
+    return str(given[0]).lower() in {module.name for module in evaluator.data.modules}
+
+
 def _only_name(call: Call, count: int) -> Name:
     arguments: tuple[Argument, ...] = call.arguments
     first = arguments[0].value if arguments else None
@@ -274,6 +301,8 @@ SPECIAL: dict[str, Special] = {
     "eulerzyx": _euler,
     "strtoval": _read_value,
     "testandset": _test_and_set,
+    "argname": lambda evaluator, call, scope: _datum(evaluator, call, scope).name,
+    "modexist": _module_exists,
     "ispers": lambda evaluator, call, scope: _datum(evaluator, call, scope).persistent,
     "isvar": lambda evaluator, call, scope: not _datum(evaluator, call, scope).persistent,
     "type": lambda evaluator, call, scope: _datum(evaluator, call, scope).type.name,

@@ -1,8 +1,8 @@
 """RAPID's built-in functions, as far as their values follow from the program.
 
 Functions take their values as RAPID has them (mm, degrees) and are told apart into those that are
-computed here (`COMPUTED`) and those that ask the running controller (`STATE`): their value is
-unknown.
+computed here (`COMPUTED`), those that ask the running controller (`STATE`): their value is unknown,
+and those that ask how it runs (`IN_PRODUCTION`).
 
 Definitions: "RAPID Reference Manual", functions.
 """
@@ -16,11 +16,12 @@ import numpy as np
 from ....core.source.text.lexer import words
 from ....core.spatial.rotation import matrix_from_quaternion, quaternion_from_matrix
 from .operators import OperandError, cross, finite, hamilton
-from .records import Record
+from .records import VMAX, Record
 from .text_functions import TEXT_FUNCTIONS, Computed
 from .types import (
     BOOL,
     JOINTTARGET,
+    LOADDATA,
     NUM,
     ORIENT,
     POS,
@@ -30,6 +31,7 @@ from .types import (
     TOOLDATA,
     WOBJDATA,
     Type,
+    Value,
 )
 
 Vector = tuple[float, ...]
@@ -177,6 +179,9 @@ COMPUTED: dict[str, Computed] = {
     "norient": (unit, (ORIENT,), ()),
     "defframe": (def_frame, (ROBTARGET,) * 3, ("origin",)),
     "defdframe": (displacement_frame, (ROBTARGET,) * 6, ("origin",)),
+    "crossprod": (cross, (POS, POS), ()),
+    "max": (max, (NUM, NUM), ()),
+    "min": (min, (NUM, NUM), ()),
     "distance": (math.dist, (POS, POS), ()),
     "dotprod": (_dot, (POS, POS), ()),
     "vectmagn": (lambda v: math.hypot(*v), (POS,), ()),
@@ -210,20 +215,27 @@ def _asking(**kinds: str) -> dict[str, Type | None]:
 STATE: dict[str, Type | None] = {
     **_asking(
         num="""ainput aoutput dinput doutput ginput goutput ginputdnum goutputdnum clkread
-        readmotor opmode runmode nonmotionmode filesize fssize texttab maxrobspeed readnum
+        readmotor filesize fssize texttab readnum iounitstate pathlengthget progmemfree
         readbin uinumentry uinumtune uilistview uimessagebox uidnumentry uidnumtune gettime
-        corrread eventtype socketgetstatus getaxisload getmotorconf gettorque iosignalstate
-        testsignread cspeedoverride gettsptint""",
-        bool="""testdi isstopmoveact isstopstateevent ismechunitactive isfile istaskmec
-        taskrunmec taskrunrob uiclientexist robinlimit poslimit validio isvarinit isrobtarget
-        isbrakecheckactive ispathplan stapresent strtoval getnextsym robos
-        texttabfreetouse""",
-        string="""cdate ctime robname readstr readstrbin uialphaentry argname
-        gettaskname getsysinfo strdigcalc textget texttabget socketpeek filename getserviceinfo
-        getmecunitname""",
-        any="""ispersdata getsysdata readrawbytes rawbyteslen calcrotaxisframe calcrotaxframez
-        csystemparam dimension getuasuserdata getmodalpayloadmode""",
+        corrread socketgetstatus getaxisload getmotorconf gettorque iosignalstate getsignal
+        testsignread cspeedoverride gettsptint modtime filetime modtimednum filetimednum
+        egmgetstate getaxisdistance getaxismovetime getmotortorque getmaxnumberofcyclicbool
+        getnumberofcyclicbool paridrobvalid paridposvalid remainingretries camgetexposure
+        camnumberofresults getsignaldnum stcalcforce stcalctorque getmaxusagetime""",
+        bool="""testdi ismechunitactive isfile istaskmec uiclientexist robinlimit poslimit validio
+        isvarinit isrobtarget ispathplan stapresent strtoval getnextsym texttabfreetouse
+        pathrecvalidbwd pathrecvalidfwd indinpos indspeed iscyclicbool
+        tasksinsync hand_iscalibrated hand_isgripperopen hand_isvacuum1on triggdatavalid stiscalib
+        stisclosed stisindgun stisopen cnvpredictreach getnextcyclicbool getnextmechunit
+        fcisforcemode""",
+        string="""cdate ctime readstr readstrbin uialphaentry
+        getsysinfo strdigcalc textget texttabget socketpeek filename getserviceinfo
+        getmecunitname getuasusername rmqgetslotname camgetloadedjob camgetname""",
+        any="""ispersdata getsysdata readrawbytes rawbyteslen csystemparam dimension
+        getuasuserdata getmodalpayloadmode readdir getsignalorigin fcgetforce fcgetprocessdata""",
     ),
+    **dict.fromkeys(words("calcrotaxisframe calcrotaxframez defaccframe"), POSE),
+    "fcloadid": LOADDATA,
     "crobt": ROBTARGET,
     "cpos": POS,
     "corient": ORIENT,
@@ -235,3 +247,25 @@ STATE: dict[str, Type | None] = {
 }
 """Functions that ask the controller, the operator or the outside world, with the type of their
 values, None where nothing is known of it. They move nothing."""
+
+_RUN_CONT_CYCLE, _OP_AUTO = 1.0, 1.0
+
+IN_PRODUCTION: dict[str, Value] = {
+    "runmode": _RUN_CONT_CYCLE,
+    "opmode": _OP_AUTO,
+    "gettaskname": "T_ROB1",
+    "robname": "ROB_1",
+    "maxrobspeed": VMAX[0],
+    "motionplannerno": 1.0,
+    **dict.fromkeys(words("nonmotionmode eventtype execlevel exechandler pathlevel"), 0.0),
+    **dict.fromkeys(words("robos taskrunmec taskrunrob taskisactive taskisexecuting"), True),
+    **dict.fromkeys(
+        words(
+            """isstopmoveact isstopstateevent issyncmoveon isleadthrough pfrestart
+            ppmovedinmanmode isbrakecheckactive"""
+        ),
+        False,
+    ),
+}
+"""Functions that ask in which way the program runs, with what they say where one robot runs it in
+automatic mode, cycle after cycle, and nothing has gone wrong."""

@@ -11,10 +11,16 @@ import math
 import operator
 from collections.abc import Callable
 
-from .types import Unknown, Value, describe
+from ....core.errors import SourceError, Span
+from .defaults import beside, carried, nominal
+from .errors import DIVISION_BY_ZERO, NUMBERS, TOO_LONG, ProgramError
+from .types import Unknown, Value, describe, find_unknown
 
 STRING_LIMIT = 80
 """Characters that a RAPID string holds."""
+
+_ANY = ("and", "or", "xor", "=", "<>")
+"""Operators that take more than nums."""
 
 COMPARISONS: dict[str, Callable[[float, float], bool]] = {
     "<": operator.lt,
@@ -25,7 +31,26 @@ COMPARISONS: dict[str, Callable[[float, float], bool]] = {
 
 
 class OperandError(Exception):
-    """Operands that an operator or function does not take; the caller knows the place."""
+    """Operands that an operator or function does not take; the caller knows the place.
+
+    Args:
+        error: name of the error that it is to a running program; empty if it never comes to run.
+    """
+
+    def __init__(self, message: str, error: str = "") -> None:
+        super().__init__(message)
+        self.error = error
+
+    def at(self, span: Span, use: str = "") -> SourceError:
+        """The error at its place, to be raised.
+
+        Args:
+            use: what does not take the operands, to stand at the beginning of the message.
+        """
+        message = f"{use}: {self}" if use else str(self)
+        if self.error:
+            return ProgramError(message, span, NUMBERS[self.error])
+        return SourceError(message, span)
 
 
 def apply(symbol: str, left: Value, right: Value) -> Value:
@@ -34,16 +59,15 @@ def apply(symbol: str, left: Value, right: Value) -> Value:
     Raises:
         OperandError: the operands do not fit the operator, or the result is no finite number.
     """
+    if type(left) is float and type(right) is float and symbol not in _ANY:
+        return _numbers(symbol, left, right)
     if symbol in ("and", "or", "xor"):
         return _logic(symbol, left, right)
-    if isinstance(left, Unknown):
-        return left
-    if isinstance(right, Unknown):
-        return right
+    unknown = find_unknown(left) or find_unknown(right)
+    if unknown is not None:
+        return carried(unknown, lambda: _of_defaults(symbol, left, right))
     if symbol in ("=", "<>"):
         return _equal(left, right) == (symbol == "=")
-    if type(left) is float and type(right) is float:
-        return _numbers(symbol, left, right)
     if isinstance(left, str) and isinstance(right, str) and symbol == "+":
         return _join(left, right)
     result = _vectors(symbol, left, right)
@@ -54,10 +78,27 @@ def apply(symbol: str, left: Value, right: Value) -> Value:
     return result
 
 
+def _of_defaults(symbol: str, left: Value, right: Value) -> Value | None:
+    """The same with everything that is not known at its default."""
+    a, b = nominal(left), nominal(right)
+    a = beside(right if b is None else b) if a is None else a
+    b = beside(left if a is None else a) if b is None else b
+    if a is None or b is None:
+        return None
+    try:
+        return apply(symbol, a, b)
+    except OperandError:
+        return None
+
+
 def negate(symbol: str, value: Value) -> Value:
     """``symbol value`` for ``+``, ``-`` and ``not``."""
-    if isinstance(value, Unknown):
-        return value
+    unknown = find_unknown(value)
+    if unknown is not None:
+        known = nominal(value)
+        if known is None or (symbol == "not") != isinstance(known, bool):
+            return unknown
+        return carried(unknown, lambda: negate(symbol, known))
     if symbol == "not":
         if isinstance(value, bool):
             return not value
@@ -118,7 +159,7 @@ def _numbers(symbol: str, a: float, b: float) -> Value:
     if symbol in COMPARISONS:
         return COMPARISONS[symbol](a, b)
     if symbol in ("/", "div", "mod") and b == 0:
-        raise OperandError("division by zero")
+        raise OperandError("division by zero", DIVISION_BY_ZERO)
     if symbol == "+":
         return finite(a + b)
     if symbol == "-":
@@ -141,7 +182,7 @@ def finite(value: float) -> float:
 
 def _join(left: str, right: str) -> str:
     if len(left) + len(right) > STRING_LIMIT:
-        raise OperandError(f"a string holds at most {STRING_LIMIT} characters")
+        raise OperandError(f"a string holds at most {STRING_LIMIT} characters", TOO_LONG)
     return left + right
 
 

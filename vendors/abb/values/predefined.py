@@ -8,8 +8,9 @@ RAPID does not tell upper from lower case: every table has lower-case keys, and 
 take a name in any case.
 
 Constants: data types dionum, errnum, btnres, buttondata, symnum, opnum and the predefined string
-data of StrFind. Those whose numbers no public text states are not here; they are compared with
-nothing but values that are not known either.
+data of StrFind. Of handler_type, event_level, event_type and errnum the numbers only tell the
+names apart. Those whose numbers no public text states are not here; they are compared with nothing
+but values that are not known either.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from types import MappingProxyType
 from ....core.program.speed import Speed
 from ....core.program.tool import FLANGE, WORLD
 from ....core.program.zone import Zone
+from .errors import NUMBERS
 from .records import LOAD0, VMAX, Record, speed_value, tool_record, work_object_record, zone_value
 from .types import NUM, STRING, Type, Value
 
@@ -36,6 +38,12 @@ SPEEDS: Mapping[str, Record] = MappingProxyType(
     }
 )
 """name → ``[v_tcp, v_ori, v_leax, v_reax]`` in mm/s and deg/s."""
+
+_EXTERNAL = MappingProxyType(
+    {f"vrot{v}": (*VMAX[:3], float(v)) for v in (1, 2, 5, 10, 20, 50, 100)}
+    | {f"vlin{v}": (*VMAX[:2], float(v), VMAX[3]) for v in (10, 20, 50, 100, 200, 500, 1000)}
+)
+"""Speeds for external axes alone: name → record, of which that component counts."""
 
 ZONES: Mapping[str, Record] = MappingProxyType(
     {
@@ -61,7 +69,7 @@ deg."""
 
 RECORDS: Mapping[str, Mapping[str, Record]] = MappingProxyType(
     {
-        "speeddata": SPEEDS,
+        "speeddata": MappingProxyType({**SPEEDS, **_EXTERNAL}),
         "zonedata": ZONES,
         "tooldata": MappingProxyType({FLANGE.name: tool_record(FLANGE)}),
         "wobjdata": MappingProxyType({WORLD.name: work_object_record(WORLD)}),
@@ -81,6 +89,9 @@ def _counted(names: str, first: int = 0) -> dict[str, tuple[Type, Value]]:
     return _numbers(**{name: first + i for i, name in enumerate(names.split())})
 
 
+ERRNO = "errno"
+"""What error a handler is run for; the run keeps it."""
+
 USER_NUMBERS = ("reg1", "reg2", "reg3", "reg4", "reg5")
 USER_CLOCK = "clock1"
 """Variables that the system module ``user`` of every new controller declares."""
@@ -95,6 +106,10 @@ CONSTANTS: Mapping[str, tuple[Type, Value]] = MappingProxyType(
         **_numbers(btnnone=-1),
         **_counted("iconnone iconinfo iconwarning iconerror"),
         **_counted("lt lteq eq noteq gteq gt", 1),
+        **_counted("handler_none handler_bwd handler_err handler_undo"),
+        **_counted("level_normal level_trap level_service"),
+        **_counted("event_none event_poweron event_start event_stop event_qstop event_restart"),
+        **_numbers(**NUMBERS),
         "str_digit": (STRING, string.digits),
         "str_lower": (STRING, string.ascii_lowercase),
         "str_upper": (STRING, string.ascii_uppercase),

@@ -11,6 +11,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable
 
+from .errors import WRONG_ARGUMENT
 from .operators import STRING_LIMIT, OperandError
 from .types import NUM, STRING, Type, Value
 
@@ -44,14 +45,16 @@ def _number_text(value: float, decimals: float, exponent: float) -> str:
 def _part(text: str, position: float, length: float) -> str:
     start, count = int(position), int(length)
     if start < 1 or count < 0 or start - 1 + count > len(text):
-        raise OperandError(f"StrPart reaches outside a string of {len(text)} characters")
+        message = f"StrPart reaches outside a string of {len(text)} characters"
+        raise OperandError(message, WRONG_ARGUMENT)
     return text[start - 1 : start - 1 + count]
 
 
 def _place(text: str, position: float) -> int:
     start = int(position)
     if not 1 <= start <= len(text) + 1:
-        raise OperandError(f"position {start} is outside a string of {len(text)} characters")
+        message = f"position {start} is outside a string of {len(text)} characters"
+        raise OperandError(message, WRONG_ARGUMENT)
     return start - 1
 
 

@@ -26,11 +26,13 @@ class Unknown:
         reason: what it is and why it is not known, to stand in a message.
         span: where it came into the program.
         key: under which the user may answer it.
+        nominal: what it is if all that is not known is at its default; None if that is none.
     """
 
     reason: str
     span: Span
     key: str = ""
+    nominal: Value | None = None
 
 
 Value = float | bool | str | Record | Unknown
@@ -192,22 +194,28 @@ def describe(value: Value) -> str:
     return f"{len(value)} values in brackets"
 
 
-def check_known(value: Value, use: str, span: Span) -> None:
-    """Refuse a value that only the running controller has.
+def refuse_unknown(unknown: Unknown, use: str, span: Span) -> SourceError:
+    """The error that a value only the running controller has is needed, and has no default.
 
     Args:
         use: what depends on it, to stand at the beginning of a message.
+    """
+    return SourceError(
+        f"{use} depends on {unknown.reason}: what only the running controller knows cannot be "
+        f"followed; put a fixed value in its place{answerable(unknown)}",
+        span,
+    )
+
+
+def check_known(value: Value, use: str, span: Span) -> None:
+    """Refuse a value that only the running controller has.
 
     Raises:
         SourceError: a part of it is not known.
     """
     unknown = find_unknown(value)
     if unknown is not None:
-        raise SourceError(
-            f"{use} depends on {unknown.reason}: what only the running controller knows "
-            f"cannot be followed; put a fixed value in its place{_answerable(unknown)}",
-            span,
-        )
+        raise refuse_unknown(unknown, use, span)
 
 
 def check_type(
@@ -228,7 +236,8 @@ def check_type(
         raise SourceError(f"{use}: {wrong}", span)
 
 
-def _answerable(unknown: Unknown) -> str:
+def answerable(unknown: Unknown) -> str:
+    """How the user may answer it, to stand at the end of a message."""
     if not unknown.key:
         return ""
-    return f', or answer it in a file ({spelt("answers")}): [values] "{unknown.key}" = …'
+    return f'; answer it in a file ({spelt("answers")}): [values] "{unknown.key}" = …'
