@@ -228,7 +228,7 @@ def test_refusals(body, words):
         ("MoveL p,v100,z10,tool0\\WObj:=wJig;", "MoveL p,v100,z10,tool0;", "object 'wJig'"),
         ("MoveL p,v101,z10,tool0;", "MoveL p,v100\\V:=101,z10,tool0;", "unknown speed 'v101'"),
         ("MoveL p,v100,z12,tool0;", "MoveL p,v100,[FALSE,12,18,18,1.8,18,1.8],tool0;", "'z12'"),
-        ("MoveL p,vFast,z10,tool0;", "MoveL p,[1000,500,1,1],z10,tool0;", "speed 'vFast'"),
+        ("MoveL p,vQuick,z10,tool0;", "MoveL p,[1000,500,1,1],z10,tool0;", "speed 'vQuick'"),
         ("MoveL p\\ID:=10,v100,z10,tool0;", "MoveL p,v100,z10,tool0;", "MultiMove"),
         ("MoveL p,v100,z10,tool0\\Corr;", "MoveL p,v100,z10,tool0;", "\\CORR"),
         ("StorePath;\nMoveL p,v100,z10,tool0;", "MoveL p,v100,z10,tool0;", "StorePath"),

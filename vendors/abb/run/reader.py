@@ -3,12 +3,12 @@
 The text is parsed (`syntax.parser`) and executed (`interpreter`) from the entry routine on, as far
 as its course follows from the text itself. What is decided here, and where a controller may differ:
 
-- A move that depends on what only the running controller knows (signals, clocks, an operator's
-  answer) is refused by name; in an assignment such a value is carried along. Branches and loops
-  that depend on one are decided by the rules of `core.source.execution.flow`.
+- What only the running controller knows (signals, clocks, an operator's answer) is carried along; a
+  move that depends on it is driven with its default (`values.defaults`), or left out where its
+  target has none. Branches and loops are decided by the rules of `core.source.execution.flow`.
 - Instructions that do not move the robot stay as opaque statements; ``WaitUntil``, ``WaitDI`` and
-  their like are stops and taken as satisfied at once. Error handlers and traps do not run. An
-  instruction that no table of `instructions` knows is refused, as it might move the robot.
+  their like are stops and taken as satisfied at once. ERROR handlers run for errors that the program
+  makes itself (`recovery`); traps do not run. A routine of which nobody has the text is stepped over.
 - ``AccSet`` scales the joints' accelerations and, by its ramp, the jerk. ``VelSet`` scales the
   programmed speeds and the times of ``\\T``, not the joints' own limits. ``PathAccLim`` with two
   limits takes the smaller one.

@@ -420,7 +420,7 @@ class Evaluator:
             source = None if cell.overwritten else cell.source
             return Located(value, source, cell, cell.predefined, cell.type)
         value = self._settled(cell)
-        path, unknown = self._path(name, cell, scope)
+        path, missing = self._path(name, cell, scope)
         try:
             found = located_part(cell, value, path, name)
         except ProgramError as error:
@@ -429,10 +429,10 @@ class Evaluator:
                 if isinstance(step, str) and isinstance(type_, RecordType):
                     type_ = type_.components[step]
             return Located(replace(outside, nominal=default_of(type_)), None, cell, type=type_)
-        if unknown is None:
+        if missing is None:
             return found
         known = nominal(found.value, found.type)
-        return Located(replace(unknown, nominal=known), None, cell, type=found.type)
+        return Located(replace(missing, nominal=known), None, cell, type=found.type)
 
     def _tolerated(self, error: ProgramError) -> Unknown:
         """What stands outside an array, where nobody knows whether the program comes there.
