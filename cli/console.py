@@ -203,6 +203,11 @@ def warn(message: str) -> None:
     _complain("warning", "yellow", message)
 
 
+def complain_of_fault(message: str) -> None:
+    """Print what cannot be driven."""
+    _complain("fault", "bold red", message)
+
+
 def fail(message: str) -> None:
     """Print an error."""
     _complain("error", "bold red", message)

@@ -62,7 +62,10 @@ def emulate(
     json: AsJson = False,
     force: Force = False,
 ) -> None:
-    """Drive a program as the robot's controller would: cycle time, path, what limits each move."""
+    """Drive a program as the robot's controller would: cycle time, path, what limits each move.
+
+    Moves that cannot be driven are faults; the robot goes on behind them, and the exit status is 1.
+    """
     files = _Files(csv, npz, plot, write)
     if opaque is not None and write is None:
         raise OptionError(f"--opaque {opaque} is of the program that --write writes: name its file")
@@ -82,6 +85,8 @@ def emulate(
     if not json:
         for path in made:
             print_rich(f"wrote {path}")
+    if run.faults:
+        raise typer.Exit(1)
 
 
 def _write_files(
@@ -92,6 +97,10 @@ def _write_files(
     replace_existing: bool,
 ) -> list[Path]:
     """Make everything that can fail first, then write; returns what was written."""
+    if files.write is not None and run.faults:
+        from ..core.driving.driven_program import refusal
+
+        raise refusal(run.faults)
     made: dict[Path, bytes] = {}
     if files.csv is not None:
         made[files.csv] = run.trajectory.csv()

@@ -4,25 +4,37 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..tasks.files.source_places import note_json, place_json
+from ..core.display import counted
+from ..core.driving.driven_program import Fault
+from ..tasks.files.source_places import fault_json, note_json, place_json
 from ..tasks.results.report import COLUMNS, MoveReport, Report, move_row, seconds
-from .console import print_rich, print_table, warn
+from .console import complain_of_fault, print_rich, print_table, warn
 
 
 def print_report(report: Report) -> None:
     """Print tables on stdout, warnings on stderr."""
     print_table(COLUMNS, _rows(report))
+    told = f"cycle time {report.driven_time:.3f} s"
+    if report.faults:
+        faults, parts = counted(report.faults, "fault"), counted(report.parts, "part")
+        told = f"{faults}, so no cycle time; {report.driven_time:.3f} s driven in {parts}"
     print_rich(
-        f"{report.program} on {report.robot}: cycle time {report.cycle_time:.3f} s; "
+        f"{report.program} on {report.robot}: {told}; "
         f"TCP path {1e3 * report.length:.1f} mm, at most {1e3 * report.top_speed:.0f} mm/s"
     )
     print_notes(report)
 
 
 def print_notes(report: Report) -> None:
-    """Print warnings on stderr."""
+    """Print warnings and faults on stderr, a line in a loop once."""
     for note in report.notes:
         warn(str(note))
+    alike: dict[tuple[object, str], list[Fault]] = {}
+    for fault in report.faults:
+        alike.setdefault((fault.span or fault.move, fault.message), []).append(fault)
+    for faults in alike.values():
+        times = f" ({len(faults)} times, here first)" if len(faults) > 1 else ""
+        complain_of_fault(f"{faults[0]}{times}")
 
 
 def _rows(report: Report) -> list[tuple[str, ...]]:
@@ -47,12 +59,15 @@ def report_json(report: Report) -> dict[str, Any]:
         "program": report.program,
         "robot": report.robot,
         "cycle_time_s": report.cycle_time,
+        "driven_time_s": report.driven_time,
         "first_wait_s": report.first_wait,
         "waiting_s": report.waiting,
         "settling_s": report.settling,
         "length_m": report.length,
         "top_speed_m_s": report.top_speed,
         "moves": [_move_json(move) for move in report.moves],
+        "parts": [{"first": first, "last": last} for first, last in report.parts],
+        "faults": [fault_json(fault) for fault in report.faults],
         "warnings": [note_json(note) for note in report.notes],
     }
 
@@ -65,6 +80,7 @@ def _move_json(move: MoveReport) -> dict[str, Any]:
         "position_m": move.position,
         **place_json(move.span),
         "driven": move.driven,
+        "fault": None if move.fault is None else str(move.fault.cause),
         "length_m": move.length,
         "begin_s": move.begin,
         "duration_s": move.time,

@@ -8,6 +8,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import NamedTuple
 
 
@@ -76,6 +77,23 @@ class ParseError(SourceError):
     """A text is not written in its language: it is wrong or cut off at a place."""
 
 
+class FaultCause(StrEnum):
+    """Why a robot cannot drive a move, in one word."""
+
+    REACH = "reach"
+    """The target, or a place on the way, is out of reach."""
+    LIMIT = "joint limit"
+    """A joint would pass its limit."""
+    SINGULARITY = "singularity"
+    """The path passes a singular configuration, or too near to one."""
+    CONFIGURATION = "configuration"
+    """The programmed configuration contradicts the pose, or the path."""
+    NOWHERE = "no motion"
+    """Every move ends where the robot stands."""
+    OTHER = "refused"
+    """Points that make no arc, values that no robot has, zones that contradict each other."""
+
+
 class MotionError(FlybyError):
     """A program that reads well but that the robot cannot drive.
 
@@ -83,9 +101,16 @@ class MotionError(FlybyError):
         message: what is wrong and what to do.
         move: index of the move in ``Program.moves`` (from 0); messages count from 1.
         span: where the move stands in its source, if known.
+        cause: in one word.
     """
 
-    def __init__(self, message: str, move: int | None = None, span: Span | None = None) -> None:
+    def __init__(
+        self,
+        message: str,
+        move: int | None = None,
+        span: Span | None = None,
+        cause: FaultCause = FaultCause.OTHER,
+    ) -> None:
         where = "" if span is None else f"{span}: "
         if move is not None:
             where += f"move {move + 1}: "
@@ -93,6 +118,7 @@ class MotionError(FlybyError):
         self.message = message
         self.move = move
         self.span = span
+        self.cause = cause
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..core.arrays import FloatArray
-from ..core.motion.emulator.run import Run
+from ..core.display import counted
+from ..core.driving.driven_program import DrivenProgram
 from ..core.robot.model import Robot
 from .geometry import PathGeometry, path_geometry, tcp_speed
 from .style import LIMIT, NOMINAL, SPEED, STOP, STYLE, ZONE, figure_file
@@ -23,29 +25,36 @@ LEAST_SPAN = 0.35
 """Of the box drawn in space: its shortest side over its longest."""
 
 
-def draw(run: Run, robot: Robot, kind: str) -> bytes:
-    """A figure of a run as a file of the kind ``png``, ``pdf`` or ``svg``."""
+def draw(driven: DrivenProgram, robot: Robot, kind: str) -> bytes:
+    """A figure of a driven program as a file of the kind ``png``, ``pdf`` or ``svg``."""
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
-        return figure_file(make_figure(run, robot), kind)
+        return figure_file(make_figure(driven, robot), kind)
 
 
-def make_figure(run: Run, robot: Robot) -> Figure:
+def make_figure(driven: DrivenProgram, robot: Robot) -> Figure:
     """The figure: two views of the path at the left, three curves over time at the right."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(15, 9), layout="constrained")
     halves: Any = figure.subfigures(1, 2, width_ratios=(1.0, 1.15))
     left, right = halves
-    _draw_path(left, run, path_geometry(run, robot))
+    runs = [part.run for part in driven.parts]
+    _draw_path(left, driven, [path_geometry(run, robot) for run in runs])
     speed, position, velocity = right.subplots(3, 1, sharex=True)
-    _draw_speed(speed, run)
-    _draw_joints(position, velocity, run, robot)
+    _draw_speed(speed, driven)
+    _draw_joints(position, velocity, driven, robot)
+    for axes in (speed, position, velocity):
+        for begin in driven.begins[1:]:
+            axes.axvline(begin, color=LIMIT, linewidth=1.4)
     velocity.set_xlabel("time, s")
-    velocity.set_xlim(0.0, run.duration)
+    velocity.set_xlim(0.0, driven.duration)
+    told = f"cycle time {driven.duration:.3f} s"
+    if driven.faults:
+        told = f"{driven.duration:.3f} s driven, {counted(driven.faults, 'fault')}"
     figure.suptitle(
-        f"{run.program.name} on {robot.name}: cycle time {run.duration:.3f} s",
+        f"{driven.program.name} on {robot.name}: {told}",
         x=0.01,
         ha="left",
         fontweight="bold",
@@ -53,40 +62,43 @@ def make_figure(run: Run, robot: Robot) -> Figure:
     return figure
 
 
-def _draw_path(figure: SubFigure, run: Run, geometry: PathGeometry) -> None:
+def _draw_path(figure: SubFigure, driven: DrivenProgram, parts: Sequence[PathGeometry]) -> None:
     """The path in space above, and along a world axis below."""
     grid = figure.add_gridspec(2, 1, height_ratios=(1.0, 1.05), hspace=0.12)
     space = figure.add_subplot(grid[0], projection="3d")
     plane = figure.add_subplot(grid[1])
-    _draw_space(space, run, geometry)
-    coloured = _draw_plane(plane, run, geometry, _view(run, geometry))
+    _draw_space(space, driven, parts)
+    coloured = _draw_plane(plane, driven, parts, _view(driven, parts))
     bar = figure.colorbar(coloured, ax=plane, shrink=0.9, pad=0.02)
     bar.set_label("TCP speed, mm/s")
     bar.outline.set_visible(False)
 
 
-def _view(run: Run, geometry: PathGeometry) -> tuple[int, int]:
+def _view(driven: DrivenProgram, parts: Sequence[PathGeometry]) -> tuple[int, int]:
     """The two world axes in which most zones lie flat; without zones those of the largest spans."""
-    legs = np.diff(geometry.waypoints, axis=0)
-    legs /= np.maximum(np.linalg.norm(legs, axis=1, keepdims=True), 1e-9)
-    normals = np.abs(np.cross(legs[:-1], legs[1:]))[geometry.radius[1:-1] > 0]
-    facing = normals.sum(axis=0)
+    facing = np.zeros(3)
+    for geometry in parts:
+        legs = np.diff(geometry.waypoints, axis=0)
+        legs /= np.maximum(np.linalg.norm(legs, axis=1, keepdims=True), 1e-9)
+        normals = np.abs(np.cross(legs[:-1], legs[1:]))[geometry.radius[1:-1] > 0]
+        facing += normals.sum(axis=0)
     if not facing.any():
-        facing = -np.ptp(run.trajectory.position, axis=0)
+        facing = -np.ptp(driven.trajectory.position, axis=0)
     across, up = (axis for axis in range(3) if axis != int(np.argmax(facing)))
     return across, up
 
 
-def _draw_space(axes: Any, run: Run, geometry: PathGeometry) -> None:
+def _draw_space(axes: Any, driven: DrivenProgram, parts: Sequence[PathGeometry]) -> None:
     from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
-    points = 1e3 * run.trajectory.position
-    for nominal in geometry.nominal:
+    points = 1e3 * driven.trajectory.position
+    for nominal in _nominal(parts):
         axes.plot(*(1e3 * nominal.T), color=NOMINAL, linestyle=(0, (4, 3)), linewidth=0.8)
-    lines = Line3DCollection(_strokes(points), linewidth=1.8, cmap="viridis")
-    lines.set_array(_stroke_speeds(run))
+    lines = Line3DCollection(_strokes(driven, [0, 1, 2]), linewidth=1.8, cmap="viridis")
+    lines.set_array(_stroke_speeds(driven))
     axes.add_collection3d(lines)
-    stops = 1e3 * geometry.waypoints[geometry.radius == 0]
+    waypoints, radius = _waypoints(parts)
+    stops = 1e3 * waypoints[radius == 0]
     axes.scatter(*stops.T, color=STOP, s=10, depthshade=False)
     spans = np.ptp(points, axis=0)
     spans = np.maximum(spans, LEAST_SPAN * spans.max() + 1.0)
@@ -100,32 +112,34 @@ def _draw_space(axes: Any, run: Run, geometry: PathGeometry) -> None:
     axes.set_title("path of the TCP")
 
 
-def _draw_plane(axes: Axes, run: Run, geometry: PathGeometry, view: tuple[int, int]) -> Any:
+def _draw_plane(
+    axes: Axes, driven: DrivenProgram, parts: Sequence[PathGeometry], view: tuple[int, int]
+) -> Any:
     """The path in two world axes; returns what is coloured by speed."""
     from matplotlib.collections import LineCollection, PatchCollection
     from matplotlib.lines import Line2D
     from matplotlib.patches import Circle
 
-    points = 1e3 * run.trajectory.position[:, view]
-    for nominal in geometry.nominal:
+    for nominal in _nominal(parts):
         axes.plot(*(1e3 * nominal[:, view].T), color=NOMINAL, linestyle=(0, (4, 3)), linewidth=0.8)
-    passed = geometry.radius > 0
+    waypoints, radii = _waypoints(parts)
+    passed = radii > 0
     circles = [
         Circle((float(x), float(y)), float(radius))
         for (x, y), radius in zip(
-            1e3 * geometry.waypoints[passed][:, view], 1e3 * geometry.radius[passed], strict=True
+            1e3 * waypoints[passed][:, view], 1e3 * radii[passed], strict=True
         )
     ]
     axes.add_collection(
         PatchCollection(circles, facecolor=ZONE + "22", edgecolor=ZONE, linewidth=0.8)
     )
-    lines = LineCollection(list(_strokes(points)), linewidth=1.8, cmap="viridis")
-    lines.set_array(_stroke_speeds(run))
+    lines = LineCollection(list(_strokes(driven, list(view))), linewidth=1.8, cmap="viridis")
+    lines.set_array(_stroke_speeds(driven))
     axes.add_collection(lines)
-    stops = 1e3 * geometry.waypoints[~passed][:, view]
+    stops = 1e3 * waypoints[~passed][:, view]
     axes.plot(*stops.T, "s", color=STOP, markersize=3.5)
-    if len(geometry.waypoints) <= NUMBERED:
-        _number(axes, run, geometry, view)
+    if len(waypoints) <= NUMBERED:
+        _number(axes, driven, parts, view)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel(f"{'xyz'[view[0]]}, mm")
     axes.set_ylabel(f"{'xyz'[view[1]]}, mm")
@@ -139,11 +153,15 @@ def _draw_plane(axes: Axes, run: Run, geometry: PathGeometry, view: tuple[int, i
     return lines
 
 
-def _number(axes: Axes, run: Run, geometry: PathGeometry, view: tuple[int, int]) -> None:
+def _number(
+    axes: Axes, driven: DrivenProgram, parts: Sequence[PathGeometry], view: tuple[int, int]
+) -> None:
     """Write at each target the numbers of the moves that end there."""
     ending: dict[tuple[float, ...], list[int]] = {}
-    for move, point in zip(run.path.route.moves, geometry.waypoints[1:], strict=True):
-        ending.setdefault(tuple(np.round(1e3 * point[list(view)], 1)), []).append(move + 1)
+    for part, geometry in zip(driven.parts, parts, strict=True):
+        numbers = [part.first + move + 1 for move in part.run.path.route.moves]
+        for number, point in zip(numbers, geometry.waypoints[1:], strict=True):
+            ending.setdefault(tuple(np.round(1e3 * point[list(view)], 1)), []).append(number)
     for (x, y), moves in ending.items():
         axes.annotate(
             ", ".join(map(str, moves)),
@@ -154,22 +172,35 @@ def _number(axes: Axes, run: Run, geometry: PathGeometry, view: tuple[int, int])
         )
 
 
-def _strokes(points: FloatArray) -> FloatArray:
-    """Straight pieces (T − 1, 2, D) between points (T, D)."""
-    return np.stack([points[:-1], points[1:]], axis=1)
+def _nominal(parts: Sequence[PathGeometry]) -> list[FloatArray]:
+    """The programmed paths of all parts."""
+    return [points for geometry in parts for points in geometry.nominal]
 
 
-def _stroke_speeds(run: Run) -> FloatArray:
+def _waypoints(parts: Sequence[PathGeometry]) -> tuple[FloatArray, FloatArray]:
+    """Waypoints (M, 3) m of all parts, and the radii (M,) m round them."""
+    points = np.concatenate([geometry.waypoints for geometry in parts])
+    return points, np.concatenate([geometry.radius for geometry in parts])
+
+
+def _strokes(driven: DrivenProgram, axes: list[int]) -> FloatArray:
+    """Straight pieces (K, 2, D) of the path in mm along some axes; none across a gap."""
+    paths = [1e3 * part.run.trajectory.position[:, axes] for part in driven.parts]
+    return np.concatenate([np.stack([p[:-1], p[1:]], axis=1) for p in paths])
+
+
+def _stroke_speeds(driven: DrivenProgram) -> FloatArray:
     """mm/s on each of the strokes."""
-    speed = 1e3 * tcp_speed(run)
-    return np.asarray(0.5 * (speed[1:] + speed[:-1]))
+    speeds = [1e3 * tcp_speed(part.run) for part in driven.parts]
+    return np.concatenate([0.5 * (v[1:] + v[:-1]) for v in speeds])
 
 
-def _draw_speed(axes: Axes, run: Run) -> None:
-    trajectory = run.trajectory
-    axes.fill_between(trajectory.t, 1e3 * tcp_speed(run), color=SPEED, alpha=0.12, linewidth=0)
-    axes.plot(trajectory.t, 1e3 * tcp_speed(run), color=SPEED, linewidth=1.2, label="driven")
-    wanted = [run.program.moves[i].speed.tcp for i in trajectory.move]
+def _draw_speed(axes: Axes, driven: DrivenProgram) -> None:
+    trajectory = driven.trajectory
+    speed = np.concatenate([tcp_speed(part.run) for part in driven.parts])
+    axes.fill_between(trajectory.t, 1e3 * speed, color=SPEED, alpha=0.12, linewidth=0)
+    axes.plot(trajectory.t, 1e3 * speed, color=SPEED, linewidth=1.2, label="driven")
+    wanted = [driven.program.moves[i].speed.tcp for i in trajectory.move]
     programmed = np.array([np.nan if speed is None else speed for speed in wanted])
     if np.isfinite(programmed).any():
         axes.step(
@@ -182,14 +213,14 @@ def _draw_speed(axes: Axes, run: Run) -> None:
             label="programmed",
         )
         # A program at "maximum speed" would press the driven curve to the floor.
-        axes.set_ylim(0.0, 1.15e3 * min(np.nanmax(programmed), 1.3 * tcp_speed(run).max() + 1e-3))
+        axes.set_ylim(0.0, 1.15e3 * min(np.nanmax(programmed), 1.3 * speed.max() + 1e-3))
     axes.set_title("speed of the TCP, mm/s")
     _legend_above(axes)
 
 
-def _draw_joints(position: Axes, velocity: Axes, run: Run, robot: Robot) -> None:
+def _draw_joints(position: Axes, velocity: Axes, driven: DrivenProgram, robot: Robot) -> None:
     """Positions in % of the range from its middle, velocities in % of their limit."""
-    trajectory, limits = run.trajectory, robot.limits
+    trajectory, limits = driven.trajectory, robot.limits
     middle, half = 0.5 * (limits.upper + limits.lower), 0.5 * (limits.upper - limits.lower)
     for j, name in enumerate(robot.axis_names):
         colour = f"C{j}"

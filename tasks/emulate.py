@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..core.display import counted
-from .options.entries import TIME, Extent, number
+from .options.entries import TIME, Extent, number, switch
 from .options.keywords import by_keywords
 from .setup import RobotOptions, start_of, with_setup
 
@@ -22,6 +22,7 @@ PERIODS = Extent(1e-5, 1.0)
 class EmulateOptions(RobotOptions):
     """How a program is emulated."""
 
+    strict: bool = switch("Stop at the first move that cannot be driven.")
     period: float | None = number(
         None,
         "Seconds between samples; the controller's own if unset.",
@@ -33,20 +34,27 @@ class EmulateOptions(RobotOptions):
 def emulate_with(program: Program, options: EmulateOptions) -> Run:
     """Drive a program as the robot's controller would: cycle time, path, what limits each move.
 
+    A move that cannot be driven is a fault of the result; the robot goes on behind it.
+
     Args:
         program: as `flyby.read` gives it, or built of moves.
 
     Raises:
-        MotionError: it cannot be driven; the message names the move.
+        MotionError: no move can be driven, or with ``strict`` any cannot; the message names it.
         InputError: nobody says which robot.
     """
+    from ..core.driving.driven_program import refusal
+    from ..core.driving.past_faults import drive
     from ..core.motion.emulator.controller import Controller
     from .results.runs import Run
 
     program, setup = with_setup(program, options)
     options.say(f"emulating {counted(program.moves, 'move')}")
-    run = Controller(setup.vendor, setup.robot).run(program, start_of(program), options.period)
-    return Run.of(run, setup.robot)
+    controller = Controller(setup.vendor, setup.robot)
+    driven = drive(controller, program, start_of(program), options.period)
+    if options.strict and driven.faults:
+        raise refusal(driven.faults)
+    return Run.of(driven, setup.robot)
 
 
 emulate = by_keywords(emulate_with, EmulateOptions)

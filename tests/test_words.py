@@ -69,7 +69,7 @@ def test_one_name_is_one_class() -> None:
             places.setdefault(name, []).append(path.as_posix())
     assert len(places) > 500
     shared = {name: found for name, found in places.items() if len(found) > 1}
-    # What a task hands out is the core's run, with what tables and pictures add.
+    # What a task hands out is what the core drove, with what tables and pictures add.
     assert shared.pop("Run") == ["core/motion/emulator/run.py", "tasks/results/runs.py"]
     assert not shared
 

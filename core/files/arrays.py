@@ -20,7 +20,7 @@ _NUMERIC = "fiu"
 
 
 def read_npz(
-    path: str | Path, names: Sequence[str], most: int, further: Sequence[str] = ()
+    path: str | Path, names: Sequence[str], most: int, further: Sequence[Sequence[str]] = ()
 ) -> dict[str, NDArray[Any]]:
     """Arrays of numbers out of a file of NumPy's.
 
@@ -28,7 +28,7 @@ def read_npz(
         path: the file.
         names: of the arrays.
         most: bytes that they may have together, and the file.
-        further: arrays of which all are there, or none.
+        further: groups of arrays of which all are there, or none.
 
     Raises:
         InputError: the file is damaged or lacks one; an array holds no numbers, claims more of
@@ -39,8 +39,9 @@ def read_npz(
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             held = {info.filename.removesuffix(".npy"): info for info in archive.infolist()}
-            if any(name in held for name in further):
-                names = (*names, *further)
+            for group in further:
+                if any(name in held for name in group):
+                    names = (*names, *group)
             missing = [name for name in names if name not in held]
             if missing:
                 raise InputError(f"{path}: there is no {', '.join(missing)}")

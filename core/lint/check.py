@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import replace
 
 from ..door import spelt
-from ..errors import FlybyError, MotionError, SourceError
+from ..driving.driven_program import DrivenPart
+from ..driving.past_faults import drive
+from ..errors import FaultCause, FlybyError, MotionError, SourceError
 from ..motion.emulator.controller import Controller
-from ..motion.emulator.run import Run
-from ..program.move import Move, Statement
 from ..program.program import Program
 from ..program.target import JointTarget
 from ..robot.model import Robot
@@ -37,7 +37,7 @@ def check(
 ) -> tuple[Finding, ...]:
     """All findings, in the order of the program's text.
 
-    A move that cannot be driven is a finding, and what comes before it is checked all the same.
+    A move that cannot be driven is a finding, and what can be driven is checked all the same.
 
     Args:
         program: the program.
@@ -47,11 +47,14 @@ def check(
     wording = None if vendor.speaks is None else vendor.speaks.wording
     subject = ProgramSubject(program, robot, wording)
     found = [f for rule in PROGRAM_RULES for f in rule.findings(subject, program)]
-    run, failures = _driven(program, Controller(vendor, robot), start)
+    parts, failures = _driven(program, Controller(vendor, robot), start)
     found += failures
-    if run is not None:
-        driven = RunSubject(run, robot)
-        found += [f for rule in RUN_RULES for f in rule.findings(driven, program)]
+    for part in parts:
+        subject_of_run = RunSubject(part.run, robot)
+        for rule in RUN_RULES:
+            for finding in rule.findings(subject_of_run, part.run.program):
+                move = None if finding.move is None else part.first + finding.move
+                found.append(replace(finding, move=move))
     return tuple(sorted(_once(found), key=_place))
 
 
@@ -82,56 +85,30 @@ def unreadable(error: FlybyError) -> Finding:
 
 def _driven(
     program: Program, controller: Controller, start: JointTarget | None
-) -> tuple[Run | None, list[Finding]]:
-    """The run of as much as can be driven, and why no more."""
+) -> tuple[tuple[DrivenPart, ...], list[Finding]]:
+    """The parts that can be driven, and why there is not one of all moves."""
     try:
-        return controller.run(program, start), []
+        driven = drive(controller, program, start)
+    except MotionError as error:
+        fix = _elsewhere() if error.move is None or error.cause is FaultCause.NOWHERE else _FIX
+        span = error.span
+        if span is None and error.move is not None:
+            span = program.moves[error.move].statement
+        move = error.move
+        return (), [Finding(CANNOT_DRIVE, Severity.ERROR, error.message, fix, move, span)]
     except FlybyError as error:
-        failure = _failure(program, error)
-    first = failure.move
-    if not first:
-        return None, [failure]
-    try:
-        return controller.run(_before(program, first), start), [failure]
-    except FlybyError:
-        # What comes before fails as well where it is looked at alone: one reason is enough.
-        return None, [failure]
+        return (), [Finding(CANNOT_DRIVE, Severity.ERROR, str(error), _FIX)]
+    return driven.parts, [
+        Finding(CANNOT_DRIVE, Severity.ERROR, fault.message, _FIX, fault.move, fault.span)
+        for fault in driven.faults
+    ]
 
 
-def _failure(program: Program, error: FlybyError) -> Finding:
-    if not isinstance(error, MotionError):
-        return Finding(CANNOT_DRIVE, Severity.ERROR, str(error), _FIX)
-    if error.move is None:
-        return Finding(CANNOT_DRIVE, Severity.ERROR, error.message, _elsewhere(), None, error.span)
-    span = error.span
-    if span is None:
-        span = program.moves[error.move].statement
-    return Finding(CANNOT_DRIVE, Severity.ERROR, error.message, _FIX, error.move, span)
-
-
-_FIX = "correct this move; what follows it was not checked"
+_FIX = "correct this move"
 
 
 def _elsewhere() -> str:
-    return (
-        f"let the robot begin elsewhere ({spelt('start')}), or correct the program; no motion was "
-        "checked"
-    )
-
-
-def _before(program: Program, move: int) -> Program:
-    """The program up to a move."""
-
-    def kept() -> Iterator[Statement]:
-        left = move
-        for statement in program.statements:
-            if isinstance(statement, Move):
-                if left == 0:
-                    return
-                left -= 1
-            yield statement
-
-    return replace(program, statements=tuple(kept()))
+    return f"let the robot begin elsewhere ({spelt('start')}), or correct the program"
 
 
 def _place(finding: Finding) -> tuple[str, int, int, str]:

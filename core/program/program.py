@@ -103,6 +103,25 @@ class Program:
         """The moves alone; a move's index in messages and results is its place here."""
         return tuple(s for s in self.statements if isinstance(s, MoveJ | MoveL | MoveC))
 
+    def between(self, first: int, stop: int) -> Program:
+        """The program of the moves from index ``first`` to before ``stop``, with what is between.
+
+        What stands before the first of them belongs to it, what stands behind the last as well.
+        Where it does not begin as the whole it has neither its start nor its notes.
+        """
+        kept: list[Statement] = []
+        count = 0
+        for statement in self.statements:
+            moves = isinstance(statement, MoveJ | MoveL | MoveC)
+            if moves and count == stop:
+                break
+            count += moves
+            if count > first or (count == first and not moves):
+                kept.append(statement)
+        if first == 0:
+            return replace(self, statements=tuple(kept))
+        return replace(self, statements=tuple(kept), start=None, notes=())
+
     def with_moves(self, moves: tuple[Move, ...]) -> Program:
         """The same program with each move replaced by the one at its index in ``moves``.
 

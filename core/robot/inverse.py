@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import FloatArray
-from ..errors import MotionError
+from ..errors import FaultCause, MotionError
 from .joint import Joint, JointKind
 from .kinematics.arm_geometry import EXACT, Family, Recognised
 from .kinematics.chain import Chain
@@ -45,7 +45,7 @@ class UnreachableError(MotionError):
     """
 
     def __init__(self, message: str, distance: float = 0.0) -> None:
-        super().__init__(message)
+        super().__init__(message, cause=FaultCause.LIMIT if distance == 0.0 else FaultCause.REACH)
         self.distance = distance
 
 

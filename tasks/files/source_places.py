@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from ...core.driving.driven_program import Fault
 from ...core.errors import Note, Span
 
 
@@ -12,6 +13,16 @@ def note_json(note: Note) -> dict[str, Any]:
     """A note with JSON's types: message, move from 1, place."""
     move = None if note.move is None else note.move + 1
     return {"message": note.message, "move": move, **place_json(note.span)}
+
+
+def fault_json(fault: Fault) -> dict[str, Any]:
+    """A fault with JSON's types: cause, message, move from 1, place."""
+    return {
+        "cause": str(fault.cause),
+        "message": fault.message,
+        "move": fault.move + 1,
+        **place_json(fault.span),
+    }
 
 
 def place_json(span: Span | None) -> dict[str, Any]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.display import counted, in_line
+from ...core.driving.driven_program import DrivenProgram, Fault
 from ...core.errors import Note, Span
 from ...core.motion.emulator.binding_limits import LimitShare, limit_shares
 from ...core.motion.emulator.move_figures import lengths_and_speeds, zone_reaches
@@ -81,7 +82,9 @@ class MoveReport:
         target: name of the target; None if it has none.
         position: the target in its work object, m; None for joint targets.
         span: where the move stands in its source.
-        driven: False for moves that go nowhere or are left out; all below is then empty.
+        fault: why it cannot be driven; None where it can.
+        driven: False for moves at fault, moves to where the robot goes on behind one, and moves
+            that go nowhere or are left out; all below is then empty.
         length: of the TCP's path in its work object, m.
         begin: s, when the commanded motion enters the move's share of the path: at the waypoint
             before, or in the middle of its zone.
@@ -100,6 +103,7 @@ class MoveReport:
     target: str | None
     position: tuple[float, float, float] | None
     span: Span | None
+    fault: Fault | None
     driven: bool
     length: float
     begin: float
@@ -113,7 +117,7 @@ class MoveReport:
 
     def __repr__(self) -> str:
         told = (
-            ("not driven",)
+            (_not_driven(self),)
             if not self.driven
             else (
                 f"{1e3 * self.length:.1f} mm in {self.time:.3f} s",
@@ -146,38 +150,50 @@ class MoveTable(tuple[MoveReport, ...]):
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """A run. The first wait and what all moves take are its cycle time.
+    """A run. The first wait and what all moves take are its time.
 
     Args:
         program: its name.
         robot: name of the robot.
-        cycle_time: s, from the start to rest after the last motion, waits included.
+        driven_time: s, from the start to rest after the last motion, waits included; of all parts
+            that can be driven.
         first_wait: s of it in which the robot waits before the first move that is driven.
         waiting: s of it spent in programmed waits, the first included.
         settling: s of it that settling takes.
         length: of the TCP's path, m.
         top_speed: of the TCP, m/s.
         moves: one entry for each move of the program.
+        parts: that are driven without a gap: the first and the last move of each, from 1.
+        faults: moves that cannot be driven.
         notes: what the user should know.
     """
 
     program: str
     robot: str
-    cycle_time: float
+    driven_time: float
     first_wait: float
     waiting: float
     settling: float
     length: float
     top_speed: float
     moves: MoveTable
+    parts: tuple[tuple[int, int], ...]
+    faults: tuple[Fault, ...]
     notes: tuple[Note, ...]
 
     def __repr__(self) -> str:
+        told = [f"{1e3 * self.length:.1f} mm", counted(self.moves, "move")]
+        if self.faults:
+            told.append(counted(self.faults, "fault"))
         return in_line(
-            f"Report of {self.program} on {self.robot}: {self.cycle_time:.3f} s, "
-            f"{1e3 * self.length:.1f} mm, {counted(self.moves, 'move')}, "
-            f"{counted(self.notes, 'note')}"
+            f"Report of {self.program} on {self.robot}: {self.driven_time:.3f} s, "
+            f"{', '.join(told)}, {counted(self.notes, 'note')}"
         )
+
+    @property
+    def cycle_time(self) -> float | None:
+        """s; None where a move cannot be driven, as nobody knows what it would take."""
+        return None if self.faults else self.driven_time
 
     @property
     def moving(self) -> float:
@@ -185,49 +201,81 @@ class Report:
         return sum(move.time for move in self.moves)
 
 
-def make_report(run: Run, robot: Robot) -> Report:
-    """The report of a run."""
+def make_report(driven: DrivenProgram, robot: Robot) -> Report:
+    """The report of a driven program."""
+    faults = {fault.move: fault for fault in driven.faults}
+    moves = [_empty(i, move, faults.get(i)) for i, move in enumerate(driven.program.moves)]
+    waiting = 0.0
+    for part, clock in zip(driven.parts, driven.begins, strict=True):
+        for i, row in _rows(part.run, robot).items():
+            number = part.first + i + 1
+            moves[number - 1] = replace(row, number=number, begin=row.begin + clock)
+        waiting += float(part.run.path.route.dwell.sum())
+    return Report(
+        program=driven.program.name,
+        robot=robot.name,
+        driven_time=driven.duration,
+        first_wait=sum(float(part.run.path.route.dwell[0]) for part in driven.parts),
+        waiting=waiting,
+        settling=sum(move.settling for move in moves),
+        length=sum(move.length for move in moves),
+        top_speed=max(move.top_speed for move in moves),
+        moves=MoveTable(moves),
+        parts=tuple((p.first + 1, p.first + len(p.run.program.moves)) for p in driven.parts),
+        faults=driven.faults,
+        notes=driven.notes,
+    )
+
+
+def _rows(run: Run, robot: Robot) -> dict[int, MoveReport]:
+    """The moves of a run that are driven, by their indices."""
     lengths, tops = lengths_and_speeds(run)
     zones = zone_reaches(run.path)
     spans = _spans(run)
     limits = limit_shares(run, robot.axis_names)
     dwell = run.path.route.dwell
-    segment_of = {move: k for k, move in enumerate(run.path.route.moves)}
-    rows = []
-    for i, move in enumerate(run.program.moves):
-        k = segment_of.get(i)
-        driven = k is not None
-        rows.append(
-            MoveReport(
-                number=i + 1,
-                kind=type(move).__name__,
-                target=move.target.name,
-                position=_position(move),
-                span=move.statement,
-                driven=driven,
-                length=0.0 if k is None else float(lengths[k]),
-                begin=0.0 if k is None else float(spans.begin[k]),
-                time=0.0 if k is None else float(spans.duration[k]),
-                wait=0.0 if k is None else float(dwell[k + 1]),
-                settling=0.0 if k is None else float(spans.settling[k]),
-                top_speed=0.0 if k is None else float(tops[k]),
-                programmed_speed=move.speed.tcp,
-                zone=_zone(move, (0.0, 0.0) if k is None else zones[k]),
-                limits=() if k is None else limits[k],
-            )
+    return {
+        i: replace(
+            _empty(i, run.program.moves[i]),
+            driven=True,
+            length=float(lengths[k]),
+            begin=float(spans.begin[k]),
+            time=float(spans.duration[k]),
+            wait=float(dwell[k + 1]),
+            settling=float(spans.settling[k]),
+            top_speed=float(tops[k]),
+            zone=_zone(run.program.moves[i], zones[k]),
+            limits=limits[k],
         )
-    return Report(
-        program=run.program.name,
-        robot=robot.name,
-        cycle_time=run.duration,
-        first_wait=float(dwell[0]),
-        waiting=float(dwell.sum()),
-        settling=float(spans.settling.sum()),
-        length=float(lengths.sum()),
-        top_speed=float(tops.max()),
-        moves=MoveTable(rows),
-        notes=located(run),
+        for k, i in enumerate(run.path.route.moves)
+    }
+
+
+def _empty(index: int, move: Move, fault: Fault | None = None) -> MoveReport:
+    """A move that is not driven."""
+    return MoveReport(
+        number=index + 1,
+        kind=type(move).__name__,
+        target=move.target.name,
+        position=_position(move),
+        span=move.statement,
+        fault=fault,
+        driven=False,
+        length=0.0,
+        begin=0.0,
+        time=0.0,
+        wait=0.0,
+        settling=0.0,
+        top_speed=0.0,
+        programmed_speed=move.speed.tcp,
+        zone=_zone(move, (0.0, 0.0)),
+        limits=(),
     )
+
+
+def _not_driven(move: MoveReport) -> str:
+    """Why a move has no figures."""
+    return "not driven" if move.fault is None else f"FAULT: {move.fault.cause}"
 
 
 class _Spans(NamedTuple):
@@ -265,17 +313,6 @@ def _position(move: Move) -> tuple[float, float, float] | None:
     return None if isinstance(move.target, JointTarget) else move.target.pose.position
 
 
-def located(run: Run) -> tuple[Note, ...]:
-    """The notes, each with its place in the source where the program knows it."""
-    found = []
-    for note in run.notes:
-        span = note.span
-        if span is None and note.move is not None:
-            span = run.program.moves[note.move].statement
-        found.append(Note(note.message, note.move, span))
-    return tuple(dict.fromkeys(found))
-
-
 def seconds(rest: float) -> str:
     """A time of rest, empty for none."""
     return f"{rest:.3f}" if rest else ""
@@ -286,7 +323,7 @@ def move_row(move: MoveReport) -> tuple[str, ...]:
     line = "" if move.span is None else str(move.span.line)
     head = (str(move.number), move.kind, _target(move), line)
     if not move.driven:
-        return (*head, *[""] * (len(COLUMNS) - len(head) - 1), "not driven")
+        return (*head, *[""] * (len(COLUMNS) - len(head) - 1), _not_driven(move))
     return (
         *head,
         f"{1e3 * move.length:.1f}",

@@ -5,15 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from ...core.display import counted
+from ...core.driving.driven_program import DrivenProgram
+from ...core.errors import MotionError
 from ...core.motion.emulator import run as core_run
+from ...core.motion.path.path import Path
+from ...core.motion.timing.timing import Timing
 from ...core.notebook import PictureCurve, page, picture
 from ...core.robot.model import Robot
-from .report import MoveTable, Report, located, make_report
+from .report import MoveTable, Report, make_report
 
 
 @dataclass(frozen=True, repr=False)
-class Run(core_run.Run):
-    """The core's run with its robot: moves as a table, pictures, how it shows itself in notebooks.
+class Run(DrivenProgram):
+    """A driven program with its robot: moves as a table, pictures, how it shows itself in
+    notebooks.
 
     Args:
         robot: that was driven.
@@ -22,9 +28,36 @@ class Run(core_run.Run):
     robot: Robot = field(kw_only=True)
 
     @classmethod
-    def of(cls, run: core_run.Run, robot: Robot) -> Run:
-        """A run with its robot, its notes with their places in the source."""
-        return cls(run.program, run.path, run.timing, run.trajectory, located(run), robot=robot)
+    def of(cls, driven: DrivenProgram, robot: Robot) -> Run:
+        """A driven program with its robot."""
+        return cls(driven.program, driven.parts, driven.faults, robot=robot)
+
+    def __repr__(self) -> str:
+        return f"{super().__repr__()[:-1]} on {self.robot.name}>"
+
+    @property
+    def whole(self) -> core_run.Run:
+        """The one run of all moves.
+
+        Raises:
+            MotionError: a move cannot be driven, so that there are several, in `parts`.
+        """
+        if self.faults:
+            raise MotionError(
+                f"{counted(self.faults, 'move')} cannot be driven, the first is: "
+                f"{self.faults[0]}; what can be driven is in parts"
+            )
+        return self.parts[0].run
+
+    @property
+    def path(self) -> Path:
+        """The geometry; see `whole` for what is raised."""
+        return self.whole.path
+
+    @property
+    def timing(self) -> Timing:
+        """The stamp, before any smoothing in time; see `whole` for what is raised."""
+        return self.whole.timing
 
     @cached_property
     def report(self) -> Report:
@@ -47,5 +80,8 @@ class Run(core_run.Run):
         return draw(self, self.robot, kind)
 
     def _repr_html_(self) -> str:
-        curve = PictureCurve("path of the TCP", self.trajectory.position)
-        return page(repr(self)[1:-1], self.moves._repr_html_(), picture([curve]), notes=self.notes)
+        curves = [
+            PictureCurve("path of the TCP", part.run.trajectory.position) for part in self.parts
+        ]
+        told = [*(f"fault: {fault}" for fault in self.faults), *map(str, self.notes)]
+        return page(repr(self)[1:-1], self.moves._repr_html_(), picture(curves), notes=told)

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.arrays import FloatArray
+from flyby.core.driving.driven_program import DrivenProgram
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.emulator.run import Run
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Statement, Wait
@@ -33,7 +34,7 @@ Small = Callable[..., Path]
 
 def drive(path: Path) -> tuple[Run, Report]:
     run = CONTROLLER.run(find_vendor("abb").read_file(path))
-    return run, make_report(run, ROBOT)
+    return run, make_report(DrivenProgram.faultless(run), ROBOT)
 
 
 def target(x: float, y: float, z: float = 0.9) -> PoseTarget:
@@ -67,7 +68,7 @@ def test_the_figures_agree_with_the_motion(
 ) -> None:
     moves = legs_of(legs, speed)
     run = CONTROLLER.run(Program(tuple(moves), start=HOME), period=0.001)
-    report = make_report(run, ROBOT)
+    report = make_report(DrivenProgram.faultless(run), ROBOT)
 
     t = np.arange(0.0, run.duration, 0.001)
     walked = np.linalg.norm(np.diff(stamped_positions(run, t), axis=0), axis=1)
@@ -101,7 +102,7 @@ def test_times_add_up_and_are_those_of_the_samples(
     for move, rest in zip(legs_of(legs, speed), rests, strict=False):
         statements += [Wait(rest), move] if rest else [move]
     run = Controller(find_vendor("abb"), ROBOT, model).run(Program(tuple(statements), start=HOME))
-    report = make_report(run, ROBOT)
+    report = make_report(DrivenProgram.faultless(run), ROBOT)
 
     rows = report.moves
     spent = [row.time + row.wait + row.settling for row in rows]

@@ -6,7 +6,8 @@ import csv
 import io
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,8 @@ MOST_CSV_BYTES = 200_000_000
 _ARRAYS = ("t", "q", "dq", "ddq", "position", "quaternion", "sigma", "move")
 _MOTORS = ("q_motor", "dq_motor", "ddq_motor")
 Leads = tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]
+_GAPS = "gaps"
+_PART = "part"
 _TAIL = ("x", "y", "z", "qw", "qx", "qy", "qz", "move")
 
 
@@ -53,6 +56,8 @@ class Trajectory:
         lead: by how much motors are ahead of the links in each of the three, (T, N), on the side
             of the links; None where they never are. What is some milliradians needs no more
             digits.
+        gaps: indices of the samples that follow a move which cannot be driven, increasing; the
+            clock stands still there, and how the robot came there is not known.
     """
 
     t: FloatArray
@@ -64,6 +69,7 @@ class Trajectory:
     sigma: FloatArray
     move: IntArray
     lead: Leads | None = None
+    gaps: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         count = len(self.t)
@@ -74,7 +80,9 @@ class Trajectory:
                 raise InputError(f"a trajectory of {count} samples has {len(array)} of {name}")
             if not np.isfinite(array).all():
                 raise InputError(f"a trajectory's {name} must be finite")
-        if count == 0 or (np.diff(self.t) <= 0).any():
+        steps = np.diff(self.t)
+        steps[np.array(self.gaps, dtype=int) - 1] = 1.0
+        if count == 0 or (steps <= 0).any():
             raise InputError("a trajectory needs samples at increasing times")
 
     def __repr__(self) -> str:
@@ -104,8 +112,22 @@ class Trajectory:
         """From the first sample to the last, s."""
         return float(self.t[-1] - self.t[0])
 
+    def parts(self) -> list[Trajectory]:
+        """What lies between gaps."""
+        if not self.gaps:
+            return [self]
+        ends = [0, *self.gaps, len(self.t)]
+        return [self._rows(slice(a, b)) for a, b in pairwise(ends)]
+
+    def _rows(self, rows: slice) -> Trajectory:
+        arrays: Any = {name: getattr(self, name)[rows] for name in _ARRAYS}
+        lead = self.lead
+        if lead is not None:
+            lead = lead[0][rows], lead[1][rows], lead[2][rows]
+        return Trajectory(**arrays, lead=lead)
+
     def resampled(self, period: float) -> Trajectory:
-        """The same motion every ``period`` s, and at its end.
+        """The same motion every ``period`` s, and at its end; of each part for itself.
 
         Joints and their velocities are those of the cubics that meet both at the samples. The
         TCP's position, the quaternion (then normalised), the accelerations and σ are linear
@@ -114,6 +136,8 @@ class Trajectory:
         Raises:
             InputError: the period is not finite and above zero, or makes too many samples.
         """
+        if self.gaps:
+            return joined([part.resampled(period) for part in self.parts()])
         t = sample_times(self.t[0], self.t[-1], period)
         if len(self.t) == 1:
             return self
@@ -148,18 +172,21 @@ class Trajectory:
         return float(np.trapezoid(power, self.t))
 
     def csv(self) -> bytes:
-        """t, joints, TCP and move as text (header ``t,q1,…,qn,x,y,z,qw,qx,qy,qz,move``), and of
-        elastic joints the motors (``q1_motor,…,qn_motor``)."""
+        """t, joints, TCP and move as text (header ``t,q1,…,qn,x,y,z,qw,qx,qy,qz,move``), of
+        elastic joints the motors (``q1_motor,…,qn_motor``), with gaps the ``part``, from 1."""
         text = io.StringIO(newline="")
         writer = csv.writer(text, lineterminator="\n")
         joints = [f"q{j + 1}" for j in range(self.q.shape[1])]
         more = [] if self.lead is None else [f"{name}_motor" for name in joints]
-        writer.writerow(["t", *joints, *_TAIL, *more])
+        parts = [_PART] if self.gaps else []
+        writer.writerow(["t", *joints, *_TAIL, *more, *parts])
         columns = np.column_stack([self.t, self.q, self.position, self.quaternion])
         motors = self.q_motor[:, : len(more)]
-        for row, move, motor in zip(columns, self.move, motors, strict=True):
+        numbers = 1 + np.searchsorted(self.gaps, np.arange(len(self.t)), side="right")
+        for row, move, motor, part in zip(columns, self.move, motors, numbers, strict=True):
             cells = [*(f"{value:.9g}" for value in row), int(move) + 1]
-            writer.writerow([*cells, *(f"{value:.9g}" for value in motor)])
+            cells += [f"{value:.9g}" for value in motor]
+            writer.writerow([*cells, int(part)] if parts else cells)
         return text.getvalue().encode()
 
     def save_csv(self, path: Path | str) -> None:
@@ -187,37 +214,37 @@ class Trajectory:
         joints = [f"q{j + 1}" for j in range(size)]
         motors = [f"{name}_motor" for name in joints]
         whole = ["t", *joints, *_TAIL]
-        if size < 1 or header not in (whole, whole + motors):
+        known = (whole, whole + motors)
+        if size < 1 or header not in (*known, *([*names, _PART] for names in known)):
             raise InputError(
                 f"{path}:1: the header must be t,q1,…,qn,{','.join(_TAIL)}, and may go on with "
-                "q1_motor,…,qn_motor"
+                f"q1_motor,…,qn_motor and {_PART}"
             )
         data = np.empty((len(rows) - 1, len(header)))
         for line, row in enumerate(rows[1:], start=2):
             data[line - 2] = _numbers(row, len(header), f"{path}:{line}")
-        t, q = data[:, 0], data[:, 1 : 1 + size]
-        if len(t) > 1 and (np.diff(t) <= 0).any():
-            line = int(np.flatnonzero(np.diff(t) <= 0)[0]) + 3
+        gaps: tuple[int, ...] = ()
+        if header[-1] == _PART:
+            gaps = tuple(map(int, 1 + np.flatnonzero(np.diff(data[:, -1]))))
+            data = data[:, :-1]
+        t = data[:, 0]
+        steps = np.diff(t)
+        steps[np.array(gaps, dtype=int) - 1] = 1.0
+        if (steps <= 0).any():
+            line = int(np.flatnonzero(steps <= 0)[0]) + 3
             raise InputError(f"{path}:{line}: times must increase")
-        tail, motor = data[:, 1 + size : len(whole)], data[:, len(whole) :]
-        rates = _finite_rates(t, q)
-        return cls(
-            t,
-            q,
-            *rates,
-            tail[:, :3],
-            tail[:, 3:7],
-            np.zeros(len(t)),
-            tail[:, 7].astype(np.int64) - 1,
-            _leads((q, *rates), (motor, *_finite_rates(t, motor))) if motor.size else None,
-        )
+        parts = [_of_columns(rows, size) for rows in np.split(data, gaps)]
+        return replace(joined(parts), t=t) if gaps else parts[0]
 
     def npz(self) -> bytes:
-        """All arrays under their names, and of elastic joints ``q_motor``, ``dq_motor`` and
-        ``ddq_motor``."""
+        """All arrays under their names, of elastic joints ``q_motor``, ``dq_motor`` and
+        ``ddq_motor``, and ``gaps`` where there are any."""
         buffer = io.BytesIO()
         names = _ARRAYS if self.lead is None else (*_ARRAYS, *_MOTORS)
-        np.savez_compressed(buffer, **{name: getattr(self, name) for name in names})
+        arrays = {name: getattr(self, name) for name in names}
+        if self.gaps:
+            arrays[_GAPS] = np.array(self.gaps)
+        np.savez_compressed(buffer, **arrays)
         return buffer.getvalue()
 
     def save_npz(self, path: Path | str) -> None:
@@ -232,15 +259,63 @@ class Trajectory:
             InputError: naming the file.
         """
         try:
-            arrays = read_npz(path, _ARRAYS, MOST_BYTES, _MOTORS)
+            arrays = read_npz(path, _ARRAYS, MOST_BYTES, (_MOTORS, (_GAPS,)))
             q, dq, ddq = (arrays.pop(name, None) for name in _MOTORS)
-            made: Any = dict(arrays)
+            gaps = arrays.pop(_GAPS, np.empty(0))
+            made: Any = {**arrays, "gaps": tuple(map(int, gaps))}
             if q is not None and dq is not None and ddq is not None:
                 made["lead"] = _leads((arrays["q"], arrays["dq"], arrays["ddq"]), (q, dq, ddq))
             return cls(**made)
         except (InputError, TypeError, ValueError) as error:
             told = str(error).removeprefix(f"{path}: ")
             raise InputError(f"{path}: not a saved trajectory: {told}") from error
+
+
+def joined(parts: Sequence[Trajectory], firsts: Sequence[int] | None = None) -> Trajectory:
+    """Motions one after the other, on one clock that stands still in the gaps between them.
+
+    Args:
+        parts: at least one; all of the same axes.
+        firsts: what to add to the indices of moves of each; None for nothing.
+    """
+    if len(parts) == 1 and not any(firsts or ()):
+        return parts[0]
+    rows: dict[str, list[Any]] = {name: [] for name in _ARRAYS}
+    t, sigma = 0.0, 0.0
+    for part, first in zip(parts, firsts or [0] * len(parts), strict=True):
+        moved = {
+            "t": part.t - part.t[0] + t,
+            "sigma": part.sigma + sigma,
+            "move": part.move + first,
+        }
+        for name in _ARRAYS:
+            rows[name].append(moved.get(name, getattr(part, name)))
+        t, sigma = float(moved["t"][-1]), float(moved["sigma"][-1])
+    arrays: Any = {name: np.concatenate(found) for name, found in rows.items()}
+    lead: Leads | None = None
+    if any(part.lead is not None for part in parts):
+        leads = [no_leads(part.q.shape) if part.lead is None else part.lead for part in parts]
+        place, speed, push = (np.concatenate(found) for found in zip(*leads, strict=True))
+        lead = place, speed, push
+    gaps = np.cumsum([len(part.t) for part in parts])[:-1]
+    return Trajectory(**arrays, lead=lead, gaps=tuple(map(int, gaps)))
+
+
+def _of_columns(data: FloatArray, size: int) -> Trajectory:
+    """A motion of so many axes from the columns of a text; see `Trajectory.load_csv`."""
+    tcp = 1 + size
+    t, q, motor = data[:, 0], data[:, 1:tcp], data[:, tcp + len(_TAIL) :]
+    rates = _finite_rates(t, q)
+    return Trajectory(
+        t,
+        q,
+        *rates,
+        data[:, tcp : tcp + 3],
+        data[:, tcp + 3 : tcp + 7],
+        np.zeros(len(t)),
+        data[:, tcp + 7].astype(np.int64) - 1,
+        _leads((q, *rates), (motor, *_finite_rates(t, motor))) if motor.size else None,
+    )
 
 
 def _numbers(row: Sequence[str], count: int, where: str) -> list[float]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...arrays import FloatArray, IntArray
-from ...errors import MotionError, Note
+from ...errors import FaultCause, MotionError, Note
 from ...program.move import Move
 from ...program.program import Program
 from ...program.target import JointTarget
@@ -42,8 +42,22 @@ from .run import Run
 _SKIPS = 10_000
 _LIMIT_SLACK = 1e-6
 """rad or m by which a path may pass a joint limit: rounding of programmed values."""
+_STARTS = 64
+"""Configurations tried of a first target: a six-axis arm has eight solutions, and turns of them."""
+_TRIED_MOVES = 20_000
+"""Moves planned to find a start, about: some seconds."""
+_DEPENDS_ON_START = (FaultCause.LIMIT, FaultCause.SINGULARITY, FaultCause.CONFIGURATION)
 _OTHER_TARGET = "choose another configuration or move the target"
 _DEGREES = 180 / np.pi
+
+
+@dataclass(frozen=True)
+class _Attempt:
+    """A plan from some configuration of the first target, or why there is none."""
+
+    start: JointTarget | None
+    path: Path | None
+    error: MotionError | None = None
 
 
 class Controller:
@@ -110,9 +124,67 @@ class Controller:
     def plan(self, program: Program, start: JointTarget | None = None) -> Path:
         """The geometry of a program's path.
 
+        Where nobody says where the robot stands, it stands at its first target, in the first of
+        its configurations there from which the program can be driven.
+
         Raises:
             MotionError: the program cannot be driven; the message names the move.
         """
+        if start is not None or program.start is not None:
+            return self._plan(program, start)
+        made = self._from_some_start(program)
+        if made.error is not None:
+            raise made.error
+        assert made.path is not None
+        return made.path
+
+    def furthest_start(self, program: Program) -> JointTarget | None:
+        """Where the robot stands for a program that cannot be driven, to come furthest.
+
+        Returns:
+            None for where `plan` takes it to stand by itself.
+        """
+        return None if program.start is not None else self._from_some_start(program).start
+
+    def _from_some_start(self, program: Program) -> _Attempt:
+        """Plan from one configuration of the first target after the other, until one will do."""
+        try:
+            return _Attempt(None, self._plan(program, None))
+        except MotionError as error:
+            furthest = _Attempt(None, None, error)
+            if error.cause not in _DEPENDS_ON_START:
+                return furthest
+        tries = min(_STARTS, max(8, _TRIED_MOVES // len(program.moves)))
+        for start in self._other_starts(program)[:tries]:
+            try:
+                path = self._plan(program, start)
+            except MotionError as error:
+                assert furthest.error is not None
+                if (error.move or 0) > (furthest.error.move or 0):
+                    furthest = _Attempt(start, None, error)
+            else:
+                notes = (_stands(self.robot, start), *path.notes)
+                return _Attempt(start, replace(path, notes=notes))
+        return furthest
+
+    def _other_starts(self, program: Program) -> Sequence[JointTarget]:
+        """Where the robot may stand at the first target, but for the first guess."""
+        try:
+            return self._routes.starts(program)[1:]
+        except MotionError:
+            return ()
+
+    def standing_at(self, move: Move, near: JointTarget | None) -> JointTarget:
+        """A robot at the target of a move; see `RouteFinder.standing_at`.
+
+        Raises:
+            MotionError: it cannot stand there.
+        """
+        at = self._routes.standing_at(move, near)
+        self._check_start(np.array([*at.joints, *at.external]), _OTHER_TARGET)
+        return at
+
+    def _plan(self, program: Program, start: JointTarget | None) -> Path:
         skipped: list[int] = []
         notes: list[Note] = []
         for _ in range(_SKIPS):
@@ -251,12 +323,9 @@ class Controller:
     def _check_limits(self, program: Program, path: Path, stated: JointTarget | None) -> None:
         """Refuse a path that passes a joint limit, at the first place where it does."""
         limits = self.robot.limits
-        start = path.route.ends.q[0, 0]
-        beyond = np.maximum(limits.lower - start, start - limits.upper)
-        if beyond.max() > _LIMIT_SLACK:
-            told = stated or program.start
-            remedy = _OTHER_TARGET if told is None else "start within the limits"
-            raise MotionError("the start: " + self._excess(int(np.argmax(beyond)), start, remedy))
+        told = stated or program.start
+        remedy = _OTHER_TARGET if told is None else "start within the limits"
+        self._check_start(path.route.ends.q[0, 0], remedy, "the start: ")
         beyond = np.maximum(limits.lower - path.q, path.q - limits.upper)
         samples = np.flatnonzero(beyond.max(axis=1) > _LIMIT_SLACK)
         if not len(samples):
@@ -265,7 +334,16 @@ class Controller:
         move = int(moves[samples[0]])
         samples = samples[moves[samples] == move]
         row, axis = np.unravel_index(np.argmax(beyond[samples]), beyond[samples].shape)
-        raise _located(MotionError(self._excess(int(axis), path.q[samples[row]]), move), program)
+        excess = self._excess(int(axis), path.q[samples[row]])
+        raise _located(MotionError(excess, move, cause=FaultCause.LIMIT), program)
+
+    def _check_start(self, q: FloatArray, remedy: str, what: str = "") -> None:
+        """Refuse a robot (N,) that stands beyond its limits."""
+        limits = self.robot.limits
+        beyond = np.maximum(limits.lower - q, q - limits.upper)
+        if beyond.max() > _LIMIT_SLACK:
+            excess = self._excess(int(np.argmax(beyond)), q, remedy)
+            raise MotionError(what + excess, cause=FaultCause.LIMIT)
 
     def _excess(self, axis: int, q: FloatArray, remedy: str = _OTHER_TARGET) -> str:
         limits = self.robot.limits
@@ -342,6 +420,20 @@ def _sampling(model: MotionModel) -> Sampling:
     return Sampling() if model.start_ramp == 0.0 else Sampling(step=0.01, joint=0.02)
 
 
+def _stands(robot: Robot, start: JointTarget) -> Note:
+    """What is said of a start that was found by trying."""
+    arm = zip(robot.joints, start.joints, strict=True)
+    shown = [
+        f"{_DEGREES * q:.1f}°" if joint.kind is JointKind.REVOLUTE else f"{1e3 * q:.1f} mm"
+        for joint, q in arm
+    ]
+    return Note(
+        "no start is known: the robot is taken to stand at the first target with its joints at "
+        f"{', '.join(shown)}, as it cannot drive the program from the solution nearest to zero",
+        0,
+    )
+
+
 def _goes_nowhere(left_out: Sequence[int]) -> MotionError:
     if left_out:
         return MotionError(
@@ -353,6 +445,7 @@ def _goes_nowhere(left_out: Sequence[int]) -> MotionError:
         "the program goes nowhere: this and every other move ends where the robot stands; let it "
         "begin elsewhere",
         0,
+        cause=FaultCause.NOWHERE,
     )
 
 
@@ -363,4 +456,4 @@ def _located(error: MotionError, program: Program) -> MotionError:
     origin = program.moves[error.move].origin
     if origin is None:
         return error
-    return MotionError(error.message, error.move, origin.statement)
+    return MotionError(error.message, error.move, origin.statement, error.cause)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from ...display import counted, in_line
 from ...errors import Note
 from ...program.program import Program
+from ...program.target import JointTarget
 from ..command.trajectory import Trajectory
 from ..path.path import Path
 from ..timing.timing import Timing
@@ -35,6 +36,13 @@ class Run:
             f"Run of {self.program.name} on {self.path.route.robot.name}: {self.duration:.3f} s, "
             f"{counted(self.program.moves, 'move')}, {counted(self.notes, 'note')}"
         )
+
+    @property
+    def end(self) -> JointTarget:
+        """Where the robot stands at last."""
+        q = self.path.route.ends.q[-1, 1]
+        arm = self.path.route.robot.arm_size
+        return JointTarget(tuple(map(float, q[:arm])), tuple(map(float, q[arm:])))
 
     @property
     def duration(self) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
-from ...errors import MotionError, Note
+from ...errors import FaultCause, MotionError, Note
 from ...robot.kinematics.chain import Chain
 from ...robot.singularities import nearest_singularity
 from ..geometry.corners import JOINT_CORNER, POSITION
@@ -143,6 +143,7 @@ def _check_fine_enough(
         f"{100 * share[0]:.0f} % of the move: the path passes a singular configuration{of} too "
         f"near to be driven; {remedy}",
         route.moves[k],
+        cause=FaultCause.SINGULARITY,
     )
 
 
@@ -266,8 +267,8 @@ def _follow(
         k = int(run.segment[failed])
         share = (reached - layout.waypoint[k]) / layout.segments.scale[k]
         length = float(layout.segments.length[k])
-        message = why_stranded(route.robot, states.q[failed], float(share), length, short)
-        raise MotionError(message, route.moves[k])
+        message, cause = why_stranded(route.robot, states.q[failed], float(share), length, short)
+        raise MotionError(message, route.moves[k], cause=cause)
     return states, pivots
 
 
@@ -296,6 +297,7 @@ def _check_joined(route: Route, pieces: Pieces, q: FloatArray) -> None:
         "or m) at its end: rounded by its zone, the path passes a singular configuration on "
         "another side than without; make the zone smaller, a stop point, or use a joint move",
         route.moves[int(pieces.segment[max(here - 1, 0)])],
+        cause=FaultCause.SINGULARITY,
     )
 
 

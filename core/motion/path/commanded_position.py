@@ -77,7 +77,7 @@ class Standing:
                 q = self._reached(move, index, q)
             except MotionError as error:
                 span = error.span or statement
-                raise MotionError(error.message, error.move, span) from error
+                raise MotionError(error.message, error.move, span, error.cause) from error
             except InputError as error:
                 raise MotionError(str(error), index, statement) from error
         self._q = q

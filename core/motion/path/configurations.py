@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from ...arrays import FloatArray
-from ...errors import InputError, MotionError
+from ...errors import FaultCause, InputError, MotionError
 from ...program.move import Move
 from ...program.target import Configuration, JointTarget, PoseTarget
 from ...robot.assembly import assemble
@@ -31,9 +32,11 @@ _REDUNDANT = 2
 """The third axis of a seven-axis arm moves linearly along moves of the TCP (as KUKA's E1 does)."""
 
 
-def located(move: Move, index: int, message: str) -> MotionError:
+def located(
+    move: Move, index: int, message: str, cause: FaultCause = FaultCause.OTHER
+) -> MotionError:
     """An error of a move, with its place in the source."""
-    return MotionError(message, index, move.statement)
+    return MotionError(message, index, move.statement, cause)
 
 
 class ConfigurationFinder:
@@ -108,6 +111,41 @@ class ConfigurationFinder:
             MotionError: the pose is out of reach (with the third axis kept), or contradicts the
                 programmed configuration.
         """
+        wanted = move.target.configuration if isinstance(move.target, PoseTarget) else None
+        return self._pick(move, index, wanted, self._options(move, index, before), before)
+
+    def starts(self, move: Move, index: int) -> FloatArray:
+        """Configurations (K, N) in which the robot may stand at a move's pose target.
+
+        All solutions with the programmed configuration and all turns of them; the one that
+        `choose` takes from `rest` is the first.
+
+        Raises:
+            MotionError: as `choose`.
+        """
+        rest = self.rest()
+        first = self.choose(move, index, rest)
+        target = move.target
+        assert isinstance(target, PoseTarget)
+        plain = replace(move, target=replace(target, configuration=None))
+        options = self._options(plain, index, rest, all_turns=True)
+        wanted = target.configuration
+        if wanted is not None:
+            labels = [self._label(self._robot, q) for q in options]
+            fits = [name is None or wanted.mismatch(name) <= _MATCH for name in labels]
+            options = options[fits]
+        order = np.argsort(np.abs(options - first).sum(axis=1))
+        apart = np.abs(options[order] - first).max(axis=1) > _SAME
+        return np.concatenate([first[None], options[order][apart]])
+
+    def _options(
+        self, move: Move, index: int, before: FloatArray, *, all_turns: bool = False
+    ) -> FloatArray:
+        """Configurations (K, N) at a move's pose target: `choose` tells which and what it raises.
+
+        Args:
+            all_turns: those whole turns away from the nearest, too.
+        """
         target = move.target
         assert isinstance(target, PoseTarget)
         q = self.external(target.external, before)
@@ -116,7 +154,8 @@ class ConfigurationFinder:
         try:
             found = [s.q for s in self._robot.inverse(flange, tuple(map(float, q[arm:])))]
         except UnreachableError as error:
-            raise located(move, index, f"target cannot be reached: {error}") from error
+            why = f"target cannot be reached: {error}"
+            raise located(move, index, why, error.cause) from error
         if self.redundant:
             turned = self._with_third_kept(found, flange, q)
             if not turned:
@@ -126,14 +165,15 @@ class ConfigurationFinder:
                     index,
                     f"target cannot be reached with the third axis, {name}, kept at "
                     f"{value:.4g}°: turn it first by a joint target",
+                    FaultCause.REACH,
                 )
-        elif target.configuration is None:
+        elif target.configuration is None and not all_turns:
             turned = [self._nearest_turn(solution, before[:arm]) for solution in found]
         else:
             turned = [t for solution in found for t in self._robot.turns(solution)]
         options = np.tile(q, (len(turned), 1))
         options[:, :arm] = turned
-        return self._pick(move, index, target.configuration, options, before)
+        return options
 
     def _with_third_kept(
         self, samples: Sequence[FloatArray], flange: Pose, q: FloatArray
@@ -190,6 +230,7 @@ class ConfigurationFinder:
                 move,
                 index,
                 f"configuration {wanted} contradicts the pose; the robot reaches it with {known}",
+                FaultCause.CONFIGURATION,
             )
         return np.asarray(options[best])
 
@@ -209,9 +250,10 @@ class ConfigurationFinder:
                 index,
                 f"configuration {wanted} contradicts the path: the arm arrives with {label}; "
                 "use a joint move, or programme the configuration it arrives with",
+                FaultCause.CONFIGURATION,
             )
 
-    def why_unreachable(self, move: Move, near: FloatArray) -> str | None:
+    def why_unreachable(self, move: Move, near: FloatArray) -> UnreachableError | None:
         """What keeps a move's target out of reach; None if nothing does."""
         if not isinstance(move.target, PoseTarget):
             return None
@@ -220,7 +262,7 @@ class ConfigurationFinder:
         try:
             self._robot.inverse(self.flange(move, move.target.pose, q), external)
         except UnreachableError as error:
-            return str(error)
+            return error
         return None
 
     def flange(self, move: Move, target: Pose, q: FloatArray) -> Pose:

@@ -158,6 +158,46 @@ class RouteFinder:
             return self._targets.joints(first.target, rest)
         return self._targets.choose(first, 0, rest)
 
+    def starts(self, program: Program) -> tuple[JointTarget, ...]:
+        """Where the robot may stand at the first target of a program that states no start.
+
+        The one that `find` takes is the first; a target of joint values leaves no choice.
+
+        Raises:
+            MotionError: the target cannot be reached.
+        """
+        first = program.moves[0]
+        if program.start is not None or isinstance(first.target, JointTarget):
+            return ()
+        return tuple(map(self._as_target, self._targets.starts(first, 0)))
+
+    def standing_at(self, move: Move, near: JointTarget | None) -> JointTarget:
+        """A robot at the target of a move, however it came there.
+
+        Args:
+            move: the programmed configuration is taken where there is a solution with it.
+            near: of the solutions the nearest to it is taken; None for any.
+
+        Raises:
+            MotionError: it cannot stand there.
+        """
+        finder = self._targets
+        q = finder.rest() if near is None else finder.joints(near, finder.rest())
+        if not isinstance(move.target, JointTarget):
+            plain = replace(move, target=replace(move.target, configuration=None))
+            try:
+                return self._as_target(finder.choose(move, 0, q))
+            except MotionError:
+                return self._as_target(finder.choose(plain, 0, q))
+        try:
+            return self._as_target(finder.joints(move.target, q))
+        except InputError as error:
+            raise MotionError(str(error)) from error
+
+    def _as_target(self, q: FloatArray) -> JointTarget:
+        arm = self._robot.arm_size
+        return JointTarget(tuple(map(float, q[:arm])), tuple(map(float, q[arm:])))
+
     def chain(self, tool: Tool, work_object: WorkObject) -> Chain:
         """The chain of a tool and a work object, one object for equal ones."""
         key = tool, work_object
@@ -305,10 +345,11 @@ class RouteFinder:
         if failed >= 0:
             reason = self._targets.why_unreachable(move, q) if short > CONVERGED else None
             if reason is not None:
-                raise located(move, i, f"target cannot be reached: {reason}")
+                raise located(move, i, f"target cannot be reached: {reason}", reason.cause)
             share, length = reached - k, float(segments.length[k])
-            message = why_stranded(self._robot, states.q[failed], share, length, short)
-            raise located(move, i, message)
+            raise located(
+                move, i, *why_stranded(self._robot, states.q[failed], share, length, short)
+            )
         arrived: FloatArray = states.q[-1].copy()
         self._targets.check_arrival(move, i, arrived)
         return arrived

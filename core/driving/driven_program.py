@@ -1,0 +1,142 @@
+"""A program as far as it can be driven: parts without a gap, and the faults between them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate
+
+from ..display import counted, in_line
+from ..errors import FaultCause, MotionError, Note, Span
+from ..motion.command.trajectory import Trajectory, joined
+from ..motion.emulator.run import Run
+from ..program.program import Program
+
+_NAMED = 10
+"""Faults that an error names; `flyby emulate` lists all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A move that cannot be driven.
+
+    Args:
+        move: its index in the program.
+        cause: in one word.
+        message: what is wrong, by how much, and what would cure it.
+        span: where it stands in the source.
+    """
+
+    move: int
+    cause: FaultCause
+    message: str
+    span: Span | None
+
+    def __str__(self) -> str:
+        return str(MotionError(self.message, self.move, self.span))
+
+
+def refusal(faults: Sequence[Fault]) -> MotionError:
+    """The error of a program with faults, where it can only be used as a whole.
+
+    Args:
+        faults: at least one; a line in a loop is named once.
+    """
+    lines = list({fault.span or fault.move: fault for fault in faults}.values())
+    first, rest = lines[0], lines[1:]
+    message = first.message
+    if rest:
+        named = [_named(fault) for fault in rest[:_NAMED]]
+        more = [f"and {len(rest) - _NAMED} more"] if len(rest) > _NAMED else []
+        message += f". {counted(rest, 'further move')} cannot be driven: "
+        message += "; ".join([*named, *more])
+    return MotionError(message, first.move, first.span, first.cause)
+
+
+def _named(fault: Fault) -> str:
+    """A fault in some words."""
+    line = "" if fault.span is None else f", line {fault.span.line}"
+    return f"move {fault.move + 1}{line} ({fault.cause})"
+
+
+@dataclass(frozen=True, repr=False)
+class DrivenPart:
+    """Moves in a row that are driven without a gap.
+
+    Args:
+        first: index of the first of them in the whole program.
+        run: of a program of these moves alone, whose indices count from there.
+    """
+
+    first: int
+    run: Run
+
+    def __repr__(self) -> str:
+        count = len(self.run.program.moves)
+        return in_line(
+            f"Part: moves {self.first + 1} to {self.first + count}, {self.run.duration:.3f} s"
+        )
+
+
+@dataclass(frozen=True, repr=False)
+class DrivenProgram:
+    """What came of driving a program past all moves that cannot be driven.
+
+    Behind a fault the robot stands where the move should have ended, or, where it cannot stand
+    there, at the next target; no time is claimed for how it came there.
+
+    Args:
+        program: what was driven.
+        parts: in their order; one of all moves where nothing is at fault.
+        faults: in the order of moves.
+    """
+
+    program: Program
+    parts: tuple[DrivenPart, ...]
+    faults: tuple[Fault, ...]
+
+    @classmethod
+    def faultless(cls, run: Run) -> DrivenProgram:
+        """A program of which every move was driven."""
+        return cls(run.program, (DrivenPart(0, run),), ())
+
+    def __repr__(self) -> str:
+        told = [f"{self.duration:.3f} s", counted(self.program.moves, "move")]
+        if self.faults:
+            told.append(counted(self.faults, "fault"))
+        return in_line(f"Program {self.program.name}, driven: {', '.join(told)}")
+
+    @property
+    def duration(self) -> float:
+        """s, of all parts together."""
+        return sum(part.run.duration for part in self.parts)
+
+    @property
+    def begins(self) -> tuple[float, ...]:
+        """s, when each part begins on the clock of all."""
+        lengths = [part.run.duration for part in self.parts]
+        return tuple(accumulate(lengths, initial=0.0))[:-1]
+
+    @cached_property
+    def trajectory(self) -> Trajectory:
+        """All parts, one after the other; the clock stands still across gaps."""
+        return joined([part.run.trajectory for part in self.parts], [p.first for p in self.parts])
+
+    @cached_property
+    def notes(self) -> tuple[Note, ...]:
+        """The program's own and all that was found on the way, each with its place in the source.
+
+        Faults are no notes.
+        """
+        moves, found = self.program.moves, list(self.program.notes)
+        for part in self.parts:
+            for note in part.run.notes:
+                move = None if note.move is None else part.first + note.move
+                found.append(Note(note.message, move, note.span))
+        spans = [
+            moves[note.move].statement if note.span is None and note.move is not None else note.span
+            for note in found
+        ]
+        placed = zip(found, spans, strict=True)
+        return tuple(dict.fromkeys(Note(note.message, note.move, span) for note, span in placed))

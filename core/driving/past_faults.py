@@ -1,0 +1,138 @@
+"""Drives a program past the moves that cannot be driven."""
+
+from __future__ import annotations
+
+from ..errors import FaultCause, MotionError
+from ..motion.emulator.controller import Controller
+from ..motion.emulator.run import Run
+from ..program.program import Program
+from ..program.target import JointTarget
+from .driven_program import DrivenPart, DrivenProgram, Fault, refusal
+
+_AHEAD = 16
+"""Moves looked at behind a fault at first: twice as many each time that none is found, so that
+looking takes no more than a few times what driving does, however many faults there are."""
+
+
+def drive(
+    controller: Controller,
+    program: Program,
+    start: JointTarget | None = None,
+    period: float | None = None,
+) -> DrivenProgram:
+    """As much of a program as can be driven, and what is wrong with the rest.
+
+    Args:
+        controller: of the robot.
+        program: what to drive.
+        start: where the robot stands; None for the program's own start, else its first target.
+        period: s between samples; None for the controller's own.
+
+    Raises:
+        MotionError: the program has no move, or goes nowhere at all.
+    """
+    return _Drive(controller, program, period).whole(start)
+
+
+class _Drive:
+    """One program on its way."""
+
+    def __init__(self, controller: Controller, program: Program, period: float | None) -> None:
+        self._controller = controller
+        self._program = program
+        self._period = period
+        self._parts: list[DrivenPart] = []
+        self._faults: list[Fault] = []
+
+    def whole(self, start: JointTarget | None) -> DrivenProgram:
+        """All parts from a start."""
+        count = len(self._program.moves)
+        try:
+            return DrivenProgram.faultless(self._controller.run(self._program, start, self._period))
+        except MotionError as error:
+            if not count or error.cause is FaultCause.NOWHERE:
+                raise
+            nowhere = error
+            begun = start or self._controller.furthest_start(self._program)
+            first, at = self._part(0, begun, count, error)
+        while first < count:
+            if at is None:
+                first, at = self._next_place(first)
+            else:
+                first, at = self._part(first, at, *self._furthest(first, at))
+        if not self._parts:
+            raise refusal(self._faults) if self._faults else nowhere
+        return DrivenProgram(self._program, tuple(self._parts), tuple(self._faults))
+
+    def _part(
+        self, first: int, at: JointTarget | None, stop: int, error: MotionError | None
+    ) -> tuple[int, JointTarget | None]:
+        """Drive moves from ``first`` on, up to the first fault.
+
+        Args:
+            first: index of a move.
+            at: where the robot stands; None for nobody knows.
+            stop: index of the move that is known to be at fault; behind the last if none is.
+            error: why.
+
+        Returns:
+            The move behind the fault, and where the robot stands before it; None for nowhere.
+        """
+        if error is not None:
+            stop = first + (error.move or 0)
+        run: Run | None = None
+        while run is None and stop > first:
+            # As its last move is a stop, a part may meet what the whole has not met.
+            try:
+                run = self._controller.run(self._between(first, stop), at, self._period)
+            except MotionError as failed:
+                if failed.cause is FaultCause.NOWHERE:
+                    break
+                stop, error = first + (failed.move or 0), failed
+        if run is not None:
+            self._parts.append(DrivenPart(first, run))
+        if error is None:
+            return stop, None
+        self._fault(stop, error)
+        return stop + 1, self._standing(stop)
+
+    def _furthest(self, first: int, at: JointTarget) -> tuple[int, MotionError | None]:
+        """Up to which move the robot comes from ``first`` on, and why no further."""
+        ahead, count = _AHEAD, len(self._program.moves)
+        while True:
+            stop = min(first + ahead, count)
+            try:
+                self._controller.plan(self._between(first, stop), at)
+            except MotionError as error:
+                if error.cause is not FaultCause.NOWHERE:
+                    return stop, error
+            if stop == count:
+                return count, None
+            ahead *= 2
+
+    def _next_place(self, move: int) -> tuple[int, JointTarget | None]:
+        """Go on at the target of a move that nobody knows where it comes from."""
+        try:
+            at = self._controller.standing_at(self._program.moves[move], self._near())
+        except MotionError as error:
+            self._fault(move, error)
+            at = None
+        return move + 1, at
+
+    def _standing(self, move: int) -> JointTarget | None:
+        """The robot at the target of a move at fault; None where it cannot stand there."""
+        try:
+            return self._controller.standing_at(self._program.moves[move], self._near())
+        except MotionError:
+            return None
+
+    def _near(self) -> JointTarget | None:
+        """Where the robot was last."""
+        return self._parts[-1].run.end if self._parts else None
+
+    def _between(self, first: int, stop: int) -> Program:
+        return self._program.between(first, stop)
+
+    def _fault(self, move: int, error: MotionError) -> None:
+        span = error.span or self._program.moves[move].statement
+        self._faults.append(Fault(move, error.cause, error.message, span))

@@ -1,0 +1,170 @@
+"""Programs driven past moves that cannot be driven: what is at fault, what comes of the rest."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flyby.core.driving.past_faults import drive
+from flyby.core.errors import FaultCause, MotionError
+from flyby.core.motion.command.trajectory import Trajectory
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.program.move import MoveJ, MoveL, Wait
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.target import JointTarget, PoseTarget
+from flyby.core.program.zone import FINE, Radius
+from flyby.core.registry import find_vendor
+from flyby.core.spatial.pose import Pose
+from flyby.vendors.abb.motion.configuration import AbbConfiguration
+
+SPEED = Speed(tcp=0.4, reorientation=3.0)
+ZONE = Radius(0.01)
+PLACES = ((1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 0.5), (0.5, 0.5, 0.2))
+FAR = PoseTarget(Pose((9.0, 0.0, 0.5)))
+
+
+def beyond(arm) -> JointTarget:
+    return JointTarget((0.0, 0.0, 20.0, 0.0, 0.0, 0.0))
+
+
+def moves_of(arm, kinds: list[str]) -> list[MoveJ | MoveL]:
+    """A round of places; those of the kind ``r`` are out of reach, ``l`` is beyond a limit."""
+    made: list[MoveJ | MoveL] = []
+    for i, kind in enumerate(kinds):
+        target = arm.target(PLACES[i % len(PLACES)])
+        if kind == "l":
+            made.append(MoveJ(beyond(arm), SPEED))
+        else:
+            made.append(MoveL(FAR if kind == "r" else target, SPEED, ZONE))
+    return made
+
+
+def test_a_program_without_faults_is_driven_as_a_whole(abb) -> None:
+    controller = abb.controller()
+    program = Program(tuple(moves_of(abb, ["."] * 4)), start=abb.start)
+    driven, run = drive(controller, program), controller.run(program)
+    assert not driven.faults and len(driven.parts) == 1
+    assert driven.duration == run.duration
+    np.testing.assert_array_equal(driven.trajectory.q, run.trajectory.q)
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.lists(st.sampled_from("...rl"), min_size=2, max_size=9))
+def test_every_fault_is_named_and_all_else_is_driven(abb, kinds: list[str]) -> None:
+    controller = abb.controller()
+    program = Program(tuple(moves_of(abb, kinds)), start=abb.start)
+    bad = {i: kind for i, kind in enumerate(kinds) if kind != "."}
+    try:
+        driven = drive(controller, program)
+    except MotionError as error:
+        # Behind each of the faults at most one place is left, which the robot is put at.
+        assert bad and error.move == min(bad)
+        return
+    assert {fault.move: fault.cause for fault in driven.faults} == {
+        i: FaultCause.REACH if kind == "r" else FaultCause.LIMIT for i, kind in bad.items()
+    }
+    done = {part.first + i for part in driven.parts for i in part.run.path.route.moves}
+    # A move is left out only where nobody knows where it comes from.
+    assert done == {i for i in range(len(kinds)) if i not in bad and i - 1 not in bad}
+    for part in driven.parts:
+        trajectory = part.run.trajectory
+        assert np.abs(trajectory.dq[[0, -1]]).max() < 1e-6
+    if bad:
+        with pytest.raises(MotionError):
+            controller.run(program)
+
+
+def test_clocks_and_indices_go_on_across_gaps(abb, tmp_path) -> None:
+    statements = [*moves_of(abb, ["."] * 3), MoveL(FAR, SPEED, ZONE), Wait(5.0)]
+    statements += [*moves_of(abb, ["."] * 2), Wait(0.25), *moves_of(abb, ["."] * 3)]
+    driven = drive(abb.controller(), Program(tuple(statements), start=abb.start))
+    first, second = driven.parts
+    assert (first.first, second.first) == (0, 5)
+    # What the robot would have waited for behind the fault is waited for at no place it comes to.
+    assert driven.duration == first.run.duration + second.run.duration
+    assert second.run.duration < 5.0
+    whole = driven.trajectory
+    assert whole.gaps == (len(first.run.trajectory.t),)
+    assert whole.t[whole.gaps[0]] == whole.t[whole.gaps[0] - 1]
+    assert (np.diff(whole.t) >= 0).all() and whole.duration == pytest.approx(driven.duration)
+    # The first move behind the gap goes to where the robot is put.
+    assert sorted(set(whole.move)) == [0, 1, 2, 5, 6, 7, 8]
+    for name, load in (("a.csv", Trajectory.load_csv), ("a.npz", Trajectory.load_npz)):
+        getattr(whole, f"save_{name[2:]}")(tmp_path / name)
+        back = load(tmp_path / name)
+        assert back.gaps == whole.gaps
+        np.testing.assert_allclose(back.q, whole.q, atol=1e-8)
+        np.testing.assert_array_equal(back.move, whole.move)
+    parts = whole.resampled(0.003).parts()
+    assert [part.t[0] for part in parts] == [0.0, pytest.approx(first.run.duration)]
+
+
+def test_the_robot_goes_on_from_where_a_move_at_fault_should_have_ended(abb) -> None:
+    target = replace(abb.target((1, 1, 0)), configuration=AbbConfiguration(3, 3, 3, 7))
+    moves = (MoveL(abb.target((1, 0, 0)), SPEED), MoveL(target, SPEED), *moves_of(abb, ["."]))
+    driven = drive(abb.controller(), Program(moves, start=abb.start))
+    (fault,) = driven.faults
+    assert (fault.move, fault.cause) == (1, FaultCause.CONFIGURATION)
+    start = driven.parts[1].run.trajectory.position[0]
+    np.testing.assert_allclose(start, abb.target((1, 1, 0)).pose.position, atol=1e-6)
+
+
+def test_many_faults_cost_no_more_than_some_drives(abb, monkeypatch) -> None:
+    planned = 0
+    plan = Controller._plan
+
+    def counted(self, program, start):
+        nonlocal planned
+        planned += len(program.moves)
+        return plan(self, program, start)
+
+    monkeypatch.setattr(Controller, "_plan", counted)
+    kinds = ["l" if i % 6 == 5 else "." for i in range(120)]
+    driven = drive(abb.controller(), Program(tuple(moves_of(abb, kinds)), start=abb.start))
+    assert len(driven.faults) == 20
+    assert planned < 10 * len(kinds)
+
+
+def test_a_start_beyond_its_limits_is_a_fault_of_the_first_move(abb) -> None:
+    moves = (MoveJ(abb.target((1, 0, 0)), SPEED), *moves_of(abb, ["."] * 3)[1:])
+    program = Program(moves, start=beyond(abb))
+    driven = drive(abb.controller(), program)
+    assert [fault.move for fault in driven.faults] == [0]
+    assert driven.faults[0].message.startswith("the start: ")
+    assert [part.first for part in driven.parts] == [1]
+
+
+def test_a_start_that_nobody_knows_is_one_from_which_the_program_can_be_driven(abb) -> None:
+    """From the solution nearest to zero joint 4 would wind up beyond its limit."""
+    controller = abb.controller()
+    first = abb.target((0, 0, 0))
+    turns = [JointTarget((0.0, 0.0, 0.0, 0.0, 0.5, 0.0))]
+    options = controller._routes.starts(Program((MoveJ(first, SPEED),)))
+    assert len(options) > 2
+    far = options[-1]
+    # A target of joint values tells that the program was taught in another solution: lines that
+    # begin there can only be driven from it.
+    label = find_vendor("abb").label(abb.robot, np.array(far.joints))
+    second = replace(abb.target((1, 0, 0)), configuration=label)
+    program = Program((MoveJ(first, SPEED), MoveL(second, SPEED), MoveJ(turns[0], SPEED)))
+    with pytest.raises(MotionError) as refused:
+        controller._plan(program, None)
+    assert refused.value.cause is FaultCause.CONFIGURATION
+    path = controller.plan(program)
+    assert any("the robot is taken to stand" in note.message for note in path.notes)
+    assert label.mismatch(find_vendor("abb").label(abb.robot, path.q[0])) == 0
+    assert not drive(controller, program).faults
+
+
+def test_a_program_of_faults_only_names_them(abb) -> None:
+    program = Program(tuple(moves_of(abb, ["r", "l", "r"])), start=abb.start)
+    with pytest.raises(MotionError, match=r"move 1: .* 2 further moves cannot be driven: move 2 "):
+        drive(abb.controller(), program)
+    with pytest.raises(MotionError, match="goes nowhere"):
+        still = Program((MoveJ(abb.start, SPEED, FINE),), start=abb.start)
+        drive(abb.controller(), still)
