@@ -55,6 +55,8 @@ class Vendor:
         speaks: what the language can say, for programs that are translated into it; None if it
             says everything that a `Program` holds.
         machine_data: a robot as a file of its own controller describes it; None if none is read.
+        nearest: whether a target whose configuration data contradict it is driven to in the
+            solution nearest to where the robot comes from, instead of being a fault.
 
     Raises:
         InputError: a part is missing, or of a wrong kind.
@@ -74,6 +76,7 @@ class Vendor:
     emulation_only: Mapping[str, str] = field(default_factory=dict)
     speaks: Dialect | None = None
     machine_data: Callable[[Robot, Path], Robot] | None = None
+    nearest: bool = False
 
     def __post_init__(self) -> None:
         _check_name("a vendor", self.name)

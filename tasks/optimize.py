@@ -11,7 +11,7 @@ from .changes import WaypointOptions, delivered, task_of, weight
 from .files.texts import ProgramTexts
 from .options.entries import COUNT, Extent, choice, number, switch, value
 from .options.keywords import by_keywords
-from .setup import CellOptions, with_setup
+from .setup import CellOptions, controller_of, with_setup
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
@@ -74,7 +74,6 @@ def optimize_with(program: Program, options: OptimizeOptions) -> Solution:
         InputError: naming the option.
         MotionError: the program cannot be driven, or collides as it is.
     """
-    from ..core.motion.emulator.controller import Controller
     from ..problems.improve.waypoints import Freedom, optimize_waypoints
 
     program, setup = with_setup(program, options)
@@ -99,7 +98,7 @@ def optimize_with(program: Program, options: OptimizeOptions) -> Solution:
 
     if options.zones_only:
         task = replace(task, freedom=Freedom.ZONES)
-    controller = Controller(setup.vendor, setup.robot)
+    controller = controller_of(program, setup)
     effort = effort_of(options.starts, options.generations, options.seed)
     made = optimize_waypoints(controller, program, cell, task, effort, texts.read_back, report)
     return delivered(made, texts, setup)

@@ -13,7 +13,7 @@ from .files.texts import ProgramTexts
 from .optimize import effort_of
 from .options.entries import COUNT, Extent, choice, number, value
 from .options.keywords import by_keywords
-from .setup import with_setup
+from .setup import controller_of, with_setup
 
 if TYPE_CHECKING:
     from ..core.motion.model.consumption import Consumption
@@ -59,7 +59,6 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
         InputError: naming the option.
         MotionError: the program cannot be driven.
     """
-    from ..core.motion.emulator.controller import Controller
     from ..problems.improve.energy import EnergyScope, EnergyTask, pareto
     from .results.fronts import ProgramFront
 
@@ -81,7 +80,7 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
         )
 
     made = pareto(
-        Controller(setup.vendor, setup.robot),
+        controller_of(program, setup),
         program,
         setup.cell,
         task,

@@ -12,7 +12,7 @@ from ..core.errors import FlybyError, InputError, OptionError, ParseError
 from .options.entries import TaskOptions, count, value
 from .options.keywords import by_keywords
 from .options.texts import joint_target
-from .setup import RobotOptions, Setup, check_language, setup_of
+from .setup import RobotOptions, Setup, check_language, configurations, setup_of
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
@@ -37,6 +37,13 @@ class TextOptions(TaskOptions):
         kind=Path,
         several=True,
     )
+    start: str | Sequence[float] | JointTarget | None = value(
+        None,
+        "Axis values before the first move, degrees and mm: 0,0,0,0,30,0. "
+        "Without it the robot stands at the first target.",
+        numbers="rad and m",
+    )
+    configuration: str | None = configurations()
 
     def for_robot(self, robot: str | None, cell: Path | None) -> SourceOptions:
         """The same for a robot."""
@@ -47,6 +54,8 @@ class TextOptions(TaskOptions):
             answers=self.answers,
             cycles=self.cycles,
             others=self.others,
+            start=self.start,
+            configuration=self.configuration,
             report=self.report,
         )
 
@@ -54,13 +63,6 @@ class TextOptions(TaskOptions):
 @dataclass(frozen=True, kw_only=True)
 class SourceOptions(RobotOptions, TextOptions):
     """How a program is read, and for which robot."""
-
-    start: str | Sequence[float] | JointTarget | None = value(
-        None,
-        "Axis values before the first move, degrees and mm: 0,0,0,0,30,0. "
-        "Without it the robot stands at the first target.",
-        numbers="rad and m",
-    )
 
 
 def read_with(source: str | Path, options: SourceOptions) -> Program:

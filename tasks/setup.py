@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..core.display import in_line
 from ..core.door import called, given, spelt, switched
 from ..core.errors import InputError, OptionError
 from .catalogue import cell as load
 from .catalogue import registry, robots, vendor_of
-from .options.entries import TaskOptions, switch, value
+from .options.entries import TaskOptions, choice, switch, value
 
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell
+    from ..core.motion.emulator.controller import Controller
     from ..core.program.program import Program
     from ..core.program.target import JointTarget
     from ..core.program.tool import Tool
@@ -23,6 +24,16 @@ if TYPE_CHECKING:
     from ..core.vendor import Vendor
 
 NO_FLOOR = "Without a cell the plane under the robot's base is an obstacle; this lifts it."
+
+
+def configurations() -> Any:
+    """The option that says what becomes of configuration data that contradict their target."""
+    return choice(
+        None,
+        "Configuration data that contradict their target: refused (exact, the default), or given "
+        "up for the solution nearest to where the robot comes from.",
+        ("exact", "nearest"),
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +55,7 @@ class RobotOptions(TaskOptions):
         "(KUKA).",
         kind=Path,
     )
+    configuration: str | None = configurations()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,6 +126,9 @@ def _laid_on(made: Setup, options: RobotOptions) -> Setup:
         made = replace(made, robot=robot, cell=cell)
     if options.motion is not None:
         made = replace(made, vendor=made.vendor.driven_by(Path(options.motion), made.robot))
+    if options.configuration is not None:
+        nearest = options.configuration == "nearest"
+        made = replace(made, vendor=replace(made.vendor, nearest=nearest))
     return made
 
 
@@ -234,7 +249,7 @@ def with_setup(program: Program, options: RobotOptions) -> tuple[Program, Setup]
     said = options.motion is not None or (made.cell is not None and made.cell.motion is not None)
     if not said and own is not None and own.robot == made.robot:
         # A motion file that the program was read with stays, unless another is named.
-        made = replace(made, vendor=own.vendor)
+        made = _laid_on(replace(made, vendor=own.vendor), options)
     return in_setup(program, made), made
 
 
@@ -253,6 +268,20 @@ def start_of(program: Program) -> JointTarget | None:
 
     reading = program.reading
     return reading.options.start if isinstance(reading, Reading) else None
+
+
+def controller_of(program: Program, setup: Setup) -> Controller:
+    """The controller for a program that is used as a whole.
+
+    Raises:
+        MotionError: moves cannot be driven; it names all of them.
+    """
+    from ..core.driving.past_faults import refuse_faults
+    from ..core.motion.emulator.controller import Controller
+
+    controller = Controller(setup.vendor, setup.robot)
+    refuse_faults(controller, program, start_of(program))
+    return controller
 
 
 def like(program: Program, original: Program, setup: Setup) -> Program:

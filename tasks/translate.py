@@ -11,7 +11,7 @@ from ..core.errors import InputError
 from .options.entries import REQUIRED, TaskOptions, value
 from .options.keywords import by_keywords
 from .options.texts import pose
-from .setup import RobotOptions, Setup, with_setup, writable_robot
+from .setup import RobotOptions, Setup, controller_of, with_setup, writable_robot
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
@@ -58,6 +58,7 @@ def translate_with(program: Program, options: TranslateOptions) -> Translation:
     """
     program, before = with_setup(program, RobotOptions())
     after = target_of(options)
+    controller_of(program, before)  # refuses faults
     options.say(f"translating {counted(program.moves, 'move')}")
     return carried(program, before, after, options.base)
 

@@ -15,7 +15,7 @@ from .options import texts
 from .options.entries import POSITIVE, TIME, number, switch, value
 from .options.keywords import by_keywords
 from .pareto import consumption_of
-from .setup import RobotOptions, start_of, with_setup
+from .setup import RobotOptions, controller_of, start_of, with_setup
 
 if TYPE_CHECKING:
     from ..core.arrays import FloatArray
@@ -66,7 +66,6 @@ def tune_with(program: Program, options: TuneOptions) -> TunedMotion:
         InputError: naming the option, or torques are wanted and not known.
         MotionError: the program cannot be driven, or no motion within the limits is short enough.
     """
-    from ..core.motion.emulator.controller import Controller
     from ..problems.free_motion.velocity_tuning import (
         FixedPath,
         TuningObjective,
@@ -77,7 +76,7 @@ def tune_with(program: Program, options: TuneOptions) -> TunedMotion:
     from .results.motions import TunedMotion
 
     program, setup = with_setup(program, options)
-    controller = Controller(setup.vendor, setup.robot)
+    controller = controller_of(program, setup)
     options.say(f"emulating {counted(program.moves, 'move')}")
     timing = controller.stamp(program, controller.plan(program, start_of(program)))
     options.say("finding the best speeds")

@@ -10,7 +10,7 @@ from .changes import ChangeOptions, delivered, freed_stops, move_index, rounding
 from .files.texts import ProgramTexts
 from .options.entries import switch, value
 from .options.keywords import by_keywords
-from .setup import CellOptions, start_of, with_setup
+from .setup import CellOptions, controller_of, start_of, with_setup
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
@@ -41,7 +41,6 @@ def zones_with(program: Program, options: ZoneOptions) -> ZoneSolution:
         InputError: naming the option.
         MotionError: the program cannot be driven, or collides as it is.
     """
-    from ..core.motion.emulator.controller import Controller
     from ..problems.improve.zones.maximize import maximize_zones
     from ..problems.improve.zones.options import ZoneTask
     from ..problems.improve.zones.sizes import pattern_for
@@ -59,7 +58,7 @@ def zones_with(program: Program, options: ZoneOptions) -> ZoneSolution:
         start=start_of(program),
     )
     texts = ProgramTexts(setup, program, own=options.own)
-    controller = Controller(setup.vendor, setup.robot)
+    controller = controller_of(program, setup)
     made = maximize_zones(controller, program, cell, wanted, texts.read_back, options.say)
     return delivered(made, texts, setup)
 

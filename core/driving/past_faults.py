@@ -34,6 +34,23 @@ def drive(
     return _Drive(controller, program, period).whole(start)
 
 
+def refuse_faults(
+    controller: Controller, program: Program, start: JointTarget | None = None
+) -> None:
+    """Refuse a program that can only be used as a whole, if a move of it cannot be driven.
+
+    Raises:
+        MotionError: it names all moves that cannot be driven.
+    """
+    try:
+        controller.plan(program, start)
+    except MotionError as error:
+        if error.move is None or error.cause is FaultCause.NOWHERE:
+            raise
+        faults = drive(controller, program, start).faults
+        raise (refusal(faults) if faults else error) from error
+
+
 class _Drive:
     """One program on its way."""
 

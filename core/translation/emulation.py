@@ -39,7 +39,7 @@ class Party:
         """Resolves waypoints."""
         arcs = None if self.vendor.speaks is None else self.vendor.speaks.arcs
         turns = self.model.line_turn, self.model.arc_turn
-        return RouteFinder(self.robot, self.vendor.label, *turns, arcs)
+        return RouteFinder(self.robot, self.vendor.label, *turns, arcs, self.vendor.nearest)
 
     def route(self, program: Program, start: JointTarget | None = None) -> Route:
         """The route, on which the speed may change at every waypoint.

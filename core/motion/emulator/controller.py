@@ -83,7 +83,7 @@ class Controller:
         self.sampling = _sampling(self.model) if sampling is None else sampling
         arcs = None if vendor.speaks is None else vendor.speaks.arcs
         turns = self.model.line_turn, self.model.arc_turn
-        self._routes = RouteFinder(robot, vendor.label, *turns, arcs)
+        self._routes = RouteFinder(robot, vendor.label, *turns, arcs, vendor.nearest)
 
     def with_model(self, model: MotionModel) -> Controller:
         """The same controller, driving otherwise."""

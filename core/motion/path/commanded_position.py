@@ -31,10 +31,20 @@ class Standing:
         robot: the robot.
         label: the vendor's label of a configuration.
         start: where it stands at first; None if nobody knows.
+        past_faults: whether a move that cannot be driven leaves it where it is; who drives the
+            program tells of it.
     """
 
-    def __init__(self, robot: Robot, label: Label, start: JointTarget | None = None) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        label: Label,
+        start: JointTarget | None = None,
+        *,
+        past_faults: bool = False,
+    ) -> None:
         self._robot = robot
+        self._past_faults = past_faults
         self._finder = ConfigurationFinder(robot, label)
         self._q: FloatArray | None = None
         self._pending: list[tuple[int, Move, Span | None]] = []
@@ -76,9 +86,13 @@ class Standing:
             try:
                 q = self._reached(move, index, q)
             except MotionError as error:
+                if self._past_faults:
+                    continue
                 span = error.span or statement
                 raise MotionError(error.message, error.move, span, error.cause) from error
             except InputError as error:
+                if self._past_faults:
+                    continue
                 raise MotionError(str(error), index, statement) from error
         self._q = q
         self._pending.clear()

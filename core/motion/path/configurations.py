@@ -45,15 +45,21 @@ class ConfigurationFinder:
     Args:
         robot: the robot.
         label: the vendor's label of a configuration; None where vendors have none.
+        nearest: whether a configuration that contradicts its pose or path gives way to the nearest
+            solution.
 
     Attributes:
+        departures: index of each move that is driven with another configuration than programmed,
+            and what there is to say.
         solved: indices of the axes that inverse kinematics solves for along moves of the TCP;
             six if the arm can follow them.
         prescribed: indices of the others: external axes, and the redundant one of seven.
     """
 
-    def __init__(self, robot: Robot, label: Label) -> None:
+    def __init__(self, robot: Robot, label: Label, nearest: bool = False) -> None:
         self._robot = robot
+        self._nearest = nearest
+        self.departures: dict[int, str] = {}
         self._label = label
         redundant = [_REDUNDANT] if robot.arm_size == 7 else []
         arm = range(robot.arm_size)
@@ -224,7 +230,10 @@ class ConfigurationFinder:
             return np.asarray(options[np.argmin(distance)])
         misses = [math.inf if name is None else wanted.mismatch(name) for name in labels]
         best = min(range(len(options)), key=lambda k: (misses[k], distance[k]))
-        if wanted.exact and misses[best] > _MATCH:
+        if wanted.exact and misses[best] > _MATCH and self._nearest:
+            best = int(np.argmin(distance))
+            self.departures[index] = f"contradicts the pose: driven to with {labels[best]}"
+        elif wanted.exact and misses[best] > _MATCH:
             known = ", ".join(sorted({str(name) for name in labels}))
             raise located(
                 move,
@@ -245,6 +254,9 @@ class ConfigurationFinder:
             return
         label = self._label(self._robot, arrived)
         if label is not None and wanted.mismatch(label) > _MATCH:
+            if self._nearest:
+                self.departures[index] = f"contradicts the path: the arm arrives with {label}"
+                return
             raise located(
                 move,
                 index,

@@ -70,11 +70,7 @@ class PresentPosition:
         return NO_ROBOT if self.robot is None else NO_START
 
     def pose(self, tool: Tool, frame: WorkObject) -> Pose | None:
-        """The pose of a tool in a frame; None if it is not known (see `why_unknown`).
-
-        Raises:
-            FlybyError: a target on the way cannot be reached.
-        """
+        """The pose of a tool in a frame; None if it is not known (see `why_unknown`)."""
         self.asked += 1
         last = self.last
         if last is not None and isinstance(last.target, PoseTarget):
@@ -89,11 +85,7 @@ class PresentPosition:
         return None if standing is None or not standing.known else standing.pose(tool, frame)
 
     def joints(self) -> FloatArray | None:
-        """The configuration (N,), the arm's joints first; None if it is not known.
-
-        Raises:
-            FlybyError: a target on the way cannot be reached.
-        """
+        """The configuration (N,), the arm's joints first; None if it is not known."""
         self.asked += 1
         standing = self._followed()
         return None if standing is None or not standing.known else standing.joints()
@@ -102,7 +94,9 @@ class PresentPosition:
         """A robot that stands somewhere, or nobody knows where; None without one."""
         from .commanded_position import Standing  # late: it takes time
 
-        return None if self.robot is None else Standing(self.robot, self._label, start)
+        if self.robot is None:
+            return None
+        return Standing(self.robot, self._label, start, past_faults=True)
 
     def forward(self, target: JointTarget, tool: Tool, frame: WorkObject) -> Pose | None:
         """The pose of a tool at joint values; None without a robot."""
@@ -118,7 +112,7 @@ class PresentPosition:
             near: the solution nearest to it is taken; None for where the robot stands.
 
         Raises:
-            FlybyError: the pose, or a target before it, cannot be reached.
+            FlybyError: the pose cannot be reached.
         """
         standing = self._followed()
         if standing is not None and near is not None:

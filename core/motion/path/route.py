@@ -18,7 +18,7 @@ from ...arrays import FloatArray
 from ...errors import InputError, MotionError, Note, Span
 from ...program.move import Move, MoveC, MoveJ, Opaque, Wait
 from ...program.program import Program
-from ...program.target import JointTarget
+from ...program.target import JointTarget, PoseTarget
 from ...program.tool import WORLD, Tool, WorkObject
 from ...program.zone import FINE, Zone
 from ...robot.kinematics.chain import Chain
@@ -101,6 +101,7 @@ class RouteFinder:
         label: the vendor's label of a configuration; None where vendors have none.
         line_turn, arc_turn: how the tool turns along lines and arcs.
         arcs: which arcs the vendor's controllers drive; None for all.
+        nearest: see `ConfigurationFinder`.
     """
 
     def __init__(
@@ -110,12 +111,13 @@ class RouteFinder:
         line_turn: LineTurn,
         arc_turn: ArcTurn,
         arcs: ArcRules | None = None,
+        nearest: bool = False,
     ) -> None:
         self._robot = robot
         self._arcs = arcs
         self._line_turn = line_turn
         self._arc_turn = arc_turn
-        self._targets = ConfigurationFinder(robot, label)
+        self._targets = ConfigurationFinder(robot, label, nearest)
         self._chains: dict[tuple[Tool, WorkObject], Chain] = {}
 
     def find(
@@ -140,6 +142,7 @@ class RouteFinder:
             if i not in skipped:
                 check_near(move, i)
         notes: list[Note] = []
+        self._targets.departures.clear()
         q = self._start(program, start, notes)
         legs = _Legs(0 if notes else None)
         for stage in self._stages(moves, skipped):
@@ -384,6 +387,10 @@ class RouteFinder:
                 notes.append(Note("goes nowhere: it is at its target already", move))
         notes += half_turns(segments, keep, legs.moves)
         notes += [Note(_STRAIGHT, move) for move in legs.straight]
+        for move, said in self._targets.departures.items():
+            target = program.moves[move].target
+            assert isinstance(target, PoseTarget)
+            notes.append(Note(f"configuration {target.configuration} {said}", move))
         which = np.flatnonzero(keep)
         speeds = [program.moves[legs.moves[k]].speed for k in which]
         changes = [a != b for a, b in pairwise(speeds)]

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flyby.core.driving.past_faults import drive
+from flyby.core.driving.past_faults import drive, refuse_faults
 from flyby.core.errors import FaultCause, MotionError
 from flyby.core.motion.command.trajectory import Trajectory
 from flyby.core.motion.emulator.controller import Controller
@@ -159,6 +159,30 @@ def test_a_start_that_nobody_knows_is_one_from_which_the_program_can_be_driven(a
     assert any("the robot is taken to stand" in note.message for note in path.notes)
     assert label.mismatch(find_vendor("abb").label(abb.robot, path.q[0])) == 0
     assert not drive(controller, program).faults
+
+
+def test_all_faults_are_named_where_a_program_is_used_as_a_whole(abb) -> None:
+    controller = abb.controller()
+    program = Program(tuple(moves_of(abb, [".", ".", "r", ".", ".", "l", "."])), start=abb.start)
+    with pytest.raises(MotionError, match="1 further move cannot be driven: move 6") as error:
+        refuse_faults(controller, program)
+    assert error.value.move == 2
+    refuse_faults(controller, Program(tuple(moves_of(abb, ["."] * 3)), start=abb.start))
+
+
+def test_the_nearest_solution_is_driven_to_where_that_is_wanted(abb) -> None:
+    wrong = AbbConfiguration(3, 3, 3, 7)
+    target = replace(abb.target((1, 1, 0)), configuration=wrong)
+    moves = (MoveL(abb.target((1, 0, 0)), SPEED), MoveJ(target, SPEED), MoveL(target, SPEED))
+    program = Program((*moves, *moves_of(abb, ["."])), start=abb.start)
+    vendor = replace(find_vendor("abb"), nearest=True)
+    run = Controller(vendor, abb.robot).run(program)
+    told = [note for note in run.notes if "contradicts the pose" in note.message]
+    assert [note.move for note in told] == [1] and str(wrong) in told[0].message
+    plain = replace(abb.target((1, 1, 0)), configuration=None)
+    without = [replace(move, target=plain) for move in moves[1:]]
+    same = Program((moves[0], *without, *moves_of(abb, ["."])), start=abb.start)
+    np.testing.assert_array_equal(run.path.q, Controller(vendor, abb.robot).run(same).path.q)
 
 
 def test_a_program_of_faults_only_names_them(abb) -> None:
