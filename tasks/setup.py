@@ -249,7 +249,8 @@ def with_setup(program: Program, options: RobotOptions) -> tuple[Program, Setup]
     said = options.motion is not None or (made.cell is not None and made.cell.motion is not None)
     if not said and own is not None and own.robot == made.robot:
         # A motion file that the program was read with stays, unless another is named.
-        made = _laid_on(replace(made, vendor=own.vendor), options)
+        nearest = own.vendor.nearest if options.configuration is None else made.vendor.nearest
+        made = replace(made, vendor=replace(own.vendor, nearest=nearest))
     return in_setup(program, made), made
 
 
