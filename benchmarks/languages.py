@@ -31,7 +31,7 @@ from report import Figure, cpu_seconds, main
 from flyby.core.errors import FlybyError
 from flyby.core.language import Sources
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.program.move import Opaque
+from flyby.core.program.move import Move, Opaque
 from flyby.core.program.program import Program
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.model import Robot
@@ -189,10 +189,21 @@ def seeds(case: str) -> Seeds:
 
 def rewritten(vendor: Vendor, program: Program, robot: Robot) -> Program:
     """The first moves of a program, read from files that our writer has written."""
-    own = tuple(s for s in program.statements if not isinstance(s, Opaque))
     with TemporaryDirectory() as folder:
-        sources = vendor.write(Program(own[:SHORT]), robot)
+        sources = vendor.write(Program(plain(program).statements[:SHORT]), robot)
         return vendor.read_file(stored(sources, Path(folder)), robot=robot)
+
+
+def plain(program: Program) -> Program:
+    """The moves and waits of a program, which any language has words for."""
+    return replace(
+        program,
+        statements=tuple(
+            replace(s, events=()) if isinstance(s, Move) else s
+            for s in program.statements
+            if not isinstance(s, Opaque)
+        ),
+    )
 
 
 def stored(sources: Sources, folder: Path) -> Path:
@@ -257,8 +268,7 @@ def roundtrip_failures(case: str, count: int) -> int:
     )
     for entry in corpus(case):
         program = entry.read(vendor)
-        own = tuple(s for s in program.statements if not isinstance(s, Opaque))
-        if not comes_back(replace(program, statements=own), entry.robot, language):
+        if not comes_back(plain(program), entry.robot, language):
             print(f"{entry.path.name} does not come back", file=sys.stderr)
             failed += 1
     return failed

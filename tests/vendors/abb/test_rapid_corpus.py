@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from flyby.core.errors import FlybyError, SourceError, Span
+from flyby.core.errors import FlybyError, MotionError, SourceError, Span
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import Move
 from flyby.core.program.origin import MoveOrigin, Ownership
@@ -58,7 +58,7 @@ def origin(move: Move) -> MoveOrigin:
 
 def test_the_corpus_is_as_messy_as_real_programs() -> None:
     data = {path.name: path.read_bytes() for path in SOURCES}
-    assert len(PROGRAMS) >= 12
+    assert len(PROGRAMS) >= 30
     assert all(100 <= len(re.split(rb"\r\n|\r|\n", d)) <= 1000 for n, d in data.items()
                if n in PROGRAMS)  # fmt: skip
 
@@ -107,8 +107,9 @@ def test_it_is_written_and_read_again(file: str) -> None:
     robot = find_robot(PROGRAMS[file]["robot"])
     try:
         written = VENDOR.write(program(file), robot)
-    except SourceError as error:
-        assert "which the new program does not have" in str(error)
+    except (SourceError, MotionError) as error:
+        said = str(error)
+        assert "which the new program does not have" in said or "RAPID has no words" in said
         written = VENDOR.write(program(file), robot, {"opaque": "comment"})
     ((name, text),) = written.items()
     again = VENDOR.read(text, name, robot=robot)

@@ -7,7 +7,7 @@ ORobT, MirPos, CSpeedOverride. Positions are those of the last commanded target 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from ....core.spatial.rotation import quaternion_from_matrix
 from ..syntax.tree import Call, Expression, Invoke
 from ..values.arguments import check_count
 from ..values.function_calls import Evaluates, Special
+from ..values.located import Located
 from ..values.records import Record, pose_record, tool_record, work_object_record
 from ..values.scope import Scope
 from ..values.types import (
@@ -68,8 +69,6 @@ class RobotFunctions:
             return self._unknown(evaluator, call, "that of another task")
         tool = self._tool(evaluator, self._option(call, "tool"), scope)
         frame = self._frame(evaluator, self._option(call, "wobj"), scope)
-        if tool is None or frame is None:
-            return self._unknown(evaluator, call, "in a tool or frame that is not known")
         where, displacement = self.position, self.settings.now.displacement
         return self._told(evaluator, call, lambda: where.robtarget(tool, frame, displacement))
 
@@ -88,11 +87,9 @@ class RobotFunctions:
         """
         a = self._tool(evaluator, tool, scope)
         b = self._frame(evaluator, frame, scope, None if tool is None else WORLD)
-        if a is not None and b is not None:
-            where = self.position
-            record = self._asked(invoke, lambda: where.robtarget(a, b, None))
-            if record is not None:
-                return record
+        record = self._asked(invoke, lambda: self.position.robtarget(a, b, None))
+        if record is not None:
+            return record
         raise SourceError(
             f"{invoke.text} takes the robot's present position, which is not known here: name the "
             "robot, or give the position with \\ExeP",
@@ -137,7 +134,7 @@ class RobotFunctions:
         value = evaluator.evaluate(given, scope)
         tool = self._tool(evaluator, tool_given, scope)
         frame = self._frame(evaluator, self._option(call, "wobj"), scope, WORLD)
-        if tool is None or frame is None or find_unknown(value) is not None:
+        if find_unknown(value) is not None:
             return self._unknown(evaluator, call, "of values that are not known")
         self._check(evaluator, value, type_, call)
         record = ask(value, tool, frame)
@@ -162,7 +159,7 @@ class RobotFunctions:
         point, plane = self._required(call, 2)
         values = [evaluator.evaluate(e, scope) for e in (point, plane)]
         frame = self._frame(evaluator, self._option(call, "wobj"), scope, WORLD)
-        if frame is None or find_unknown(tuple(values)) is not None:
+        if find_unknown(tuple(values)) is not None:
             return self._unknown(evaluator, call, "of values that are not known")
         self._check(evaluator, values[0], ROBTARGET, call)
         mirror = self._plane(evaluator, values[1], call)
@@ -222,14 +219,22 @@ class RobotFunctions:
         check_count(call.text, count, len(found), call.span)
         return found
 
-    def _tool(self, evaluator: Evaluates, given: Expression | None, scope: Scope) -> Tool | None:
+    def _tool(self, evaluator: Evaluates, given: Expression | None, scope: Scope) -> Tool:
         if given is None:
             return self.position.tool
-        found = evaluator.locate(given, scope)
-        if find_unknown(found.value) is not None:
-            return None
+        found = self._located(evaluator, given, TOOLDATA, scope)
         evaluator.check(found.value, TOOLDATA, "the tool", given.span)
         return self.convert.tool(found, given)
+
+    @staticmethod
+    def _located(evaluator: Evaluates, given: Expression, type_: Type, scope: Scope) -> Located:
+        """A tool or frame; where it is not known, its default."""
+        found = evaluator.locate(given, scope)
+        if find_unknown(found.value) is None:
+            return found
+        use = "the tool" if type_ is TOOLDATA else "the work object"
+        value = evaluator.assumed(found.value, type_, use, given.span)
+        return replace(found, value=value)
 
     def _frame(
         self,
@@ -237,12 +242,10 @@ class RobotFunctions:
         given: Expression | None,
         scope: Scope,
         default: WorkObject | None = None,
-    ) -> WorkObject | None:
+    ) -> WorkObject:
         if given is None:
             return self.position.work_object if default is None else default
-        found = evaluator.locate(given, scope)
-        if find_unknown(found.value) is not None:
-            return None
+        found = self._located(evaluator, given, WOBJDATA, scope)
         evaluator.check(found.value, WOBJDATA, "the work object", given.span)
         return self.convert.work_object(found, given)
 

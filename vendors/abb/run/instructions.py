@@ -36,7 +36,7 @@ from ..values.types import (
     mismatch,
 )
 from .handlers import Keeping, Running
-from .kept import KEPT, REFUSED
+from .kept import REFUSED
 from .signals import SIGNALS
 from .waits import WAIT_UNTIL, wait_until
 
@@ -242,8 +242,8 @@ def refusal(statement: Invoke, data: Globals) -> str:
             f"is a routine that does not move the robot, {answer}",
             statement.span,
         )
-    known = {*data.routine_names("proc"), *INTERPRETED, *KEPT, *REFUSED}
     hint = data.hint(name) or "its text is not at hand"
+    known = data.routine_names("proc")
     message = unknown_name("instruction or routine", statement.text, known, hint)
     return (
         f"{message}: it is stepped over; name the module that declares it if it moves the robot, "

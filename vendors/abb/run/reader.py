@@ -7,8 +7,9 @@ as its course follows from the text itself. What is decided here, and where a co
   move that depends on it is driven with its default (`values.defaults`), or left out where its
   target has none. Branches and loops are decided by the rules of `core.source.execution.flow`.
 - Instructions that do not move the robot stay as opaque statements; ``WaitUntil``, ``WaitDI`` and
-  their like are stops and taken as satisfied at once. ERROR handlers run for errors that the program
-  makes itself (`recovery`); traps do not run. A routine of which nobody has the text is stepped over.
+  their like are stops and taken as satisfied at once. ERROR handlers run for errors that the
+  program makes itself (`recovery`); traps do not run. A routine of which nobody has the text is
+  stepped over.
 - ``AccSet`` scales the joints' accelerations and, by its ramp, the jerk. ``VelSet`` scales the
   programmed speeds and the times of ``\\T``, not the joints' own limits. ``PathAccLim`` with two
   limits takes the smaller one.

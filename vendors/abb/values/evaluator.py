@@ -85,6 +85,7 @@ class Evaluator:
         self._host = host
         self._elsewhere: dict[str, Value] = {}
         self._shared_elsewhere: set[str] = set()
+        self._assumed: dict[tuple[str, str], tuple[Span, str]] = {}  # where, and for what, first
         self._checked: dict[int, tuple[Value, Type]] = {}
         self._special = {**SPECIAL, **special}
 
@@ -155,10 +156,10 @@ class Evaluator:
             raise refuse_unknown(unknown, use, span)
         if type_ is SPEEDDATA and isinstance(taken, tuple) and not taken[0] > 0:
             taken = RECORDS["speeddata"]["v1000"]
-        shown = f": {describe(taken)} is taken" if not isinstance(taken, tuple) else ""
-        shown = shown or ", which is taken at its default"
-        message = f"{use} depends on {unknown.reason}{shown}{answerable(unknown)}"
-        self.answers.assumed(span, message)
+        shown = "its default" if isinstance(taken, tuple) else describe(taken)
+        where, first = self._assumed.setdefault((unknown.reason, shown), (span, use))
+        message = f"{first} depends on {unknown.reason}: {shown} is taken{answerable(unknown)}"
+        self.answers.assumed(where, message)
         return taken
 
     def check(self, value: Value, type_: Type, use: str, span: Span) -> None:

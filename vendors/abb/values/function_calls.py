@@ -42,6 +42,9 @@ class Evaluates(Protocol):
     def check(self, value: Value, type_: Type, use: str, span: Span) -> None:
         """Refuse a value that is not known, or of another type."""
 
+    def assumed(self, value: Value, type_: Type, use: str, span: Span) -> Value:
+        """A value with everything that is not known at its default."""
+
     def as_index(self, value: Value, span: Span) -> int:
         """A known value as an index."""
 
