@@ -70,7 +70,12 @@ class SourceError(FlybyError):
 
     def __init__(self, message: str, span: Span | None = None) -> None:
         super().__init__(f"{span}: {message}" if span is not None else message)
+        self.message = message
         self.span = span
+
+
+class LeftOpenError(SourceError):
+    """What a statement does depends on what only the running controller knows."""
 
 
 class ParseError(SourceError):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from ...errors import Note, Span
+from ...errors import LeftOpenError, Note, Span
 from ...program.move import Move, Opaque, Statement, Wait
 from ...program.origin import MoveOrigin
 from .provenance import MovePart, Reads
@@ -94,12 +94,16 @@ class Transcript:
 
     Args:
         text_of: the text that stands at a place, from which kept statements are cut.
+
+    Attributes:
+        left_out: why motions were left out, see `leave_out`.
     """
 
     def __init__(self, text_of: Callable[[Span], str]) -> None:
         self.text_of = text_of
         self.notes = Notes()
         self.parts: list[MoveParts] = []
+        self.left_out: list[LeftOpenError] = []
         self._statements: list[Statement] = []
 
     @property
@@ -134,6 +138,22 @@ class Transcript:
         self.emit(Opaque(self.text_of(span), stops, span))
         if why:
             self.notes.count(f"{name} is kept and not carried out: {why}", span)
+
+    def leave_out(self, span: Span, error: LeftOpenError) -> None:
+        """Keep a motion whose target nobody knows, and go on from the next."""
+        self.left_out.append(error)
+        self.emit(Opaque(self.text_of(span), True, span))
+        self.notes.count(f"the motion is left out: {error.message}", span)
+
+    def check_driven(self) -> None:
+        """Refuse a program of which no motion is left, or none but to one place.
+
+        Raises:
+            LeftOpenError: of the first that was left out.
+        """
+        goals = [s.target for s in self._statements if not isinstance(s, Wait | Opaque)]
+        if self.left_out and all(goal == goals[0] for goal in goals):
+            raise self.left_out[0]
 
     def statements(self, reads: Reads) -> tuple[Statement, ...]:
         """What was carried out, each move with the origin of its numbers.

@@ -42,7 +42,7 @@ def sources() -> dict[str, bytes]:
     return {
         str(path.relative_to(CORPUS)): path.read_bytes()
         for path in CORPUS.rglob("*")
-        if path.suffix in (".src", ".dat")
+        if path.suffix in (".src", ".dat") and "incomplete" not in path.parts
     }
 
 

@@ -118,7 +118,6 @@ def test_a_damaged_file_says_where(tmp_path, krl):
             "END stands where .*ENDIF, to close the IF of line 2",
         ),
         ("DEF a( )\nLOOP\n", 3, "the file ends where ENDLOOP, to close the LOOP of line 2"),
-        ("DEF a( )\nHALT\n", 3, "the file ends where END"),
         ("DEF a( )\nHALT\nENDIF\nEND", 3, "ENDIF stands where .*END, to close DEF a"),
         ("DEF a( )\nx=1 2\nEND", 2, "2 stands where the end of the line"),
         ("DEF a( )\nx=\nEND", 2, "the line ends where a value should"),
@@ -143,10 +142,6 @@ def test_a_damaged_file_says_where(tmp_path, krl):
         ("DEF a( )\nx=ABS(1,2)\nEND", 2, "ABS: it takes 1 argument, not 2"),
         ("DEF a( )\nx=SQRT(-1)\nEND", 2, "SQRT: there is no finite value"),
         ("DEF a( )\nBAS(#TOOL)\nEND", 2, "the number of a tool"),
-        ("DEF a( )\nASYPTP {E1 30}\nEND", 2, "ASYPTP is refused: external axes that move beside"),
-        ("DEF a( )\nASYPTP XPark\nEND", 2, "ASYPTP is refused: external axes that move beside"),
-        ("DEF a( )\nHALT\nASYSTOP(1)\nEND", 3, "ASYSTOP is refused: external axes that move"),
-        ("DEF a( )\nHALT\nASYCONT 1\nEND", 3, "ASYCONT is refused: external axes that move"),
     ):
         with pytest.raises(SourceError, match=message) as caught:
             krl(src=text)

@@ -137,8 +137,15 @@ def test_circ_by_angle(krl):
     assert part.target.pose.position == pytest.approx((0, 0.1, 0))
     assert part.via.pose.position == pytest.approx((0.1 * math.sqrt(0.5), 0.1 * math.sqrt(0.5), 0))
     assert part.target.pose.quaternion == whole.target.pose.quaternion
-    with pytest.raises(SourceError, match="full circles"):
-        krl(SET + body + ", CA 360", DATA_LIST)
+    _, *turn = krl(SET + body + ", CA 450", DATA_LIST).moves
+    assert [move.zone == FINE for move in turn] == [False, True]
+    assert turn[0].target.pose.position == pytest.approx(
+        (0.1 * math.cos(math.radians(225)), 0.1 * math.sin(math.radians(225)), 0)
+    )
+    assert turn[-1].target.pose.position == pytest.approx((0, 0.1, 0))
+    assert turn[-1].target.pose.quaternion == whole.target.pose.quaternion
+    with pytest.raises(SourceError, match="at most 3600"):
+        krl(SET + body + ", CA 4000", DATA_LIST)
     with pytest.raises(SourceError, match="CA depends on where the robot stands"):
         krl(SET + body.split("\n")[1] + ", CA 90", DATA_LIST)
 
@@ -147,18 +154,22 @@ def test_circ_by_angle(krl):
     st.floats(0.05, 2.0),
     st.floats(0.2, 2.5),
     st.floats(0.2, 2.5),
-    st.floats(1, 359),
+    st.floats(1, 1000),
+    st.booleans(),
     st.booleans(),
 )
-def test_arcs_stay_on_their_circle(radius, first, second, degrees, backwards):
+def test_arcs_stay_on_their_circle(radius, first, second, degrees, backwards, follows):
     points = [
         Pose((radius * math.cos(a), radius * math.sin(a), 0.3)) for a in (0, first, first + second)
     ]
-    middle, end = beyond(*points, -degrees if backwards else degrees)
-    for pose, angle in ((middle, degrees / 2), (end, degrees)):
-        turned = math.radians(-angle if backwards else angle)
-        expected = (radius * math.cos(turned), radius * math.sin(turned), 0.3)
-        np.testing.assert_allclose(pose.position, expected, atol=1e-7)
+    arcs = beyond(*points, -degrees if backwards else degrees, follows)
+    for k, (middle, end) in enumerate(arcs):
+        one = degrees / len(arcs)
+        assert one < 360
+        for pose, angle in ((middle, one * (k + 0.5)), (end, one * (k + 1))):
+            turned = math.radians(-angle if backwards else angle)
+            expected = (radius * math.cos(turned), radius * math.sin(turned), 0.3)
+            np.testing.assert_allclose(pose.position, expected, atol=1e-6)
 
 
 def test_missing_components_keep_the_present_value(krl):
@@ -331,10 +342,9 @@ def test_the_slowest_axis_counts(krl):
         ("PTP {X 1,Y 1,Z 1,A 0,B 0,C 0,S 99}", "Status lies between"),
         ("PTP {X 1,Q 2}", "has no component Q"),
         ("PTP {X 1,Y 1,Z 1,A 0,B 0,C 0,E1 5}", "E1 is sent to 5.*name the robot"),
-        ("SPLINE\nSPL XP1\nENDSPLINE", "SPLINE blocks are not emulated"),
+        ("SPLINE\nLIN XP1\nENDSPLINE", "LIN stands where SPL, SLIN, SCIRC"),
         ("PTP ?", "has no target"),
         ("LIN", "has no target"),
-        ("$BASE=EK(MACHINE_DEF[2].ROOT,MACHINE_DEF[2].MECH_TYPE,table)\nLIN XP1", "EK couples"),
     ],
 )
 def test_refusals_name_line_and_reason(krl, line, message):
@@ -353,8 +363,8 @@ def test_external_axes(krl, robot):
     first, second = krl(body, DATA_LIST, robot=moved).moves
     assert first.target.external == (1.5, math.radians(45))
     assert second.target.external == (1.5, math.radians(90))
-    with pytest.raises(SourceError, match="E3 is sent to 1"):
-        krl(SET + "PTP {A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0,E3 1}", DATA_LIST, robot=moved)
+    program = krl(SET + "PTP {A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0,E3 1}", DATA_LIST, robot=moved)
+    assert any("E3 is sent to 1 here, but the robot has 2" in n.message for n in program.notes)
     coupled = krl(
         SET + "$BASE=EK(MACHINE_DEF[2].ROOT,MACHINE_DEF[2].MECH_TYPE,table)\nLIN XP2",
         DATA_LIST,

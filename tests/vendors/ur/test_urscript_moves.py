@@ -108,19 +108,29 @@ def test_wrong_arguments_are_named_with_their_line(call: str, complaint: str) ->
 @pytest.mark.parametrize(
     ("call", "reason"),
     [
-        ("servoj([0,0,0,0,0,0], t=0.002)", "streams positions at run time"),
-        ("speedl([0,0,0.1,0,0,0], 0.5, 1)", "commands speeds"),
-        ("force_mode(p[0,0,0,0,0,0], [0,0,1,0,0,0], [0,0,5,0,0,0], 2, [1,1,1,1,1,1])", "forces"),
-        ("freedrive_mode()", "guided by hand"),
-        ("path_offset_set([0,0,0,0,0,0], 1)", "offsets to the path"),
-        ("track_conveyor_linear(p[1,0,0,0,0,0], 500)", "conveyor"),
+        ("servoj([0,0,0,0,0,0], t=0.002)", "by streams, forces or hand"),
+        ("speedl([0,0,0.1,0,0,0], 0.5, 1)", "by streams, forces or hand"),
+        (
+            "force_mode(p[0,0,0,0,0,0], [0,0,1,0,0,0], [0,0,5,0,0,0], 2, [1,1,1,1,1,1])",
+            "by streams, forces or hand",
+        ),
+        ("freedrive_mode()", "by streams, forces or hand"),
+        ("path_offset_set([0,0,0,0,0,0], 1)", "shift the path at run time"),
+        ("track_conveyor_linear(p[1,0,0,0,0,0], 500)", "shift the path at run time"),
     ],
 )
-def test_motion_that_is_made_at_run_time_is_refused_by_name(call: str, reason: str) -> None:
-    message = refusal(f"movej([0,0,0,0,0,0])\n{call}")
-    assert message.startswith("t.script:2:1: " + call.split("(")[0])
-    assert reason in message
-    assert program(f"if False:\n{call}\nend\nmovej([0,0,0,0,0,0])").moves
+def test_motion_that_is_made_at_run_time_is_kept_by_name(call: str, reason: str) -> None:
+    made = program(f"movej([0,0,0,0,0,0])\n{call}\nmovej([1,0,0,0,0,0])")
+    assert len(made.moves) == 2
+    assert [s.text for s in made.statements if isinstance(s, Opaque)] == [call]
+    note = next(n.message for n in made.notes if reason in n.message)
+    assert call.split("(")[0] in note
+
+
+@pytest.mark.parametrize("before", ["", "movej([0,0,0,0,0,0])\n"])
+def test_a_program_of_streams_says_so(before: str) -> None:
+    message = refusal(f"{before}while True:\n  servoj([0,0,0,0,0,0], t=0.002)\nend")
+    assert "servoj drives the robot by what is only known at run time" in message
 
 
 # ------------------------------------------------------------------------ targets
@@ -161,7 +171,9 @@ def test_near_to_where_the_robot_starts_is_near_to_where_it_comes_from() -> None
     checked = f"if get_inverse_kin_has_solution({pose}, q0):\n movej({pose})\nend"
     assert len(moves(here + checked, robot=True)) == 1
     later = f"{here}movej([0, 0, 0, 0, 0, 0])\nmovej(get_inverse_kin({pose}, q0))"
-    assert "qnear depends on get_actual_joint_positions() before the first move" in refusal(later)
+    assert moves(later)[1].target == plain[0].target
+    told = " ".join(note.message for note in program(later).notes)
+    assert "qnear depends on get_actual_joint_positions() before the first move" in told
 
 
 def test_behind_a_move_the_robot_is_at_rest() -> None:
@@ -338,9 +350,11 @@ def test_a_move_that_cannot_be_driven_is_named_beside_the_question() -> None:
         f"movel(p[9, 0, 0, {DOWN}])\n"
         "q = get_actual_joint_positions()\nmovej([q[0],0,0,0,0,0])"
     )
-    message = refusal(text, robot=True)
+    made = program(text, robot=True)
+    message = " ".join(note.message for note in made.notes)
+    assert len(made.moves) == 2
     assert "t.script:2:1: move 2: target cannot be reached" in message
-    assert "get_actual_joint_positions()" in message
+    assert "the motion is left out" in message and "get_actual_joint_positions()" in message
 
 
 def test_unreachable_poses_are_named() -> None:

@@ -8,35 +8,64 @@ import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.errors import InputError
-from ....core.spatial.pose import Pose
+from ....core.spatial.pose import Pose, Quaternion
+from ....core.spatial.rotation import (
+    matrix_from_rotation_vector,
+    quaternion_from_matrix,
+    rotation_vector,
+)
 
 _FULL_TURN = 360.0
+_MOST = 10 * _FULL_TURN
 _FLAT = 1e-9
 
 
-def beyond(start: Pose, via: Pose, end: Pose, degrees: float) -> tuple[Pose, Pose]:
-    """Auxiliary and end point of the arc that goes on the circle of three points by an angle.
+def beyond(
+    start: Pose, via: Pose, end: Pose, degrees: float, follows: bool
+) -> list[tuple[Pose, Pose]]:
+    """The arcs that go on the circle of three points by an angle.
 
     Args:
         start, via, end: of the circle.
-        degrees: from the start, towards ``via`` if above zero.
+        degrees: from the start, towards ``via`` if above zero; full turns and more make several
+            arcs, one after the other.
+        follows: whether the tool turns with the arc.
 
     Returns:
-        The point half way, and the end point; the end keeps the orientation programmed for it.
+        Of each the point half way and the end point; the last end keeps the orientation that is
+        programmed for it.
 
     Raises:
-        InputError: the points lie on a line, or the angle is no part of a turn.
+        InputError: the points lie on a line, or the angle is no part of a few turns.
     """
-    if not 0 < abs(degrees) < _FULL_TURN:
-        raise InputError(
-            f"an arc of CA {degrees:g}° is not emulated: full circles and more are to be split "
-            "into arcs of less than 360°"
-        )
+    if not 0 < abs(degrees) <= _MOST:
+        raise InputError(f"an arc of CA {degrees:g}°: more than 0 and at most {_MOST:g} are wanted")
     p, q, r = (np.array(pose.position) for pose in (start, via, end))
     centre, normal = _circle(p, q, r)
-    middle = _turned(p, centre, normal, math.radians(degrees) / 2)
-    final = _turned(p, centre, normal, math.radians(degrees))
-    return Pose(middle, via.quaternion), Pose(final, end.quaternion)
+    count = int(abs(degrees) // _FULL_TURN) + 1
+    made: list[tuple[Pose, Pose]] = []
+    for k in range(count):
+        middle, final = (math.radians(degrees) * (k + part) / count for part in (0.5, 1.0))
+        share = (k + 1) / count
+        turned = end.quaternion
+        if share < 1:
+            turned = _between(start, end, share, normal, math.radians(degrees) if follows else 0.0)
+        place = _turned(p, centre, normal, final)
+        half = Pose(_turned(p, centre, normal, middle), via.quaternion)
+        made.append((half, Pose(place, turned)))
+    return made
+
+
+def _between(start: Pose, end: Pose, share: float, axis: FloatArray, turn: float) -> Quaternion:
+    """An orientation on the way, of a tool that turns with the arc by so much besides."""
+    one, other = start.matrix()[:3, :3], end.matrix()[:3, :3]
+    back = matrix_from_rotation_vector(-turn * axis)
+    rest = rotation_vector(back @ other @ one.T)
+    turned = matrix_from_rotation_vector(share * turn * axis) @ matrix_from_rotation_vector(
+        share * rest
+    )
+    w, x, y, z = map(float, quaternion_from_matrix(turned @ one))
+    return w, x, y, z
 
 
 def _circle(p: FloatArray, q: FloatArray, r: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -19,7 +19,7 @@ from ..values.evaluator import Evaluator
 from ..values.frames import null_frame
 from ..values.scope import Scope
 from ..values.types import convert
-from ..values.values import Array, Choice, Struct, Unknown, Value, left_open, shown
+from ..values.values import Array, Choice, Struct, Unknown, Value, shown, supposed
 
 AXES = 6
 Command = Callable[["Basis", Value | None, Span], None]
@@ -82,9 +82,15 @@ class Basis:
         Raises:
             SourceError: it is not known.
         """
-        value = self.config.value(name)
+        value = supposed(self.config.value(name))
         if isinstance(value, Unknown):
-            raise left_open(name, value, span)
+            self.notes.once(
+                f"{name} {value.reason}",
+                f"{name} depends on {value.reason}, which the text does not say: nothing is set "
+                "by it, and percentages are taken as 100",
+                span,
+            )
+            return Struct("")
         if not isinstance(value, Struct):
             raise SourceError(f"{name} is {shown(value)} and no structure", span)
         return value
@@ -159,25 +165,31 @@ class Basis:
         """
         if index <= 0:
             return null_frame()
-        value = self.config.item(table, index, span)
+        value = self.config.item(table, index)
         if value is None:
             return null_frame(f"{table.upper()}[{index}]", shipped=True)
         return value.copy() if isinstance(value, Struct) else value
 
     def load(self, index: int) -> Value:
         """An item of ``LOAD_DATA``."""
-        value = self.config.item("load_data", index, None) if index > 0 else None
+        value = self.config.item("load_data", index) if index > 0 else None
         return value.copy() if isinstance(value, Struct) else Struct("load")
 
-    @staticmethod
-    def index(number: Value | None, what: str, span: Span) -> int:
-        """A whole number.
+    def index(self, number: Value | None, what: str, span: Span) -> int:
+        """A whole number; 0 for one that is not known.
 
         Raises:
-            SourceError: it is none, or not known.
+            SourceError: it is none.
         """
         if isinstance(number, Unknown):
-            raise left_open(what, number, span)
+            unknown, number = number, supposed(number)
+            number = 0 if isinstance(number, Unknown) else number
+            self.notes.once(
+                f"{what} {unknown.reason}",
+                f"{what} depends on {unknown.reason}, which the text does not say: "
+                f"{shown(number)} is taken",
+                span,
+            )
         if isinstance(number, bool) or not isinstance(number, int | float) or number != int(number):
             raise SourceError(f"{what} is a whole number", span)
         return int(number)

@@ -12,10 +12,10 @@ from dataclasses import replace
 from ....core.errors import InputError, SourceError, Span
 from ....core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from ....core.spatial.pose import IDENTITY, Pose
-from ..values.frames import number_or_zero, pose_of
+from ..values.frames import null_frame, number_or_zero, pose_of
 from ..values.scope import Variable
 from ..values.types import FRAME_FIELDS
-from ..values.values import Choice, Placement, Struct, find_unknown, left_open
+from ..values.values import Choice, Pending, Placement, Struct, find_unknown, supposed
 
 Note = Callable[[str, str, Span], None]
 
@@ -80,7 +80,17 @@ class Placements:
         value = self._system[name].value
         unknown = None if value is None else find_unknown(value)
         if unknown is not None:
-            raise left_open(name.upper(), unknown, span)
+            assert value is not None and not isinstance(value, Pending)
+            value = supposed(value)
+            taken = isinstance(value, Struct) and find_unknown(value) is None
+            self._note(
+                f"{name} {unknown.reason}",
+                f"{name.upper()} depends on {unknown.reason}, which the text does not say: "
+                f"{'what it was before' if taken else 'a frame of zeros'} is taken; name the file "
+                "that says it, or answer it in a file of answers",
+                span,
+            )
+            value = value if taken else null_frame()
         if not isinstance(value, Struct):
             raise SourceError(f"{name.upper()} is no frame", span)
         self._remark(name, value, span)

@@ -12,7 +12,7 @@ from ....core.errors import SourceError, Span
 from ..syntax.tree import Call
 from ..values.data import Data
 from ..values.scope import Scope
-from ..values.values import Choice, Struct, Unknown, Value, shown
+from ..values.values import Choice, Struct, Unknown, Value, shown, supposed
 from .bas import Basis, plain
 
 Function = Callable[[Call, list[Value | None], Scope], Value]
@@ -137,9 +137,18 @@ class InlineForms:
             raise SourceError(f"{call.text} needs a value", call.span)
         return value
 
-    @staticmethod
-    def _fields(call: Call, arguments: list[Value | None]) -> dict[str, Value]:
+    def _fields(self, call: Call, arguments: list[Value | None]) -> dict[str, Value]:
         value = arguments[0] if arguments else None
+        if isinstance(value, Unknown):
+            unknown, value = value, supposed(value)
+            if not isinstance(value, Struct):
+                self._basis.notes.count(
+                    f"{call.text} takes the motion's data (a PDAT or LDAT), and {unknown.reason} "
+                    "is not known: 100 % and an approximation as set before are taken; name the "
+                    ".dat that declares them",
+                    call.span,
+                )
+                return {}
         if isinstance(value, Struct):
             return value.fields
         reason = shown(value) if value is not None else "nothing"

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ....core.errors import SourceError
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.joint import ExternalRole
 from ....core.robot.model import Robot
 from ....core.source.execution.transcript import Notes
 from ..syntax.tree import Call, Name
 from ..values.evaluator import Evaluator
-from ..values.frames import frame_of
+from ..values.frames import frame_of, null_frame
+from ..values.operators import chained
 from ..values.scope import Scope
-from ..values.values import Struct, Unknown, Value, find_unknown
+from ..values.values import Struct, Unknown, Value, find_unknown, supposed
 from .frames import Placements
 from .inline_forms import Function
 from .position import Position
@@ -48,8 +48,7 @@ class Kinematics:
     def coupled(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``EK(root, type, offset)``: a base on the robot's table.
 
-        Raises:
-            SourceError: the robot has no table, or several that this may mean.
+        Of a robot that has no table, or several that this may mean, it stands still.
         """
         robot = self.robot
         axes = () if robot is None else robot.external_axes
@@ -59,15 +58,23 @@ class Kinematics:
             for axis in axes
             if axis.role is ExternalRole.TABLE and axis.name not in carriers
         ]
+        offset = supposed(arguments[2]) if len(arguments) > 2 and arguments[2] else None
+        made = offset.copy() if isinstance(offset, Struct) else null_frame()
         if len(tables) != 1:
             have = "no robot is named" if robot is None else f"the robot has {len(tables)} tables"
-            raise SourceError(
-                f"{call.text} couples the base to an external kinematic system, but {have}: name "
-                "a robot whose external axes hold the one table that is meant",
+            root = supposed(arguments[0]) if arguments and arguments[0] else None
+            known = isinstance(root, Struct) and find_unknown(root) is None
+            self.notes.once(
+                "EK",
+                f"{call.text} couples the base to an external kinematic system, but {have}: the "
+                f"base is taken to stand still at {'its root' if known else 'the world'}; describe "
+                "the one table that is meant in a cell file, [external_axis.…], and name that",
                 call.span,
             )
-        offset = arguments[2] if len(arguments) > 2 else None
-        made = offset.copy() if isinstance(offset, Struct) else Struct("frame")
+            if known:
+                assert isinstance(root, Struct)
+                return chained(root, made)
+            return made
         made.moved_by = tables[0]
         self.notes.once(
             "EK",

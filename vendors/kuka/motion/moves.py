@@ -1,4 +1,5 @@
-"""The motion instructions: PTP, LIN, CIRC, their relative forms, and SPTP, SLIN, SCIRC alone.
+"""The motion instructions: PTP, LIN, CIRC, their relative forms, SPTP, SLIN, SCIRC alone, and the
+segments of spline blocks.
 
 LIN and CIRC keep the Status that the robot has: S and T of their targets do not count. ``WITH``
 sets system variables for one motion. A motion to ``$POS_ACT`` or ``$AXIS_ACT`` goes nowhere.
@@ -6,10 +7,11 @@ sets system variables for one motion. A motion to ``$POS_ACT`` or ``$AXIS_ACT`` 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
-from ....core.errors import InputError, SourceError, Span
+from ....core.errors import InputError, LeftOpenError, SourceError, Span
 from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Opaque
 from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
@@ -18,7 +20,7 @@ from ....core.program.zone import Zone
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.provenance import ELSEWHERE, MovePart
 from ....core.source.execution.transcript import MoveParts, Transcript
-from ..syntax.tree import Expression, Flat, MotionInstruction, Name
+from ..syntax.tree import Assign, Expression, Flat, MotionInstruction, Name
 from ..values.data import Data
 from ..values.evaluator import Evaluator
 from ..values.frames import frame_of, pose_of
@@ -26,7 +28,18 @@ from ..values.predefined import MOTION, POSITION
 from ..values.provenance import KrlSource, LeafSource, Sources
 from ..values.scope import Scope, Variable
 from ..values.types import AXES, FRAME_FIELDS, POSES, KrlTypeError, convert
-from ..values.values import Pending, Placement, Struct, Unknown, Value, copied, shown
+from ..values.values import (
+    Pending,
+    Placement,
+    Struct,
+    Unknown,
+    Value,
+    copied,
+    find_unknown,
+    shown,
+    supposed,
+    unplaced,
+)
 from .arcs import beyond
 from .frames import Placements
 from .position import Position
@@ -64,17 +77,33 @@ class MotionReader:
         Raises:
             SourceError: it cannot be emulated, or a value is not known.
         """
-        if not motion.settings:
-            self._drive(motion, scope)
+        with self.settings_of(motion.settings, scope):
+            try:
+                self._drive(motion, scope)
+            except LeftOpenError as error:
+                self.evaluator.reader = ELSEWHERE
+                self.triggers.end()
+                self.transcript.leave_out(motion.span, error)
+                self.position.left_out(motion.span)
+
+    @contextmanager
+    def settings_of(self, settings: Sequence[Assign], scope: Scope) -> Iterator[None]:
+        """What follows ``WITH`` holds inside.
+
+        Raises:
+            SourceError: as `read`.
+        """
+        if not settings:
+            yield
             return
         system = self.data.system
         saved = {name: copied(_held(system[name])) for name in MOTION}
         try:
-            for setting in motion.settings:
+            for setting in settings:
                 value = self.evaluator.evaluate(setting.value, scope)
                 self.evaluator.assign(setting.target, value, scope, setting.span)
             self.changed()
-            self._drive(motion, scope)
+            yield
         finally:
             for name, value in saved.items():
                 system[name].value = value
@@ -154,24 +183,30 @@ class MotionReader:
                 f"{motion.word.upper()} takes positions, not axis values", motion.span
             )
         via_part = self._part(motion.targets[0].span, auxiliary.sources)
+        arcs = [(via, target)]
         if motion.angle is not None:
-            via, target = self._by_angle(motion, motion.angle, scope, start, via, target)
-            complete = Struct("e6pos", {**found.complete.fields, **frame_of(target.pose).fields})
-            found = replace(found, target=target, complete=complete, sources=Sources(()))
+            arcs = self._by_angle(motion, motion.angle, scope, start, via, target)
             via_part = MovePart(motion.targets[0].span)
             for read in (auxiliary.sources, found.sources):
                 self._read_by_expression(read.entries)
-        found = self._constant_orientation(found, start, placement, motion)
-        common, *sources = self._common(motion, False, placement)
-        assert isinstance(found.target, PoseTarget)
-        move = MoveC(
-            found.target,
-            *common,
-            via=via,
-            orientation=self._arc_orientation(motion),
-            events=self.triggers.taken(),
-        )
-        self._emit(motion, move, found, sources, via_part)
+            found = replace(found, sources=Sources(()))
+        events = self.triggers.taken()
+        for number, (middle, end) in enumerate(arcs, 1):
+            complete = Struct("e6pos", {**found.complete.fields, **frame_of(end.pose).fields})
+            found = replace(found, target=end, complete=complete)
+            found = self._constant_orientation(found, start, placement, motion)
+            part = motion if number == len(arcs) else replace(motion, passed=True)
+            common, *sources = self._common(part, False, placement)
+            assert isinstance(found.target, PoseTarget)
+            move = MoveC(
+                found.target,
+                *common,
+                via=middle,
+                orientation=self._arc_orientation(motion),
+                events=events,
+            )
+            self._emit(motion, move, found, sources, via_part)
+            events = ()
 
     def _by_angle(
         self,
@@ -181,15 +216,16 @@ class MotionReader:
         start: Struct | Unknown | None,
         via: PoseTarget,
         target: PoseTarget,
-    ) -> tuple[PoseTarget, PoseTarget]:
-        """``CA``: the auxiliary and the end point of the arc that is really driven."""
+    ) -> list[tuple[PoseTarget, PoseTarget]]:
+        """``CA``: the auxiliary and the end points of the arcs that are really driven."""
         degrees = self.evaluator.number(angle, scope, "CA")
         begin = _known_start(start, "an arc of angle CA", motion.span)
+        follows = self._arc_orientation(motion) is ArcOrientation.FOLLOWS_ARC
         try:
-            middle, end = beyond(pose_of(begin.fields), via.pose, target.pose, degrees)
+            arcs = beyond(pose_of(begin.fields), via.pose, target.pose, degrees, follows)
         except InputError as error:
             raise SourceError(str(error), motion.span) from None
-        return replace(via, pose=middle), replace(target, pose=end)
+        return [(replace(via, pose=half), replace(target, pose=end)) for half, end in arcs]
 
     def _arc_orientation(self, motion: MotionInstruction) -> ArcOrientation:
         kind = self.settings.choice("$circ_type", motion.span)
@@ -262,6 +298,9 @@ class MotionReader:
         value = self.evaluator.evaluate(expression, scope)
         self.evaluator.reader = ELSEWHERE
         what = f"the target of {motion.word.upper()}"
+        unknown = find_unknown(value)
+        if unknown is not None:
+            value = self._supposed(value, unknown, what, span)
         if isinstance(value, Unknown):
             if isinstance(expression, Name) and self.data.find(expression.name, scope) is None:
                 raise self.evaluator.undeclared(expression, scope, "point")
@@ -273,6 +312,19 @@ class MotionReader:
         if value.type in AXES or value.type in POSES:
             return value
         raise SourceError(f"{what} is a position or axis values, not {shown(value)}", span)
+
+    def _supposed(self, value: Value, unknown: Unknown, what: str, span: Span) -> Value:
+        """A target that is not known in all, as far as there are values to take it for."""
+        taken = supposed(value)
+        open_ = find_unknown(taken)
+        if open_ is not None:
+            return value if isinstance(taken, Unknown) else taken
+        self.transcript.notes.count(
+            f"{what} depends on {unknown.reason}, which the text does not say: what it was before, "
+            "or 0, is taken for it; answer it in a file of answers",
+            span,
+        )
+        return unplaced(taken)
 
     def _typed(self, value: Struct, kind: str, span: Span) -> Struct:
         """An aggregate without a type as what its components make it."""
@@ -299,7 +351,7 @@ class MotionReader:
         axes = is_axes(value)
         present = self.position.axes(span) if axes else self.position.pose(placement, span)
         if isinstance(present, Unknown):
-            raise SourceError(f"{motion.word.upper()} goes on from {present.reason}", span)
+            raise LeftOpenError(f"{motion.word.upper()} goes on from {present.reason}", span)
         summed = dict(present.fields)
         names = AXIS_NUMBERS if axes else (*FRAME_FIELDS, *POSE_NUMBERS[8:])
         for name in names:
@@ -339,7 +391,10 @@ class MotionReader:
         settings, span = self.settings, motion.span
         speed = settings.joint_speed(span) if joint else settings.path_speed(span)
         spline = motion.word.startswith("s")
-        zone = settings.zone(motion.approximation, joint, spline, motion.approximated)
+        if motion.passed:
+            zone = settings.passing(joint)
+        else:
+            zone = settings.zone(motion.approximation, joint, spline, motion.approximated)
         assert isinstance(speed.value, Speed) and not isinstance(zone.value, Speed)
         at = placement.tool, placement.work_object, placement.load
         return (speed.value, zone.value, *at), speed.sources, zone.sources
@@ -378,7 +433,7 @@ def _known_start(start: Struct | Unknown | None, what: str, span: Span) -> Struc
     if isinstance(start, Struct):
         return start
     reason = start.reason if isinstance(start, Unknown) else "where the robot stands"
-    raise SourceError(f"{what} depends on {reason}", span)
+    raise LeftOpenError(f"{what} depends on {reason}", span)
 
 
 def _held(cell: Variable) -> Value:

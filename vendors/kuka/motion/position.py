@@ -41,15 +41,21 @@ class Position:
         self._commanded = PresentPosition(robot, start, label)
         self._last: Struct | None = None
         self._place: Struct | None = None
+        self._left_out: Span | None = None
         if robot is not None and start is not None:
             self._last = self._place = self.axis_struct((*start.joints, *start.external))
 
     def moved(self, move: Move, statement: Span, target: Struct) -> None:
         """The robot has driven to a target, whose components are all in ``target``."""
         self._commanded.moved(move, statement)
+        self._left_out = None
         self._last = target
         if target != self._place:
             self._place = target
+
+    def left_out(self, span: Span) -> None:
+        """A motion was left out: where the robot stands is not known until the next."""
+        self._left_out = span
 
     @property
     def place(self) -> object:
@@ -64,6 +70,8 @@ class Position:
         Raises:
             SourceError: a target on the way cannot be reached.
         """
+        if self._left_out is not None:
+            return self._unknown(span)
         tool, base, last = placement.tool, placement.work_object, self._commanded.last
         if (
             last is not None
@@ -88,6 +96,8 @@ class Position:
         Raises:
             SourceError: a target on the way cannot be reached.
         """
+        if self._left_out is not None:
+            return self._unknown(span)
         last = self._last
         if last is not None and "a1" in last.fields:
             return last.copy()
@@ -98,7 +108,9 @@ class Position:
         return self._unknown(span) if q is None else self.axis_struct(q)
 
     def _unknown(self, span: Span) -> Unknown:
-        return Unknown(f"{WHERE} ({self._commanded.why_unknown()})", span)
+        out = self._left_out
+        why = self._commanded.why_unknown() if out is None else f"after the one of line {out.line}"
+        return Unknown(f"{WHERE} ({why})", span)
 
     def axis_struct(self, q: Sequence[float] | FloatArray) -> Struct:
         """A configuration (N,) as axis values."""

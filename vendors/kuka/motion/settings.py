@@ -23,10 +23,25 @@ from ....core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFra
 from ..values.predefined import AXES
 from ..values.provenance import Sources
 from ..values.scope import Variable
-from ..values.values import Array, Choice, Pending, Struct, Unknown, Value, find_unknown, left_open
+from ..values.values import (
+    Array,
+    Choice,
+    Pending,
+    Struct,
+    Unknown,
+    Value,
+    find_unknown,
+    left_open,
+    supposed,
+)
 
 Note = Callable[[str, str, Span], None]
 _FULL = 100.0
+_USUAL = {"$advance": 3.0, "$ov_pro": 100.0}
+_KIND = {"$ori_type": "var", "$circ_type": "base"}
+"""What is taken for those that are not known."""
+_ROOM = 1.0
+"""m: more than half of any segment of a spline block."""
 _KINDS = {"c_dis": "cdis", "c_spl": "cdis", "c_ori": "cori", "c_vel": "cvel", "c_ptp": "cptp"}
 
 
@@ -73,7 +88,20 @@ class Settings:
         Raises:
             SourceError: it is not known.
         """
-        return self._number(self._value(name), name.upper(), span)
+        value = supposed(self._value(name))
+        if isinstance(value, Unknown):
+            usual = _USUAL[name]
+            self._open(name.upper(), value, f"{usual:g}", span)
+            return usual
+        return self._number(value, name.upper(), span)
+
+    def _open(self, what: str, unknown: Unknown, taken: str, span: Span) -> None:
+        """Say what is taken for a value that is not known."""
+        self._note(
+            f"{what} {unknown.reason}",
+            f"{what} depends on {unknown.reason}, which the text does not say: {taken} is taken",
+            span,
+        )
 
     def choice(self, name: str, span: Span) -> str:
         """A system variable that is a constant, lower case.
@@ -81,7 +109,10 @@ class Settings:
         Raises:
             SourceError: it is not known, or no constant.
         """
-        value = self._value(name)
+        value = supposed(self._value(name))
+        if isinstance(value, Unknown):
+            self._open(name.upper(), value, _KIND[name].upper(), span)
+            return _KIND[name]
         if not isinstance(value, Choice):
             raise SourceError(f"{name.upper()} is not known here", span)
         return value.name
@@ -97,14 +128,19 @@ class Settings:
 
     def _component(self, name: str, component: str, default: str, span: Span) -> Value:
         """A component, or its default where nothing was set."""
-        holder = self._value(name)
-        if isinstance(holder, Unknown):
-            return holder
-        assert isinstance(holder, Struct)
-        found = holder.fields.get(component)
+        holder = supposed(self._value(name))
+        found: Value | None = holder if isinstance(holder, Unknown) else None
+        if isinstance(holder, Struct):
+            found = holder.fields.get(component)
+        value = self._defaults(default)
+        if isinstance(found, Unknown):
+            taken = supposed(found)
+            unknown, found = found, None if isinstance(taken, Unknown) else taken
+            number = self._number(value if found is None else found, default, span)
+            self._open(f"{name.upper()}.{component.upper()}", unknown, f"{number:g}", span)
+            return number
         if found is not None:
             return found
-        value = self._defaults(default)
         shown = self._number(value, default, span)
         self._note(
             default,
@@ -114,11 +150,17 @@ class Settings:
         return float(shown)
 
     def _axes(self, name: str, default: str, span: Span) -> list[Value]:
-        holder = self._value(name)
-        assert isinstance(holder, Array)
+        holder = supposed(self._value(name))
         values: list[Value] = []
         for k in range(1, AXES + 1):
-            found = holder.items.get((k,))
+            found: Value | Pending | None = holder if isinstance(holder, Unknown) else None
+            if isinstance(holder, Array):
+                found = holder.items.get((k,))
+            if isinstance(found, Unknown):
+                unknown, found = found, supposed(found)
+                if isinstance(found, Unknown):
+                    found = self._number(self._defaults(default), default, span)
+                self._open(name.upper(), unknown, f"{found:g}", span)
             if found is None or isinstance(found, Pending):
                 found = float(self._number(self._defaults(default), default, span))
                 self._note(
@@ -223,6 +265,10 @@ class Settings:
             return Set(FINE, _NOTHING)
         kind = self._criterion(words, joint, spline, span)
         return self._cached(("zone", kind), lambda: self._zone(kind, span))
+
+    def passing(self, joint: bool) -> Set:
+        """Of a point inside a spline block: as far as there is room on either side."""
+        return Set(ContourFraction(1.0) if joint else Radius(_ROOM, _ROOM, _ROOM), _NOTHING)
 
     def _criterion(self, words: tuple[str, ...], joint: bool, spline: bool, span: Span) -> str:
         """The component of ``$APO`` that counts."""

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
-from ....core.errors import InputError, SourceError, Span
+from ....core.errors import InputError, LeftOpenError, SourceError, Span
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
@@ -52,11 +52,15 @@ class Targets:
 
     Args:
         robot: for its external axes; None if none is named.
+        note: takes a note, once for a kind.
     """
 
-    def __init__(self, robot: Robot | None, position: Position) -> None:
+    def __init__(
+        self, robot: Robot | None, position: Position, note: Callable[[str, str, Span], None]
+    ) -> None:
         self._axes = None if robot is None else robot.external_axes
         self._position = position
+        self._note = note
 
     def pose(
         self, value: Struct, placement: Placement, status: bool, via: bool, span: Span
@@ -135,7 +139,7 @@ class Targets:
         count = 0 if self._axes is None else len(self._axes)
         for k, number in given.items():
             if k >= count and number != 0:
-                raise self._no_axis(k, number, span)
+                self._no_axis(k, number, span)
         last = max((k for k in given if k < count), default=-1)
         kept = any(k not in given for k in range(last + 1))
         for k in range(last + 1):
@@ -154,16 +158,23 @@ class Targets:
         outside: dict[str, Value] = {EXTERNAL_FIELDS[k]: given[k] for k in range(last + 1)}
         return tuple(converted), outside, kept
 
-    def _no_axis(self, k: int, number: float, span: Span) -> SourceError:
+    def _no_axis(self, k: int, number: float, span: Span) -> None:
+        """An axis that the robot does not have.
+
+        Raises:
+            SourceError: no robot is named.
+        """
         if self._axes is None:
-            return SourceError(
+            raise SourceError(
                 f"external axis E{k + 1} is sent to {number:g}, and the text does not say whether "
                 "that is mm or degrees: name the robot",
                 span,
             )
-        return SourceError(
-            f"external axis E{k + 1} is sent to {number:g}, but the robot has {len(self._axes)} "
-            "external axes",
+        self._note(
+            f"E{k + 1}",
+            f"external axis E{k + 1} is sent to {number:g} here, but the robot has "
+            f"{len(self._axes) or 'no'} external axes: the arm is driven without it; describe the "
+            "axis in a cell file, [external_axis.…], and name that",
             span,
         )
 
@@ -180,7 +191,9 @@ def _numbers(
         standing = present()
         if isinstance(standing, Unknown):
             left_out = ", ".join(name.upper() for name in missing)
-            raise SourceError(f"the target leaves out {left_out}: it keeps {standing.reason}", span)
+            raise LeftOpenError(
+                f"the target leaves out {left_out}: it keeps {standing.reason}", span
+            )
         fields = {**{name: standing.fields[name] for name in missing}, **fields}
     return {name: _number(name, fields[name], span) for name in names}, bool(missing)
 

@@ -75,8 +75,9 @@ class Triggers:
         return tuple(event for event, _ in events)
 
     def end(self) -> None:
-        """The program ends: actions that no motion followed are kept."""
-        for event, span in self._events:
+        """No motion comes: actions that wait for one are kept."""
+        events, self._events = self._events, []
+        for event, span in events:
             self._transcript.emit(Opaque(event.text, False, span))
 
     def _number(self, expression: Expression, scope: Scope, statement: Trigger) -> float | None:

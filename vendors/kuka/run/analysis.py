@@ -91,8 +91,6 @@ class KrlTree:
             return Step(exit=Exit.LOOP)
         if isinstance(statement, tree.Halt):
             return Step(halts=True)
-        if isinstance(statement, tree.SplineBlock):
-            return Step(moves=True)
         evaluated = tuple(_evaluated(statement))
         names = self.data_read(evaluated, home)
         functions = tuple(self._functions(evaluated, home))
@@ -121,7 +119,7 @@ class KrlTree:
             return self._invoked(statement.call, home, functions, names, handed)
         writes, outputs = self._assigned(statement, home)
         return Step(
-            moves=isinstance(statement, tree.MotionInstruction),
+            moves=isinstance(statement, tree.MotionInstruction | tree.SplineBlock),
             writes=handed | writes,
             made_of=names,
             outputs=outputs,
@@ -213,6 +211,9 @@ def _evaluated(statement: tree.Statement) -> Iterator[tree.Expression]:
         yield from (argument for argument in statement.call.arguments if argument is not None)
     elif isinstance(statement, tree.MotionInstruction):
         yield from statement.targets
+    elif isinstance(statement, tree.SplineBlock):
+        for segment in statement.body:
+            yield from _evaluated(segment)
     elif isinstance(statement, tree.Return) and statement.value is not None:
         yield statement.value
     elif isinstance(statement, tree.WaitSec):

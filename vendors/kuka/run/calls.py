@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import replace
 
 from ....core.errors import SourceError
 from ....core.source.execution.answers import Course
@@ -16,9 +17,9 @@ from ..values.data import Data
 from ..values.evaluator import Evaluator
 from ..values.functions import COMPUTED
 from ..values.scope import Scope
-from ..values.values import Array, Struct, Unknown, Value
+from ..values.values import Array, Struct, Unknown, Value, supposed
 from .analysis import NATIVE
-from .instructions import Kept, kept, refused
+from .instructions import Kept, kept
 from .keeping import Keeping
 from .output_writes import OutputWrites
 from .routines import Routines
@@ -75,20 +76,15 @@ class Calls:
                 self._data.outputs.forget()
                 self._keeping.keep(statement.span, call.text, "as the answers say")
                 return
-            table = self._from_table(call)
+            table = kept(call.name)
             if table is not None:
                 self._keep_call(statement, table, scope)
                 return
         found = self._library.routine(call.name, scope.module)
         if found is None:
-            raise self._refusal(call, scope)
+            self._step_over(statement, scope)
+            return
         self._routines.run(*found, call, scope)
-
-    def _from_table(self, call: Call) -> Kept | None:
-        reason = refused(call.name)
-        if reason is not None:
-            raise SourceError(f"{call.text} is refused: {reason}", call.span)
-        return kept(call.name)
 
     def _keep_call(self, statement: Invoke, why: Kept, scope: Scope) -> None:
         if why.writes:
@@ -108,19 +104,26 @@ class Calls:
             if any(isinstance(step, str) for step in argument.path):
                 continue
             unknown = Unknown(f"what {call.text} gave {argument.text}", call.span)
+            before = self._evaluator.names.settled(cell)
+            if before is not None and not argument.path:
+                unknown = replace(unknown, held=supposed(before))
             if not isinstance(cell.value, Array | Struct):
                 cell.value = unknown
             elif argument.path:
                 with suppress(SourceError):
                     self._evaluator.assign(argument, unknown, scope, call.span)
 
-    def _refusal(self, call: Call, scope: Scope) -> SourceError:
+    def _step_over(self, statement: Invoke, scope: Scope) -> None:
+        """A routine whose text is not at hand: taken as one that moves nothing."""
+        call = statement.call
+        self._data.outputs.forget()
+        self._forget(call, scope)
         known = self._library.routine_names(scope.module)
         offer = (
-            "it might move the robot, so it is not stepped over: put its .src beside the program, "
-            f'name it with the other files, or answer [calls] {call.text} = "skip"'
+            "it is stepped over as if it moved nothing: put its .src beside the program, name it "
+            f'with the other files, or say that it is so by [calls] {call.text} = "skip"'
         )
-        return SourceError(unknown_name("routine", call.text, known, offer), call.span)
+        self._keeping.keep_missing(statement.span, unknown_name("routine", call.text, known, offer))
 
     def call_function(self, call: Call, scope: Scope) -> Value | None:
         """The value of a function of the program or of KUKA's own files."""

@@ -1,14 +1,16 @@
 """Which files on disk belong to a program.
 
-The program's own ``.dat``, ``$CONFIG.DAT``, and of the files around it (its folder, and the folders
-``Program``, ``System`` and ``TP`` of a controller's tree ``R1``) those that its text calls by name
-or that declare something ``GLOBAL``; from there on, what these call.
+The program's own ``.dat``, ``$CONFIG.DAT``, and of the files around it those that its text calls by
+name or that declare something ``GLOBAL``; from there on, what these call. Around it is the tree of
+the controller that its folder stands in (``KRC``, ``R1``, ``Program``, ``System``, …); of a folder
+that stands in none, the folders in it, the one that it stands in, and such a tree beside it.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from itertools import islice, takewhile
 from pathlib import Path
 
 from ....core.errors import FlybyError
@@ -16,8 +18,11 @@ from ....core.source.text.files import SourceFile, read_source
 from ....core.source.text.lexer import words
 from ..values.library import CONFIG
 
-SUFFIXES = (".src", ".dat")
-_TREE = ("program", "system", "tp")
+SUFFIXES = (".src", ".sub", ".dat")
+_TREE = ("krc", "r1", "program", "system", "tp", "folgen", "up", "makros", "mada", "steu")
+"""Folders of a controller's tree."""
+_DEEPEST = 6
+"""Folders of a tree inside each other."""
 _MOST_FILES = 2000
 _LARGEST_SCAN = 400
 _TYPES = words(
@@ -63,39 +68,55 @@ def _named(other: Path) -> list[Path]:
 def _near(path: Path) -> dict[str, list[Path]]:
     """Files around the program by lower-case stem, nearest folder first."""
     near: dict[str, list[Path]] = {}
+    own = path.resolve()
     count = 0
     for folder in _folders(path):
-        try:
-            entries = sorted(folder.iterdir())
-        except OSError:
-            continue
-        for entry in entries:
+        for entry in _entries(folder):
             count += 1
-            if entry.suffix.lower() in SUFFIXES and entry != path and count < _MOST_FILES:
+            if count > _MOST_FILES:
+                return near
+            if entry.suffix.lower() in SUFFIXES and entry.resolve() != own:
                 near.setdefault(entry.stem.lower(), []).append(entry)
     return near
 
 
 def _folders(path: Path) -> list[Path]:
-    """The program's own folder; of a controller's tree the others, with what is in them."""
+    """The program's own folder, then those around it."""
     own = path.resolve().parent
-    folders = [path.parent]
-    for parent in [own, *own.parents][:4]:
-        name = parent.name.lower()
-        if name not in ("r1", *_TREE):
-            continue
-        root = parent if name == "r1" else parent.parent
-        for branch in _subfolders(root):
-            if branch.name.lower() in _TREE:
-                inner = [branch, *_subfolders(branch)]
-                folders += [folder for folder in inner if folder.resolve() != own]
-        break
-    return folders
+    tree = [folder for folder in (own, *own.parents[:_DEEPEST]) if folder.name.lower() in _TREE]
+    if tree:
+        around = list(_inside(tree[-1], _DEEPEST))
+    else:
+        beside = [f for f in _subfolders(own.parent) if f.name.lower() in _TREE]
+        around = [*_inside(own, _DEEPEST), own.parent, *beside]
+    others = [f for f in dict.fromkeys(around) if f != own]
+    # What is farther away in the tree comes later.
+    others.sort(key=lambda folder: len(own.parts) - _shared(own, folder))
+    return [path.parent, *others]
+
+
+def _inside(folder: Path, deep: int) -> Iterator[Path]:
+    """A folder and those in it."""
+    yield folder
+    if deep:
+        for inner in _subfolders(folder):
+            yield from _inside(inner, deep - 1)
+
+
+def _shared(one: Path, other: Path) -> int:
+    """How many folders two paths have in common."""
+    pairs = zip(one.parts, other.parts, strict=False)
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
 
 
 def _subfolders(root: Path) -> list[Path]:
+    return [e for e in _entries(root) if e.is_dir() and not e.name.startswith(".")]
+
+
+def _entries(folder: Path) -> list[Path]:
+    """What is in a folder, as far as it may be looked at."""
     try:
-        return sorted(entry for entry in root.iterdir() if entry.is_dir())
+        return sorted(islice(folder.iterdir(), _MOST_FILES))
     except OSError:
         return []
 

@@ -1,13 +1,11 @@
-"""Routines of the controller and of KUKA's technology packages, by name: kept or refused.
-
-A call that is in no table, and no routine of the files at hand, is refused: it might move the
-robot.
-"""
+"""Routines of the controller and of KUKA's technology packages, by name, and how they are kept."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+
+from ..syntax.lexer import CLOSED
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,19 +53,32 @@ _TABLE: tuple[tuple[str, Kept], ...] = (
     (r"rsi_(?!movecorr)\w+|ts_(corroff|setcorrdata|bc6dcalc)", _SENSOR),
     (r"st_(on1?|off|reset|ethernet|\w+corr|(new|del)link|[gs]etparam|(new|del)obj)", _SENSOR),
     (r"p00|lock|unlock", _CLOCK),
-)
-_REFUSED: tuple[tuple[str, str], ...] = (
-    (r"rsi_movecorr|st_movesens|st_skipsens", "its course is decided by sensors at run time"),
     (
-        r"ts_(?!corroff|setcorrdata|bc6dcalc)\w+|h70_\w+|touch\w*|search\w*",
-        "its course is decided by a search at run time",
+        r"rsi_movecorr|st_movesens|st_skipsens",
+        Kept(
+            "sensors decide its course at run time: the robot is taken to stay where it is",
+            stops=True,
+            writes=True,
+        ),
     ),
-    (r"syncstart|syncend|progsync|mot_?coop\w*|roboteam\w*", "several robots are not emulated"),
-    (r"conv_\w+|tracking\w*", "conveyor tracking is not emulated"),
+    (
+        r"ts_(?!corroff|setcorrdata|bc6dcalc)\w+|h70\w*|touch\w*|search\w*",
+        Kept(
+            "a search decides its course at run time: the robot is taken to stay where it is, "
+            "and to find nothing that differs",
+            stops=True,
+            writes=True,
+            outputs=True,
+        ),
+    ),
+    (
+        r"syncstart|syncend|progsync|syncmove|mot_?coop\w*|roboteam\w*",
+        Kept("other robots are not emulated: they are taken to be ready at once", stops=True),
+    ),
+    (r"conv_\w+|tracking\w*", Kept("conveyors are taken to stand still", stops=True, writes=True)),
     (
         r"asy(ptp|cont|stop|cancel)",
-        "external axes that move beside the program are not emulated: give their values with the "
-        "targets of PTP, LIN and CIRC",
+        Kept("external axes that move beside the program are not emulated"),
     ),
 )
 
@@ -77,17 +88,11 @@ def _compiled(pattern: str) -> re.Pattern[str]:
 
 
 _KEPT = tuple((_compiled(pattern), kept) for pattern, kept in _TABLE)
-_NOT = tuple((_compiled(pattern), why) for pattern, why in _REFUSED)
 
 
 def kept(name: str) -> Kept | None:
     """How the call of a routine is kept; None if it is in no table."""
     return next((entry for pattern, entry in _KEPT if pattern.fullmatch(name)), None)
-
-
-def refused(name: str) -> str | None:
-    """Why a routine is refused; None if it is in no table."""
-    return next((why for pattern, why in _NOT if pattern.fullmatch(name)), None)
 
 
 KEYWORDS: dict[str, Kept | None] = {
@@ -104,8 +109,12 @@ KEYWORDS: dict[str, Kept | None] = {
     "channel": None,
     "sema": None,
     "on_error_proceed": None,
+    CLOSED: Kept("a closed fold does not show what is in it"),
+    "init": Kept("a closed fold does not show what is in it"),
+    "declarations": Kept("a closed fold does not show what is in it"),
     "confirm": Kept("messages do not move the robot"),
-    "time_block": Kept("it belongs into a spline block"),
-    "const_vel": Kept("it belongs into a spline block"),
+    "time_block": Kept("the times of spline blocks follow from their speeds here"),
+    "const_vel": Kept("the speeds of spline blocks are those of their segments here"),
+    "stop": Kept("conditional stops are not emulated"),
 }
 """First word of a statement → how it is kept; None for declarations, which need no word."""

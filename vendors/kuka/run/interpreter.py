@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 
-from ....core.errors import Note, SourceError, Span
+from ....core.errors import LeftOpenError, Note, SourceError, Span
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.answers import Course
@@ -107,13 +107,13 @@ class Interpreter:
         )
         config = ConfigData(data, evaluator.names, scopes)
         self._settings = Settings(data.system, config.value, notes.once)
-        targets = Targets(robot, position)
+        targets = Targets(robot, position, notes.once)
         basis = Basis(data, evaluator, config, notes, self._system_changed)
         tree = KrlTree(data, evaluator.names, scopes)
         analysis = Analysis(tree)
         writes = OutputWrites(data, evaluator.names, tree, analysis)
         self._triggers = Triggers(evaluator, transcript, writes)
-        motions = MotionReader(
+        self._motions = motions = MotionReader(
             data,
             evaluator,
             placements,
@@ -158,7 +158,7 @@ class Interpreter:
             WaitFor: waits.wait_for,
             Trigger: self._triggers.trigger,
             Keyword: waits.keyword,
-            SplineBlock: waits.spline,
+            SplineBlock: self._spline,
             Declaration: self._declare,
             SignalDeclaration: self._define,
             StrucDefinition: self._define,
@@ -174,6 +174,7 @@ class Interpreter:
         with suppress(Finished):
             self._routines.run(entry, self._library.main, call, scope)
         self._triggers.end()
+        self._transcript.check_driven()
 
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""
@@ -234,7 +235,11 @@ class Interpreter:
         target = statement.target
         datum = None if target.name.startswith("$") else self._data.text(target.span)
         value = self._evaluated(statement.value, scope, statement.span, datum)
-        cell = self._evaluator.assign(target, value, scope, statement.span)
+        try:
+            cell = self._evaluator.assign(target, value, scope, statement.span)
+        except LeftOpenError as error:
+            self._assign_somewhere(target, scope, error)
+            return
         if target.name in MOTION:
             self._system_changed()
             return
@@ -246,6 +251,29 @@ class Interpreter:
                 return
             why = why if stops else "it is not emulated"
         self._keeping.keep(statement.span, written.text.upper(), why, stops)
+
+    def _assign_somewhere(self, target: Name, scope: Scope, error: LeftOpenError) -> None:
+        """An item of an array gets a value, and nobody knows which: all of it is not known."""
+        cell = self._data.find(target.name, scope)
+        if cell is None or cell.signal is not None:
+            self._data.outputs.forget()
+        else:
+            what = f"the value of {target.text}, of which an item was changed"
+            cell.value = Unknown(what, target.span)
+        self._transcript.notes.count(f"the assignment is left out: {error.message}", target.span)
+
+    def _spline(self, block: SplineBlock, scope: Scope) -> None:
+        """The segments of a block one after the other, with what follows its ``WITH``."""
+        self._transcript.notes.once(
+            block.word,
+            f"{block.word.upper()} blocks are driven segment by segment, each point passed in as "
+            "wide a zone as there is room for: the controller's own curve goes through the points "
+            "and is smoother, and its time another one",
+            block.span,
+        )
+        with self._motions.settings_of(block.settings, scope):
+            for statement in block.body:
+                self._run_statement(statement, scope)
 
     def _declare(self, statement: Declaration, scope: Scope) -> None:
         known = scope.cells.get(statement.name)

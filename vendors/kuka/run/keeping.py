@@ -29,6 +29,11 @@ class Keeping:
             self._transcript.emit(Opaque("CONTINUE", span=span))
         self._transcript.keep(span, name, why, stops and not self._advance.passed)
 
+    def keep_missing(self, span: Span, message: str) -> None:
+        """Keep the call of a routine whose text is not at hand."""
+        self._transcript.keep(span, "", "", stops=True)
+        self._transcript.notes.count(message, span)
+
     def stop(self, span: Span) -> None:
         """Something stops the advance run, and so the robot, unless ``CONTINUE`` lets it pass."""
         if not self._transcript.stopped and not self._advance.passed:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from ....core.errors import SourceError
 from ....core.program.move import Wait
 from ....core.source.execution.transcript import Transcript
-from ..syntax.tree import Halt, Keyword, SplineBlock, WaitFor, WaitSec
+from ..syntax.tree import Halt, Keyword, WaitFor, WaitSec
 from ..values.evaluator import Evaluator
 from ..values.scope import Scope
 from ..values.values import Unknown, shown
-from .instructions import KEYWORDS, refused
+from .instructions import KEYWORDS, kept
 from .keeping import Keeping
 from .output_writes import OutputWrites
 from .waiting import Waited
@@ -61,20 +61,10 @@ class Waits:
         self._keeping.keep(statement.span, "WAIT FOR", why, stops=True)
 
     def keyword(self, statement: Keyword, scope: Scope) -> None:
-        reason = refused(statement.word)
-        if reason is not None:
-            raise SourceError(f"{statement.word.upper()} is refused: {reason}", statement.span)
-        why = KEYWORDS[statement.word]
+        why = KEYWORDS.get(statement.word, kept(statement.word))
         if why is not None:
             if statement.word in ("global", "interrupt"):
                 text = self._transcript.text_of(statement.span)
                 self._writes.interrupted(text, scope, statement.span)
             word = "INTERRUPT" if statement.word == "global" else statement.word.upper()
             self._keeping.keep(statement.span, word, why.why, why.stops)
-
-    def spline(self, statement: SplineBlock, scope: Scope) -> None:
-        raise SourceError(
-            f"{statement.word.upper()} blocks are not emulated: use single SLIN, SCIRC and SPTP "
-            "motions, or LIN, CIRC and PTP",
-            statement.span,
-        )

@@ -39,10 +39,19 @@ _FLAT_VALUE = re.sub(r"\?P<\w+>", "?:", _ITEM_VALUE)
 _FLAT_ITEM = rf"{_NAME} (?: [ \t]* \[ [ \t]* \] )? [ \t]* {_FLAT_VALUE} [ \t]*+"
 _BLANK = r"[ \t\f\v\xa0\ufeff\x1a]"
 
+CLOSED = "closed fold"
+MOTION_WORDS = r"(?: S?PTP | S?LIN | S?CIRC )"
+_CLOSED = rf"""
+    (?: {MOTION_WORDS} [ \t]++ [^;={{\r\n]*? (?<![$\w.]) Vel [ \t]*+ = [ \t]*+ [.\d] [^\r\n;]*+
+      | (?: OUT | SYN | PULSE | SET | CHK | WAIT ) [ \t]++ (?: [^;=(\r\n]*? (?<![$\w.]) )?
+        (?: State | Time ) [ \t]*+ = [^\r\n;]*+ )"""
+"""A line as the teach pendant shows a fold that is closed, see `closed_folds`."""
+
 _TOKEN = re.compile(
     rf"""
     (?: {_BLANK}++ | ;[^\r\n]*+ )*+
-    (?: (?P<name> {_NAME} )
+    (?: (?P<closed> {_CLOSED} )
+      | (?P<name> {_NAME} )
       | (?P<newline> [\r\n]++ (?: {_BLANK}++ | [\r\n]++ | ;[^\r\n]*+ | &[^\r\n]*+ )*+ )
       | (?P<number> {_NUMBER} )
       | (?P<record> \{{ [ \t]*+ (?: {_NAME} [ \t]* : [ \t]*+ )?
@@ -99,4 +108,7 @@ def _stray(text: str, at: int) -> str:
 
 
 _LEXICON = Lexicon(_TOKEN, re.compile(rf"(?:{_BLANK}++|;[^\r\n]*+)*+"), KEYWORDS, _stray)
-_SPECIAL: dict[str, lexer.Special] = {"newline": lambda kinds, start, end: (NEWLINE, end)}
+_SPECIAL: dict[str, lexer.Special] = {
+    "newline": lambda kinds, start, end: (NEWLINE, end),
+    "closed": lambda kinds, start, end: (CLOSED, end),
+}

@@ -5,12 +5,13 @@ A descent by hand over the tokens of `lexer`, for its messages and its speed.
 
 from __future__ import annotations
 
+from ....core.errors import Note
 from ....core.source.text.files import SourceText
 from .cursor import Cursor
 from .expressions import parse_indices
 from .lexer import END, NEWLINE, tokenize
 from .statements import CLOSING, parse_block
-from .tree import DataList, Parameter, Routine, Unit
+from .tree import Block, DataList, Parameter, Routine, Unit
 
 
 def parse(source: SourceText) -> Unit:
@@ -22,14 +23,15 @@ def parse(source: SourceText) -> Unit:
     cursor = Cursor(tokenize(source))
     routines: list[Routine] = []
     lists: list[DataList] = []
+    notes: list[Note] = []
     while True:
         start = cursor.start
         shared = cursor.accept("global")
         kind = cursor.kind
         if kind in ("def", "deffct"):
-            routines.append(_routine(cursor, start, shared))
+            routines.append(_routine(cursor, start, shared, notes))
         elif kind == "defdat" and not shared:
-            lists.append(_data_list(cursor))
+            lists.append(_data_list(cursor, notes))
         elif kind == NEWLINE:
             cursor.advance()
         elif kind == END:
@@ -40,10 +42,10 @@ def parse(source: SourceText) -> Unit:
             raise cursor.unexpected("DEF, DEFFCT or DEFDAT (a program begins with one)")
     if not routines and not lists:
         raise source.error("the file holds no DEF and no DEFDAT: it is empty or no KRL", 0)
-    return Unit(source, tuple(routines), tuple(lists))
+    return Unit(source, tuple(routines), tuple(lists), tuple(notes))
 
 
-def _routine(cursor: Cursor, start: int, shared: bool) -> Routine:
+def _routine(cursor: Cursor, start: int, shared: bool, notes: list[Note]) -> Routine:
     kind = cursor.kind
     begin = cursor.start
     cursor.advance()
@@ -60,9 +62,7 @@ def _routine(cursor: Cursor, start: int, shared: bool) -> Routine:
     end = "end" if kind == "def" else "endfct"
     # A function that ends with END is met, and no controller would mistake it.
     ends = frozenset({end, "end"})
-    body = parse_block(cursor, ends, f"{kind.upper()} {text}", begin)
-    cursor.advance()
-    cursor.skip_line()
+    body = _body(cursor, ends, f"{kind.upper()} {text}", begin, notes)
     return Routine(span, text.lower(), text, parameters, body, returns, shared)
 
 
@@ -83,14 +83,32 @@ def _parameters(cursor: Cursor) -> tuple[Parameter, ...]:
     return tuple(parameters)
 
 
-def _data_list(cursor: Cursor) -> DataList:
+def _body(
+    cursor: Cursor, ends: frozenset[str], opened_by: str, start: int, notes: list[Note]
+) -> Block:
+    """The statements up to the keyword that closes them, or to the end of the file."""
+    body = parse_block(cursor, ends | {END}, opened_by, start)
+    if cursor.kind == END:
+        opened = cursor.source.span(start, start)
+        wanted = " or ".join(sorted(end.upper() for end in ends))
+        notes.append(
+            Note(
+                f"the file ends without {wanted}, to close {opened_by}; is it all there?",
+                span=opened,
+            )
+        )
+    else:
+        cursor.advance()
+        cursor.skip_line()
+    return body
+
+
+def _data_list(cursor: Cursor, notes: list[Note]) -> DataList:
     start = cursor.start
     cursor.advance()
     text = cursor.word("the name of the DEFDAT")
     public = cursor.accept_word("public")
     cursor.skip_line()
     span = cursor.span_from(start)
-    body = parse_block(cursor, frozenset({"enddat"}), f"DEFDAT {text}", start)
-    cursor.advance()
-    cursor.skip_line()
+    body = _body(cursor, frozenset({"enddat"}), f"DEFDAT {text}", start, notes)
     return DataList(span, text.lower(), text, public, body)

@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from ....core.errors import Span
 from ....core.source.text.lexer import words
 from . import tree
+from .closed_folds import parse_closed
 from .cursor import Cursor
 from .declarations import parse_declaration, parse_enum, parse_signal, parse_struc
 from .expressions import parse_expression, parse_name, parse_name_or_call
-from .lexer import END, ENUM, NAME, NEWLINE
+from .lexer import CLOSED, END, ENUM, NAME, NEWLINE
 from .tree import Block, Statement
 
 CLOSING = words("else endif endfor endwhile until endloop case default endswitch end endfct enddat")
 APPROXIMATIONS = frozenset({"c_ptp", "c_dis", "c_ori", "c_vel", "c_spl"})
 MOTIONS = words("ptp ptp_rel lin lin_rel circ circ_rel sptp sptp_rel slin slin_rel scirc scirc_rel")
+SEGMENTS = words("spl spl_rel sptp sptp_rel slin slin_rel scirc scirc_rel")
+"""Motions of a spline block."""
+_KEPT_NAMES = words("channel import confirm sema time_block const_vel stop")
+"""First words of statements that are kept, which are no keywords."""
+_ALONE = words("on_error_proceed ini init declarations")
+"""Statements of one word; the last are titles of folds that were closed when the text was taken."""
 ASYNCHRONOUS = frozenset({"asyptp", "asycont", "asystop", "asycancel"})
 """First words of statements that drive axes beside the program: ``ASYPTP {E1 30}``."""
 ARCS = frozenset({"circ", "circ_rel", "scirc", "scirc_rel"})
@@ -34,7 +42,7 @@ def parse_block(cursor: Cursor, ends: frozenset[str], opened_by: str, start: int
                 cursor.advance()
             elif kind == END or kind in CLOSING:
                 line = cursor.source.span(start, start).line
-                wanted = " or ".join(sorted(end.upper() for end in ends))
+                wanted = " or ".join(sorted(end.upper() for end in ends - {END}))
                 raise cursor.unexpected(f"{wanted}, to close {opened_by} of line {line},")
             else:
                 statements.extend(parse_statement(cursor))
@@ -64,7 +72,10 @@ def _line(cursor: Cursor, start: int, statement: str) -> Span:
 
 def _name_statement(cursor: Cursor) -> Statement | tuple[Statement, ...]:
     following = cursor.peek()
-    if cursor.text.lower() in ASYNCHRONOUS and following not in ("(", "="):
+    word = cursor.text.lower()
+    if word in ASYNCHRONOUS and following not in ("(", "="):
+        return _kept(cursor)
+    if word in _KEPT_NAMES and following == "end":  # TIME_BLOCK END = 4.5
         return _kept(cursor)
     if following == NAME:
         return _named(cursor)
@@ -77,8 +88,11 @@ def _name_statement(cursor: Cursor) -> Statement | tuple[Statement, ...]:
     target = parse_name_or_call(cursor)
     if isinstance(target, tree.Call):
         return tree.Invoke(_line(cursor, start, "the call"), target)
-    if target.name == "on_error_proceed" and cursor.at_end_of_line:
+    if target.name in _ALONE and cursor.at_end_of_line:
         cursor.accept(NEWLINE)
+        if target.name == "ini":
+            values = tree.Constant(target.span, "initmov"), None
+            return tree.Invoke(target.span, tree.Call(target.span, "bas", "BAS", values))
         return tree.Keyword(target.span, target.name)
     if cursor.kind != "=":
         raise cursor.unexpected(f"'=', or '(' for a call, after {target.text}")
@@ -92,7 +106,7 @@ def _named(cursor: Cursor) -> Statement | tuple[Statement, ...]:
     word = cursor.text.lower()
     if word == "const":
         return parse_declaration(cursor)
-    if word in ("channel", "import", "confirm", "sema", "time_block", "const_vel"):
+    if word in _KEPT_NAMES:
         return _kept(cursor)
     return parse_declaration(cursor)
 
@@ -243,10 +257,8 @@ def _motion(cursor: Cursor) -> tree.MotionInstruction:
             angle = parse_expression(cursor)
     words = _MotionWords()
     words.read(cursor)
-    settings: tuple[tree.Assign, ...] = ()
-    if cursor.accept_word("with"):
-        settings = cursor.listed(_motion_setting)
-        words.read(cursor)
+    settings = _settings(cursor)
+    words.read(cursor)
     span = _line(cursor, start, "the motion")
     return tree.MotionInstruction(
         span,
@@ -282,6 +294,11 @@ class _MotionWords:
             cursor.advance()
 
 
+def _settings(cursor: Cursor) -> tuple[tree.Assign, ...]:
+    """``WITH $VEL.CP=0.2, …``"""
+    return cursor.listed(_motion_setting) if cursor.accept_word("with") else ()
+
+
 def _motion_setting(cursor: Cursor) -> tree.Assign:
     start = cursor.start
     target = parse_name(cursor)
@@ -292,14 +309,40 @@ def _motion_setting(cursor: Cursor) -> tree.Assign:
 
 def _spline(cursor: Cursor) -> tree.SplineBlock:
     start, word = cursor.start, cursor.kind
-    while cursor.kind not in ("endspline", END):
-        cursor.advance()
-    if cursor.kind == END:
-        raise cursor.unexpected(f"ENDSPLINE, to close {word.upper()},")
-    cursor.skip_line()
-    span = cursor.span_from(start)
-    cursor.accept(NEWLINE)
-    return tree.SplineBlock(span, word)
+    cursor.advance()
+    settings = _settings(cursor)
+    cursor.end_of_line(word.upper())
+    body: list[Statement] = []
+    while cursor.kind != "endspline":
+        if cursor.kind == NEWLINE:
+            cursor.advance()
+        elif cursor.kind in SEGMENTS:
+            body.append(replace(_motion(cursor), passed=True))
+        elif cursor.kind == "trigger" or (
+            cursor.kind == NAME and cursor.text.lower() in _KEPT_NAMES
+        ):
+            body += parse_statement(cursor)
+        else:
+            line = cursor.source.span(start, start).line
+            raise cursor.unexpected(
+                "SPL, SLIN, SCIRC, SPTP, TRIGGER, TIME_BLOCK, CONST_VEL or ENDSPLINE, to close "
+                f"{word.upper()} of line {line},"
+            )
+    cursor.advance()
+    words = _MotionWords()
+    words.read(cursor)
+    span = _line(cursor, start, "ENDSPLINE")
+    last = max((k for k, s in enumerate(body) if isinstance(s, tree.MotionInstruction)), default=-1)
+    if last >= 0:
+        segment = body[last]
+        assert isinstance(segment, tree.MotionInstruction)
+        body[last] = replace(
+            segment,
+            approximation=tuple(words.approximation),
+            approximated=cursor.source.span(*(words.place or (span.end, span.end))),
+            passed=False,
+        )
+    return tree.SplineBlock(span, word, settings, tuple(body))
 
 
 _SINGLE = {"continue": tree.Continue, "exit": tree.Exit, "halt": tree.Halt}
@@ -318,6 +361,7 @@ _BEHIND_KEYWORD: dict[str, Callable[[Cursor, int], Statement]] = {
 }
 _AT_WORD: dict[str, Callable[[Cursor], Statement | tuple[Statement, ...]]] = {
     NAME: _name_statement,
+    CLOSED: parse_closed,
     "global": _global,
     "decl": parse_declaration,
     "struc": parse_struc,

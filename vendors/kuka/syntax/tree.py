@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ....core.errors import Span
+from ....core.errors import Note, Span
 from ....core.source.text import nodes
 from ....core.source.text.files import SourceText
 from ....core.source.text.nodes import Looping, Term
@@ -144,6 +144,7 @@ class MotionInstruction(Statement):
         approximation: ``c_ptp``, ``c_dis`` and so on, in order.
         approximated: where these words stand, or, empty, where they would.
         settings: what follows ``WITH``: system variables of this motion alone.
+        passed: a segment of a spline block that another one follows: the robot does not stop.
     """
 
     word: str
@@ -153,6 +154,7 @@ class MotionInstruction(Statement):
     approximation: tuple[str, ...]
     approximated: Span
     settings: tuple[Assign, ...]
+    passed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,9 +242,16 @@ class Trigger(Statement):
 
 @dataclass(frozen=True, slots=True)
 class SplineBlock(Statement):
-    """``SPLINE … ENDSPLINE``; what stands in it is not read."""
+    """``SPLINE … ENDSPLINE``, ``PTP_SPLINE … ENDSPLINE``
+
+    Args:
+        settings: what follows ``WITH``: system variables of the block alone.
+        body: segments (`MotionInstruction`), and what is laid on them.
+    """
 
     word: str
+    settings: tuple[Assign, ...]
+    body: tuple[Statement, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -328,8 +337,13 @@ class DataList:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Unit:
-    """What one file holds."""
+    """What one file holds.
+
+    Args:
+        notes: on what is wrong with the text and does no harm.
+    """
 
     source: SourceText
     routines: tuple[Routine, ...]
     lists: tuple[DataList, ...]
+    notes: tuple[Note, ...] = ()

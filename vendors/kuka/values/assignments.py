@@ -13,6 +13,9 @@ from .scope import Scope, Variable
 from .types import no_component
 from .values import Array, Pending, Struct, Unknown, Value, copied, shown
 
+_CODES = 256
+"""Of characters."""
+
 
 class Assignment:
     """Assigns."""
@@ -135,8 +138,14 @@ class Assignment:
     def _put_character(
         cell: Variable, text: str, step: str | tuple[int, ...], value: Value, target: Name
     ) -> None:
+        if isinstance(value, int) and not isinstance(value, bool) and 0 <= value < _CODES:
+            value = chr(value)
+        if isinstance(value, Unknown):
+            return
         if isinstance(step, str) or not isinstance(value, str) or len(step) != 1:
-            raise SourceError(f"{target.text} takes characters", target.span)
+            raise SourceError(
+                f"{target.text} takes characters, or their codes from 0 to 255", target.span
+            )
         index = step[0] - 1
         if not 0 <= index < 1000:
             raise SourceError(f"index {index + 1} of {target.text} is no place in it", target.span)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ....core.errors import SourceError, Span
+from ....core.errors import Span
 from ..syntax.tree import Name
 from .data import Data
 from .elements import Names
@@ -29,20 +29,14 @@ class ConfigData:
         node = Name(Span("", 1, 1, 0, 0), name.lower(), name)
         return self._names.value(node, Scope("", self._scopes[-1].module))
 
-    def item(self, table: str, index: int, span: Span | None) -> Value | None:
-        """An item of an array; None where nothing is set.
-
-        Raises:
-            SourceError: the index is outside the array.
-        """
+    def item(self, table: str, index: int) -> Value | None:
+        """An item of an array; None where nothing is set."""
         cell = self._data.find(table, Scope("", self._scopes[-1].module))
         holder = cell.value if cell is not None else None
         if not isinstance(holder, Array):
             return None
         size = holder.sizes[0]
         if size is not None and index > size:
-            if span is None or (cell is not None and cell.shipped):
-                return None
-            raise SourceError(f"{table.upper()} has {size} items; there is no {index}", span)
+            return None
         assert cell is not None
         return self._names.item(holder, (index,), cell)

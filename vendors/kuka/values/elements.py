@@ -6,7 +6,7 @@ What nothing sets is answered by the user, or is an `Unknown`.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from ....core.errors import SourceError, Span
@@ -19,11 +19,24 @@ from .frames import null_frame
 from .predefined import NEVER_KNOWN, OUTPUTS, POSITION, STOPS_WHEN_READ
 from .scope import Scope, Variable
 from .types import PREDEFINED, KrlTypeError, convert, no_component
-from .values import Array, Choice, Pending, Struct, Unknown, Value, copied, shown, unplaced
+from .values import (
+    Array,
+    Choice,
+    Pending,
+    Struct,
+    Unknown,
+    Value,
+    copied,
+    shown,
+    supposed,
+    unplaced,
+)
 
 Position = Callable[[str, Span], Value]
 Path = tuple[str | tuple[int, ...], ...]
 _LONGEST_ARRAY = 100_000
+FRAMES = frozenset({"tool_data", "base_data", "$tool_data", "$base_data"})
+"""Tables whose items are frames of zeros where nobody sets them."""
 _WIDEST = 32
 """Bits of a ``SIGNAL``."""
 
@@ -73,14 +86,17 @@ class Names:
             return self._undeclared(node, self.path(node, scope))
         if cell.signal is not None:
             return self._signal(node, cell, scope)
-        if is_open(cell):
-            return self._undeclared(node, self.path(node, scope), f", which {cell.writer} writes")
-        value = self.settled(cell)
         path = self.path(node, scope) if node.path else ()
+        value = self.settled(cell)
         for step in path:
+            if isinstance(value, Unknown):
+                value = supposed_part(value, step)
             if value is None or isinstance(value, Unknown):
                 break
             value = self.part(value, step, node, cell)
+        if is_open(cell):
+            open_ = self._undeclared(node, path, f", which {cell.writer} writes")
+            return replace(open_, held=value) if isinstance(open_, Unknown) else open_
         if value is None or isinstance(value, Unknown):
             answered = self._answer(node, path)
             if answered is not None:
@@ -196,6 +212,8 @@ class Names:
             return value[index - 1] if 1 <= index <= len(value) else None
         if not isinstance(value, Array):
             raise SourceError(f"{node.text} is {shown(value)} and no array", node.span)
+        if node.name in FRAMES and value.sizes[0] is not None and step[0] > value.sizes[0]:
+            return null_frame(spelled(node.text, (step,)), shipped=True)
         self.check_index(value, step, node)
         return self.item(value, step, cell)
 
@@ -214,7 +232,9 @@ class Names:
         for i, size in zip(index, array.sizes, strict=False):
             if i < 1 or (size is not None and i > size) or i > _LONGEST_ARRAY:
                 raise SourceError(
-                    f"index {i} of {node.text} is outside 1 to {size or _LONGEST_ARRAY}", node.span
+                    f"{spelled(node.text, (index,))} is declared nowhere: index {i} of {node.text} "
+                    f"is outside 1 to {size or _LONGEST_ARRAY}",
+                    node.span,
                 )
         if len(index) > len(array.sizes):
             raise SourceError(
@@ -295,6 +315,13 @@ class Names:
         if why is None:
             why = "" if self.data.is_system(node.name) else " (declared in no file at hand)"
         return Unknown(f"the value of {spelled(node.text, path)}{why}", node.span)
+
+
+def supposed_part(value: Unknown, step: str | tuple[int, ...]) -> Unknown:
+    """A component of what is not known."""
+    held = supposed(value)
+    part = held.fields.get(step) if isinstance(held, Struct) and isinstance(step, str) else None
+    return replace(value, here=None, held=part)
 
 
 def spelled(text: str, path: Path) -> str:

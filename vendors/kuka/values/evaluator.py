@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
-from ....core.errors import SourceError, Span
+from ....core.errors import LeftOpenError, SourceError, Span
 from ....core.source.execution.answers import Course
 from ....core.source.execution.provenance import ELSEWHERE, Reads
 from ....core.source.execution.scopes import unknown_name
@@ -31,6 +32,7 @@ from .values import (
     leaves_in,
     left_open,
     shown,
+    supposed,
 )
 
 CallFunction = Callable[[tree.Call, Scope], Value | None]
@@ -195,12 +197,23 @@ class Evaluator:
             arguments = [self._operand(a, scope) for a in call.arguments if a is not None]
             unknown = next(filter(None, map(find_unknown, arguments)), None)
             if unknown is not None:
-                return unknown
+                return replace(unknown, here=None, held=self._held(call.name, arguments))
             try:
                 return computed(call.name, arguments)
             except OperandError as error:
                 raise SourceError(f"{call.text}: {error}", call.span) from None
         return self.unknown_function(call, scope)
+
+    @staticmethod
+    def _held(name: str, arguments: list[Value]) -> Value | None:
+        """What motion takes the value of a function for."""
+        known = [supposed(argument) for argument in arguments]
+        if any(find_unknown(argument) is not None for argument in known):
+            return None
+        try:
+            return computed(name, known)
+        except OperandError:
+            return None
 
     def unknown_function(self, call: tree.Call, scope: Scope) -> Value:
         """What a function gives that is not at hand: an answer, or a value that is not known."""
@@ -209,8 +222,8 @@ class Evaluator:
             return self.names.answered(answer)
         return Unknown(f"the value of {call.text}()", call.span)
 
-    def undeclared(self, node: tree.Name, scope: Scope, kind: str) -> SourceError:
+    def undeclared(self, node: tree.Name, scope: Scope, kind: str) -> LeftOpenError:
         """The error that a datum is declared nowhere."""
         known = self.data.names(scope)
         offer = "declare it, or name the .dat that does (the program's own, or $config.dat)"
-        return SourceError(unknown_name(kind, node.text, known, offer), node.span)
+        return LeftOpenError(unknown_name(kind, node.text, known, offer), node.span)

@@ -108,6 +108,7 @@ class Library:
         for routine in unit.routines:
             module.routines.setdefault(routine.name, routine)
         module.lists += unit.lists
+        self.notes += unit.notes
 
     def _parse(self, name: str) -> Unit:
         file = self._files[name]

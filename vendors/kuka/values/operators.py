@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TypeGuard
 
 from ....core.errors import InputError
-from .frames import frame_of, pose_of
+from .frames import frame_of, null_frame, pose_of
 from .types import AXES, POSES
-from .values import Choice, Struct, Unknown, Value, shown
+from .values import Choice, Struct, Unknown, Value, find_unknown, shown, supposed
 
 _COMPONENTS = frozenset("xyzabc")
 
@@ -50,7 +51,9 @@ def negate(symbol: str, operand: Value) -> Value:
         OperandError: it is of the wrong kind.
     """
     if isinstance(operand, Unknown):
-        return operand
+        held = supposed(operand)
+        known = _is_number(held) and symbol in "+-"
+        return replace(operand, here=None, held=negate(symbol, held) if known else None)
     if symbol == "not":
         if not isinstance(operand, bool):
             raise OperandError(f"NOT wants a BOOL, not {shown(operand)}")
@@ -64,8 +67,8 @@ def negate(symbol: str, operand: Value) -> Value:
     return -operand if symbol == "-" else +operand
 
 
-def chained(left: Value, right: Value) -> Struct:
-    """``left : right``
+def chained(left: Value, right: Value) -> Struct | Unknown:
+    """``left : right``; not known where a component of one is not.
 
     Raises:
         OperandError: they are no frames or positions.
@@ -74,16 +77,23 @@ def chained(left: Value, right: Value) -> Struct:
         if not _is_frame(value):
             raise OperandError(f"':' wants frames or positions, not {shown(value)}")
         assert isinstance(value, Struct)
-        unknown = next((v for v in value.fields.values() if isinstance(v, Unknown)), None)
-        if unknown is not None:
-            raise OperandError(f"':' wants known frames; one holds {unknown.reason}")
     assert isinstance(left, Struct) and isinstance(right, Struct)
+    unknown = find_unknown(left) or find_unknown(right)
+    if unknown is not None:
+        return replace(unknown, here=None, held=chained(_zeroed(left), _zeroed(right)))
     try:
         made = frame_of(pose_of(left.fields) @ pose_of(right.fields), right.type or "frame")
     except InputError as error:
         raise OperandError(str(error)) from None
     kept = {k: v for k, v in right.fields.items() if k not in _COMPONENTS}
     return Struct(made.type, {**made.fields, **kept}, moved_by=left.moved_by)
+
+
+def _zeroed(frame: Struct) -> Struct:
+    """A frame whose components that nobody knows are what motion takes them for, or zero."""
+    fields = {name: supposed(part) for name, part in frame.fields.items()}
+    known: dict[str, Value] = {k: 0.0 if isinstance(v, Unknown) else v for k, v in fields.items()}
+    return Struct(frame.type, known, frame.label, frame.shipped, frame.moved_by)
 
 
 def _is_frame(value: Value) -> bool:
@@ -99,7 +109,31 @@ def _with_unknown(symbol: str, left: Value, right: Value) -> Value:
             return False
         if symbol == "or" and known is True:
             return True
-    return left if isinstance(left, Unknown) else right
+    unknown = left if isinstance(left, Unknown) else right
+    assert isinstance(unknown, Unknown)
+    return replace(unknown, here=None, held=_held(symbol, left, right))
+
+
+def _held(symbol: str, left: Value, right: Value) -> Value | None:
+    """What motion takes a result for: an operand that nobody knows counts as zero, or as the frame
+    of zeros, beside one that is known."""
+    known = [supposed(value) for value in (left, right)]
+    for k, value in enumerate(known):
+        if isinstance(value, Unknown):
+            other = known[1 - k]
+            if _is_number(other) and symbol in "+-*":
+                known[k] = 0
+            elif _is_frame(other) and symbol == ":":
+                known[k] = null_frame()
+    if any(isinstance(value, Unknown) for value in known) or symbol not in _HOLDING:
+        return None
+    try:
+        return apply(symbol, *known)
+    except OperandError:
+        return None
+
+
+_HOLDING = frozenset("+-*/:")
 
 
 _COMPARISONS: dict[str, Callable[[float, float], bool]] = {

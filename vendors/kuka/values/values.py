@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from ....core.errors import SourceError, Span
+from ....core.errors import LeftOpenError, Span
 from ....core.program.tool import Load, Tool, WorkObject
 from ....core.source.text.files import SourceText
 from ..syntax.tree import Expression
@@ -167,11 +167,14 @@ class Unknown:
         span: where it was read.
         here: it is where the robot stood after this many moves; of a pose, with the placement
             that it was asked in.
+        held: what motion takes it for: the value before others wrote it, or what was computed
+            with zero in its place; None if there is no such value.
     """
 
     reason: str
     span: Span
     here: tuple[int, Placement | None] | None = None
+    held: Value | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,14 +216,24 @@ def find_unknown(value: Value | Pending) -> Unknown | None:
     return None
 
 
-def left_open(what: str, unknown: Unknown, span: Span) -> SourceError:
+def left_open(what: str, unknown: Unknown, span: Span) -> LeftOpenError:
     """The error that something depends on a value that is not known."""
-    where = f" (read at line {unknown.span.line})" if unknown.span != span else ""
-    return SourceError(
+    where = f" (read at line {unknown.span.line})" if unknown.span.line != span.line else ""
+    return LeftOpenError(
         f"{what} depends on {unknown.reason}{where}, which the text does not say: name the file "
         "that says it, or answer it in a file of answers",
         span,
     )
+
+
+def supposed(value: Value) -> Value:
+    """The value that motion takes one for that is not known, as far as there is one."""
+    while isinstance(value, Unknown) and value.held is not None:
+        value = value.held
+    if isinstance(value, Struct) and any(isinstance(v, Unknown) for v in value.fields.values()):
+        fields = {name: supposed(part) for name, part in value.fields.items()}
+        return Struct(value.type, fields, value.label, value.shipped, value.moved_by)
+    return value
 
 
 def leaves_in(value: Value, prefix: str = "") -> Iterator[tuple[str, Leaf]]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from ....core.errors import InputError, SourceError
+from ....core.errors import InputError, SourceError, Span
 from ....core.program.tool import FLANGE, Tool
 from ....core.spatial.pose import Pose
 from ..syntax.tree import Argument, Call, Expression
@@ -46,6 +46,9 @@ class KinematicsRun(Evaluation, Protocol):
     @property
     def position(self) -> Position:
         """Where the robot stands."""
+
+    def note_once(self, kind: str, message: str, span: Span) -> None:
+        """A note, unless one of this kind was taken before."""
 
 
 Ask = Callable[[KinematicsRun, Call, Scope], Located]
@@ -150,7 +153,9 @@ def _near(
         nearby = evaluate(run, qnear.value, scope)
         if run.position.is_here(nearby):
             return None
-        return find_unknown(nearby) or to_near(run, nearby, qnear.value)
+        if find_unknown(nearby) is not None:
+            return None
+        return to_near(run, nearby, qnear.value)
     if not (run.position.has_robot and run.position.known):
         return None
     here = run.position.joints(call.name, run.texts.span_of(call))
@@ -204,7 +209,12 @@ def _tool(run: KinematicsRun, argument: Argument | None, scope: Scope) -> Tool |
     if isinstance(value, str):
         if value == _ACTIVE:
             return run.settings.tool
-        return Unknown(f"the TCP '{value}' of the installation", run.texts.span_of(argument))
+        run.note_once(
+            f"tcp {value}",
+            f"the TCP '{value}' of the installation is not known: the one in force is taken",
+            run.texts.span_of(argument),
+        )
+        return run.settings.tool
     return Tool("tcp", _checked_pose(run, value, argument.value))
 
 

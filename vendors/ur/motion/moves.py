@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Protocol
 
-from ....core.errors import InputError, SourceError, Span
+from ....core.errors import InputError, LeftOpenError, SourceError, Span
 from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget, Target
@@ -30,11 +30,13 @@ from ..values.values import (
     PendingInverse,
     Unknown,
     UrPose,
+    Value,
     ValueFault,
     describe,
     find_unknown,
     is_number,
     numbers,
+    supposed,
 )
 from .arcs import carried_along
 from .configuration import UrConfiguration
@@ -108,8 +110,14 @@ def _blend(radius: float) -> Radius:
 
 
 def move(run: MovesRun, call: Call, scope: Scope) -> Located:
-    """Carry out a move."""
-    _MoveReader(run, call, scope).read()
+    """Carry out a move; one whose target nobody knows is left out."""
+    try:
+        _MoveReader(run, call, scope).read()
+    except LeftOpenError as error:
+        run.literals.reader = ELSEWHERE
+        span = run.texts.span_of(call)
+        run.out.leave_out(span, error)
+        run.position.left_out(span)
     return NOTHING
 
 
@@ -155,7 +163,7 @@ class _MoveReader:
     def _tool(self) -> Tool:
         settings = self.run.settings
         if settings.unknown is not None:
-            raise self._refusal("the TCP of the move", settings.unknown, self.span)
+            self._taken("the TCP of the move", settings.unknown, "the one before")
         if not settings.stated:
             self.run.out.notes.once(
                 "tcp",
@@ -178,8 +186,9 @@ class _MoveReader:
         name = argument.name or "target"
         if isinstance(value, PendingInverse):
             return self._solution(value), MovePart(span)
-        self._known(found, f"the {name} of {self.call.name}", span)
-        part = MovePart(span, covering(found.sources, _SIX) if found.sources else ())
+        value = self._known(value, f"the {name} of {self.call.name}", span)
+        sources = () if value is not found.value else found.sources
+        part = MovePart(span, covering(sources, _SIX) if sources else ())
         if isinstance(value, UrPose):
             pose = self._pose(value, expression)
             return PoseTarget(pose, name=found.name), part
@@ -205,20 +214,22 @@ class _MoveReader:
         if "tcp" in given:
             found = solution(self.run, call, self.scope)
             if isinstance(found, Unknown):
-                raise self._refusal("target", found, span)
+                raise self._refusal(f"the target of {self.call.name}", found, span)
             return self._solution(found), MovePart(span)
         goal = locate(self.run, given["x"].value, self.scope)
-        self._known(goal, f"the pose of {INVERSE}", span)
-        pose = self._pose(goal.value, given["x"].value)
-        sources = covering(goal.sources, _SIX)
+        value = self._known(goal.value, f"the pose of {INVERSE}", span)
+        pose = self._pose(value, given["x"].value)
+        sources = covering(goal.sources if value is goal.value else (), _SIX)
         near = None
         if "qnear" in given:
             near = locate(self.run, given["qnear"].value, self.scope)
-        if near is None or self.run.position.is_here(near.value):
+        unknown = None if near is None else find_unknown(near.value)
+        here = near is None or self.run.position.is_here(near.value)
+        if unknown is not None and not here:
+            self._taken("qnear", unknown, "the solution nearest to where the robot comes from")
+        if near is None or here or unknown is not None:
             kept = sources if any(sources) else ()
             return PoseTarget(pose, name=goal.name), MovePart(span, kept)
-        if isinstance(near.value, Unknown):
-            raise self._refusal("qnear", near.value, span)
         configuration = to_near(self.run, near.value, given["qnear"].value)
         sources = (*sources, *covering(near.sources, _SIX))
         target = PoseTarget(pose, configuration, name=goal.name)
@@ -238,13 +249,30 @@ class _MoveReader:
         except (ValueFault, InputError) as error:
             raise self.texts.error_at(error, expression) from None
 
-    def _known(self, found: Located, what: str, span: Span) -> None:
-        unknown = find_unknown(found.value)
-        if unknown is not None:
-            raise self._refusal(what, unknown, span)
+    def _known(self, value: Value, what: str, span: Span) -> Value:
+        """A value, or what a move takes it for.
 
-    def _refusal(self, what: str, unknown: Unknown, span: Span) -> SourceError:
-        return SourceError(
+        Raises:
+            LeftOpenError: there is nothing to take it for.
+        """
+        unknown = find_unknown(value)
+        if unknown is None:
+            return value
+        taken = supposed(value)
+        if find_unknown(taken) is not None:
+            raise self._refusal(what, unknown, span)
+        self._taken(what, unknown, "what it is with zero for that")
+        return taken
+
+    def _taken(self, what: str, unknown: Unknown, taken: str) -> None:
+        self.run.out.notes.count(
+            f"{what} depends on {unknown.reason}, which the text does not say: {taken} is taken; "
+            "give its value in the answers, [values]",
+            self.span,
+        )
+
+    def _refusal(self, what: str, unknown: Unknown, span: Span) -> LeftOpenError:
+        return LeftOpenError(
             f"{what} depends on {unknown.reason}: give its value in the answers, [values], or "
             "take the move out",
             span,
@@ -259,7 +287,12 @@ class _MoveReader:
         found = locate(self.run, argument.value, self.scope)
         if not is_number(found.value):
             span = self.texts.span_of(argument)
-            self._known(found, f"'{name}' of {self.call.name}", span)
+            unknown = find_unknown(found.value)
+            if unknown is not None:
+                taken = supposed(found.value)
+                number = float(taken) if is_number(taken) else self.signature.others[name]
+                self._taken(f"'{name}' of {self.call.name}", unknown, f"{number:g}")
+                return number, Located(None)
             raise SourceError(
                 f"'{name}' of {self.call.name} is a number, not {describe(found.value)}", span
             )

@@ -37,6 +37,7 @@ class Position:
     def __init__(self, robot: Robot | None, start: JointTarget | None = None) -> None:
         self._commanded = PresentPosition(robot, start, label)
         self.place: Target | None = start
+        self._left_out: Span | None = None
         self.base = WORLD
         if robot is not None and robot.base != IDENTITY:
             self.base = WorkObject("base", user=robot.base)
@@ -63,8 +64,13 @@ class Position:
     def moved(self, move: Move, statement: Span) -> None:
         """The robot has driven to the target of a move."""
         self._commanded.moved(move, statement)
+        self._left_out = None
         if move.target != self.place:
             self.place = move.target
+
+    def left_out(self, span: Span) -> None:
+        """A move was left out: where the robot stands is not known until the next."""
+        self._left_out = span
 
     def joints(self, what: str, span: Span) -> Joints | Unknown:
         """The joint values, rad.
@@ -72,6 +78,8 @@ class Position:
         Args:
             what: is asked, for the reason why it is not known.
         """
+        if self._left_out is not None:
+            return _after(what, self._left_out, span)
         commanded = self._commanded
         last = commanded.start if commanded.last is None else commanded.last.target
         if last is None or isinstance(last, JointTarget):
@@ -85,6 +93,8 @@ class Position:
 
     def pose(self, tool: Tool, what: str, span: Span) -> Pose | Unknown:
         """The TCP of a tool in the robot's base; ``what`` and ``span`` as in `joints`."""
+        if self._left_out is not None:
+            return _after(what, self._left_out, span)
         try:
             pose = self._commanded.pose(tool, self.base)
         except (InputError, MotionError) as error:
@@ -121,6 +131,10 @@ class Position:
         robot = self._commanded.robot
         assert robot is not None
         return tuple(float(value) for value in q[: robot.arm_size])
+
+
+def _after(what: str, left_out: Span, span: Span) -> Unknown:
+    return Unknown(f"{what} after the move of line {left_out.line}, which is left out", span)
 
 
 def _before(what: str) -> str:

@@ -17,7 +17,7 @@ from ..syntax.traversal import (
     methods_in,
     names_in,
 )
-from ..values.instructions import MOVES, REFUSED
+from ..values.instructions import MOVES
 from ..values.lists import METHODS
 from ..values.outputs import read_by, written_by
 
@@ -31,11 +31,9 @@ class ScriptTree:
 
     Args:
         blocks: the statements of all files.
-        skipped: names of refused functions that an answer tells to skip.
     """
 
-    def __init__(self, blocks: Iterable[tree.Block], skipped: frozenset[str] = frozenset()) -> None:
-        self._refused = REFUSED.keys() - skipped
+    def __init__(self, blocks: Iterable[tree.Block]) -> None:
         self._functions: defaultdict[str, list[tree.Define]] = defaultdict(list)
         for block in blocks:
             for statement in all_statements(block):
@@ -66,10 +64,9 @@ class ScriptTree:
         inner = tuple(statement.blocks)
         called = {name for e in expressions for name in _called(e)}
         foreign = {name for name in called if name not in self._functions}
-        refused = not foreign.isdisjoint(self._refused)
         names = frozenset[str]().union(*map(self.reads, expressions))
         return Step(
-            moves=refused or not foreign.isdisjoint(MOVES),
+            moves=not foreign.isdisjoint(MOVES),
             reads=names if inner else frozenset(),
             writes=frozenset(_written(statement, expressions)),
             made_of=names,
@@ -77,8 +74,6 @@ class ScriptTree:
             calls=self.bodies(called),
             asks=any(map(self.asks, expressions)),
             exit=_exit(statement),
-            # A branch that calls what is refused cannot be read: no branch for a program to take.
-            halts=refused,
             inner=inner,
             loop=isinstance(statement, tree.While),
             exhaustive=isinstance(statement, tree.If) and statement.otherwise is not None,

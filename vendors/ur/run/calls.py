@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from ....core.errors import InputError, SourceError
+from ....core.errors import InputError, LeftOpenError
 from ....core.program.move import Wait
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.limits import Meter
@@ -20,7 +20,7 @@ from ..values.arguments import bind
 from ..values.evaluator import evaluate, locate, plain
 from ..values.function_calls import compute, list_method, struct
 from ..values.functions import COMPUTED
-from ..values.instructions import ADD_ONS, MOVES, REFUSED, Kept, asks, kept, known_names
+from ..values.instructions import ADD_ONS, MOVES, STREAMS, Kept, asks, kept, known_names
 from ..values.lists import METHODS
 from ..values.located import NOTHING, Located
 from ..values.outputs import READING, WRITING, held, write
@@ -32,6 +32,7 @@ from .threads import Started
 _CALL = 200
 """Elements of a list that are copied in the time in which a function is entered and left."""
 SKIPPED = Kept("an answer says to skip")
+_MISSING = Kept("", stops=True)
 REMOTE = Kept("call remote procedures and add-ons")
 _UNKNOWN_TIME = Kept("wait for a time that is not known", stops=True)
 
@@ -196,13 +197,6 @@ def _other(run: CallsRun, node: Call, scope: Scope) -> Value:
     if run.course.skips(name):
         run.outputs.forget()
         return run.keep(node, SKIPPED, name)
-    refused = REFUSED.get(name)
-    if refused is not None:
-        raise run.texts.error_at(
-            f"{name} is refused: {refused}. To read the program as if it were not there, "
-            f'answer [calls] "{name}" = "skip"',
-            node,
-        )
     values = [evaluate(run, argument.value, scope) for argument in node.arguments]
     text = run.texts.text_of(node)
     if name in READING and not run.course.changing(text):
@@ -217,20 +211,31 @@ def _other(run: CallsRun, node: Call, scope: Scope) -> Value:
     if entry is not None:
         if entry is ADD_ONS:
             run.outputs.forget()
+        if entry is STREAMS:
+            run.out.left_out.append(
+                LeftOpenError(
+                    f"{name} drives the robot by what is only known at run time, and there is "
+                    "nothing else to emulate: write the motion as movej, movel or movep",
+                    run.texts.span_of(node),
+                )
+            )
         return run.keep(node, entry, name)
     told = run.course.value(text)
-    if told is None:
-        raise _unknown(run, node, scope)
     run.outputs.forget()
-    run.keep(node, SKIPPED, name)
-    return answered(told)
-
-
-def _unknown(run: CallsRun, node: Call, scope: Scope) -> SourceError:
+    if told is not None:
+        run.keep(node, SKIPPED, name)
+        return answered(told)
     known = scope.function_names() | COMPUTED.keys() | _HANDLERS.keys() | known_names()
-    return run.texts.error_at(
-        f"nobody declares the function '{node.name}': {did_you_mean(node.name, known)}it might "
-        "move the robot, so it is not stepped over. Name the file that defines it, or, if it "
-        f'leaves the robot alone, answer [calls] "{node.name}" = "skip"',
-        node,
+    if name.casefold().startswith(tuple(MOVES)):
+        raise run.texts.error_at(
+            f"nobody declares the function '{name}': {did_you_mean(name, known)}names of moves are "
+            "written in lower case and as they are",
+            node,
+        )
+    run.out.notes.count(
+        f"nobody declares the function '{name}': {did_you_mean(name, known)}it is stepped over as "
+        "if it moved nothing: name the file that defines it, or say that it is so by [calls] "
+        f'"{name}" = "skip"',
+        run.texts.span_of(node),
     )
+    return run.keep(node, _MISSING, name)

@@ -40,6 +40,7 @@ def run_program(run: Interpreter, blocks: Sequence[Block], main: str, entry: str
             _start(run, define)
         else:
             name = _run_top(run, blocks, name)
+    run.out.check_driven()
     return Program(run.statements(), name, notes=run.notes())
 
 
@@ -48,7 +49,12 @@ def _run_top(run: Interpreter, blocks: Sequence[Block], stem: str) -> str:
     defines = [s for s in blocks[-1] if isinstance(s, Define)]
     for block in blocks:
         run.run_top(tuple(s for s in block if not isinstance(s, Define)))
-    if run.out.move_index or not defines or any(d.name in run.entered for d in defines):
+    if (
+        run.out.move_index
+        or run.out.left_out
+        or not defines
+        or any(d.name in run.entered for d in defines)
+    ):
         return stem
     define = _first(defines, stem, run)
     _start(run, define)

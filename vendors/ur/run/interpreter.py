@@ -188,7 +188,7 @@ class Interpreter:
 
     def notes(self) -> tuple[Note, ...]:
         """What is to be said about the run."""
-        return (*self.course.notes(), *self.out.notes.notes())
+        return (*self.texts.notes, *self.course.notes(), *self.out.notes.notes())
 
     # ------------------------------------------------------------- what expressions do
 

@@ -10,7 +10,10 @@ controller may differ:
 - Branches and loops that cannot be decided: see `core.source.execution.flow`.
 - A loop that waits for what is not known is left at once and kept, and the robot stops there.
 - Calls that leave the robot alone are kept as they stand. Threads: see `threads`. Functions that
-  nobody declares are refused, unless an answer says otherwise.
+  nobody declares are stepped over, with a note.
+- Streams of positions, speeds and forces are kept: the robot is taken to stay where it is.
+- A move whose target nobody knows is left out, with a note, and the next one is driven. What is
+  added to a known target counts as nothing.
 - Variables that the program does not declare (of the installation) are not known.
 - ``movej`` with a pose, and ``get_inverse_kin`` without ``qnear`` or with the joints that the robot
   starts from, take the solution nearest to where the robot comes from.
@@ -43,7 +46,6 @@ from .interpreter import Interpreter
 if TYPE_CHECKING:
     from ....core.program.program import Program
 
-SUFFIXES = (".script", ".urscript")
 _GZIP = b"\x1f\x8b"
 
 
@@ -96,7 +98,7 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
 
 def _read(texts: Texts, main: str, options: ReadOptions) -> Program:
     blocks = [parse(texts, which) for which in range(len(texts.sources))]
-    run = Interpreter(texts, ScriptTree(blocks, options.answers.skipped), options)
+    run = Interpreter(texts, ScriptTree(blocks), options)
     return run_program(run, blocks, main, options.entry)
 
 

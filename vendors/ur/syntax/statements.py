@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from ....core.errors import Note
 from ....core.source.text.lexer import words
 from . import tree
 from .cursor import Cursor
@@ -40,7 +41,8 @@ def parse(texts: Texts, which: int) -> Block:
 
 
 def _block(cursor: Cursor, ends: frozenset[str], opening: str) -> Block:
-    """Statements up to one of the keywords ``ends``, which is left to be read."""
+    """Statements up to one of the keywords ``ends``, or the end of the file if it is among them,
+    which is left to be read."""
     statements: list[Statement] = []
     with cursor.nested():
         cursor.skip_lines()
@@ -107,9 +109,18 @@ def _define(cursor: Cursor, start: int, kind: str) -> Statement:
     parameters = _parameters(cursor, name)
     cursor.expect(":", f"after '{kind} {name}(…)'")
     loops, cursor.loops = cursor.loops, 0
-    body = _block(cursor, _BODY, opening)
+    outermost = cursor.depth == 0
+    body = _block(cursor, _BODY | {END} if outermost else _BODY, opening)
     cursor.loops = loops
-    cursor.expect("end", f"to close {opening}")
+    if cursor.kind == END and outermost:
+        cursor.source.notes.append(
+            Note(
+                f"the file ends without the 'end' of {opening}: is it all there?",
+                span=cursor.source.span(start, start),
+            )
+        )
+    else:
+        cursor.expect("end", f"to close {opening}")
     return tree.Define(start, cursor.end, kind, name, parameters, body)
 
 

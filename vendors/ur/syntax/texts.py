@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections.abc import Iterable, Sequence
 from typing import Protocol
 
-from ....core.errors import ParseError, SourceError, Span
+from ....core.errors import Note, ParseError, SourceError, Span
 from ....core.source.text.files import SourceFile, SourceText
 
 
@@ -27,9 +27,13 @@ class Texts:
 
     Args:
         files: in the order in which they are executed.
+
+    Attributes:
+        notes: on what is wrong with them and does no harm.
     """
 
     def __init__(self, files: Iterable[SourceFile]) -> None:
+        self.notes: list[Note] = []
         self.sources = [SourceText(file.text, file.name) for file in files]
         self.bases: list[int] = []
         base = 0

@@ -11,7 +11,7 @@ from .functions import COMPUTED, SHAPES, Computed
 from .lists import METHODS, Items
 from .located import Located
 from .scope import Scope
-from .values import Struct, Unknown, Value, ValueFault, describe, find_unknown
+from .values import Struct, Unknown, UrPose, Value, ValueFault, describe, find_unknown, supposed
 
 
 def compute(run: Evaluation, call: Call, scope: Scope) -> Value:
@@ -34,10 +34,32 @@ def compute(run: Evaluation, call: Call, scope: Scope) -> Value:
     for value in values:
         unknown = find_unknown(value) if not whole else value
         if isinstance(unknown, Unknown):
-            return unknown
+            return Unknown(unknown.reason, unknown.span, _held(call.name, computed, values))
         if isinstance(value, tuple):
             run.work(len(value), span)
     return _applied(run, computed, values, call)
+
+
+_SHIFTED = frozenset({"pose_trans", "pose_add", "pose_sub"})
+_NO_SHIFT = UrPose(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def _held(name: str, computed: Computed, values: list[Value]) -> Value:
+    """What a move takes a value for: by what a pose is shifted counts as nothing where nobody knows
+    it."""
+    known = [supposed(value) for value in values]
+    if name in _SHIFTED and len(known) > 1:
+        shift = known[1]
+        if isinstance(shift, UrPose):
+            known[1] = UrPose(*(0.0 if isinstance(v, Unknown) else v for v in shift))
+        elif isinstance(shift, Unknown):
+            known[1] = _NO_SHIFT
+    if any(find_unknown(value) is not None for value in known):
+        return None
+    try:
+        return computed(*known)
+    except (ValueFault, InputError, ValueError, ArithmeticError, TypeError):
+        return None
 
 
 def _applied(run: Evaluation, computed: Computed, values: list[Value], call: Call) -> Value:

@@ -30,36 +30,17 @@ class Kept:
 MOVES = words("movej movel movep movec optimovej optimovel")
 """The moves that are carried out."""
 
-REFUSED: dict[str, str] = {
-    **dict.fromkeys(
-        ("servoj", "servoc", "servol"),
-        "it streams positions at run time; write the motion as movej, movel or movep",
-    ),
-    **dict.fromkeys(
-        ("speedj", "speedl"),
-        "it commands speeds, and where the robot ends is only known at run time",
-    ),
-    **dict.fromkeys(
-        ("force_mode", "force_mode_example"),
-        "contact forces change the path at run time",
-    ),
-    **dict.fromkeys(("freedrive_mode", "teach_mode"), "the robot is guided by hand from here on"),
-    **dict.fromkeys(
-        ("path_offset_set", "path_offset_enable"), "offsets to the path come at run time"
-    ),
-    **dict.fromkeys(
-        ("track_conveyor_linear", "track_conveyor_circular"),
-        "the path follows a conveyor at run time",
-    ),
-    **dict.fromkeys(
-        ("direct_torque", "torque_command"), "it commands torques, which are not emulated"
-    ),
-    "screw_driving": "forces change the path at run time",
-    "interpreter_mode": "statements come from outside at run time",
-    "reset_revolution_counter": "it renumbers the turns of the last joint",
-    "set_pos": "it sets the joints of a simulated robot without a motion",
-}
-"""name → why a program that calls it cannot be read further."""
+STREAMS = Kept(
+    "drive the robot by streams, forces or hand; it is taken to stay where it is",
+    words("servoj servoc servol speedj speedl force_mode force_mode_example freedrive_mode")
+    | words("teach_mode direct_torque torque_command screw_driving interpreter_mode"),
+    stops=True,
+)
+"""Where the robot is behind them is only known at run time."""
+_SHIFTED = Kept(
+    "shift the path at run time; it is driven without",
+    words("path_offset_set path_offset_enable track_conveyor_linear track_conveyor_circular"),
+)
 
 ADD_ONS = Kept(
     "work grippers and other add-ons",
@@ -79,6 +60,8 @@ ADD_ONS = Kept(
 """They may set outputs."""
 
 KEPT: tuple[Kept, ...] = (
+    STREAMS,
+    _SHIFTED,
     Kept("stop the robot", words("stopj stopl stop"), stops=True),
     Kept(
         "set outputs and registers",
@@ -111,7 +94,7 @@ KEPT: tuple[Kept, ...] = (
             end_screw_driving tool_wrench_limit_set tool_wrench_limit_disable motion_version_set
             powerdown tool_contact_examples high_holding_torque_enable
             high_holding_torque_disable clear_interpreter abort skipbuffer pause pause_on_error_code
-            signal_async_progress"""
+            signal_async_progress reset_revolution_counter set_pos"""
         ),
         ("set_", "encoder_", "conveyor_", "path_offset_", "force_mode_", "freedrive_mode_"),
     ),
@@ -149,4 +132,4 @@ def asks(name: str) -> bool:
 
 def known_names() -> set[str]:
     """All names in these tables."""
-    return set(REFUSED) | QUERIES | {name for entry in KEPT for name in entry.names}
+    return QUERIES | {name for entry in KEPT for name in entry.names}

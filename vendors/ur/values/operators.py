@@ -21,7 +21,9 @@ from .values import (
     ValueFault,
     checked,
     describe,
+    find_unknown,
     is_number,
+    supposed,
 )
 
 _BITS: dict[str, Callable[[int, int], int]] = {
@@ -48,10 +50,10 @@ def apply(symbol: str, left: Value, right: Value) -> Value:
     """
     if symbol in ("and", "or", "xor"):
         return _logical(symbol, left, right)
-    if isinstance(left, Unknown):
-        return left
-    if isinstance(right, Unknown):
-        return right
+    if isinstance(left, Unknown) or isinstance(right, Unknown):
+        unknown = left if isinstance(left, Unknown) else right
+        assert isinstance(unknown, Unknown)
+        return Unknown(unknown.reason, unknown.span, _held(symbol, left, right))
     if symbol in ("==", "!=", "≟"):
         equal = _equal(left, right)
         return equal if isinstance(equal, Unknown) else equal != (symbol == "!=")
@@ -64,6 +66,23 @@ def apply(symbol: str, left: Value, right: Value) -> Value:
     return checked(_arithmetic(symbol, left, right))
 
 
+def _held(symbol: str, left: Value, right: Value) -> Value:
+    """What a move takes a sum or product for: an operand that nobody knows counts as zero beside a
+    number."""
+    if symbol not in ("+", "-", "*", "/"):
+        return None
+    known = [supposed(value) for value in (left, right)]
+    for k, value in enumerate(known):
+        if isinstance(value, Unknown) and is_number(known[1 - k]) and symbol != "/":
+            known[k] = 0
+    if any(find_unknown(value) is not None for value in known):
+        return None
+    try:
+        return apply(symbol, *known)
+    except ValueFault:
+        return None
+
+
 def negate(symbol: str, operand: Value) -> Value:
     """``symbol operand`` for ``-``, ``+``, ``~`` and ``not``.
 
@@ -71,7 +90,9 @@ def negate(symbol: str, operand: Value) -> Value:
         ValueFault: as `apply`.
     """
     if isinstance(operand, Unknown):
-        return operand
+        held = supposed(operand)
+        held = negate(symbol, held) if is_number(held) and symbol in "+-" else None
+        return Unknown(operand.reason, operand.span, held)
     if symbol == "not":
         return not truth(operand)
     if symbol == "~":

@@ -26,10 +26,13 @@ class Unknown:
     Args:
         reason: what it is and why it is not known, to stand in a message.
         span: where it came into the program.
+        held: what a move takes it for: what was computed with zero in its place; None if there is
+            no such value.
     """
 
     reason: str
     span: Span
+    held: Value = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,6 +150,15 @@ def find_unknown(value: Value) -> Unknown | None:
             if found is not None:
                 return found
     return None
+
+
+def supposed(value: Value) -> Value:
+    """What a move takes a value for that is not known, as far as there is something."""
+    if isinstance(value, Unknown):
+        return value if value.held is None else supposed(value.held)
+    if isinstance(value, UrPose):
+        return UrPose(*map(supposed, value))
+    return tuple(map(supposed, value)) if isinstance(value, tuple) else value
 
 
 def checked(value: Value) -> Value:

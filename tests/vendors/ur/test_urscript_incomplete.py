@@ -1,0 +1,82 @@
+"""Scripts whose data, devices or last lines are not all there: driven as far as they can be."""
+
+from __future__ import annotations
+
+import pytest
+
+from flyby.core.errors import LeftOpenError
+from flyby.core.program.move import Opaque
+from flyby.core.program.program import Program
+from flyby.core.source.reading import ReadOptions
+from flyby.vendors.ur.language import UrScript
+from flyby.vendors.ur.run.reader import read
+
+HOME = "movej([0,-1.57,1.57,-1.57,-1.57,0])\n"
+POSE = "p[-0.45,0.1,%s,2.2214,2.2214,0]"
+
+
+def script(text: str) -> Program:
+    return read(text, "t.script", ReadOptions())
+
+
+def said(program: Program) -> str:
+    return " ".join(note.message for note in program.notes)
+
+
+def heights(program: Program) -> list[float]:
+    return [round(move.target.pose.position[2], 6) for move in program.moves[1:]]  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(
+    ("text", "height"),
+    [
+        (f"h = 0.3 + get_standard_analog_in(0) * 0.01\nmovel({POSE % 'h'})", 0.3),
+        (f"h = 0.3 - cam.height()\nmovel({POSE % 'h'})", 0.3),
+        (f"off = cam.offset()\nmovel(pose_trans({POSE % 0.3}, off))", 0.3),
+        (f"r = cam.xy()\nmovel(pose_trans({POSE % 0.3}, p[r[0], r[1], 0, 0, 0, r[2]]))", 0.3),
+        (f"movel(pose_add({POSE % 0.3}, cam.shift()))", 0.3),
+        (f"a = {POSE % 0.3}\na[2] = a[2] + read_input_float_register(3)\nmovel(a)", 0.3),
+        (f"movel({POSE % 0.3}, a=1.2, v=speed_slow)", 0.3),
+        (f"set_tcp(vision_tcp)\nmovel({POSE % 0.3})", 0.3),
+    ],
+)
+def test_what_others_add_to_a_target_counts_as_nothing(text: str, height: float) -> None:
+    program = script(HOME + 'cam = rpc_factory("xmlrpc", "http://10.0.0.2")\n' + text)
+    assert heights(program) == [height]
+    assert "depends on" in said(program) and "[values]" in said(program)
+
+
+def test_a_move_to_what_nobody_knows_is_left_out() -> None:
+    text = (
+        f"movel({POSE % 0.3})\nmovel(cam_pose)\n"
+        f"movel(pose_add(get_actual_tcp_pose(), p[0,0,0.1,0,0,0]))\nmovel({POSE % 0.4})"
+    )
+    program = script(HOME + text)
+    assert heights(program) == [0.3, 0.4]
+    kept = [s.text for s in program.statements if isinstance(s, Opaque)]
+    assert kept[0] == "movel(cam_pose)" and len(kept) == 2
+    assert "the motion is left out: the " in said(program)
+    assert "after the move of line 3, which is left out" in said(program)
+
+
+def test_a_script_of_which_all_is_missing_says_so() -> None:
+    with pytest.raises(LeftOpenError, match="'home_q', which the program does not declare"):
+        script("movej(home_q)\nmovej(start_q)")
+
+
+def test_a_script_that_only_lacks_its_last_line() -> None:
+    program = script(f"def cut():\n  {HOME}  movel({POSE % 0.3})\n")
+    assert heights(program) == [0.3]
+    assert "the file ends without the 'end' of 'def cut' in line 1" in said(program)
+
+
+@pytest.mark.parametrize("name", ["MoveJ", "movej_", "Movel", "movelin"])
+def test_moves_that_are_mistyped_are_not_stepped_over(name: str) -> None:
+    with pytest.raises(Exception, match=f"nobody declares the function '{name}'"):
+        script(f"{HOME}{name}([0,0,0,0,0,0])")
+
+
+def test_a_script_in_a_text_file(tmp_path) -> None:
+    file = tmp_path / "sent.txt"
+    file.write_text(f"{HOME}movel({POSE % 0.3})\n")
+    assert heights(UrScript().read_file(file, ReadOptions())) == [0.3]
