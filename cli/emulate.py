@@ -55,8 +55,8 @@ def emulate(
     opaque: Annotated[
         OpaqueStyle | None,
         typer.Option(
-            help="With --write: statements that do not move the robot are kept as they stand "
-            "(the default), or become comments."
+            help="With --write: statements that do not move the robot are kept as they stand, or "
+            "become comments; by default those do that cannot stand in the new program."
         ),
     ] = None,
     json: AsJson = False,

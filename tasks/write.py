@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from ..core.door import spelt, switched
-from ..core.errors import InputError, OptionError
+from ..core.errors import FlybyError, InputError, OptionError
 from ..core.files.reading import read_bytes
 from ..core.source.text.files import LARGEST_FILE
 from .files.not_executed import not_executed_notes, refuse_not_executed
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from ..core.program.program import Program
     from ..core.source.reading import Files
     from ..core.translation.translate import Translation
+    from ..core.vendor import Vendor
     from ..problems.improve.solution import Solution
 
 OPAQUE = ("keep", "comment")
@@ -45,8 +46,8 @@ class WriteOptions(RobotOptions):
 
     opaque: str | None = choice(
         None,
-        "Statements that do not move the robot are kept as they stand (the default), or become "
-        "comments.",
+        "Statements that do not move the robot are kept as they stand, or become comments; by "
+        "default those do that cannot stand in the new program.",
         OPAQUE,
     )
     unproven: bool = switch("Write a result even if its clearance is not proven.")
@@ -126,13 +127,13 @@ def sources_by_path(
     Raises:
         InputError: the program takes several files, and the name says of none of them.
     """
-    sources = setup.vendor.write(program, setup.robot, options)
+    sources = _sources(program, setup, options)
     if folder:
         return _encoded({path / name: text for name, text in sources.items()})
     if len(sources) == 1:
         return _encoded({path: next(iter(sources.values()))})
     # Files that belong together are called alike, and often named inside as well.
-    sources = setup.vendor.write(replace(program, name=path.stem), setup.robot, options)
+    sources = _sources(replace(program, name=path.stem), setup, options)
     suffixes = [Path(name).suffix for name in sources]
     if path.suffix.lower() not in map(str.lower, suffixes):
         raise InputError(
@@ -264,3 +265,53 @@ def _proven_texts(made: Solution, options: PatchOptions) -> Files:
             "its moves are others: it was written anew, and flyby.write puts it into a folder"
         )
     return made.texts
+
+
+def _sources(program: Program, setup: Setup, options: Mapping[str, str]) -> Sources:
+    """A program's new files; unless the user says otherwise, what was kept and cannot stand in them
+    becomes comments: what names data of the old files alone, or all of it if that does not do.
+
+    Raises:
+        FlybyError: the language cannot say what the program holds.
+    """
+    vendor, robot = setup.vendor, setup.robot
+    try:
+        return vendor.write(program, robot, options)
+    except FlybyError:
+        if "opaque" in options or not _keeps(program):
+            raise
+    try:
+        return vendor.write(_commented(program, vendor), robot, options)
+    except FlybyError:
+        return vendor.write(program, robot, {**options, "opaque": "comment"})
+
+
+def _keeps(program: Program) -> bool:
+    from ..core.program.move import Opaque
+
+    return any(
+        isinstance(statement, Opaque) or getattr(statement, "events", ())
+        for statement in program.statements
+    )
+
+
+def _commented(program: Program, vendor: Vendor) -> Program:
+    """A program whose kept statements are comments where they name data of its old files."""
+    from ..core.program.move import Opaque
+    from ..core.source.write.kept import without_their_names
+
+    speaks = vendor.speaks
+    if speaks is None or speaks.wording is None:
+        return program
+    named = {span for span, _ in without_their_names(program, {}, speaks.wording)}
+
+    def commented(text: str) -> str:
+        return "\n".join(f"{speaks.comment}{line.strip()}" for line in text.splitlines())
+
+    return replace(
+        program,
+        statements=tuple(
+            replace(s, text=commented(s.text)) if isinstance(s, Opaque) and s.span in named else s
+            for s in program.statements
+        ),
+    )

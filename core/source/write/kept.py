@@ -21,11 +21,26 @@ from .options import as_comments
 def check_kept(program: Program, sources: Mapping[str, str], wording: Wording) -> None:
     """Refuse statements that name what only the files have that they were read from.
 
-    What is declared beside the program and set nowhere is the controller's own, and stays there.
-    What the new files declare counts if the old ones give it one value.
-
     Raises:
         SourceError: naming the statement and the name.
+    """
+    for span, name in without_their_names(program, sources, wording):
+        raise SourceError(
+            f"this statement is kept as it stands, and names {name!r}, which the new "
+            "program does not have as it is here: patch the program's own files, or make "
+            f"kept statements comments ({as_comments()})",
+            span,
+        )
+
+
+def without_their_names(
+    program: Program, sources: Mapping[str, str], wording: Wording
+) -> Iterator[tuple[Span | None, str]]:
+    """Places of the kept statements that name what only the files have that they were read from,
+    each with such a name.
+
+    What is declared beside the program and set nowhere is the controller's own, and stays there.
+    What the new files declare counts if the old ones give it one value.
     """
     kept = list(_kept(program))
     reading = program.reading
@@ -55,12 +70,8 @@ def check_kept(program: Program, sources: Mapping[str, str], wording: Wording) -
             if mention is not Mention.USED:
                 missing.discard(name)
             elif name in missing:
-                raise SourceError(
-                    f"this statement is kept as it stands, and names {name!r}, which the new "
-                    "program does not have as it is here: patch the program's own files, or make "
-                    f"kept statements comments ({as_comments()})",
-                    span,
-                )
+                yield span, name
+                break
 
 
 def _kept(program: Program) -> Iterator[tuple[str, Span | None]]:

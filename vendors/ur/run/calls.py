@@ -225,15 +225,15 @@ def _other(run: CallsRun, node: Call, scope: Scope) -> Value:
     if told is not None:
         run.keep(node, SKIPPED, name)
         return answered(told)
-    known = scope.function_names() | COMPUTED.keys() | _HANDLERS.keys() | known_names()
+    names = scope.function_names() | COMPUTED.keys() | _HANDLERS.keys() | known_names()
     if name.casefold().startswith(tuple(MOVES)):
         raise run.texts.error_at(
-            f"nobody declares the function '{name}': {did_you_mean(name, known)}names of moves are "
+            f"nobody declares the function '{name}': {did_you_mean(name, names)}names of moves are "
             "written in lower case and as they are",
             node,
         )
     run.out.notes.count(
-        f"nobody declares the function '{name}': {did_you_mean(name, known)}it is stepped over as "
+        f"nobody declares the function '{name}': {did_you_mean(name, names)}it is stepped over as "
         "if it moved nothing: name the file that defines it, or say that it is so by [calls] "
         f'"{name}" = "skip"',
         run.texts.span_of(node),

@@ -132,4 +132,4 @@ def asks(name: str) -> bool:
 
 def known_names() -> set[str]:
     """All names in these tables."""
-    return QUERIES | {name for entry in KEPT for name in entry.names}
+    return set(QUERIES) | {name for entry in KEPT for name in entry.names}
