@@ -47,11 +47,9 @@ _CLOSED = rf"""
         (?: State | Time ) [ \t]*+ = [^\r\n;]*+ )"""
 """A line as the teach pendant shows a fold that is closed, see `closed_folds`."""
 
-_TOKEN = re.compile(
-    rf"""
+_TOKENS = rf"""
     (?: {_BLANK}++ | ;[^\r\n]*+ )*+
-    (?: (?P<closed> {_CLOSED} )
-      | (?P<name> {_NAME} )
+    (?: %s (?P<name> {_NAME} )
       | (?P<newline> [\r\n]++ (?: {_BLANK}++ | [\r\n]++ | ;[^\r\n]*+ | &[^\r\n]*+ )*+ )
       | (?P<number> {_NUMBER} )
       | (?P<record> \{{ [ \t]*+ (?: {_NAME} [ \t]* : [ \t]*+ )?
@@ -61,9 +59,12 @@ _TOKEN = re.compile(
       | (?P<enum> \# {_BLANK}*+ {_NAME} )
       | (?P<symbol> == | <> | <= | >= | [-+*/=<>()\[\]{{}},:.?!] )
       | (?P<end> \Z )
-    )""",
-    re.VERBOSE | re.IGNORECASE,
+    )"""
+_TOKEN, _TOKEN_OR_CLOSED = (
+    re.compile(_TOKENS % first, re.VERBOSE | re.IGNORECASE)
+    for first in ("", f"(?P<closed> {_CLOSED} ) |")
 )
+_ANY_CLOSED = re.compile(rf"^[ \t]*+ {_CLOSED}", re.VERBOSE | re.IGNORECASE | re.MULTILINE)
 ITEM = re.compile(
     rf"(?P<name> {_NAME} ) (?: [ \t]* \[ [ \t]* \] )? [ \t]* {_ITEM_VALUE} [ \t]*+ [,}}]",
     re.VERBOSE | re.IGNORECASE,
@@ -84,7 +85,9 @@ def tokenize(source: SourceText) -> Tokens:
     """
     header = _HEADER.match(unbroken(source.text))
     start = header.end() if header else 0
-    return _LEXICON.tokens(source, source.text, start=start, special=_SPECIAL)
+    # Few texts hold closed folds, and all others are read without a look for them at every word.
+    lexicon = _LEXICON if _ANY_CLOSED.search(source.text) is None else _LEXICON_OF_CLOSED
+    return lexicon.tokens(source, source.text, start=start, special=_SPECIAL)
 
 
 def bits_value(literal: str) -> int:
@@ -107,7 +110,9 @@ def _stray(text: str, at: int) -> str:
     return stray(text[at], "a KRL text")
 
 
-_LEXICON = Lexicon(_TOKEN, re.compile(rf"(?:{_BLANK}++|;[^\r\n]*+)*+"), KEYWORDS, _stray)
+_SKIPPED = re.compile(rf"(?:{_BLANK}++|;[^\r\n]*+)*+")
+_LEXICON = Lexicon(_TOKEN, _SKIPPED, KEYWORDS, _stray)
+_LEXICON_OF_CLOSED = Lexicon(_TOKEN_OR_CLOSED, _SKIPPED, KEYWORDS, _stray)
 _SPECIAL: dict[str, lexer.Special] = {
     "newline": lambda kinds, start, end: (NEWLINE, end),
     "closed": lambda kinds, start, end: (CLOSED, end),
