@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from flyby.core import numba_import
 
 if TYPE_CHECKING:
+    from flyby.tasks.ask import ask
     from flyby.tasks.catalogue import cell, robot, robots, vendors
     from flyby.tasks.check import check
     from flyby.tasks.compare import compare
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from flyby.tasks.zones import zones
 
 __all__ = [
+    "ask",
     "cell",
     "check",
     "compare",

@@ -1,4 +1,4 @@
-"""``flyby emulate``: drive a program and report its motion."""
+"""``flyby emulate``: drive a program and report its motion; ``flyby ask``: what it asks for."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..core.errors import OptionError
+from ..core.errors import FlybyError, InputError, OptionError
+from ..core.program.entry_point import ALL
 from ..core.source.write.options import OpaqueStyle
+from ..tasks.ask import ask_with
 from ..tasks.emulate import EmulateOptions, emulate_with
 from ..tasks.files.outputs import check_outputs, picture_kind, write_all
 from ..tasks.read import SourceOptions, read_with
-from .console import print_json, print_rich, progress
+from .console import fail, print_json, print_rich, progress
 from .parameters import AsJson, Force, ProgramFile, with_options
 
 if TYPE_CHECKING:
@@ -76,9 +78,23 @@ def emulate(
         del outputs["--write"]
     inputs = [program, *source.inputs()]
     check_outputs(outputs, inputs, replace_existing=force)
+    if source.entry == ALL:
+        given = [option for option, path in outputs.items() if path is not None]
+        if given or json:
+            raise OptionError(
+                f"{given[0] if given else '--json'} is of one program: name one entry, not all"
+            )
+        _each(program, source, options)
+        return
     with progress("reading the program") as say:
         read = read_with(program, source)
-        run = emulate_with(read, replace(options, report=say))
+        try:
+            run = emulate_with(read, replace(options, report=say))
+        except FlybyError:
+            from .report_text import print_questions
+
+            print_questions(read.questions)
+            raise
         say("writing results")
         made = _write_files(files, run, inputs, opaque, force)
     _tell(run, as_json=json)
@@ -86,6 +102,32 @@ def emulate(
         for path in made:
             print_rich(f"wrote {path}")
     if run.faults:
+        raise typer.Exit(1)
+
+
+def _each(program: Path, source: SourceOptions, options: EmulateOptions) -> None:
+    """Drive every routine that a program may begin with, and report each."""
+    with progress("reading the program"):
+        entries = read_with(program, source).entries
+    moving = [entry for entry in entries if entry.moves]
+    if not moving:
+        raise InputError(f"{program}: no routine in it moves the robot")
+    failed = False
+    for entry in moving:
+        print_rich(f"\n{entry}")
+        if entry.parameters:
+            print_rich(f"takes arguments: --entry '{entry.name}({', '.join(entry.parameters)})'")
+            continue
+        try:
+            with progress(f"driving {entry.name}") as say:
+                read = read_with(program, replace(source, entry=entry.name))
+                run = emulate_with(read, replace(options, report=say))
+        except FlybyError as error:
+            fail(str(error))
+            failed = True
+        else:
+            _tell(run, as_json=False)
+    if failed:
         raise typer.Exit(1)
 
 
@@ -126,10 +168,38 @@ def _sources(path: Path, run: Run, opaque: OpaqueStyle | None) -> dict[Path, byt
 
 
 def _tell(run: Run, *, as_json: bool) -> None:
-    from .report_text import print_notes, print_report, report_json
+    from .report_text import asked_json, print_notes, print_report, report_json
 
     if not as_json:
-        print_report(run.report)
+        print_report(run.report, run.program)
         return
-    print_json(report_json(run.report))
+    print_json(report_json(run.report) | asked_json(run.program, run.report))
     print_notes(run.report)
+
+
+@with_options
+def ask(
+    program: ProgramFile,
+    source: SourceOptions,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Write them as a file of answers (TOML).")
+    ] = None,
+    json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """List all that a program asks of the world and no file says, as a file of answers."""
+    check_outputs({"--out": out}, [program, *source.inputs()], replace_existing=force)
+    with progress("reading the program"):
+        questions = ask_with(program, source)
+    if out is not None:
+        write_all("--out", {out: questions.toml.encode()})
+    if json:
+        from .report_text import question_json
+
+        print_json({"questions": [question_json(question) for question in questions]})
+    elif out is None:
+        print(questions.toml, end="")
+    else:
+        for line in questions.said or ["nothing is asked"]:
+            print_rich(line)
+        print_rich(f"wrote {out}")

@@ -17,10 +17,12 @@ from ..tasks.options.shell import SHELL
 from .console import fail, warn
 
 COMMANDS = {
+    "emulate": "emulate",
+    "ask": "emulate",
     **{
         name: name
         for name in (
-            *("emulate", "check", "translate", "record", "experiment", "compare", "identify"),
+            *("check", "translate", "record", "experiment", "compare", "identify"),
             *("zones", "optimize", "pareto"),
         )
     },

@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from typing import Any
 
 from ..core.display import counted
 from ..core.driving.driven_program import Fault
+from ..core.errors import Note
+from ..core.program.program import Program
+from ..core.program.question import Question
+from ..core.source.execution.answers_text import grouped
 from ..tasks.files.source_places import fault_json, note_json, place_json
 from ..tasks.results.report import COLUMNS, MoveReport, Report, move_row, seconds
+from ..tasks.results.shares import shares
 from .console import complain_of_fault, print_rich, print_table, warn
 
+MOST_ALIKE = 3
+"""Notes that say the same of several places, before the rest of them is only counted."""
 
-def print_report(report: Report) -> None:
-    """Print tables on stdout, warnings on stderr."""
+
+def print_report(report: Report, program: Program) -> None:
+    """Print tables on stdout, warnings on stderr.
+
+    Args:
+        report: of a run.
+        program: that was driven.
+    """
     print_table(COLUMNS, _rows(report))
     told = f"cycle time {report.driven_time:.3f} s"
     if report.faults:
@@ -22,19 +37,43 @@ def print_report(report: Report) -> None:
         f"{report.program} on {report.robot}: {told}; "
         f"TCP path {1e3 * report.length:.1f} mm, at most {1e3 * report.top_speed:.0f} mm/s"
     )
-    print_notes(report)
+    spent = shares(program, report)
+    if spent.total and (spent.passes or spent.devices):
+        print_rich(str(spent))
+    print_notes(report, program.questions)
 
 
-def print_notes(report: Report) -> None:
-    """Print warnings and faults on stderr, a line in a loop once."""
+def print_notes(report: Report, questions: Sequence[Question] = ()) -> None:
+    """Print warnings and faults on stderr.
+
+    Of many notes that are alike the first is printed, and how many there are; of faults of a line
+    in a loop as well.
+    """
+    like: dict[str, list[Note]] = {}
     for note in report.notes:
-        warn(str(note))
+        if not (note.asked and questions):
+            like.setdefault(re.sub(r"[\d.]+", "0", note.message), []).append(note)
+    for notes in like.values():
+        shown = notes if len(notes) <= MOST_ALIKE else notes[:1]
+        for note in shown:
+            more = f" (and {len(notes) - 1} like it)" if len(shown) < len(notes) else ""
+            warn(f"{note}{more}")
+    print_questions(questions)
     alike: dict[tuple[object, str], list[Fault]] = {}
     for fault in report.faults:
         alike.setdefault((fault.span or fault.move, fault.message), []).append(fault)
     for faults in alike.values():
         times = f" ({len(faults)} times, here first)" if len(faults) > 1 else ""
         complain_of_fault(f"{faults[0]}{times}")
+
+
+def print_questions(questions: Sequence[Question]) -> None:
+    """Print a line a kind of what a program asks on stderr, and what lists it."""
+    lines = grouped(questions)
+    for line in lines:
+        warn(f"not known: {line}")
+    if lines:
+        warn("`flyby ask` lists them as a file that `--io` takes")
 
 
 def _rows(report: Report) -> list[tuple[str, ...]]:
@@ -69,6 +108,36 @@ def report_json(report: Report) -> dict[str, Any]:
         "parts": [{"first": first, "last": last} for first, last in report.parts],
         "faults": [fault_json(fault) for fault in report.faults],
         "warnings": [note_json(note) for note in report.notes],
+    }
+
+
+def asked_json(program: Program, report: Report) -> dict[str, Any]:
+    """What the time of a run goes into, and what its program asks, with JSON's types."""
+    spent = shares(program, report)
+    return {
+        "cycle": {
+            "passes": spent.passes,
+            "total_s": spent.total,
+            "motion_s": spent.motion,
+            "waiting_s": spent.waiting,
+            "devices_s": spent.devices,
+        },
+        "questions": [question_json(question) for question in program.questions],
+    }
+
+
+def question_json(question: Question) -> dict[str, Any]:
+    """What a program asks, with JSON's types."""
+    return {
+        "kind": question.kind.name.lower(),
+        "table": question.table,
+        "key": question.key,
+        "type": question.type,
+        "taken": question.taken,
+        "meanwhile": question.meanwhile,
+        "answered": question.answered,
+        "count": question.count,
+        **place_json(question.span),
     }
 
 

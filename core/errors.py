@@ -95,6 +95,8 @@ class FaultCause(StrEnum):
     """The programmed configuration contradicts the pose, or the path."""
     NOWHERE = "no motion"
     """Every move ends where the robot stands."""
+    OPEN = "not known"
+    """Nobody knows where it goes: a datum that nothing sets, a message of a sensor."""
     OTHER = "refused"
     """Points that make no arc, values that no robot has, zones that contradict each other."""
 
@@ -134,11 +136,14 @@ class Note:
         message: one sentence.
         move: index of the move concerned, from 0.
         span: where in the source.
+        asked: whether it is about something that the program asks, and that is listed among its
+            questions.
     """
 
     message: str
     move: int | None = None
     span: Span | None = None
+    asked: bool = False
 
     def __str__(self) -> str:
         where = "" if self.span is None else f"{self.span}: "

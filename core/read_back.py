@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .errors import FlybyError, InputError, MotionError
-from .program.move import Move, Wait
+from .program.move import Move, Statement, Wait
 from .program.program import Program
 from .program.target import JointTarget, PoseTarget
 from .source.execution.answers import Answers
@@ -93,7 +93,7 @@ def _compare_moves(program: Program, again: Program) -> None:
 
 
 def _compare_waits(program: Program, again: Program) -> None:
-    waits = [sum(s.duration for s in p.statements if isinstance(s, Wait)) for p in (program, again)]
+    waits = [sum(_waited(s) for s in p.statements) for p in (program, again)]
     if not math.isclose(*waits, rel_tol=1e-6, abs_tol=1e-6):
         raise InputError(
             f"program {program.name!r} cannot be written anew: it waits {waits[0]:g} s, and as "
@@ -139,3 +139,8 @@ def _flange(move: Move, target: PoseTarget) -> Pose | None:
     if not tool.robot_held or frame.robot_held or frame.moved_by is not None:
         return None
     return frame.pose @ target.pose @ tool.tcp.inverse()
+
+
+def _waited(statement: Statement) -> float:
+    """s that a program itself waits in a statement."""
+    return statement.duration if isinstance(statement, Wait) and not statement.device else 0.0

@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 class TextOptions(TaskOptions):
     """How a program is read."""
 
-    entry: str | None = value(None, "Routine to run.")
+    entry: str | None = value(
+        None, "Routine to run, with arguments as Pick(1,p10); all: each of them."
+    )
     answers: str | Path | Answers | None = value(
         None,
         "Answers to what the program asks of signals and operators (TOML).",
@@ -106,7 +108,7 @@ def _answers(options: SourceOptions) -> Answers:
 
     given = options.answers
     answers = load_answers(given) if isinstance(given, str | Path) else given or Answers()
-    return replace(answers, cycles=options.cycles)
+    return replace(answers, cycles=options.cycles, goes_on=True)
 
 
 def _program_in(folder: Path, setup: Setup, options: SourceOptions) -> Path:

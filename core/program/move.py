@@ -37,6 +37,8 @@ class _Motion:
         work_object: the frame of the target.
         load: payload carried during the move, in the tool's frame.
         events: what happens on the way; it does not change the motion.
+        open: why nobody knows where it goes; empty if that is known. Its target then only has a
+            name, and it cannot be driven.
         origin: where in the source the numbers stand; not part of the value.
     """
 
@@ -47,6 +49,7 @@ class _Motion:
     work_object: WorkObject = WORLD
     load: Load | None = None
     events: tuple[Event, ...] = field(default=(), kw_only=True)
+    open: str = field(default="", kw_only=True)
     origin: MoveOrigin | None = field(default=None, compare=False, kw_only=True)
 
     def __repr__(self) -> str:
@@ -59,7 +62,7 @@ class _Motion:
 
     @property
     def _way(self) -> str:
-        return f"to {target_shown(self.target)}"
+        return "to where nobody knows" if self.open else f"to {target_shown(self.target)}"
 
     @property
     def statement(self) -> Span | None:
@@ -97,10 +100,18 @@ class MoveC(_Motion):
 
 @dataclass(frozen=True, slots=True)
 class Wait:
-    """The robot stands still for ``duration`` s; in a chain of moves it makes the point a stop."""
+    """The robot stands still for ``duration`` s; in a chain of moves it makes the point a stop.
+
+    Args:
+        duration: s.
+        span: where in the source.
+        device: whether it is no wait of the program, but the time that a device takes which the
+            program waits for.
+    """
 
     duration: float
     span: Span | None = field(default=None, compare=False)
+    device: bool = False
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.duration) and self.duration >= 0):

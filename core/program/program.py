@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING, Protocol
 from ..display import counted, in_line
 from ..errors import Note
 from ..notebook import PictureCurve, page, picture, table
+from .cycle import Cycle
+from .entry_point import EntryPoint
 from .move import Move, MoveC, MoveJ, MoveL, Statement
+from .question import Question
 from .target import JointTarget
 from .zone import zone_shown
 
@@ -56,6 +59,11 @@ class Program:
         name: of the program or module.
         start: joint values before the first move, if the source states them.
         notes: what the reader has to say about the source; not part of the value.
+        questions: what the source asks that no file says; not part of the value.
+        entries: routines that it may begin with, where that was asked or it drives nothing; not
+            part of the value.
+        cycle: the last pass of the loop that production runs in, if there is one; not part of the
+            value.
         reading: the source files, for the patcher; None if it was not read; not part of the value.
         setup: the robot that it was read for, for tasks that name no other; not part
             of the value.
@@ -65,6 +73,9 @@ class Program:
     name: str = "main"
     start: JointTarget | None = None
     notes: tuple[Note, ...] = field(default=(), compare=False)
+    questions: tuple[Question, ...] = field(default=(), compare=False, repr=False)
+    entries: tuple[EntryPoint, ...] = field(default=(), compare=False, repr=False)
+    cycle: Cycle | None = field(default=None, compare=False, repr=False)
     reading: ReadFrom | None = field(default=None, compare=False, repr=False)
     setup: DrivenBy | None = field(default=None, compare=False, repr=False)
 

@@ -41,11 +41,20 @@ def test_an_error_among_the_findings_ends_with_status_1(flyby: Flyby, small: Sma
 
 
 def test_a_text_that_cannot_be_read_is_a_finding(flyby: Flyby, small: Small) -> None:
+    path = small("MoveL p1, v500, fine")
+    result = flyby("check", path, "--robot", ROBOT, "--json")
+    assert result.exit_code == 1
+    found = json.loads(result.stdout)["findings"]
+    assert [f["line"] for f in found if f["severity"] == "error"][:1] == [6]
+
+
+def test_a_move_to_where_nobody_knows_is_a_finding(flyby: Flyby, small: Small) -> None:
     path = small("MoveL pNowhere, v500, fine, tool0")
     result = flyby("check", path, "--robot", ROBOT, "--json")
     assert result.exit_code == 1
-    (finding,) = json.loads(result.stdout)["findings"]
-    assert (finding["rule"], finding["line"]) == ("cannot-read", 6)
+    (error,) = (f for f in json.loads(result.stdout)["findings"] if f["severity"] == "error")
+    assert (error["rule"], error["line"]) == ("cannot-drive", 6)
+    assert "pNowhere" in error["message"]
 
 
 def test_a_missing_file_is_no_finding(flyby: Flyby, tmp_path: Path) -> None:

@@ -65,6 +65,11 @@ class PresentPosition:
         if self.robot is not None:
             self._ahead.append((move, statement))
 
+    def lose(self) -> None:
+        """The robot has driven to where nobody knows."""
+        self.last = self.start = self._standing = None
+        self._ahead.clear()
+
     def why_unknown(self) -> str:
         """What is missing where nobody knows where the robot stands."""
         return NO_ROBOT if self.robot is None else NO_START

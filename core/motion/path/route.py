@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray
-from ...errors import InputError, MotionError, Note, Span
+from ...errors import FaultCause, InputError, MotionError, Note, Span
+from ...program.entry_point import listed
 from ...program.move import Move, MoveC, MoveJ, Opaque, Wait
 from ...program.program import Program
 from ...program.target import JointTarget, PoseTarget
@@ -139,6 +140,8 @@ class RouteFinder:
         if not moves:
             raise _no_move(program)
         for i, move in enumerate(moves):
+            if move.open:
+                raise located(move, i, move.open, FaultCause.OPEN)
             if i not in skipped:
                 check_near(move, i)
         notes: list[Note] = []
@@ -457,7 +460,10 @@ def _nominal(segments: Segments) -> TcpCurves:
 
 def _no_move(program: Program) -> MotionError:
     reading = program.reading
+    offer = "choose as the entry the routine that drives"
+    if any(entry.moves for entry in program.entries):
+        offer += f": {listed(program.entries)}"
     return MotionError(
-        f"program {program.name!r} has no move: choose as the entry the routine that drives",
+        f"program {program.name!r} has no move: {offer}",
         span=None if reading is None else Span(reading.main, 1, 1, 0, 0),
     )

@@ -47,6 +47,10 @@ class Analysis(Generic[Block]):
 
         return self._once("moves", block, False, find)
 
+    def move_count(self, block: Block) -> int:
+        """How many statements in a block, and in the routines that it calls, move the robot."""
+        return sum(step.moves for step in self._reached(block, _NONE_LEFT_OUT))
+
     def leads_to(self, block: Block) -> Exit | None:
         """Where a block leads in any case; None if the program may go on behind it."""
 

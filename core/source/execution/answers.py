@@ -20,26 +20,41 @@ A file of answers is TOML::
     [calls]                      # routines whose text is not at hand and that move nothing
     rGripperOpen = "skip"
 
+    [durations]                  # s that the robot stands at a call, a wait or an output
+    rGripperOpen = 0.4
+    di_PressDone = 6
+
 Without an answer waits are satisfied at once, and branches and loops are decided by rule (see
 `flow`). What was decided so is noted with its line.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import NamedTuple
 
-from ...errors import InputError, Note, Span, UnknownNameError
+from ...errors import InputError, Note, SourceError, Span, UnknownNameError
 from ...files.reading import read_toml
 from ...program.cycle import Cycle
+from ...program.question import Answer, Question, QuestionKind
 
-Answer = bool | float | str | tuple["Answer", ...]
-"""A value in the language's own units; arrays and records are tuples."""
 
-_TABLES = ("values", "sequences", "branches", "passes", "calls")
+class Fields(tuple[tuple[str, "Answer"], ...]):
+    """A structure: names of components and their answers, as a table of TOML has them."""
+
+    __slots__ = ()
+
+
+_TABLES = ("values", "sequences", "branches", "passes", "calls", "durations")
 _MOST_PASSES = 10_000
 _LARGEST = 1e300
+_LONGEST_KEY = 80
+"""Characters of a statement that is a key as it stands."""
+_LONGEST = 86_400.0
+"""s of a pause: a day."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +67,10 @@ class Answers:
         branches: number of the branch taken, 0 for none.
         passes: number of passes.
         skipped: names of routines that are not at hand and are stepped over.
+        durations: s that the robot stands at statements in which a key stands, as `stands_in` says.
         file: where they come from, for messages.
+        goes_on: whether a program goes on behind what nobody knows: a routine that is not at hand
+            is stepped over, a move whose target is not known is `open`. Else both are refused.
         cycles: passes of a loop without an end that moves the robot.
     """
 
@@ -61,7 +79,9 @@ class Answers:
     branches: Mapping[str, int] = field(default_factory=dict)
     passes: Mapping[str, int] = field(default_factory=dict)
     skipped: frozenset[str] = frozenset()
+    durations: Mapping[str, float] = field(default_factory=dict)
     file: str = ""
+    goes_on: bool = False
     cycles: int = 1
 
     def names(self, table: str) -> Iterable[str]:
@@ -72,6 +92,7 @@ class Answers:
             "branches": self.branches,
             "passes": self.passes,
             "calls": sorted(self.skipped),
+            "durations": self.durations,
         }
         return own[table]
 
@@ -108,6 +129,7 @@ def load_answers(path: str | Path) -> Answers:
         {_place(k): _count(v, path, k) for k, v in tables.get("branches", {}).items()},
         {_place(k): _count(v, path, k) for k, v in tables.get("passes", {}).items()},
         frozenset(_skipped(k, v, path) for k, v in tables.get("calls", {}).items()),
+        {key(k): _seconds(v, path, k) for k, v in tables.get("durations", {}).items()},
         str(path),
     )
 
@@ -124,9 +146,13 @@ def _answer(value: object, path: str | Path, name: str) -> Answer:
         return float(value)
     if isinstance(value, list):
         return tuple(_answer(item, path, name) for item in value)
+    if isinstance(value, dict):
+        return Fields((str(k), _answer(item, path, name)) for k, item in value.items())
     if isinstance(value, int | float):
         raise InputError(f"{path}: {name} is too large, or no number")
-    raise InputError(f"{path}: {name} is true or false, a number, a text or a list, not {value!r}")
+    raise InputError(
+        f"{path}: {name} is true or false, a number, a text, a list or a table, not {value!r}"
+    )
 
 
 def _sequence(value: object, path: str | Path, name: str) -> tuple[Answer, ...]:
@@ -145,10 +171,54 @@ def _count(value: object, path: str | Path, name: str) -> int:
     return value
 
 
+def _seconds(value: object, path: str | Path, name: str) -> float:
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not number or not 0 <= value <= _LONGEST:  # type: ignore[operator]
+        raise InputError(
+            f"{path}: {name} in [durations] is a time from 0 to {_LONGEST:g} s, not {value!r}"
+        )
+    return float(value)  # type: ignore[arg-type]
+
+
+def stands_in(name: str, text: str) -> bool:
+    """Whether a key stands in a statement, as whole words of it.
+
+    Args:
+        name: as `key` gives it.
+        text: of the statement.
+    """
+    word = re.compile(rf"(?<![\w$]){re.escape(name)}(?!\w)")
+    return any(map(word.search, (key(text), " ".join(text.split()).casefold())))
+
+
 def _skipped(name: str, value: object, path: str | Path) -> str:
     if value != "skip":
         raise InputError(f'{path}: {name} in [calls] is "skip", not {value!r}')
     return key(name)
+
+
+NOT_AT_HAND = "it is in no file at hand"
+"""Why a routine cannot be carried out."""
+
+
+class AnswerError(SourceError):
+    """A user's answer is none to what the program asks."""
+
+
+class About(NamedTuple):
+    """What is known of something that a program asks.
+
+    Args:
+        span: where it is asked.
+        kind: what it is.
+        type: what an answer is, in words; empty if that is not known.
+        example: an answer.
+    """
+
+    span: Span
+    kind: QuestionKind = QuestionKind.SIGNAL
+    type: str = ""
+    example: Answer | None = None
 
 
 @dataclass
@@ -169,28 +239,124 @@ class Course:
     _asked: set[tuple[str, str]] = field(default_factory=set)
     _turns: dict[str, int] = field(default_factory=dict)
     _decided: dict[tuple[str, int, str], tuple[Note, int]] = field(default_factory=dict)
+    _questions: dict[tuple[str, str], Question] = field(default_factory=dict)
 
-    def value(self, text: str) -> Answer | None:
-        """The answer to a name or call as it stands in the program; None if there is none."""
+    def value(self, text: str, about: About | None = None) -> Answer | None:
+        """The answer to a name or call as it stands in the program; None if there is none.
+
+        Args:
+            text: of the name or call.
+            about: what is known of it, if it is to be listed among the program's questions.
+        """
         name = key(text)
         self._asked |= {("values", name), ("sequences", name)}
         turns = self.answers.sequences.get(name)
-        if turns is not None:
-            turn = self._turns.get(name, 0)
-            self._turns[name] = turn + 1
-            self.turned += turn < len(turns)
-            return turns[min(turn, len(turns) - 1)]
-        return self.answers.values.get(name)
+        told = self.answers.values.get(name) if turns is None else turns
+        if about is not None and text:
+            table = "values" if turns is None else "sequences"
+            self._ask(
+                Question(
+                    about.kind,
+                    table,
+                    " ".join(text.split()),
+                    about.span,
+                    about.type,
+                    told,
+                    "not known",
+                    about.example,
+                    answered=told is not None,
+                )
+            )
+        if turns is None:
+            return told
+        turn = self._turns.get(name, 0)
+        self._turns[name] = turn + 1
+        self.turned += turn < len(turns)
+        return turns[min(turn, len(turns) - 1)]
+
+    def withdraw(self, text: str) -> None:
+        """What was asked is known after all, and not listed."""
+        self._questions.pop(("values", key(text)), None)
+
+    def questions(self) -> tuple[Question, ...]:
+        """What the program has asked, in the order in which it came up."""
+        return tuple(self._questions.values())
+
+    def pause(self, text: str, span: Span, listed: bool = True) -> float:
+        """s that the user says the robot stands at a statement, 0 if nobody says it.
+
+        Args:
+            text: of the statement.
+            span: of it.
+            listed: whether it is listed among the program's questions, answered or not.
+        """
+        if not listed and not self.answers.durations:
+            return 0.0
+        place = f"{_place(span.file)}:{span.line}"
+        found = [k for k in self.answers.durations if k in (place, place.rpartition("/")[2])]
+        found += [k for k in self.answers.durations if stands_in(k, text)]
+        self._asked |= {("durations", k) for k in found}
+        told = max((self.answers.durations[k] for k in found), default=0.0)
+        if not listed and not found:
+            return 0.0
+        shown = " ".join(text.split()).rstrip(";")
+        plain = len(shown) <= _LONGEST_KEY and stands_in(key(shown), text)
+        name = shown if plain else place.rpartition("/")[2]
+        self._ask(
+            Question(QuestionKind.PAUSE, "durations", name, span, "s", told, answered=bool(found))
+        )
+        return told
+
+    def _ask(self, question: Question) -> None:
+        """Remember a question; what has several answers meanwhile has none that can be stated."""
+        place = question.table, key(question.key)
+        before = self._questions.get(place)
+        if before is None:
+            self._questions[place] = question
+            return
+        same = before.taken == question.taken
+        if not before.type and question.type:
+            before = replace(
+                before, kind=question.kind, type=question.type, example=question.example
+            )
+        self._questions[place] = replace(
+            before,
+            count=before.count + 1,
+            taken=before.taken if same else None,
+            meanwhile=before.meanwhile if same else f"{before.meanwhile}; not always alike",
+        )
 
     def changing(self, text: str) -> bool:
         """Whether a name or call has one answer after the other."""
         self._asked.add(("sequences", key(text)))
         return key(text) in self.answers.sequences
 
-    def skips(self, routine: str) -> bool:
-        """Whether the user says that a routine which is not at hand moves nothing."""
+    def skips(self, routine: str, span: Span, why: str = NOT_AT_HAND) -> bool:
+        """Whether a routine that is not carried out is stepped over, as the user or a rule says.
+
+        Args:
+            routine: its name.
+            span: of the call.
+            why: it cannot.
+        """
         self._asked.add(("calls", key(routine)))
-        return key(routine) in self.answers.skipped
+        told = key(routine) in self.answers.skipped
+        skipped = told or self.answers.goes_on
+        if told:
+            self._routine(routine, span, answered=True)
+        elif skipped:
+            message = f"{routine} is stepped over, as if it moved nothing: {why}"
+            self.stepped_over(routine, span, message)
+        return skipped
+
+    def stepped_over(self, routine: str, span: Span, message: str) -> None:
+        """A routine is stepped over by rule; the message says why."""
+        self._routine(routine, span, answered=False)
+        self.decided(span, message)
+
+    def _routine(self, routine: str, span: Span, answered: bool) -> None:
+        kind = QuestionKind.ROUTINE
+        self._ask(Question(kind, "calls", routine, span, "", "skip", answered=answered))
 
     def answered_branch(self, span: Span, count: int) -> int | None:
         """The branch that the user says is taken at a place: from 1, 0 for none of them.
@@ -228,9 +394,11 @@ class Course:
                 been entered, and one at least is read.
         """
         answer = self.answered_passes(span)
+        passes = max(driven, 1) if moving or leaves else 0
+        told = passes if answer is None else answer
+        self._at_place(QuestionKind.LOOP, "passes", span, told, reason, answer is not None)
         if answer is not None:
             return max(answer, 1) if leaves else answer
-        passes = max(driven, 1) if moving or leaves else 0
         how = "it does not move the robot and is left at once"
         if passes:
             how = f"its body runs {'once' if passes == 1 else f'{passes} times'}"
@@ -245,7 +413,7 @@ class Course:
         Then which answers nothing asked for: their names or lines may be mistyped.
         """
         told = [
-            Note(note.message + (f" ({count} times)" if count > 1 else ""), span=note.span)
+            replace(note, message=note.message + (f" ({count} times)" if count > 1 else ""))
             for note, count in self._decided.values()
         ]
         unasked = [
@@ -275,10 +443,43 @@ class Course:
         """Whether anything was decided without an answer."""
         return bool(self._decided)
 
-    def decided(self, span: Span, message: str) -> None:
-        """Note what was decided without an answer; how often is counted."""
+    def branch(self, span: Span, reason: str, taken: int, count: int, answered: bool) -> None:
+        """A branch is taken on a condition that is not known.
+
+        Args:
+            span: of the condition.
+            reason: what it depends on.
+            taken: its number, 0 for none.
+            count: of the branches.
+            answered: whether the user said so.
+        """
+        self._at_place(QuestionKind.BRANCH, "branches", span, taken, reason, answered, count)
+
+    def _at_place(
+        self,
+        kind: QuestionKind,
+        table: str,
+        span: Span,
+        taken: int,
+        reason: str,
+        answered: bool,
+        count: int | None = None,
+    ) -> None:
+        place = f"{span.file.replace(chr(92), '/').rpartition('/')[2]}:{span.line}"
+        range_ = f"0 to {count}" if count is not None else "0 or more"
+        about = f"depends on {reason}"
+        self._ask(Question(kind, table, place, span, range_, taken, about, answered=answered))
+
+    def decided(self, span: Span, message: str, listed: bool = True) -> None:
+        """Note what was decided without an answer; how often is counted.
+
+        Args:
+            span: where.
+            message: what.
+            listed: whether the program's questions say it as well.
+        """
         place = (span.file, span.start, message)
-        note, count = self._decided.get(place, (Note(message, span=span), 0))
+        note, count = self._decided.get(place, (Note(message, span=span, asked=listed), 0))
         self._decided[place] = note, count + 1
 
 

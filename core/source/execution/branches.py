@@ -108,9 +108,11 @@ class Branches(Generic[Block]):
             answer = self._course.answered_branch(span, len(written))
         except InputError as error:
             raise SourceError(str(error), span) from None
+        answered = answer is not None
         if answer is None:
             answer, why = self._rule(blocks, otherwise, may)
             self._course.decided(span, f"the condition depends on {reason}: {why}")
+        self._course.branch(span, reason, answer, len(written), answered)
         chosen = otherwise if answer == 0 else written[answer - 1]
         skipped = tuple(
             block for block, able in zip(written, may, strict=False) if able and block is not chosen

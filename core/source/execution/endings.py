@@ -144,6 +144,8 @@ class Endings(Generic[Block]):
             loop = passes.loop
             moving = self._analysis.moves(loop.body)
             passes.most = self._host.course.passes(loop.span, reason, moving, passes.count)
+            if not passes.most and not moving:
+                self._host.pause(loop.words, loop.span)
         return passes.most
 
     def look(self, passes: Passes[Block]) -> None:
@@ -338,6 +340,7 @@ class Endings(Generic[Block]):
             "taken as satisfied at once",
             loop.span,
         )
+        self._host.pause(loop.words, loop.span)
         way = self._known_way(loop.body) if loop.endless else None
         if way is not None:
             run(way)

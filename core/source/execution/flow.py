@@ -98,8 +98,6 @@ class Flow(Generic[Block]):
         tested: bool,
     ) -> None:
         host, loop = self._host, passes.loop
-        if tested and not self._endings.enters(loop):
-            return
         while True:
             if tested or passes.count:
                 holds = goes_on()
@@ -110,7 +108,10 @@ class Flow(Generic[Block]):
                     return
                 elif passes.left_to_others:
                     passes.left_to_others = False
-                elif passes.count and self._endings.left(passes, run):
+                elif not passes.count:
+                    if not self._endings.enters(loop):
+                        return
+                elif self._endings.left(passes, run):
                     return
                 elif passes.left_to_others:
                     continue

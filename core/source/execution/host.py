@@ -67,6 +67,15 @@ class Host(Protocol):
         """
         ...
 
+    def pause(self, text: str, span: Span) -> None:
+        """The robot stands for as long as the user says that a loop that waits takes.
+
+        Args:
+            text: of the loop.
+            span: of it.
+        """
+        ...
+
     def note_once(self, kind: str, message: str, span: Span) -> None:
         """A note, unless one of its kind was taken before."""
         ...

@@ -5,9 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from ...errors import LeftOpenError, Note, Span
-from ...program.move import Move, Opaque, Statement, Wait
+from ...errors import LeftOpenError, Note, ParseError, SourceError, Span
+from ...program.move import Move, MoveJ, Opaque, Statement, Wait
 from ...program.origin import MoveOrigin
+from ...program.speed import Speed
+from ...program.target import PoseTarget
+from ...spatial.pose import Pose
+from .answers import AnswerError, Course
+from .limits import EndlessError
 from .provenance import MovePart, Reads
 
 _SHOWN = 4
@@ -94,13 +99,15 @@ class Transcript:
 
     Args:
         text_of: the text that stands at a place, from which kept statements are cut.
+        course: says how long the robot stands at them, and whether programs go on.
 
     Attributes:
         left_out: why motions were left out, see `leave_out`.
     """
 
-    def __init__(self, text_of: Callable[[Span], str]) -> None:
+    def __init__(self, text_of: Callable[[Span], str], course: Course) -> None:
         self.text_of = text_of
+        self._course = course
         self.notes = Notes()
         self.parts: list[MoveParts] = []
         self.left_out: list[LeftOpenError] = []
@@ -126,7 +133,9 @@ class Transcript:
         self._statements.append(move)
         self.parts.append(parts)
 
-    def keep(self, span: Span, name: str, why: str, stops: bool = False) -> None:
+    def keep(
+        self, span: Span, name: str, why: str, stops: bool = False, device: bool = False
+    ) -> None:
         """Keep a statement as it stands, with one note per kind, at the first of them.
 
         Args:
@@ -134,13 +143,18 @@ class Transcript:
             name: of the instruction, for the note.
             why: it is not carried out; empty for no note.
             stops: whether the robot stops at it.
+            device: whether it is taken as a device's, which may take its time.
         """
-        self.emit(Opaque(self.text_of(span), stops, span))
+        text = self.text_of(span)
+        self.emit(Opaque(text, stops, span))
+        self.pause(text, span, listed=stops or device)
         if why:
             self.notes.count(f"{name} is kept and not carried out: {why}", span)
 
     def leave_out(self, span: Span, error: LeftOpenError) -> None:
         """Keep a motion whose target nobody knows, and go on from the next."""
+        if self.leaves_open(error, span):
+            return
         self.left_out.append(error)
         self.emit(Opaque(self.text_of(span), True, span))
         self.notes.count(f"the motion is left out: {error.message}", span)
@@ -152,8 +166,46 @@ class Transcript:
             LeftOpenError: of the first that was left out.
         """
         goals = [s.target for s in self._statements if not isinstance(s, Wait | Opaque)]
-        if self.left_out and all(goal == goals[0] for goal in goals):
+        strict = not self._course.answers.goes_on
+        if strict and self.left_out and all(goal == goals[0] for goal in goals):
             raise self.left_out[0]
+
+    def pause(self, text: str, span: Span, listed: bool = True) -> None:
+        """The robot stands for as long as the user says that a statement takes.
+
+        Args:
+            text: of the statement.
+            span: of it.
+            listed: whether it is listed among the program's questions.
+        """
+        duration = self._course.pause(text, span, listed)
+        if duration:
+            self.emit(Wait(duration, span, device=True))
+
+    def leaves_open(self, error: SourceError, span: Span) -> bool:
+        """A move cannot be read: it stays in the program, open, where programs go on behind such.
+
+        Args:
+            error: why.
+            span: of the move.
+
+        Returns:
+            Whether the program goes on behind it; nobody knows where the robot stands then.
+        """
+        if not self._course.answers.goes_on or isinstance(
+            error, AnswerError | EndlessError | ParseError
+        ):
+            return False
+        message = str(error).removeprefix(f"{error.span}: ")
+        if error.span is not None and error.span.line != span.line:
+            message = f"line {error.span.line}: {message}"
+        target = PoseTarget(Pose(), name="not known")
+        part = MovePart(span)
+        self.emit_move(
+            MoveJ(target, Speed(joint_fraction=1.0), open=message),
+            MoveParts(span, part, part, part),
+        )
+        return True
 
     def statements(self, reads: Reads) -> tuple[Statement, ...]:
         """What was carried out, each move with the origin of its numbers.

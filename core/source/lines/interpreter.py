@@ -100,7 +100,13 @@ def run_lines(program: LineProgram, grammar: Grammar, options: ReadOptions) -> P
         )
     run = _Interpreter(program, grammar, options)
     run.run(body)
-    return Program(run.statements(), options.entry or name or "main", notes=run.notes())
+    return Program(
+        run.statements(),
+        options.entry or name or "main",
+        notes=run.notes(),
+        questions=run.course.questions(),
+        cycle=run.course.cycle,
+    )
 
 
 class _Interpreter:
@@ -116,7 +122,7 @@ class _Interpreter:
         self.meter = Meter(options.limits, options.executed)
         self.outputs = Outputs()
         self.place: object = None
-        self._out = Transcript(lambda span: program.text[span.start : span.end])
+        self._out = Transcript(lambda span: program.text[span.start : span.end], self.course)
         self._tree = Statements(program, grammar)
         self._analysis = Analysis(self._tree)
         self._flow: Flow[Body] = Flow(self._analysis, proxy(self))
@@ -142,6 +148,10 @@ class _Interpreter:
     def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
         """See `core.source.execution.flow.Host`."""
         return Snapshot(self._values.registers, names)
+
+    def pause(self, text: str, span: Span) -> None:
+        """See `core.source.execution.flow.Host`."""
+        self._out.pause(text, span)
 
     def note_once(self, kind: str, message: str, span: Span) -> None:
         """See `core.source.execution.flow.Host`."""
@@ -207,7 +217,13 @@ class _Interpreter:
     def _carry_out(self, statement: Statement) -> None:
         self.meter.statement(statement.span)
         if isinstance(statement, Drive):
-            self._drive(statement)
+            try:
+                self._drive(statement)
+            except SourceError as error:
+                if not self._out.leaves_open(error, statement.span):
+                    raise
+                self.meter.move(statement.span)
+                self.place = object()
         elif isinstance(statement, Assign):
             self._assign(statement)
         elif isinstance(statement, If):
@@ -241,9 +257,11 @@ class _Interpreter:
         name = statement.routine
         body = self._program.routines.get(name.lower())
         if body is None:
-            if self.course.skips(name):
+            if self.course.skips(name, statement.span):
                 self.outputs.forget()
-                self._out.keep(statement.span, name, "it is skipped, as the answers say")
+                told = name.casefold() in self.course.answers.skipped
+                why = "it is skipped, as the answers say" if told else ""
+                self._out.keep(statement.span, name, why, device=True)
                 return
             known = [key for key in self._program.routines if key]
             offer = (

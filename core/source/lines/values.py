@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ...errors import SourceError, Span
-from ..execution.answers import Answer, Course
+from ...program.question import Answer
+from ..execution.answers import About, AnswerError, Course
 from ..execution.outputs import Outputs
 from .expressions import COMPUTE, Datum, Expression, Number, Operation, Truth, Value
 from .program import Grammar
@@ -115,7 +116,7 @@ class Values:
             held = self.outputs.value(name)
             if held is not None:
                 return held
-        answer = self._course.value(name)
+        answer = self._course.value(name, About(datum.span))
         if answer is None:
             return Unknown(name)
         return _answered(answer, name, datum.span)
@@ -133,4 +134,4 @@ class Values:
 def _answered(answer: Answer, name: str, span: Span) -> Value:
     if isinstance(answer, bool | float):
         return answer
-    raise SourceError(f"the answer to {name} is a number or a truth, not {answer!r}", span)
+    raise AnswerError(f"the answer to {name} is a number or a truth, not {answer!r}", span)

@@ -32,7 +32,7 @@ def lines_of_statements(
     index = 0
     for statement in program.statements:
         if isinstance(statement, Wait):
-            lines += wait(statement)
+            lines += [] if statement.device else wait(statement)
         elif isinstance(statement, Opaque):
             lines += opaque(statement)
         else:

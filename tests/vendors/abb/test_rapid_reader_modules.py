@@ -197,7 +197,7 @@ def test_the_entry_of_a_module_without_main(file, name, procs, expected):
 
 def test_entries_that_are_refused():
     text = module("M", proc("a", move(1)), proc("b", move(2)))
-    with pytest.raises(SourceError, match="choose one of a, b"):
+    with pytest.raises(SourceError, match=r"one of a \(1 move\), b"):
         read(text, "x.mod")
     with pytest.raises(SourceError, match="unknown procedure 'c'"):
         read(text, "x.mod", ReadOptions("c"))

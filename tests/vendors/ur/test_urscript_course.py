@@ -298,8 +298,8 @@ def test_an_entry_can_be_chosen() -> None:
     text = f"x = 1\ndef a():\n{GO.format('x')}\nend\ndef b():\n{GO.format(2)}\nend\na()"
     assert [m.target.joints[0] for m in program(text, "b").moves] == [2]  # type: ignore[union-attr]
     assert "there is no function 'c'" in refusal(text, "c")
-    assert "choose one of a, b as the entry" in refusal("def a():\nend\ndef b():\nend")
-    assert "it holds no program to run" in refusal("def a(x):\nend")
+    assert "choose as the entry one of a (no moves), b" in refusal("def a():\nend\ndef b():\nend")
+    assert "choose as the entry one of a(x)" in refusal("def a(x):\nend")
 
 
 def test_halt_ends_the_program_everywhere() -> None:

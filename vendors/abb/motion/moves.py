@@ -12,10 +12,12 @@ from typing import Protocol
 from ....core.errors import SourceError, Span
 from ....core.program.event import Event
 from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from ....core.program.question import QuestionKind
 from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import WORLD, Load, Tool, WorkObject
 from ....core.program.zone import FINE, Zone
+from ....core.source.execution.answers import Course
 from ....core.source.execution.provenance import MovePart
 from ....core.source.execution.transcript import MoveParts, Transcript
 from ..syntax.tree import Expression, Invoke, Name
@@ -54,6 +56,7 @@ class MovesRun(Protocol):
     settings: SettingsInForce
     convert: Converter
     position: Position
+    course: Course
 
     def emit_move(self, move: Move, parts: MoveParts) -> None:
         """Put a move at the end of the program."""
@@ -174,6 +177,10 @@ class _MoveReader:
     def _found(self, expression: Expression, kind: str, type_: Type) -> Located:
         evaluator = self.run.evaluator
         found = evaluator.locate(expression, self.scope)
+        if isinstance(expression, Name) and not expression.path and found.cell is None:
+            answer = evaluator.answers.ask(expression.span, type_, kind=QuestionKind.DATUM)
+            if answer is not None:
+                found = Located(answer, None, None, type=type_)
         use = f"the {kind} of {self.bound.text}"
         unknown = None if found.source is not None else find_unknown(found.value)
         if unknown is not None:
@@ -182,7 +189,12 @@ class _MoveReader:
                 known = named_by_number(expression.name, type_)
                 unknown = Unknown(reason, expression.span, expression.text, known)
                 found = replace(found, value=unknown)
+                if known is not None:
+                    self.run.course.withdraw(expression.text)
             if nominal(found.value, type_) is None:
+                answer = evaluator.answers.ask(expression.span, type_, kind=QuestionKind.DATUM)
+                if answer is not None:
+                    return Located(answer, None, None, type=type_)
                 raise NotDriven(f"{use} depends on {unknown.reason}{answerable(unknown)}")
             value = evaluator.assumed(found.value, type_, use, expression.span)
             found = replace(found, value=value, cell=None)

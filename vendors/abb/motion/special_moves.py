@@ -71,7 +71,7 @@ def _search(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     found = reached if answer is None else answer
     if found is None:
         reason = f"where {invoke.text} finds {point.text}"
-        run.evaluator.fill(point, Unknown(reason, invoke.span, point.text), scope)
+        run.evaluator.fill(point, Unknown(reason, invoke.span, point.text), scope, invoke.name)
     else:
         run.evaluator.assign(point, found, scope)
 

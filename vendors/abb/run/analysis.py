@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 
+from ....core.errors import SourceError, Span
 from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.steps import NOTHING, Exit, Step
 from ....core.source.text.lexer import words
@@ -13,7 +15,7 @@ from ..values.data import Globals
 from ..values.outputs import WRITING
 from ..values.scope import NOWHERE, Home
 from .instructions import INTERPRETED, MOVING
-from .kept import KEPT
+from .kept import KEPT, REFUSED
 
 _HALTING = frozenset({"stop", "systemstopaction"})
 _ENDING = frozenset({"exit", "raise"})
@@ -116,6 +118,15 @@ class RapidTree:
             ):
                 yield argument.value.name
 
+    def _elsewhere(self, name: str, home: Home, span: Span) -> tree.Routine | None:
+        """A procedure of a module beside the program that is not taken in yet."""
+        if name in INTERPRETED or name in KEPT or name in REFUSED:
+            return None
+        with suppress(SourceError):  # said where it is called
+            found = self._data.fetched_routine(name, home, span)
+            return found if found is not None and found.kind == "proc" else None
+        return None
+
     def _invoked(
         self,
         statement: tree.Invoke | tree.LateInvoke,
@@ -135,7 +146,7 @@ class RapidTree:
                 asks=True,
             )
         name = statement.name
-        own = self._data.routine(name, home)
+        own = self._data.routine(name, home) or self._elsewhere(name, home, statement.span)
         if own is not None:
             # What is handed to a routine may be an output that it writes.
             calls = (*functions, self.body(own))
@@ -155,10 +166,10 @@ class RapidTree:
         )
 
 
-def routine_moves(data: Globals, routine: tree.Routine) -> bool:
-    """Whether a routine moves the robot."""
+def count_moves(data: Globals, routine: tree.Routine) -> int:
+    """How many statements of a routine, and of those that it calls, move the robot."""
     statements = RapidTree(data)
-    return Analysis(statements).moves(statements.body(routine))
+    return Analysis(statements).move_count(statements.body(routine))
 
 
 def _evaluated(statement: tree.Statement) -> Iterator[tree.Expression]:

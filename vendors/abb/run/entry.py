@@ -6,17 +6,47 @@ from collections.abc import Sequence
 from pathlib import PureWindowsPath
 
 from ....core.errors import Note, SourceError, Span
+from ....core.program.entry_point import EntryPoint, listed
+from ....core.source.text.files import SourceText
+from ..syntax.parser import parse
 from ..syntax.traversal import calls_in, expressions_of
-from ..syntax.tree import Invoke, Module, Routine
+from ..syntax.tree import Argument, Invoke, Module, Parameter, Routine
 from ..values.data import Globals
 from ..values.scope import NOWHERE, unknown_name
-from .analysis import routine_moves
+from .analysis import count_moves
 
 MAIN = "main"
+ENTRY = "--entry"
+"""What the text of a user's arguments is called in messages."""
+
+
+def entry_points(data: Globals, own: Sequence[Module]) -> tuple[EntryPoint, ...]:
+    """The procedures of the user's file."""
+    return tuple(
+        EntryPoint(r.text, tuple(p.name for p in _needed(r)), count_moves(data, r))
+        for module in own
+        for r in module.routines
+        if r.kind == "proc"
+    )
+
+
+def entry_arguments(name: str, text: str) -> tuple[SourceText, tuple[Argument, ...]]:
+    """The arguments that a user gives to the entry, and the text that they are read from.
+
+    Raises:
+        SourceError: they are no arguments in RAPID.
+    """
+    call = f"MODULE entry\nPROC entry()\n{name} {text};\nENDPROC\nENDMODULE\n"
+    source = SourceText(call, ENTRY)
+    (module,) = parse(source)
+    statements = module.routines[0].body.statements
+    if len(statements) != 1 or not isinstance(statements[0], Invoke):
+        raise SourceError(f"'{text}' are no arguments", source.span(0, 0))
+    return source, statements[0].arguments
 
 
 def choose_entry(
-    data: Globals, own: Sequence[Module], entry: str | None, file: str
+    data: Globals, own: Sequence[Module], entry: str | None, file: str, arguments: bool = False
 ) -> tuple[Routine, tuple[Note, ...]]:
     """The routine to run, and what is to be said about the choice.
 
@@ -28,6 +58,7 @@ def choose_entry(
         own: modules of the file that the user named.
         entry: a procedure's name; None if the user gave none.
         file: name of the user's file.
+        arguments: whether the user gives arguments.
 
     Raises:
         SourceError: there is no such procedure, it takes arguments, or several would do.
@@ -35,8 +66,12 @@ def choose_entry(
     where = own[0].span if own else Span(file, 1, 1, 0, 0)
     found = _procedure(data, own, entry or MAIN, where, fetch=entry is not None)
     if found is not None:
-        if not _startable(found):
-            message = f"PROC {found.text} takes arguments and cannot be the entry"
+        if not _startable(found) and not arguments:
+            names = ", ".join(p.name for p in _needed(found))
+            message = (
+                f"PROC {found.text} takes arguments: name them with the entry, as "
+                f"{found.text}({names}), with values or names of data in their places"
+            )
             raise SourceError(message, found.span)
         return found, ()
     routines = [r for module in own for r in module.routines if r.kind == "proc"]
@@ -46,15 +81,24 @@ def choose_entry(
         if chosen is not None:
             message = f"there is no PROC main; {why}, {chosen.text}, is read"
             return chosen, (Note(message, span=chosen.span),)
-    if not candidates:
+    if not routines:
         raise SourceError("there is no procedure without parameters that could be run", where)
-    message = unknown_name("procedure", entry or MAIN, [r.text for r in candidates])
-    names = ", ".join(r.text for r in candidates)
-    raise SourceError(f"{message.split(':')[0]}: choose one of {names} as the entry", where)
+    message = unknown_name("procedure", entry or MAIN, [r.text for r in routines])
+    names = listed(entry_points(data, own))
+    offer = "give those with arguments theirs, as Pick(1,p10)" if not candidates else ""
+    raise SourceError(
+        f"{message.split(':')[0]}: choose as the entry one of {names}; all drives each of them"
+        f"{f'; {offer}' if offer else ''}",
+        where,
+    )
+
+
+def _needed(routine: Routine) -> list[Parameter]:
+    return [p for p in routine.parameters if not p.optional]
 
 
 def _startable(routine: Routine) -> bool:
-    return all(p.optional for p in routine.parameters)
+    return not _needed(routine)
 
 
 def _procedure(
@@ -83,7 +127,7 @@ def _fallback(
     if len(alike) == 1:
         return alike[0], "the only procedure with 'main' in its name"
     called = _called(own)
-    roots = [r for r in candidates if r.name not in called and routine_moves(data, r)]
+    roots = [r for r in candidates if r.name not in called and count_moves(data, r)]
     if len(roots) == 1:
         return roots[0], "the only procedure that moves the robot and that no other calls"
     return None, ""

@@ -125,7 +125,7 @@ def _data_by_name(run: Running, invoke: Invoke, scope: Scope) -> None:
         run.out.keep(invoke.span, invoke.text, "the datum that it names is not known here")
         if invoke.name == "getdataval" and isinstance(given, Name):
             reason = f"what {invoke.text} gave {given.text}"
-            run.evaluator.fill(given, Unknown(reason, invoke.span, given.text), scope)
+            run.evaluator.fill(given, Unknown(reason, invoke.span, given.text), scope, invoke.name)
         return
     datum = Name(invoke.span, str(named).lower(), found.name)
     if invoke.name == "setdataval":
@@ -149,7 +149,7 @@ def _calibrate(run: Running, invoke: Invoke, scope: Scope) -> None:
     for error in given[-2:]:
         if isinstance(error, Name) and scope.find(error.name) is not None:
             reason = f"what {invoke.text} gave {error.text}"
-            run.evaluator.fill(error, Unknown(reason, invoke.span, error.text), scope)
+            run.evaluator.fill(error, Unknown(reason, invoke.span, error.text), scope, invoke.name)
 
 
 def _book_error(run: Running, invoke: Invoke, scope: Scope) -> None:

@@ -80,8 +80,8 @@ class Interpreter:
     ) -> None:
         self.data = data
         self.settings = SettingsInForce()
-        self.out = Transcript(lambda span: texts[span.file][span.start : span.end])
         self.course = Course(options.answers)
+        self.out = Transcript(lambda span: texts[span.file][span.start : span.end], self.course)
         self.meter = Meter(options.limits, options.executed)
         self.convert = Converter(self.settings, self.out.notes, external_axes, options.robot)
         self.position = Position(options.robot, external_axes, options.start)
@@ -103,10 +103,10 @@ class Interpreter:
 
     # --------------------------------------------------------------------- the run
 
-    def run(self, entry: tree.Routine) -> None:
-        """Execute a procedure without parameters to its end."""
+    def run(self, entry: tree.Routine, arguments: tuple[tree.Argument, ...] = ()) -> None:
+        """Execute a procedure to its end."""
         with suppress(_Finished):
-            self._call(entry, (), self.data.scope_of(entry), entry.span)
+            self._call(entry, arguments, self.data.scope_of(entry), entry.span)
 
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""
@@ -153,6 +153,10 @@ class Interpreter:
             found = [cell for s in scopes for cell in s.cells.values() if not cell.constant]
         return Snapshot(found)
 
+    def pause(self, text: str, span: Span) -> None:
+        """The robot stands at a loop that waits."""
+        self.out.pause(text, span)
+
     def note_once(self, kind: str, message: str, span: Span) -> None:
         """A note, unless one of its kind was taken before."""
         self.out.notes.once(kind, message, span)
@@ -174,6 +178,8 @@ class Interpreter:
 
     def leave_out(self, invoke: tree.Invoke, why: str) -> None:
         """Step over a move that cannot be driven."""
+        if self._open_move(SourceError(why, invoke.span), invoke.span):
+            return
         self.out.keep(invoke.span, invoke.text, "", stops=True)
         self.course.decided(invoke.span, f"{why}: the move is left out")
         self.left_out = self.left_out or Note(why, span=invoke.span)
@@ -315,7 +321,11 @@ class Interpreter:
         handler = INTERPRETED.get(name)
         if handler is not None:
             self.evaluator.reader = self.out.move_index if name in MOVING else ELSEWHERE
-            handler(self, statement, scope)
+            try:
+                handler(self, statement, scope)
+            except SourceError as error:
+                if name not in MOVING or not self._open_move(error, statement.span):
+                    raise
             self.evaluator.reader = ELSEWHERE
             return
         if name in KEPT:
@@ -327,19 +337,35 @@ class Interpreter:
         else:
             self._missing(statement, scope)
 
+    def _open_move(self, error: SourceError, span: Span) -> bool:
+        """Whether the program goes on behind a move that cannot be read, which stays open."""
+        if not self.out.leaves_open(error, span):
+            return False
+        self.meter.move(span)
+        self.position.lose()
+        self.place = object()
+        return True
+
     def _missing(self, statement: tree.Invoke, scope: Scope) -> None:
         """Step over a routine whose text is not at hand, and that is no instruction.
 
         Raises:
             SourceError: it is an instruction that is refused, or looks like a slip of the pen.
         """
-        if self.course.skips(statement.text):
+        span = statement.span
+        if statement.name in self.course.answers.skipped:
+            self.course.skips(statement.text, span)
             why = "it is skipped, as the answers say"
-            self.out.keep(statement.span, statement.text, why)
+            self.out.keep(span, statement.text, why, device=True)
         else:
-            message = refusal(statement, self.data)
-            self.out.keep(statement.span, statement.text, "")
-            self.course.decided(statement.span, message)
+            try:
+                message = refusal(statement, self.data)
+            except SourceError as error:
+                if not self._open_move(error, span):
+                    raise
+                return
+            self.out.keep(span, statement.text, "", device=True)
+            self.course.stepped_over(statement.text, span, message)
             self._leave_open(statement, scope)
         self.evaluator.outputs.forget()
 
@@ -392,7 +418,7 @@ class Interpreter:
             if cell is not None and not cell.constant:
                 name = argument.value.text
                 unknown = Unknown(f"what {statement.text} gave {name}", statement.span, name)
-                self.evaluator.fill(argument.value, unknown, scope)
+                self.evaluator.fill(argument.value, unknown, scope, statement.name)
 
     def note_undeclared(self, name: tree.Name) -> None:
         message = f"'{name.text}' is written and not declared in what is at hand: it is taken to "
@@ -405,6 +431,13 @@ class Interpreter:
         return replace(statement, arguments=tuple(present(statement.arguments, scope)))
 
     def _late(self, statement: tree.LateInvoke, scope: Scope) -> None:
+        value = self.evaluator.evaluate(statement.routine, scope)
+        if isinstance(value, Unknown) and self.course.skips(
+            self.text_of(statement.routine), statement.span
+        ):
+            self.evaluator.outputs.forget()
+            self.out.keep(statement.span, "a call by name", "", device=True)
+            return
         name = self.evaluator.known(statement.routine, scope, STRING, "the routine to call")
         assert isinstance(name, str)
         self.call_named(name, statement.arguments, scope, statement.span)
@@ -420,8 +453,9 @@ class Interpreter:
         _, _, own = name.rpartition(":")
         routine = self.data.fetched_routine(own.strip().lower(), scope.home, span)
         if routine is None or routine.kind != "proc":
-            if self.course.skips(name):
+            if self.course.skips(name, span):
                 self.evaluator.outputs.forget()
+                self.out.keep(span, name, "", device=True)
                 return
             known = self.data.routine_names("proc")
             raise ProgramError(unknown_name("routine", name, known), span, NUMBERS[NO_ROUTINE])

@@ -30,16 +30,17 @@ from functools import partial
 from pathlib import Path
 
 from ....core.errors import SourceError
+from ....core.program.entry_point import ALL, entry_call
 from ....core.program.program import Program
 from ....core.source.collection import collection_paused
 from ....core.source.reading import Files, ReadOptions, read_with
 from ....core.source.text.files import SourceFile, SourceText, decode
 from ..motion.targets import axis_kinds
 from ..syntax.parser import parse
-from ..syntax.tree import Module
+from ..syntax.tree import Argument, Module
 from ..values.data import Globals
 from ..values.library import Library
-from .entry import choose_entry
+from .entry import choose_entry, entry_arguments, entry_points
 from .files import MODULES, PROGRAM, beside, collect, loaded
 from .interpreter import Interpreter
 
@@ -131,10 +132,25 @@ def _program(
         Library(beside(files, main, names)),
     )
     own: list[Module] = [m for n in names if n == main or main not in parsed for m in parsed[n]]
-    entry, notes = choose_entry(data, own, options.entry, main)
+    name, given = entry_call(options.entry)
+    if name == ALL and data.routines.get(ALL) is None:
+        return Program((), own[0].text, entries=entry_points(data, own))
+    entry, notes = choose_entry(data, own, name, main, given is not None)
     texts = {name: file.text for name, file in files.items()}
+    arguments: tuple[Argument, ...] = ()
+    if given:
+        source, arguments = entry_arguments(entry.text, given)
+        texts[source.file] = source.text
     run = Interpreter(data, texts, options, external_axes or axis_kinds(options.robot))
-    run.run(entry)
+    run.run(entry, arguments)
     if run.left_out is not None and not run.out.move_index:
         raise SourceError(f"no move can be driven: {run.left_out.message}", run.left_out.span)
-    return Program(run.statements(), data.module_of(entry).text, notes=(*notes, *run.notes()))
+    driven = run.out.move_index > 0
+    return Program(
+        run.statements(),
+        data.module_of(entry).text,
+        notes=(*notes, *run.notes()),
+        questions=run.course.questions(),
+        entries=() if driven else entry_points(data, own),
+        cycle=run.course.cycle,
+    )

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import json
+import math
+import re
 from collections.abc import Callable
 
-from ....core.errors import SourceError, Span
-from ....core.source.execution.answers import Answer, Course
+from ....core.errors import Span
+from ....core.program.question import Answer, QuestionKind
+from ....core.source.execution.answers import About, AnswerError, Course, Fields
 from .elements import array_mismatch
-from .types import Foreign, RecordType, Scalar, Type, Value
+from .question_kinds import example_of, type_in_words
+from .types import STRING, Foreign, RecordType, Scalar, Type, Value
+
+_TRUTH = re.compile(r"\b(TRUE|FALSE)\b", re.IGNORECASE)
 
 
 class TypedAnswers:
@@ -21,29 +28,44 @@ class TypedAnswers:
         """Under which the user may answer the expression at a place."""
         return " ".join(self._text_of(span).split())
 
-    def ask(self, span: Span, type_: Type | None, sizes: tuple[int, ...] = ()) -> Value | None:
+    def ask(
+        self,
+        span: Span,
+        type_: Type | None,
+        sizes: tuple[int, ...] = (),
+        kind: QuestionKind | None = None,
+    ) -> Value | None:
         """The user's answer to the expression at a place, None if there is none.
 
         Args:
             type_: of the answer, None if it is not known.
+            kind: what it is that is asked; None for what comes of something else that is.
 
         Raises:
-            SourceError: the answer is of another type.
+            AnswerError: the answer is of another type.
         """
-        return self.ask_by(self.key(span), span, type_, sizes)
+        return self.ask_by(self.key(span), span, type_, sizes, kind)
 
     def ask_by(
-        self, key: str, span: Span, type_: Type | None, sizes: tuple[int, ...]
+        self,
+        key: str,
+        span: Span,
+        type_: Type | None,
+        sizes: tuple[int, ...],
+        kind: QuestionKind | None = None,
     ) -> Value | None:
         """The same under a key."""
-        answer = self._course.value(key) if key else None
+        about = None
+        if kind is not None and not isinstance(type_, Foreign):
+            about = About(span, kind, type_in_words(type_, sizes), example_of(type_, sizes))
+        answer = self._course.value(key, about) if key else None
         if answer is None:
             return None
         return _free(answer) if type_ is None else _typed(answer, type_, sizes, key, span)
 
     def assumed(self, span: Span, message: str) -> None:
         """Note what is taken where there is no answer."""
-        self._course.decided(span, message)
+        self._course.decided(span, message, listed=False)
 
     @property
     def guessed(self) -> bool:
@@ -66,12 +88,12 @@ def _typed(answer: Answer, type_: Type, sizes: tuple[int, ...], key: str, span: 
     """An answer as a value of a type, or an array of it; 0 and 1 stand for FALSE and TRUE.
 
     Raises:
-        SourceError: it is none.
+        AnswerError: it is none.
     """
     value = _converted(answer, type_, sizes)
     wrong = array_mismatch(value, type_, sizes)
     if wrong is not None:
-        raise SourceError(f"the answer to '{key}': {wrong}", span)
+        raise AnswerError(f"the answer to '{key}': {wrong}", span)
     return value
 
 
@@ -84,7 +106,39 @@ def like_signals(left: Value, right: Value) -> tuple[Value, Value]:
     return left, right
 
 
+def _aggregate(text: str) -> Answer:
+    """``[[1,2,3],TRUE,"text"]`` as a value; the text itself if it is none."""
+    try:
+        return _parsed(json.loads(_TRUTH.sub(lambda found: found[0].lower(), text)))
+    except (ValueError, RecursionError):
+        return text
+
+
+def _parsed(item: object) -> Answer:
+    if isinstance(item, list):
+        return tuple(map(_parsed, item))
+    if isinstance(item, bool | str):
+        return item
+    if isinstance(item, int | float) and math.isfinite(item):
+        return float(item)
+    raise ValueError("no value of RAPID")
+
+
+def _in_order(fields: Fields, type_: RecordType) -> Answer:
+    """The components of a record in its order; those that are left out have examples' values."""
+    given = {name.lower(): part for name, part in fields}
+    usual = example_of(type_)
+    if not isinstance(usual, tuple) or not given.keys() <= type_.components.keys():
+        return fields
+    pairs = zip(type_.components, usual, strict=True)
+    return tuple(given.get(name, part) for name, part in pairs)
+
+
 def _converted(answer: Answer, type_: Type, sizes: tuple[int, ...]) -> Value:
+    if isinstance(answer, str) and (type_ is not STRING or sizes) and answer.startswith("["):
+        answer = _aggregate(answer)  # as RAPID writes it
+    if isinstance(answer, Fields) and isinstance(type_, RecordType):
+        answer = _in_order(answer, type_)
     if isinstance(answer, tuple):
         if sizes:
             return tuple(_converted(item, type_, sizes[1:]) for item in answer)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Protocol
 
 from ....core.errors import SourceError, Span
+from ....core.program.question import QuestionKind
 from ....core.source.execution.answers import Course
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.provenance import ELSEWHERE, Reads
@@ -31,6 +32,7 @@ from .located import Located
 from .operators import OperandError, apply, negate
 from .predefined import RECORDS
 from .provenance import Literal, source_of_literal
+from .question_kinds import kind_brought_by
 from .scope import Scope, Variable
 from .types import (
     BOOL,
@@ -198,11 +200,15 @@ class Evaluator:
 
     # ------------------------------------------------------------------- answers
 
-    def fill(self, target: tree.Name, unknown: Unknown, scope: Scope) -> None:
-        """An instruction writes a datum: the user's answer, or what is not known."""
+    def fill(self, target: tree.Name, unknown: Unknown, scope: Scope, by: str) -> None:
+        """An instruction writes a datum: the user's answer, or what is not known.
+
+        Args:
+            by: name of the instruction, lower case.
+        """
         found = self.locate(target, scope, asking=False)
         sizes = found.cell.dimensions if found.cell is not None and not target.path else ()
-        answer = self.answers.ask(target.span, found.type, sizes)
+        answer = self.answers.ask(target.span, found.type, sizes, kind_brought_by(by))
         if answer is None:
             one = default_of(found.type)
             answer = replace(unknown, nominal=None if one is None else filled(one, sizes))
@@ -384,7 +390,11 @@ class Evaluator:
             if held is not None:
                 return Located(held, None, None)
             sizes = found.cell.dimensions if found.cell is not None and not name.path else ()
-            answer = self.answers.ask(name.span, found.type, sizes)
+            kind = QuestionKind.DATUM if found.cell is not None else QuestionKind.SIGNAL
+            first = found.cell is None or (
+                isinstance(found.value, Unknown) and found.value.key == name.text
+            )
+            answer = self.answers.ask(name.span, found.type, sizes, kind if first else None)
             if (
                 answer is None
                 and not name.path

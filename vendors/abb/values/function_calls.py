@@ -22,6 +22,7 @@ from .located import Located
 from .operators import OperandError, is_vector
 from .outputs import READING
 from .provenance import constant, source_of_literal
+from .question_kinds import kind_brought_by
 from .scope import Scope, Variable, unknown_name
 from .types import NUM, Type, Unknown, Value, find_unknown, mismatch
 
@@ -57,7 +58,7 @@ class Evaluates(Protocol):
     def assign(self, target: Name, value: Value, scope: Scope) -> None:
         """``target := value``"""
 
-    def fill(self, target: Name, unknown: Unknown, scope: Scope) -> None:
+    def fill(self, target: Name, unknown: Unknown, scope: Scope, by: str) -> None:
         """A datum gets the user's answer, or what is not known."""
 
     def output(self, signal: Expression | None, asked: Span, scope: Scope) -> Value | None:
@@ -86,7 +87,8 @@ def function_value(
     value = _value(evaluator, run, special, call, scope)
     if not isinstance(value, Unknown):
         return value
-    answer = evaluator.answers.ask(call.span, STATE.get(call.name))
+    kind = kind_brought_by(call.name) if value.key == evaluator.answers.key(call.span) else None
+    answer = evaluator.answers.ask(call.span, STATE.get(call.name), kind=kind)
     return value if answer is None else answer
 
 
@@ -234,7 +236,7 @@ def _read_value(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
         raise SourceError("StrToVal takes a string and a datum", call.span)
     text = evaluator.evaluate(given[0], scope)
     if isinstance(text, Unknown):
-        evaluator.fill(given[1], text, scope)
+        evaluator.fill(given[1], text, scope, call.name)
         return text
     found = evaluator.locate(given[1], scope, asking=False)
     value = literal_value(text) if isinstance(text, str) else None

@@ -7,14 +7,15 @@ from contextlib import suppress
 from dataclasses import replace
 
 from ....core.errors import SourceError
-from ....core.source.execution.answers import Course
+from ....core.source.execution.answers import About, Course
 from ....core.source.execution.provenance import ELSEWHERE
 from ....core.source.execution.scopes import unknown_name
 from ..motion.bas import Basis
 from ..motion.inline_forms import Function
 from ..syntax.tree import Call, Invoke, Name
 from ..values.data import Data
-from ..values.evaluator import Evaluator
+from ..values.elements import EXPECTED
+from ..values.evaluator import Evaluator, brought_by
 from ..values.functions import COMPUTED
 from ..values.scope import Scope
 from ..values.values import Array, Struct, Unknown, Value, supposed
@@ -72,9 +73,9 @@ class Calls:
             if call.name in NATIVE:
                 self._basis.invoke(call, scope)
                 return
-            if self._course.skips(call.text):
-                self._data.outputs.forget()
-                self._keeping.keep(statement.span, call.text, "as the answers say")
+            if call.name in self._course.answers.skipped:
+                self._course.skips(call.text, call.span)
+                self._skip(statement, "as the answers say")
                 return
             table = kept(call.name)
             if table is not None:
@@ -85,6 +86,12 @@ class Calls:
             self._step_over(statement, scope)
             return
         self._routines.run(*found, call, scope)
+
+    def _skip(self, statement: Invoke, why: str) -> None:
+        """Step over a routine, as if it moved nothing."""
+        call = statement.call
+        self._data.outputs.forget()
+        self._keeping.keep(statement.span, call.text, why, device=True)
 
     def _keep_call(self, statement: Invoke, why: Kept, scope: Scope) -> None:
         if why.writes:
@@ -102,6 +109,12 @@ class Calls:
             if cell is None or cell.constant or cell.signal is not None:
                 continue
             if any(isinstance(step, str) for step in argument.path):
+                continue
+            about = About(argument.span, brought_by(call.name), *EXPECTED.get(cell.type, ("",)))
+            answer = self._course.value(argument.text, about)
+            if answer is not None:
+                value = self._evaluator.names.answered(answer)
+                self._evaluator.assign(argument, value, scope, call.span)
                 continue
             unknown = Unknown(f"what {call.text} gave {argument.text}", call.span)
             before = self._evaluator.names.settled(cell)
@@ -123,7 +136,9 @@ class Calls:
             "it is stepped over as if it moved nothing: put its .src beside the program, name it "
             f'with the other files, or say that it is so by [calls] {call.text} = "skip"'
         )
-        self._keeping.keep_missing(statement.span, unknown_name("routine", call.text, known, offer))
+        message = unknown_name("routine", call.text, known, offer)
+        self._course.stepped_over(call.text, statement.span, message)
+        self._keeping.keep(statement.span, call.text, "", device=True)
 
     def call_function(self, call: Call, scope: Scope) -> Value | None:
         """The value of a function of the program or of KUKA's own files."""

@@ -10,7 +10,7 @@ from ....core.errors import SourceError, Span
 from ....core.source.execution.answers import Course
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
-from ....core.source.execution.transcript import Notes
+from ....core.source.execution.transcript import Transcript
 from ..motion.own_position import OwnPosition
 from ..motion.position import Position
 from ..values.changes import Snapshot
@@ -31,7 +31,7 @@ class KrlHost:
         scopes: of the routines under way, the innermost last.
         position: follows the robot.
         own_position: is asked by the program.
-        notes: takes notes.
+        transcript: takes notes and pauses.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class KrlHost:
         scopes: Sequence[Scope],
         position: Position,
         own_position: OwnPosition,
-        notes: Notes,
+        transcript: Transcript,
     ) -> None:
         self.course = course
         self.meter = meter
@@ -52,7 +52,7 @@ class KrlHost:
         self._scopes = scopes
         self._position = position
         self._own_position = own_position
-        self._notes = notes
+        self._transcript = transcript
 
     @property
     def outputs(self) -> Outputs:
@@ -84,9 +84,13 @@ class KrlHost:
 
     def note_once(self, kind: str, message: str, span: Span) -> None:
         """A note, unless one of its kind was taken before."""
-        self._notes.once(kind, message, span)
+        self._transcript.notes.once(kind, message, span)
+
+    def pause(self, text: str, span: Span) -> None:
+        """The robot stands at a loop that waits."""
+        self._transcript.pause(text, span)
 
     def finish(self, message: str, span: Span) -> NoReturn:
         """End the program here, with a note."""
-        self._notes.once("end", message, span)
+        self._transcript.notes.once("end", message, span)
         raise Finished

@@ -7,10 +7,11 @@ answered by the user or decided by rule (`core.source.answers`), and refused whe
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 
 from ....core.errors import LeftOpenError, Note, SourceError, Span
+from ....core.program.entry_point import EntryPoint
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.answers import Course
@@ -95,7 +96,7 @@ class Interpreter:
         self._data = data = Data(library)
         self._course = course = Course(options.answers)
         self._meter = meter = Meter(options.limits, options.executed)
-        self._transcript = transcript = Transcript(data.text)
+        self._transcript = transcript = Transcript(data.text, course)
         notes = transcript.notes
         self._advance = AdvanceRun()
         self._keeping = keeping = Keeping(transcript, self._advance)
@@ -110,10 +111,10 @@ class Interpreter:
         targets = Targets(robot, position, notes.once)
         basis = Basis(data, evaluator, config, notes, self._system_changed)
         tree = KrlTree(data, evaluator.names, scopes)
-        analysis = Analysis(tree)
+        self._analysis = analysis = Analysis(tree)
         writes = OutputWrites(data, evaluator.names, tree, analysis)
         self._triggers = Triggers(evaluator, transcript, writes)
-        self._motions = motions = MotionReader(
+        self._motions = MotionReader(
             data,
             evaluator,
             placements,
@@ -125,7 +126,9 @@ class Interpreter:
             transcript,
             self._system_changed,
         )
-        host = KrlHost(course, meter, data, evaluator.names, scopes, position, own_position, notes)
+        host = KrlHost(
+            course, meter, data, evaluator.names, scopes, position, own_position, transcript
+        )
         rules = Rules(analysis, host)
         waited = Waited(data, evaluator, course)
         self._flow = flow = Flow(
@@ -135,6 +138,7 @@ class Interpreter:
             **InlineForms(basis, data).functions(),
             **Kinematics(robot, evaluator, placements, targets, position, notes).functions(),
         }
+        self._position = position
         self._routines = Routines(data, evaluator, meter, scopes, flow.run_body)
         self._calls = Calls(
             data, evaluator, course, self._routines, basis, functions, writes, keeping
@@ -142,7 +146,7 @@ class Interpreter:
         waits = Waits(evaluator, waited, writes, transcript, keeping)
         self._handlers: dict[type, Callable[..., None]] = {
             Assign: self._assign,
-            MotionInstruction: motions.read,
+            MotionInstruction: self._motion,
             Invoke: self._calls.invoke,
             If: flow.if_,
             For: flow.for_,
@@ -167,9 +171,24 @@ class Interpreter:
 
     # ---------------------------------------------------------------------- the run
 
-    def run(self, entry: Routine) -> None:
-        """Execute a routine to its end; its parameters have no values."""
-        call = Call(entry.span, entry.name, entry.text, ())
+    @property
+    def driven(self) -> bool:
+        """Whether the robot was moved."""
+        return self._transcript.move_index > 0
+
+    def entry_points(self, routines: Sequence[Routine]) -> tuple[EntryPoint, ...]:
+        """Those of the routines that return nothing."""
+        return tuple(
+            EntryPoint(
+                r.text, tuple(p.name for p in r.parameters), self._analysis.move_count(r.body)
+            )
+            for r in routines
+            if r.returns is None
+        )
+
+    def run(self, entry: Routine, arguments: tuple[Expression | None, ...] = ()) -> None:
+        """Execute a routine to its end; parameters that are not given have no values."""
+        call = Call(entry.span, entry.name, entry.text, arguments)
         scope = Scope("the entry", self._library.main)
         with suppress(Finished):
             self._routines.run(entry, self._library.main, call, scope)
@@ -184,6 +203,11 @@ class Interpreter:
         """What is to be said about the run."""
         data = (*self._library.notes, *self._data.notes)
         return (*data, *self._transcript.notes.notes(), *self._course.notes())
+
+    @property
+    def course(self) -> Course:
+        """What was decided, and asked."""
+        return self._course
 
     def _function(self, call: Call, scope: Scope) -> Value | None:
         return self._calls.call_function(call, scope)
@@ -230,6 +254,15 @@ class Interpreter:
             self._keeping.stop(span)
             self._advance.stopped = False
         return value
+
+    def _motion(self, statement: MotionInstruction, scope: Scope) -> None:
+        try:
+            self._motions.read(statement, scope)
+        except SourceError as error:
+            if not self._transcript.leaves_open(error, statement.span):
+                raise
+            self._meter.move(statement.span)
+            self._position.left_out(statement.span)
 
     def _assign(self, statement: Assign, scope: Scope) -> None:
         target = statement.target

@@ -20,19 +20,16 @@ class Keeping:
         self._transcript = transcript
         self._advance = advance
 
-    def keep(self, span: Span, name: str, why: str, stops: bool = False) -> None:
+    def keep(
+        self, span: Span, name: str, why: str, stops: bool = False, device: bool = False
+    ) -> None:
         """Keep a statement as it stands, see `Transcript.keep`.
 
         So is the ``CONTINUE`` that lets the robot pass it.
         """
         if stops and self._advance.passed:
             self._transcript.emit(Opaque("CONTINUE", span=span))
-        self._transcript.keep(span, name, why, stops and not self._advance.passed)
-
-    def keep_missing(self, span: Span, message: str) -> None:
-        """Keep the call of a routine whose text is not at hand."""
-        self._transcript.keep(span, "", "", stops=True)
-        self._transcript.notes.count(message, span)
+        self._transcript.keep(span, name, why, stops and not self._advance.passed, device)
 
     def stop(self, span: Span) -> None:
         """Something stops the advance run, and so the robot, unless ``CONTINUE`` lets it pass."""

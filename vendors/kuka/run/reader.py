@@ -29,10 +29,13 @@ component of ``$APO`` that counts.
 from __future__ import annotations
 
 from ....core.errors import Note, SourceError, Span, UnknownNameError
+from ....core.program.entry_point import ALL, entry_call, listed
 from ....core.program.program import Program
 from ....core.source.collection import collection_paused
 from ....core.source.reading import Files, ReadOptions
-from ..syntax.tree import Routine
+from ....core.source.text.files import SourceText
+from ..syntax.parser import parse
+from ..syntax.tree import Expression, Invoke, Routine
 from ..values.library import Library, suffix_of
 from .interpreter import Interpreter
 from .suffixes import COMPANIONS
@@ -54,19 +57,62 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
         raise SourceError(COMPANIONS[".dat"], start)
     with collection_paused():
         library = Library(files, main)
-        entry, notes = _entry(library, options.entry, start)
+        name, given = entry_call(options.entry)
+        if name == ALL and ALL not in library.main.routines:
+            points = Interpreter(library, options).entry_points(library.main_unit.routines)
+            return Program((), library.main.stem, entries=points)
+        try:
+            entry, notes = _entry(library, name, start, given is not None)
+        except UnknownNameError as error:
+            points = Interpreter(library, options).entry_points(library.main_unit.routines)
+            raise SourceError(
+                f"there is no DEF '{error.name}': choose as the entry one of {listed(points)}; all "
+                "drives each of them",
+                start,
+            ) from None
+        arguments = _arguments(library, entry, given)
         run = Interpreter(library, options)
         try:
-            run.run(entry)
+            run.run(entry, arguments)
         except RecursionError:
             raise SourceError(
                 "expressions, blocks and calls are nested too deeply", entry.span
             ) from None
-        return Program(run.statements(), entry.text, notes=(*notes, *run.notes()))
+        return Program(
+            run.statements(),
+            entry.text,
+            notes=(*notes, *run.notes()),
+            questions=run.course.questions(),
+            entries=() if run.driven else run.entry_points(library.main_unit.routines),
+            cycle=run.course.cycle,
+        )
 
 
-def _entry(library: Library, wanted: str | None, start: Span) -> tuple[Routine, tuple[Note, ...]]:
-    """The routine to run."""
+def _arguments(library: Library, entry: Routine, text: str | None) -> tuple[Expression | None, ...]:
+    """The arguments that a user gives to the entry.
+
+    Raises:
+        SourceError: they are no arguments in KRL.
+    """
+    if not text:
+        return ()
+    source = SourceText(f"DEF entry()\n{entry.text}({text})\nEND\n", "--entry")
+    library.texts[source.file] = source.text
+    found = parse(source).routines[0].body.statements
+    if len(found) != 1 or not isinstance(found[0], Invoke):
+        raise SourceError(f"'{text}' are no arguments", source.span(0, 0))
+    return found[0].call.arguments
+
+
+def _entry(
+    library: Library, wanted: str | None, start: Span, given: bool
+) -> tuple[Routine, tuple[Note, ...]]:
+    """The routine to run.
+
+    Raises:
+        UnknownNameError: there is none of that name.
+        SourceError: the file holds no program.
+    """
     routines = library.main_unit.routines
     if not routines:
         raise SourceError(
@@ -75,9 +121,8 @@ def _entry(library: Library, wanted: str | None, start: Span) -> tuple[Routine, 
     if wanted is not None:
         found = library.main.routines.get(wanted.lower())
         if found is None:
-            error = UnknownNameError("entry (DEF)", wanted, [r.text for r in routines])
-            raise SourceError(str(error), start)
-        return found, _open_arguments(found)
+            raise UnknownNameError("entry (DEF)", wanted, [r.text for r in routines])
+        return found, () if given else _open_arguments(found)
     named = library.main.routines.get(library.main.stem)
     if named is not None and named.returns is None:
         return named, _open_arguments(named)

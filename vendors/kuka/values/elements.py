@@ -5,12 +5,14 @@ What nothing sets is answered by the user, or is an `Unknown`.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol
 
 from ....core.errors import SourceError, Span
-from ....core.source.execution.answers import Answer, Course
+from ....core.program.question import Answer, QuestionKind
+from ....core.source.execution.answers import About, Course, Fields
 from ....core.source.execution.suppose import is_open
 from ..syntax.tree import Expression, Name
 from .advance_run import AdvanceRun
@@ -49,6 +51,30 @@ class Expressions(Protocol):
 
     def number(self, expression: Expression, scope: Scope, use: str) -> float:
         """A known number; ``use`` says in messages what needs it."""
+
+
+_FRAME = dict.fromkeys("XYZABC", 0.0)
+_AXES = {f"A{k}": 0.0 for k in range(1, 7)}
+EXPECTED: dict[str, tuple[str, Answer]] = {
+    "bool": ("true or false", False),
+    "int": ("whole number", 0.0),
+    "real": ("number", 0.0),
+    "char": ("text", ""),
+    **dict.fromkeys(("frame", "pos", "e6pos"), ("position", Fields(_FRAME.items()))),
+    **dict.fromkeys(("axis", "e6axis"), ("axis values", Fields(_AXES.items()))),
+}
+"""Types of KRL as an answer's, in words and by an example."""
+_TRUTHS = frozenset({"$in", "$out", "$flag", "$cycflag"})
+_NUMBER = r"[-+]?\d*\.?\d+(?:[eE][-+]?\d+)?"
+_STRUCTURE = re.compile(rf"\{{\s*[A-Za-z]\w*\s+{_NUMBER}(?:\s*,\s*[A-Za-z]\w*\s+{_NUMBER})*\s*\}}")
+"""``{X 700,Y 0,Z 500}``"""
+
+
+def kind_of(name: str) -> QuestionKind:
+    """What a system variable tells, by its name in lower case."""
+    if re.fullmatch(r"\$(rob_)?timer(_\w+)?|\$date|\$sen_\w+|\$torque\w*|\$curr_\w+", name):
+        return QuestionKind.SENSOR
+    return QuestionKind.SIGNAL
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,14 +124,17 @@ class Names:
             open_ = self._undeclared(node, path, f", which {cell.writer} writes")
             return replace(open_, held=value) if isinstance(open_, Unknown) else open_
         if value is None or isinstance(value, Unknown):
-            answered = self._answer(node, path)
+            unset = value is None and position is None
+            kind = QuestionKind.DATUM if unset else None
+            answered = self._answer(node, path, kind, cell.type if not path else "")
             if answered is not None:
                 return answered
             if isinstance(value, Unknown):
                 return value
             if position is not None:
                 return self._of_position(node, scope, position)
-            return Unknown(f"the value of {spelled(node.text, path)}, which is not set", node.span)
+            reason = f"the value of {spelled(node.text, path)}, which nothing sets"
+            return Unknown(reason, node.span)
         return value
 
     def _of_position(self, node: Name, scope: Scope, kind: str) -> Value:
@@ -142,7 +171,8 @@ class Names:
         if first.name in OUTPUTS and not self.course.changing(node.text):
             value = self._whole(first, last, scope, self.data.outputs.value)
         if value is None:
-            value = self._answer(node, ())
+            wide = last is not None
+            value = self._answer(node, (), QuestionKind.SIGNAL, "int" if wide else "bool")
         if value is None:
             value = self._whole(first, last, scope, self._bit(first))
         return Unknown(f"the value of {node.text}", node.span) if value is None else value
@@ -289,14 +319,25 @@ class Names:
             made.shipped = shipped
         return made
 
-    def _answer(self, node: Name, path: Path) -> Value | None:
-        answers = self.course.answers
-        if not answers.values and not answers.sequences:
-            return None
-        answer = self.course.value(spelled(node.text, path))
+    def _answer(
+        self, node: Name, path: Path, kind: QuestionKind | None = None, type_: str = ""
+    ) -> Value | None:
+        """The user's answer to a datum or a part of it.
+
+        Args:
+            kind: what is asked for; None for what comes of something else that is.
+            type_: of the datum, lower case, as far as it is known.
+        """
+        about = None if kind is None else About(node.span, kind, *EXPECTED.get(type_, (type_,)))
+        answer = self.course.value(spelled(node.text, path), about)
         return None if answer is None else self.answered(answer)
 
     def answered(self, answer: Answer) -> Value:
+        if isinstance(answer, Fields):
+            return Struct("", {name.lower(): self.answered(part) for name, part in answer})
+        if isinstance(answer, str) and _STRUCTURE.fullmatch(answer):
+            parts = (part.split() for part in answer.strip("{} ").split(","))
+            return Struct("", {name.lower(): float(number) for name, number in parts})
         if isinstance(answer, str):
             return Choice(answer[1:].lower()) if answer.startswith("#") else answer
         if isinstance(answer, tuple):
@@ -309,7 +350,10 @@ class Names:
 
     def _undeclared(self, node: Name, path: Path, why: str | None = None) -> Value:
         """The value of what nothing declares, or others write: an answer, or not known."""
-        answer = self._answer(node, path)
+        system = self.data.is_system(node.name)
+        kind = kind_of(node.name) if system or node.name in OUTPUTS else QuestionKind.DATUM
+        truths = system and node.name in _TRUTHS
+        answer = self._answer(node, path, kind, "bool" if truths else "")
         if answer is not None:
             return answer
         if why is None:

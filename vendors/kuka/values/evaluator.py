@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
 from ....core.errors import LeftOpenError, SourceError, Span
-from ....core.source.execution.answers import Course
+from ....core.program.question import QuestionKind
+from ....core.source.execution.answers import About, Course
 from ....core.source.execution.provenance import ELSEWHERE, Reads
 from ....core.source.execution.scopes import unknown_name
 from ..syntax import tree
@@ -217,7 +219,8 @@ class Evaluator:
 
     def unknown_function(self, call: tree.Call, scope: Scope) -> Value:
         """What a function gives that is not at hand: an answer, or a value that is not known."""
-        answer = self.course.value(self.data.text(call.span))
+        about = About(call.span, brought_by(call.name))
+        answer = self.course.value(self.data.text(call.span), about)
         if answer is not None:
             return self.names.answered(answer)
         return Unknown(f"the value of {call.text}()", call.span)
@@ -227,3 +230,14 @@ class Evaluator:
         known = self.data.names(scope)
         offer = "declare it, or name the .dat that does (the program's own, or $config.dat)"
         return LeftOpenError(unknown_name(kind, node.text, known, offer), node.span)
+
+
+def brought_by(name: str) -> QuestionKind:
+    """What a function brings that is not at hand, by its name in lower case."""
+    if re.match(r"krl_f|c(read|open|write)|eki_|eth|xml|sread", name):
+        return QuestionKind.CHANNEL
+    if re.match(r"msg|dialog|exists_krl|get_?msg", name):
+        return QuestionKind.OPERATOR
+    if re.match(r"rsi|sensor|ts_|touch|search|mess", name):
+        return QuestionKind.SENSOR
+    return QuestionKind.DATUM

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from ....core.errors import InputError, LeftOpenError
+from ....core.errors import InputError, LeftOpenError, SourceError
 from ....core.program.move import Wait
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.limits import Meter
@@ -31,8 +31,8 @@ from .threads import Started
 
 _CALL = 200
 """Elements of a list that are copied in the time in which a function is entered and left."""
-SKIPPED = Kept("an answer says to skip")
-_MISSING = Kept("", stops=True)
+SKIPPED = Kept("an answer says to skip", device=True)
+_MISSING = Kept("", device=True)
 REMOTE = Kept("call remote procedures and add-ons")
 _UNKNOWN_TIME = Kept("wait for a time that is not known", stops=True)
 
@@ -163,6 +163,20 @@ def _pass_arguments(
 # ------------------------------------------------------------ functions of the controller
 
 
+def _move(run: CallsRun, node: Call, scope: Scope) -> Located:
+    """A move; if it cannot be read, the robot goes where nobody knows."""
+    try:
+        return move(run, node, scope)
+    except SourceError as error:
+        span = run.texts.span_of(node)
+        if not run.out.leaves_open(error, span):
+            raise
+        run.meter.move(span)
+        run.position.left_out(span)
+        run.literals.reader = ELSEWHERE
+        return NOTHING
+
+
 def _sleep(run: CallsRun, node: Call, scope: Scope) -> Located:
     """``sleep(t)``: the robot waits, s."""
     given = bind(node, ("t",), 1, run.texts)
@@ -182,7 +196,7 @@ def _sleep(run: CallsRun, node: Call, scope: Scope) -> Located:
 
 
 _HANDLERS: dict[str, Callable[[CallsRun, Call, Scope], Located]] = {
-    **dict.fromkeys(MOVES, move),
+    **dict.fromkeys(MOVES, _move),
     **dict.fromkeys(CALLS, change),
     **KINEMATICS,
     "sleep": _sleep,
@@ -193,8 +207,9 @@ _HANDLERS: dict[str, Callable[[CallsRun, Call, Scope], Located]] = {
 
 def _other(run: CallsRun, node: Call, scope: Scope) -> Value:
     """A function that is not carried out: kept, asked for, or refused."""
-    name = node.name
-    if run.course.skips(name):
+    name, span = node.name, run.texts.span_of(node)
+    if name.casefold() in run.course.answers.skipped:
+        run.course.skips(name, span)
         run.outputs.forget()
         return run.keep(node, SKIPPED, name)
     values = [evaluate(run, argument.value, scope) for argument in node.arguments]
@@ -232,10 +247,11 @@ def _other(run: CallsRun, node: Call, scope: Scope) -> Value:
             "written in lower case and as they are",
             node,
         )
-    run.out.notes.count(
+    run.course.stepped_over(
+        name,
+        span,
         f"nobody declares the function '{name}': {did_you_mean(name, names)}it is stepped over as "
         "if it moved nothing: name the file that defines it, or say that it is so by [calls] "
         f'"{name}" = "skip"',
-        run.texts.span_of(node),
     )
     return run.keep(node, _MISSING, name)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import PurePath
 
 from ....core.errors import SourceError
+from ....core.program.entry_point import ALL, EntryPoint, listed
 from ....core.program.program import Program
 from ..syntax.traversal import all_calls
 from ..syntax.tree import Assign, Block, Call, Define
@@ -16,7 +18,13 @@ from .interpreter import Interpreter
 _USUAL = ("main", "program", "Program", "prog", "myprog", "unnamed")
 
 
-def run_program(run: Interpreter, blocks: Sequence[Block], main: str, entry: str | None) -> Program:
+def run_program(
+    run: Interpreter,
+    blocks: Sequence[Block],
+    main: str,
+    entry: str | None,
+    call: Block = (),
+) -> Program:
     """Run a program from its beginning to its end.
 
     Args:
@@ -24,6 +32,7 @@ def run_program(run: Interpreter, blocks: Sequence[Block], main: str, entry: str
         blocks: statements of all files, the main one's last.
         main: name of the main file.
         entry: name of the function to start with, None for the program's own beginning.
+        call: of that function, with arguments; empty if the user gives none.
 
     Raises:
         SourceError: there is no such function, or none that is clearly the first.
@@ -31,17 +40,30 @@ def run_program(run: Interpreter, blocks: Sequence[Block], main: str, entry: str
     for block in blocks:
         run.root.define(block)
     name = PurePath(main.replace("\\", "/")).stem
+    points = partial(_points, run, blocks)
+    if entry == ALL and run.root.function(ALL) is None:
+        return Program((), name, entries=points())
     with suppress(Finished):
         if entry is not None:
             define = _named(blocks, entry, run)
             for block in blocks:
                 run.run_top(tuple(s for s in block if isinstance(s, Assign)))
             name = define.name
-            _start(run, define)
+            if call:
+                run.run_top(call)
+            else:
+                _start(run, define)
         else:
             name = _run_top(run, blocks, name)
     run.out.check_driven()
-    return Program(run.statements(), name, notes=run.notes())
+    return Program(
+        run.statements(),
+        name,
+        notes=run.notes(),
+        questions=run.course.questions(),
+        entries=() if run.out.move_index else points(),
+        cycle=run.course.cycle,
+    )
 
 
 def _run_top(run: Interpreter, blocks: Sequence[Block], stem: str) -> str:
@@ -59,6 +81,20 @@ def _run_top(run: Interpreter, blocks: Sequence[Block], stem: str) -> str:
     define = _first(defines, stem, run)
     _start(run, define)
     return define.name
+
+
+def _points(run: Interpreter, blocks: Sequence[Block]) -> tuple[EntryPoint, ...]:
+    """The functions that the files define."""
+    return tuple(
+        EntryPoint(
+            d.name,
+            tuple(p.name for p in d.parameters if p.default is None),
+            run.analysis.move_count(d.body),
+        )
+        for block in blocks
+        for d in block
+        if isinstance(d, Define) and d.kind != "thread"
+    )
 
 
 def _start(run: Interpreter, define: Define) -> None:
@@ -80,16 +116,17 @@ def _first(defines: Sequence[Define], stem: str, run: Interpreter) -> Define:
             if define.name == name:
                 return define
     span = run.texts.span(*defines[0].head)
+    known = listed(_points(run, [tuple(defines)]))
     if not first:
         raise SourceError(
             "the file defines functions and calls none of them, and all take arguments or are "
-            "called by others: it holds no program to run",
+            "called by others: choose as the entry one of "
+            f"{known}, with arguments as pick(1, p_home); all drives each of them",
             span,
         )
-    names = ", ".join(d.name for d in first[:6])
     raise SourceError(
-        f"the file defines several functions and calls none of them: choose one of {names} as the "
-        "entry",
+        "the file defines several functions and calls none of them: choose as the entry one of "
+        f"{known}; all drives each of them",
         span,
     )
 
@@ -99,7 +136,7 @@ def _named(blocks: Sequence[Block], entry: str, run: Interpreter) -> Define:
     for define in defines:
         if define.name == entry:
             return define
-    known = ", ".join(d.name for d in defines[:8]) or "none"
+    known = listed(_points(run, blocks)) or "none"
     raise SourceError(
         f"there is no function '{entry}' to start with; the files define {known}",
         run.texts.span(0, 0),

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from ....core.program.move import Opaque
 from ....core.source.execution.endings import Loop
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.host import Undecided
@@ -127,7 +128,8 @@ def loop(run: FlowRun, statement: While, scope: Scope) -> None:
     )
     if reason is not None and not entered:
         # It waits for what is not known.
-        run.out.keep(run.texts.span_of(statement), "while", "", stops=True)
+        span = run.texts.span_of(statement)
+        run.out.emit(Opaque(run.texts.text_of(statement), stops=True, span=span))
 
 
 def _always(expression: Expression) -> bool:

@@ -97,7 +97,7 @@ class Interpreter:
         self.entered: set[str] = set()
         self.threads: list[threads.Started] = []
         self.inside: list[str] = []
-        self.out = Transcript(texts.text)
+        self.out = Transcript(texts.text, self.course)
         self._carried = 0
 
     # --------------------------------------------------------------------- the run
@@ -144,6 +144,10 @@ class Interpreter:
         watched = written if names is None else names
         return Snapshot(watched, self.frames[-1].scope if self.frames else self.root)
 
+    def pause(self, text: str, span: Span) -> None:
+        """The robot stands at a loop that waits."""
+        self.out.pause(text, span)
+
     def note_once(self, kind: str, message: str, span: Span) -> None:
         """A note, unless one of this kind was taken before."""
         self.out.notes.once(kind, message, span)
@@ -175,12 +179,13 @@ class Interpreter:
         if isinstance(statement, Assign) and statement.value is call:
             node = statement
         span = self.texts.span_of(node)
-        self.out.keep(span, name, "", entry.stops)
+        self.out.keep(span, name, "", entry.stops, entry.device)
         if entry.kind:
             self.out.notes.group(entry.kind, name, span)
         if isinstance(call, StartThread):
             return Unknown(f"what {name} returns", span)
-        return answer(self, call, name)
+        unused = isinstance(statement, Evaluate) and statement.expression is call
+        return answer(self, call, name, listed=not unused)
 
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""

@@ -29,11 +29,13 @@ the closing bracket.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ....core.errors import InputError, SourceError
 from ....core.files.reading import read_bytes
+from ....core.program.entry_point import entry_call
 from ....core.source.collection import collection_paused
 from ....core.source.reading import Files, ReadOptions, read_with
 from ....core.source.text.files import LARGEST_FILE, SourceFile, read_source
@@ -85,21 +87,25 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
     Raises:
         SourceError: see `read`.
     """
+    name, arguments = entry_call(options.entry)
     ordered = [*(f for name, f in files.items() if name != main), files[main]]
+    if arguments:
+        ordered.insert(0, SourceFile("--entry", f"{name}({arguments})\n"))
     texts = Texts(ordered)
     try:
         with collection_paused():
-            return _read(texts, main, options)
+            return _read(texts, main, replace(options, entry=name), bool(arguments))
     except RecursionError:
         raise SourceError(
             "expressions, blocks and calls are nested too deeply", texts.span(0, 0)
         ) from None
 
 
-def _read(texts: Texts, main: str, options: ReadOptions) -> Program:
+def _read(texts: Texts, main: str, options: ReadOptions, given: bool) -> Program:
     blocks = [parse(texts, which) for which in range(len(texts.sources))]
+    call = blocks.pop(0) if given else ()
     run = Interpreter(texts, ScriptTree(blocks), options)
-    return run_program(run, blocks, main, options.entry)
+    return run_program(run, blocks, main, options.entry, call)
 
 
 def _check_kind(path: Path) -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from typing import Protocol
 
-from ....core.source.execution.answers import Answer, Course
+from ....core.program.question import Answer, QuestionKind
+from ....core.source.execution.answers import About, Course, Fields
 from ..syntax.texts import Texts
 from ..syntax.tree import Call, MethodCall
-from .values import Unknown, UrPose, Value
+from .values import Struct, Unknown, UrPose, Value
 
 _LONGEST = 60
 """Characters of a call that stands in messages as it is written."""
@@ -25,19 +27,28 @@ class Asked(Protocol):
         """Answers for what the text leaves open."""
 
 
-def given(run: Asked, call: Call | MethodCall) -> Value | None:
-    """What a user says that a call returns; None if nobody says it."""
-    found = run.course.value(run.texts.text_of(call))
+def given(run: Asked, call: Call | MethodCall, listed: bool = True) -> Value | None:
+    """What a user says that a call returns; None if nobody says it.
+
+    Args:
+        listed: whether it is listed among the program's questions.
+    """
+    name = call.name
+    truth = any(word in name for word in ("digital", "bool", "flag", "is_"))
+    expected: tuple[str, Answer] = ("true or false", False) if truth else ("", 0.0)
+    about = About(run.texts.span_of(call), brought_by(name), *expected)
+    found = run.course.value(run.texts.text_of(call), about if listed else None)
     return None if found is None else answered(found)
 
 
-def answer(run: Asked, call: Call | MethodCall, name: str) -> Value:
+def answer(run: Asked, call: Call | MethodCall, name: str, listed: bool = True) -> Value:
     """What a user says that a call returns, or that nobody knows it.
 
     Args:
         name: of the call, where it is too long for a message.
+        listed: see `given`.
     """
-    value = given(run, call)
+    value = given(run, call, listed)
     if value is not None:
         return value
     text = run.texts.text_of(call)
@@ -45,15 +56,35 @@ def answer(run: Asked, call: Call | MethodCall, name: str) -> Value:
     return Unknown(reason, run.texts.span_of(call))
 
 
+_BROUGHT = (
+    ("request_", QuestionKind.OPERATOR),
+    (("socket_", "rpc_", "rtde_", "ftp_"), QuestionKind.CHANNEL),
+    (("read_", "modbus_", "get_digital", "get_standard", "get_config"), QuestionKind.SIGNAL),
+    (("get_tool_", "get_analog", "get_flag", "get_euromap", "profinet_"), QuestionKind.SIGNAL),
+    (("force", "get_tcp_force", "get_joint_torques", "tool_"), QuestionKind.SENSOR),
+    (("get_steptime", "time", "random", "rq_", "cam_", "is_"), QuestionKind.SENSOR),
+)
+
+
+def brought_by(name: str) -> QuestionKind:
+    """What a function brings, by its name."""
+    found = (kind for beginnings, kind in _BROUGHT if name.startswith(beginnings))
+    return next(found, QuestionKind.DATUM)
+
+
 def answered(answer: Answer) -> Value:
     """A user's answer as a value; ``"p[…]"`` is a pose."""
+    if isinstance(answer, Fields):
+        names = tuple(name for name, _ in answer)
+        return Struct(names, tuple([answered(part) for _, part in answer]))
     if isinstance(answer, tuple):
         return tuple([answered(part) for part in answer])
     if isinstance(answer, float) and answer.is_integer() and abs(answer) < 2**53:
         return int(answer)
-    if isinstance(answer, str) and answer.startswith("p[") and answer.endswith("]"):
+    if isinstance(answer, str) and re.fullmatch(r"p?\[.*\]", answer):
         try:
-            return UrPose(*[float(part) for part in answer[2:-1].split(",")])
+            numbers = [float(part) for part in answer.strip("p[]").split(",")]
+            return UrPose(*numbers) if answer.startswith("p") else tuple(numbers)
         except (ValueError, TypeError):
             return answer
     return answer

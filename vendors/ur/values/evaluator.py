@@ -11,7 +11,8 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from ....core.errors import SourceError, Span
-from ....core.source.execution.answers import Course
+from ....core.program.question import QuestionKind
+from ....core.source.execution.answers import About, Course
 from ..syntax import tree
 from ..syntax.texts import Texts
 from .answers import answered
@@ -140,7 +141,7 @@ def _undeclared(run: Evaluation, name: tree.Name) -> Value:
 
 
 def _open(run: Evaluation, name: tree.Name, reason: str) -> Value:
-    answer = run.course.value(name.text)
+    answer = run.course.value(name.text, About(run.texts.span_of(name), QuestionKind.DATUM))
     return Unknown(reason, run.texts.span_of(name)) if answer is None else answered(answer)
 
 

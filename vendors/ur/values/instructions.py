@@ -19,12 +19,14 @@ class Kept:
         kind: for the note: what they do.
         families: beginnings of further names of the kind.
         stops: whether the robot comes to rest before them.
+        device: whether they are taken as a device's, and stepped over.
     """
 
     kind: str
     names: frozenset[str] = frozenset()
     families: tuple[str, ...] = ()
     stops: bool = False
+    device: bool = False
 
 
 MOVES = words("movej movel movep movec optimovej optimovel")

@@ -49,7 +49,7 @@ def test_a_file_of_answers_is_read(tmp_path: Path) -> None:
     course = Course(answers)
     assert course.answered_branch(span(12), 2) == 1
     assert course.passes(span(20), "x", False) == 3
-    assert course.skips("RGRIPPEROPEN") and not course.skips("rGripper")
+    assert course.skips("RGRIPPEROPEN", span()) and not course.skips("rGripper", span())
     assert [course.value(one) for one in ("DI_PART", "get_digital_in(1)")] == [True, False]
     (unasked,) = course.notes()
     assert unasked.message == (
@@ -67,7 +67,7 @@ def test_a_file_of_answers_is_read(tmp_path: Path) -> None:
         ("[value]", "did you mean 'values'"),
         ("values = 1", "is a table"),
         ("[values]\na = 1979-05-27", "a is true or false"),
-        ("[values]\na = {b = 1}", "a is true or false"),
+        ("[values]\na = {b = 1979-05-27}", "a is true or false"),
         ("[values]\na = nan", "a is too large, or no number"),
         ("[values]\na = inf", "a is too large"),
         (f"[values]\na = {10**400}", "integer of more than 64 bits"),

@@ -164,6 +164,9 @@ class Run:
     def note_once(self, kind: str, message: str, span: Span) -> None:
         self.said.append(message)
 
+    def pause(self, text: str, span: Span) -> None:
+        pass
+
     def finish(self, message: str, span: Span) -> NoReturn:
         self.said.append(message)
         raise Ended

@@ -1,0 +1,46 @@
+"""Routines that a program may begin with."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from ..display import counted
+
+ALL = "all"
+"""In the place of an entry: each of them, one after the other."""
+_CALL = re.compile(r"\s*([\w$.:]+)\s*\((.*)\)\s*", re.DOTALL)
+_SHOWN = 12
+
+
+@dataclass(frozen=True, slots=True)
+class EntryPoint:
+    """A routine that a program may begin with.
+
+    Args:
+        name: as it is declared.
+        parameters: names of those that must be given.
+        moves: statements in it, and in what it calls, that move the robot.
+    """
+
+    name: str
+    parameters: tuple[str, ...]
+    moves: int
+
+    def __str__(self) -> str:
+        arguments = f"({', '.join(self.parameters)})" if self.parameters else ""
+        return f"{self.name}{arguments} ({counted(self.moves, 'move')})"
+
+
+def listed(entries: Iterable[EntryPoint]) -> str:
+    """Entries in a message, those that move the robot first."""
+    found = sorted(entries, key=lambda entry: not entry.moves)
+    more = f" and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
+    return ", ".join(map(str, found[:_SHOWN])) + more
+
+
+def entry_call(entry: str | None) -> tuple[str | None, str | None]:
+    """A routine's name, and the text of its arguments: ``Pick(1, p10)``; None for none given."""
+    found = None if entry is None else _CALL.fullmatch(entry)
+    return (entry, None) if found is None else (found[1], found[2])

@@ -1,0 +1,103 @@
+"""What a program asks, as a file of answers that changes nothing until it is edited."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from ...files.toml_text import key_text, value_text
+from ...program.question import Answer, Question, QuestionKind
+from .answers import Fields
+
+_TABLES = {
+    "values": "stays so; a name or a call as it stands in the program",
+    "sequences": "one answer after the other; the last one stays",
+    "branches": "at a line: the branch taken, 1 for the first, 0 for ELSE or none",
+    "passes": "at a line: how often a loop runs",
+    "calls": "routines whose text is not at hand, and that move nothing",
+    "durations": "s that the robot stands at a call, a wait or an output; a signal's name will do",
+}
+_HEAD = """\
+# What {name} asks that no file says. This file changes nothing as it is: what is taken for
+# granted stands in it, and what is not known is put behind a #. Take the # away and put a value in;
+# structures may be tables {{ x = 1 }}, arrays [1, 2] or texts as the program writes them.
+"""
+_LONGEST = 90
+
+
+def answers_text(questions: Sequence[Question], name: str) -> str:
+    """A file of answers (TOML).
+
+    Args:
+        questions: of a program, as `Program.questions` has them.
+        name: of the program, for the first line.
+    """
+    lines = [_HEAD.format(name=" ".join(name.split()))]
+    several = len({question.span.file for question in questions}) > 1
+    for table, about in _TABLES.items():
+        mine = [q for q in questions if q.table == table]
+        if not mine:
+            continue
+        lines.append(f"[{table}]  # {about}")
+        for kind in QuestionKind:
+            group = [q for q in mine if q.kind is kind]
+            if group and table == "values":
+                lines.append(f"# -- {kind.value} --")
+            for question in group:
+                lines += _entry(question, several)
+        lines.append("")
+    if len(lines) == 1:
+        lines.append("# It asks nothing.\n")
+    return "\n".join(lines)
+
+
+def grouped(questions: Sequence[Question]) -> list[str]:
+    """A line a kind: how many, and the first of them with its place."""
+    told = []
+    for kind in QuestionKind:
+        group = [q for q in questions if q.kind is kind and not q.answered]
+        if group:
+            first = group[0]
+            named = first.key if len(first.key) <= _LONGEST else f"{first.key[:_LONGEST]}…"
+            at = f"{first.span.file}:{first.span.line}"
+            shown = at if first.table in ("branches", "passes") else f"{named} ({at})"
+            more = f" and {len(group) - 1} more" if len(group) > 1 else ""
+            told.append(f"{kind.value}: {shown}{more}")
+    return told
+
+
+def counts(questions: Sequence[Question]) -> Counter[QuestionKind]:
+    """How many of each kind nobody has answered."""
+    return Counter(q.kind for q in questions if not q.answered)
+
+
+def _entry(question: Question, several: bool) -> list[str]:
+    """A comment and the answer: what holds, or an example behind a #.
+
+    Args:
+        question: what is asked.
+        several: whether the program has several files.
+    """
+    file = question.span.file.replace("\\", "/").rpartition("/")[2]
+    where = f"{file}:{question.span.line}" if several else f"line {question.span.line}"
+    times = f"asked {question.count} times" if question.count > 1 else ""
+    told = [question.type, question.meanwhile, times]
+    about = "; ".join(" ".join(part.split()) for part in told if part)
+    line = f"{key_text(question.key)} = "
+    if question.taken is not None:
+        line += value_text(_plain(question.taken))
+    else:
+        example: Answer = 0.0 if question.example is None else question.example
+        line = f"#{line}{value_text(_plain(example))}"
+    return [f"# {where}{f': {about}' if about else ''}", line]
+
+
+def _plain(answer: Answer) -> object:
+    """An answer as TOML has it; whole numbers without a point."""
+    if isinstance(answer, Fields):
+        return {name: _plain(part) for name, part in answer}
+    if isinstance(answer, tuple):
+        return [_plain(part) for part in answer]
+    if isinstance(answer, float) and answer.is_integer() and abs(answer) < 1e15:
+        return int(answer)
+    return answer

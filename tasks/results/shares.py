@@ -1,0 +1,64 @@
+"""What the time of a cell's cycle goes into: motion, waits of the program, devices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ...core.program.move import Opaque, Wait
+from ...core.program.program import Program
+from .report import Report
+
+
+@dataclass(frozen=True, slots=True)
+class CycleShares:
+    """Of one pass of the loop that production runs in; of the whole program where there is none.
+
+    Args:
+        motion: s of motion, with what joints take to settle.
+        waiting: s that the program itself waits.
+        devices: s that devices take, as the answers say.
+        passes: that were read of the loop; 0 where there is none.
+        line: of the loop; 0 where there is none.
+    """
+
+    motion: float
+    waiting: float
+    devices: float
+    passes: int = 0
+    line: int = 0
+
+    @property
+    def total(self) -> float:
+        """s."""
+        return self.motion + self.waiting + self.devices
+
+    def __str__(self) -> str:
+        parts = {"motion": self.motion, "waits": self.waiting, "devices": self.devices}
+        told = ", ".join(
+            f"{name} {seconds:.3f} s ({100 * seconds / self.total:.0f} %)"
+            for name, seconds in parts.items()
+            if seconds
+        )
+        if not self.passes:
+            return told
+        which = "" if self.passes == 1 else f", the last of {self.passes}"
+        return f"one pass of the loop at line {self.line}{which}: {self.total:.3f} s; {told}"
+
+
+def shares(program: Program, report: Report) -> CycleShares:
+    """What the time of a run goes into."""
+    cycle = program.cycle
+    begin, end = (0, len(report.moves)) if cycle is None else (cycle.begin, cycle.end)
+    # What stands behind the last move of a pass stands before the first one of the next, too.
+    last = end - 1 if cycle is not None and cycle.passes > 1 else end
+    waiting, devices, done = 0.0, 0.0, 0
+    for statement in program.statements:
+        if isinstance(statement, Wait):
+            if begin <= done <= last:
+                waiting += 0.0 if statement.device else statement.duration
+                devices += statement.duration if statement.device else 0.0
+        elif not isinstance(statement, Opaque):
+            done += 1
+    motion = sum(move.time + move.settling for move in report.moves[begin:end])
+    passes, line = (0, 0) if cycle is None else (cycle.passes, cycle.span.line)
+    return CycleShares(motion, waiting, devices, passes, line)

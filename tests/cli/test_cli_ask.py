@@ -1,0 +1,81 @@
+"""``flyby ask``, and what ``flyby emulate`` makes of the file that it writes."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+import flyby as package
+
+Flyby = Callable[..., Result]
+ROBOT = ("--robot", "ur/ur10e")
+CELL = """def cell():
+  while True:
+    while get_digital_in(3) == False:
+      sync()
+    end
+    movej([0, -1.57, 1.57, -1.57, -1.57, 0], a=1.4, v=1.05)
+    my_gripper(1)
+    sleep(0.5)
+    movej([0.5, -1.57, 1.57, -1.57, -1.57, 0], a=1.4, v=1.05)
+    set_digital_out(4, True)
+  end
+end
+"""
+
+
+@pytest.fixture
+def cell(tmp_path: Path) -> Path:
+    path = tmp_path / "cell.script"
+    path.write_text(CELL, "utf-8")
+    return path
+
+
+def test_all_that_is_asked_is_a_file_of_answers(flyby: Flyby, cell: Path) -> None:
+    result = flyby("ask", cell, *ROBOT)
+    assert result.exit_code == 0
+    found = tomllib.loads(result.stdout)
+    assert found["calls"] == {"my_gripper": "skip"}
+    assert found["passes"] == {"cell.script:3": 0}
+    assert set(found["durations"]) == {"while get_digital_in(3) == False", "my_gripper(1)"}
+    assert '#"get_digital_in(3)" = false' in result.stdout
+    listed = json.loads(flyby("ask", cell, *ROBOT, "--json").stdout)["questions"]
+    assert {entry["table"] for entry in listed} == {"values", "calls", "passes", "durations"}
+    assert package.ask(cell, robot="ur/ur10e").toml == result.stdout
+
+
+def test_the_time_of_a_cycle_is_divided(flyby: Flyby, cell: Path, tmp_path: Path) -> None:
+    answers = tmp_path / "answers.toml"
+    assert flyby("ask", cell, *ROBOT, "--out", answers).exit_code == 0
+    words = ("emulate", cell, *ROBOT, "--io", answers, "--cycles", "2")
+    plain = flyby(*words)
+    assert plain.exit_code == 0
+    assert "devices" not in plain.stdout
+    text = answers.read_text("utf-8").replace('"my_gripper(1)" = 0', '"my_gripper(1)" = 0.4')
+    answers.write_text(text.replace('== False" = 0', '== False" = 6'), "utf-8")
+    timed = flyby(*words)
+    assert "the last of 2" in timed.stdout
+    assert "waits 0.500 s" in timed.stdout
+    assert "devices 6.400 s" in timed.stdout
+    shares = json.loads(flyby(*words, "--json").stdout)["cycle"]
+    assert shares["devices_s"] == pytest.approx(6.4)
+    assert shares["total_s"] == pytest.approx(shares["motion_s"] + 6.9)
+
+
+def test_emulate_says_it_in_a_line_a_kind(flyby: Flyby, cell: Path) -> None:
+    result = flyby("emulate", cell, *ROBOT)
+    assert result.exit_code == 0
+    asked = [line for line in result.stderr.splitlines() if "not known: " in line]
+    assert len(asked) == 4
+    assert "`flyby ask` lists them" in result.stderr
+
+
+def test_a_file_that_is_there_is_kept(flyby: Flyby, cell: Path) -> None:
+    result = flyby("ask", cell, *ROBOT, "--out", cell, "--force")
+    assert result.exit_code != 0
+    assert cell.read_text("utf-8") == CELL

@@ -1,0 +1,96 @@
+"""Routines as entries: with arguments, unknown ones, all of them."""
+
+from __future__ import annotations
+
+import pytest
+
+from flyby.core.errors import SourceError
+from flyby.core.program.program import Program
+from flyby.core.registry import find_vendor
+from flyby.core.source.reading import ReadOptions
+
+EXTERNAL = ",".join(["9E9"] * 6)
+TEXTS = {
+    "abb": (
+        "m.mod",
+        f"""MODULE m
+LOCAL CONST robtarget p10:=[[600,0,900],[0,0,1,0],[0,0,0,0],[{EXTERNAL}]];
+PROC Pick(num n, robtarget p)
+MoveJ Offs(p,0,0,50*n),v500,z10,tool0;
+MoveL p,v100,fine,tool0;
+ENDPROC
+PROC Home()
+MoveAbsJ [[0,0,0,0,30,0],[{EXTERNAL}]],v1000,fine,tool0;
+ENDPROC
+ENDMODULE
+""",
+    ),
+    "kuka": (
+        "m.src",
+        """DEF m()
+END
+DEF Pick(n:IN, p:IN)
+INT n
+E6POS p
+PTP p
+LIN_REL {Z 50}
+END
+DEF Home()
+PTP {A1 0,A2 -90,A3 90,A4 0,A5 10,A6 0}
+END
+""",
+    ),
+    "ur": (
+        "m.script",
+        """def Pick(n, p):
+  movel(pose_add(p, p[0,0,0.05*n,0,0,0]), a=1, v=0.2)
+  movel(p, a=1, v=0.2)
+end
+def Home():
+  movej([0,-1.5,1.5,0,0.1,0], a=1, v=1)
+end
+def Park():
+  movej([0.5,-1.5,1.5,0,0.1,0], a=1, v=1)
+end
+""",
+    ),
+}
+TARGETS = {"abb": "p10", "kuka": "{X 700,Y 0,Z 800,A 0,B 90,C 0}", "ur": "p[0.4,0,0.4,0,3.1,0]"}
+
+
+def read(vendor: str, entry: str | None) -> Program:
+    reader = find_vendor(vendor).reader
+    assert reader is not None
+    file, text = TEXTS[vendor]
+    return reader.read(text, file, ReadOptions(entry=entry))
+
+
+@pytest.mark.parametrize("vendor", TEXTS)
+def test_arguments_are_given_as_the_language_writes_them(vendor: str) -> None:
+    program = read(vendor, f"Pick(1, {TARGETS[vendor]})")
+    assert len(program.moves) == 2
+    assert len(read(vendor, "Home").moves) == 1
+
+
+@pytest.mark.parametrize("vendor", TEXTS)
+def test_all_of_them_are_listed_with_their_moves(vendor: str) -> None:
+    program = read(vendor, "all")
+    assert not program.statements
+    shown = [str(entry) for entry in program.entries if entry.moves]
+    assert shown[:2] == ["Pick(n, p) (2 moves)", "Home (1 move)"]
+
+
+@pytest.mark.parametrize("vendor", TEXTS)
+@pytest.mark.parametrize("entry", ["Nothing", "Pick(1,", "Nothing(1)"])
+def test_one_that_is_not_there_is_refused_with_those_that_are(vendor: str, entry: str) -> None:
+    with pytest.raises(SourceError, match=r"Pick\(n, p\) \(2 moves\), Home \(1 move\)"):
+        read(vendor, entry)
+
+
+@pytest.mark.parametrize("vendor", TEXTS)
+@pytest.mark.parametrize("arguments", ["1,2,3", "1 1", ")", "1); MoveJ(2", "", '"'])
+def test_arguments_that_are_none_are_refused(vendor: str, arguments: str) -> None:
+    if vendor == "kuka" and not arguments:  # parameters without values are the language's own
+        return
+    with pytest.raises(SourceError):
+        read(vendor, f"Pick({arguments})")
