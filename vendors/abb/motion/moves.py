@@ -182,7 +182,7 @@ class _MoveReader:
             if answer is not None:
                 found = Located(answer, None, None, type=type_)
         use = f"the {kind} of {self.bound.text}"
-        unknown = None if found.source is not None else find_unknown(found.value)
+        unknown = find_unknown(found.value) if found.open else None
         if unknown is not None:
             if isinstance(expression, Name) and found.cell is None and not expression.path:
                 reason = undeclared(kind, expression, type_, self.scope)

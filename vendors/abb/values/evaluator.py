@@ -385,7 +385,7 @@ class Evaluator:
 
     def _locate_name(self, name: tree.Name, scope: Scope, asking: bool = True) -> Located:
         found = self._find(name, scope)
-        if asking and self._is_open(found):
+        if asking and found.open:
             held = self.output(name, name.span, scope)
             if held is not None:
                 return Located(held, None, None)
@@ -405,11 +405,6 @@ class Evaluator:
             if answer is not None:
                 return Located(answer, None, found.cell, type=found.type)
         return found
-
-    @staticmethod
-    def _is_open(found: Located) -> bool:
-        """Whether a value, or a part of it, is not known; what stands in a literal is."""
-        return found.source is None and find_unknown(found.value) is not None
 
     def _find(self, name: tree.Name, scope: Scope) -> Located:
         cell = self.cell(name, scope)

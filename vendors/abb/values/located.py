@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from .provenance import Literal
 from .scope import Variable
-from .types import Type, Value
+from .types import Type, Value, find_unknown
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,3 +24,10 @@ class Located:
     cell: Variable | None
     predefined: str | None = None
     type: Type | None = None
+
+    @property
+    def open(self) -> bool:
+        """Whether a part of it is not known; literals and the controller's own data are."""
+        return (
+            self.source is None and self.predefined is None and find_unknown(self.value) is not None
+        )
