@@ -42,7 +42,8 @@ _BLANK = r"[ \t\f\v\xa0\ufeff\x1a]"
 CLOSED = "closed fold"
 MOTION_WORDS = r"(?: S?PTP | S?LIN | S?CIRC )"
 _CLOSED = rf"""
-    (?: {MOTION_WORDS} [ \t]++ [^;={{\r\n]{{0,80}}? (?<![$\w.]) Vel [ \t]*+ = [ \t]*+ [.\d] [^\r\n;]*+
+    (?: {MOTION_WORDS} [ \t]++ [^;={{\r\n]{{0,80}}? (?<![$\w.]) Vel [ \t]*+ = [ \t]*+ [.\d]
+        [^\r\n;]*+
       | (?: OUT | SYN | PULSE | SET | CHK | WAIT ) [ \t]++ (?: [^;=(\r\n]{{0,80}}? (?<![$\w.]) )?
         (?: State | Time ) [ \t]*+ = [^\r\n;]*+ )"""
 """A line as the teach pendant shows a fold that is closed, see `closed_folds`."""
