@@ -111,6 +111,10 @@ def _answers(options: SourceOptions) -> Answers:
     return replace(answers, cycles=options.cycles, goes_on=True)
 
 
+_BESIDE_PROGRAMS = frozenset({".sub", ".txt"})
+"""Suffixes of files that are a folder's program where no other file is."""
+
+
 def _program_in(folder: Path, setup: Setup, options: SourceOptions) -> Path:
     """The one file in a folder that can be run by itself.
 
@@ -122,6 +126,7 @@ def _program_in(folder: Path, setup: Setup, options: SourceOptions) -> Path:
     """
     vendor = setup.vendor
     files = sorted(f for f in folder.iterdir() if f.suffix.lower() in vendor.suffixes)
+    files = [f for f in files if f.suffix.lower() not in _BESIDE_PROGRAMS] or files
     if len(files) == 1:
         return files[0]
     if not files:

@@ -103,6 +103,18 @@ def test_a_program_is_read_from_a_file_a_folder_and_a_text(tmp_path: Path) -> No
     assert read[0] == read[1] == read[2] and len(read[0].moves) > 1
 
 
+@pytest.mark.parametrize(("robot", "beside"), [("ur/ur5e", "a.txt"), ("kuka/kr30-3", "sps.sub")])
+def test_what_stands_beside_a_program_is_none(robot: str, beside: str, tmp_path: Path) -> None:
+    texts = {
+        "ur/ur5e": ("main.script", "movej([0,-1.5,1.5,0,0.5,0])\nmovej([1,-1.5,1.5,0,0.5,0])\n"),
+        "kuka/kr30-3": ("main.src", "DEF main( )\nPTP {A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0}\nEND\n"),
+    }
+    (tmp_path / beside).write_text("DEF sps( )\nEND\n", "utf-8")
+    name, text = texts[robot]
+    (tmp_path / name).write_text(text, "utf-8")
+    assert flyby.read(tmp_path, robot=robot).moves
+
+
 def test_a_run_tells_of_its_moves() -> None:
     run = flyby.emulate(flyby.read(SQUARE, robot=ROBOT))
     spent = sum(m.time + m.wait + m.settling for m in run.moves) + run.report.first_wait

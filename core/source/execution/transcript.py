@@ -155,7 +155,8 @@ class Transcript:
         """Keep a motion whose target nobody knows, and go on from the next."""
         if self.leaves_open(error, span):
             return
-        self.left_out.append(error)
+        # Its traceback would hold all of the run.
+        self.left_out.append(error.with_traceback(None))
         self.emit(Opaque(self.text_of(span), True, span))
         self.notes.count(f"the motion is left out: {error.message}", span)
 
