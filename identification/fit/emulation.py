@@ -227,7 +227,7 @@ class RunEmulator:
         program = self.prepared.program(own.size)
         alike = known is not None and controller.sampling == known.sampling
         if known is not None and alike and _begins(changed, Stage.TIMING):
-            path = known.path
+            path = replace(known.path, model=model)
         else:
             path = controller.plan(program, start_of(program, self.prepared.log, controller.robot))
         timing = controller.stamp(program, path)

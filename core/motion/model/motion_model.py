@@ -115,7 +115,7 @@ class MotionModel:
         "how long a zone takes at least, and each part of a wider one in which the tool turns",
         unit="s",
         default=0.0,
-        fit=FitRange(0.0, 0.1, 1e-3),
+        fit=FitRange(0.0, 0.5, 1e-3),
     )
     duration: DurationRule = figure(
         "time.duration",

@@ -136,9 +136,9 @@ def test_a_choice_keeps_its_time_and_takes_what_tells_most(random, count, minute
 
 def test_sensitivities_are_those_of_the_emulation() -> None:
     """The information of β alone, from two emulations by the controller itself."""
-    made = designed("ur/ur10e", SMALL)
+    made = designed("kuka/kr30-3", SMALL)
     candidate = next(run.candidate for run in made.runs if run.candidate.kind is Kind.JOINTS)
-    vendor = find_vendor("ur")
+    vendor = find_vendor("kuka")
     informer = Informer.of(vendor, made.robot, 0.02)
     F = informer.information(candidate)
     k = informer.keys.index("blend.joint.beta[0]")

@@ -85,6 +85,7 @@ EXAMPLES: dict[str, tuple[Any, dict[str, Any]]] = {
     "zone.mixed_space": ("tcp", {}),
     "zone.stops_at_pure_reorientation": (True, {}),
     "zone.pace": ("superposed", {"blend.tcp.kind": "arc", "limit.centripetal": 1.2}),
+    "zone.least_time_s": (0.45, {"zone.least_time_s": 0.4}),
     "time.duration": ("thirds", {}),
     "time.start_ramp_s": (0.15, {}),
     "time.ramp_s": (0.03, {}),
