@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ...core.driving.driven_program import Fault
 from ...core.errors import Note, Span
+
+if TYPE_CHECKING:
+    from ...core.driving.driven_program import Fault
 
 
 def note_json(note: Note) -> dict[str, Any]:

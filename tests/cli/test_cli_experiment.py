@@ -81,7 +81,9 @@ def test_a_log_that_comes_back_is_compared(
     header = ",".join(["t", *(f"q{k}" for k in range(1, 7))])
     np.savetxt(tmp_path / f"{name}.csv", rows, "%.9g", ",", header=header, comments="")
     motion = tmp_path / "motion.toml"
-    motion.write_text("[blend.joint]\nbeta = [1.5]\n[time]\nsmoothing_s = 0.04\n", "utf-8")
+    motion.write_text(
+        '[blend.joint]\nkind = "polynomial"\nbeta = [1.5]\n[time]\nsmoothing_s = 0.04\n'
+    )
 
     def compared(*options: object) -> dict:
         result = flyby("compare", record, "--json", *options)

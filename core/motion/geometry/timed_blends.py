@@ -30,6 +30,14 @@ from .corners import TimedBlend
 from .reach import Reach, least
 from .segments import JOINT_SEGMENT, Segments
 
+_NOTHING = 1e-9
+"""rad of a zone, below which there is nothing to blend."""
+
+
+_AT_REST = 0.05
+"""Rate at a zone's edge below which the leg is as good as at rest there: it is all zone, and the
+blend would begin or end with a stop (none of the logs has one)."""
+
 
 @dataclass(frozen=True)
 class _Leg:
@@ -56,11 +64,15 @@ def timed_blend(
         factor: k.
 
     Returns:
-        None where a leg is none of joints, or has no programmed speed or acceleration.
+        None where a leg is none of joints, or has no programmed speed or acceleration, and where
+        the zone takes nothing of one or all of it.
     """
     ends, both = segments.ends, slice(i, i + 2)
     stated = np.isfinite(ends.joint_speed[both]) & np.isfinite(ends.joint_acceleration[both])
     if (ends.kind[both] != JOINT_SEGMENT).any() or not stated.all():
+        return None
+    ways = [np.abs(segments.delta_q[i + k]).max() * reach.value for k, reach in enumerate(reaches)]
+    if min(ways) <= _NOTHING:
         return None
     legs = _leg(segments, i, reaches[0], -1.0), _leg(segments, i + 1, reaches[1], 1.0)
     slower = min((i, i + 1), key=lambda k: float(ends.joint_acceleration[k]))
@@ -69,6 +81,8 @@ def timed_blend(
     v = Reach(float(ends.joint_speed[faster]), (("joint_speed", faster, 1.0),))
     T = _duration(segments, legs, A, v)
     rates = tuple(T * leg.speed * leg.way.inverse() for leg in legs)
+    if min(rate.value for rate in rates) < _AT_REST:
+        return None
     bends = tuple(T * T * leg.acceleration * leg.way.inverse() for leg in legs)
     return TimedBlend(T, (rates[0], rates[1]), (bends[0], bends[1]))
 

@@ -40,6 +40,7 @@ TOO_FAR = {
     ("box_sorter.mod", "ur"),
     ("SpotMain.mod", "ur"),
     ("kleberaupe.script", "kuka"),
+    ("palettieren.src", "ur"),
 }
 """What no place of the new arm reaches, or not without a line through a singular wrist."""
 
