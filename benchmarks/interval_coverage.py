@@ -98,7 +98,8 @@ def draw(case: str, seed: int) -> tuple[list[bool], list[bool]]:
     with RunPool(runs) as pool:
         end = minimise(pool, parameters, first_nuisances(runs))
         linearised = Problem(pool, end.variables).linearised(end.x)
-    known = intervals(parameters, end.values, clusters_of(runs, linearised))
+    samples = sum(rows.values.size for rows, _ in linearised)
+    known = intervals(parameters, end.values, clusters_of(runs, linearised), samples)
     ours = [one.lower <= TRUE[one.name] <= one.upper for one in known]
     A = sum(c.curvature for c in clusters_of(runs, linearised))
     spread = np.concatenate([influence(rows.values).ravel() for rows, _ in linearised]).std()

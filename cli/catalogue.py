@@ -79,6 +79,9 @@ def _summary(robot: Robot, vendor: Vendor) -> tuple[str, ...]:
 
 
 def _robot_json(robot: Robot, vendor: Vendor) -> dict[str, Any]:
+    from ..core.motion.model.taught_range import range_entries
+
+    taught = vendor.motion_of(robot).taught
     return {
         "robot": robot.name,
         "payload_kg": robot.payload,
@@ -97,10 +100,12 @@ def _robot_json(robot: Robot, vendor: Vendor) -> dict[str, Any]:
         ],
         "units": {"revolute": "rad, N m", "prismatic": "m, N", "time": "s"},
         "origins": dict(robot.origins),
+        "motion_fitted_to": None if taught is None else range_entries(taught),
     }
 
 
 def _print_robot(robot: Robot, vendor: Vendor) -> None:
+    from ..core.motion.model.taught_range import shown
     from ..core.robot.joint import COLUMNS
 
     payload = "payload not known" if robot.payload is None else f"payload {robot.payload:g} kg"
@@ -110,3 +115,8 @@ def _print_robot(robot: Robot, vendor: Vendor) -> None:
         print_rich(f"Emulation only: {reason}")
     print_table(COLUMNS, [joint.cells() for joint in robot.joints])
     print_table((("figures", "left"), ("origin", "left")), list(robot.origins.items()))
+    taught = vendor.motion_of(robot).taught
+    if taught is not None:
+        print_rich(
+            f"Its motion model was fitted to runs of: {shown(taught)}. Beyond, it extrapolates."
+        )

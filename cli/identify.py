@@ -79,8 +79,8 @@ def identify(
             print_rich(f"wrote {path}")
     if kept and out is not None and judged is not None:
         raise InputError(
-            f"--out {out}: not written, as what was fitted predicts worse than the model that the "
-            f"fit began with: {judged.told}. {_help_of(judged)}; --force writes it"
+            f"--out {out}: not written, as what was fitted {judged.verdict} the model that the fit "
+            f"began with, which stays: {judged.told}. {_help_of(judged)}; --force writes it"
         )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..core.display import counted
@@ -46,6 +46,7 @@ def emulate_with(program: Program, options: EmulateOptions) -> Run:
     from ..core.driving.driven_program import refusal
     from ..core.driving.past_faults import drive
     from ..core.motion.emulator.controller import Controller
+    from ..core.motion.emulator.move_figures import range_notes
     from .results.runs import Run
 
     program, setup = with_setup(program, options)
@@ -54,7 +55,12 @@ def emulate_with(program: Program, options: EmulateOptions) -> Run:
     driven = drive(controller, program, start_of(program), options.period)
     if options.strict and driven.faults:
         raise refusal(driven.faults)
-    return Run.of(driven, setup.robot)
+    noted = (
+        replace(part, run=replace(part.run, notes=(*part.run.notes, *beyond)))
+        for part in driven.parts
+        for beyond in (range_notes(part.run, controller.model),)
+    )
+    return Run.of(replace(driven, parts=tuple(noted)), setup.robot)
 
 
 emulate = by_keywords(emulate_with, EmulateOptions)

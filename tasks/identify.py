@@ -20,7 +20,7 @@ from .setup import RobotOptions, setup_of
 if TYPE_CHECKING:
     from ..core.robot.model import Robot
     from ..core.vendor import Vendor
-    from ..identification.fit import Fit, Judgement, ParameterSet, PreparedRun
+    from ..identification.fit import Fit, HeldFit, Outcome, ParameterSet, PreparedRun
     from ..identification.fit.selection import Score
     from ..identification.logs import LoggedRun
     from .results.identified import IdentifiedModel
@@ -87,14 +87,14 @@ def identify_with(
     prepared = _prepare(found.runs, owner, arm, options)
     chosen = _parameters(owner, arm, options.parameters)
     options.say(f"fitting {counted(chosen.size, 'parameter')} to {counted(prepared, 'run')}")
-    fitted = _fit(chosen, prepared, options)
+    held = _fit(chosen, prepared, options)
+    fitted = held.fit
     options.say("emulating all runs before and after")
     each = outcomes(fitted)
-    judged = _judge(fitted, options)
     scores = [] if options.select is None else _select(fitted, options.select, options)
-    text = _motion_file(fitted, _command(paths, arm, options), paths, owner)
+    text = _motion_file(fitted, each, _command(paths, arm, options), paths, owner)
     inputs = (*found.files, *options.inputs())
-    return IdentifiedModel(fitted, tuple(each), judged, tuple(scores), text, found, inputs)
+    return IdentifiedModel(fitted, tuple(each), held.judgement, tuple(scores), text, found, inputs)
 
 
 identify = by_keywords(identify_with, IdentifyOptions)
@@ -119,9 +119,9 @@ def _parameters(vendor: Vendor, robot: Robot, texts: Sequence[str]) -> Parameter
     return ParameterSet.named(model, list(texts) or usual_parameters(model, robot))
 
 
-def _fit(parameters: ParameterSet, runs: list[PreparedRun], options: IdentifyOptions) -> Fit:
+def _fit(parameters: ParameterSet, runs: list[PreparedRun], options: IdentifyOptions) -> HeldFit:
     from ..core.sqp import Iteration
-    from ..identification.fit import fit
+    from ..identification.fit import fit_held
 
     def watch(iteration: Iteration) -> None:
         options.say(
@@ -129,7 +129,13 @@ def _fit(parameters: ParameterSet, runs: list[PreparedRun], options: IdentifyOpt
             f"{iteration.number}, loss {iteration.objective:.4g}"
         )
 
-    return fit(parameters, runs, options.workers, watch)
+    return fit_held(
+        parameters,
+        runs,
+        options.workers,
+        watch,
+        lambda text: options.say(f"fitting with runs held back: {text}"),
+    )
 
 
 def _select(fitted: Fit, trait: str, options: IdentifyOptions) -> list[Score]:
@@ -147,17 +153,6 @@ def _select(fitted: Fit, trait: str, options: IdentifyOptions) -> list[Score]:
     )
 
 
-def _judge(fitted: Fit, options: IdentifyOptions) -> Judgement | None:
-    from ..identification.fit import judge
-
-    options.say("fitting with runs held back")
-    return judge(
-        fitted,
-        options.workers,
-        lambda text: options.say(f"fitting with runs held back: {text}"),
-    )
-
-
 def _command(logs: Sequence[Path], robot: Robot, options: IdentifyOptions) -> str:
     """The command that makes the same file, files by their names alone."""
     words = ["flyby", "identify", *(path.name for path in logs), "--robot", robot.name]
@@ -169,11 +164,16 @@ def _command(logs: Sequence[Path], robot: Robot, options: IdentifyOptions) -> st
     return shlex.join(words)
 
 
-def _motion_file(fitted: Fit, command: str, logs: Sequence[Path], vendor: Vendor) -> str:
+def _motion_file(
+    fitted: Fit, each: Sequence[Outcome], command: str, logs: Sequence[Path], vendor: Vendor
+) -> str:
     """To be laid on what the vendor states, whatever the fit began with."""
+    from ..core.motion.emulator.move_figures import range_of
+    from ..core.motion.model.taught_range import merged
     from ..identification.fit import motion_file
 
     robot = fitted.runs[0].robot
     heading = f"How {robot.name} is driven, fitted to {counted(fitted.runs, 'logged run')}."
     stated = registry().find_vendor(vendor.name).motion_of(robot)
-    return motion_file(fitted, command, heading, stated, logs[0].resolve().stem)
+    taught = merged(range_of(one.after.driven) for one in each)
+    return motion_file(fitted, command, heading, stated, logs[0].resolve().stem, taught)

@@ -2,6 +2,7 @@
 
 from .file import motion_file
 from .fitting import Fit, fit
+from .holding import HeldFit, fit_held
 from .intervals import Interval, Unseen
 from .judgement import Judgement, judge
 from .outcome import Outcome, outcomes
@@ -11,6 +12,7 @@ from .runs import PreparedRun, prepare
 __all__ = [
     "Fit",
     "FittedParameter",
+    "HeldFit",
     "Interval",
     "Judgement",
     "Outcome",
@@ -18,6 +20,7 @@ __all__ = [
     "PreparedRun",
     "Unseen",
     "fit",
+    "fit_held",
     "judge",
     "motion_file",
     "outcomes",

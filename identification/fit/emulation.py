@@ -8,9 +8,10 @@ of the rest are differences to one side.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...core.arrays import FloatArray
 from ...core.motion.command.commanded_motion import stamped_motion
@@ -103,6 +104,10 @@ class Rows:
     by_clock: FloatArray
     by_size: FloatArray
     by_override: FloatArray
+
+    def only(self, samples: NDArray[np.bool_]) -> Rows:
+        """The same with some of the samples (K,)."""
+        return Rows(*(getattr(self, one.name)[samples] for one in fields(self)))
 
 
 class RunEmulator:

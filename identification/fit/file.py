@@ -21,6 +21,7 @@ from ...core.files.toml_text import string_text
 from ...core.motion.model.motion_file import figures_text
 from ...core.motion.model.motion_model import FIGURES, MotionModel
 from ...core.motion.model.provenance import FitRecord, Provenance, provenance_text
+from ...core.motion.model.taught_range import TaughtRange
 from .fitting import Fit
 from .intervals import CONFIDENCE, Interval
 from .keys import figure_of
@@ -37,6 +38,7 @@ def motion_file(
     heading: str = "",
     reference: MotionModel | None = None,
     name: str = "logs",
+    taught: TaughtRange | None = None,
 ) -> str:
     """The text of the file.
 
@@ -47,6 +49,7 @@ def motion_file(
         reference: what the file will be laid on; figures that differ from it are written though
             they were not fitted. None if all but the fitted ones agree.
         name: of the fit in the file.
+        taught: what the runs cover.
     """
     members = _members(fitted)
     if reference is not None:
@@ -56,7 +59,7 @@ def motion_file(
     lines = [f"# {line}".rstrip() for line in heading.splitlines()]
     lines += [f"robot = {string_text(fitted.runs[0].robot.name)}"]
     lines += [figures_text(fitted.model, members, _six_digits)]
-    record = _record(fitted, name, command)
+    record = _record(fitted, name, command, taught)
     origins = {figure: _origin(fitted, figure, record, ks) for figure, ks in members.items()}
     return "\n".join([*lines, "", provenance_text(origins)])
 
@@ -76,12 +79,12 @@ def _others(model: MotionModel, reference: MotionModel, known: Iterable[str]) ->
     return [one for one in figures if FIGURES[one].of(model) != FIGURES[one].of(reference)]
 
 
-def _record(fitted: Fit, name: str, command: str) -> FitRecord:
+def _record(fitted: Fit, name: str, command: str, taught: TaughtRange | None) -> FitRecord:
     runs = fitted.runs
     sources = dict.fromkeys(run.run.source for run in runs if run.run.source)
     count = f"{len(runs)} logged run{'s' * (len(runs) != 1)}"
     details = {"runs": len(runs), "confidence": CONFIDENCE, "loss": float(f"{fitted.after:.4g}")}
-    return FitRecord(name, "; ".join([count, *sources]), command, details)
+    return FitRecord(name, "; ".join([count, *sources]), command, details, taught)
 
 
 def _origin(fitted: Fit, figure: str, record: FitRecord, members: list[int]) -> Provenance:

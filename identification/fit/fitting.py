@@ -8,7 +8,7 @@ it says, not its interval.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -46,6 +46,7 @@ class Fit:
         iterations: of all solutions.
         converged: whether the last one went as far as it could.
         rough: parameters whose intervals say nothing, and that the logs are not explained without.
+        rows: residuals of the runs and their derivatives, by the fitted parameters among others.
     """
 
     parameters: ParameterSet
@@ -59,6 +60,7 @@ class Fit:
     iterations: int
     converged: bool
     rough: tuple[Unseen, ...] = ()
+    rows: tuple[Rows, ...] = field(default=(), repr=False)
 
     @property
     def model(self) -> MotionModel:
@@ -122,25 +124,41 @@ class NothingShown(InputError):
     """The logs show none of the parameters."""
 
 
-def fit_with(pool: RunPool, parameters: ParameterSet, watch: Watch | None = None) -> Fit:
-    """See `fit`; the pool knows the runs."""
+def fit_with(
+    pool: RunPool, parameters: ParameterSet, watch: Watch | None = None, near: Fit | None = None
+) -> Fit:
+    """See `fit`.
+
+    Args:
+        pool: knows the runs.
+        parameters: to be fitted.
+        watch: called after each iteration.
+        near: a fit of these parameters to the same runs, held otherwise, to begin at.
+    """
     lost: list[Unseen] = []
     rough: set[str] = set()
     kept = parameters
-    first = minimise(pool, ParameterSet(parameters.base, ()), first_nuisances(pool.runs))
-    while found := _seen_at(pool, kept, first.nuisances):
-        kept = _without(kept, found, lost)
-    end = minimise(pool, kept, first.nuisances, watch)
+    if near is None:
+        first = minimise(pool, ParameterSet(parameters.base, ()), first_nuisances(pool.runs))
+        before = first.last
+        while found := _seen_at(pool, kept, first.nuisances):
+            kept = _without(kept, found, lost)
+        end = minimise(pool, kept, first.nuisances, watch)
+    else:
+        before, begin = near.before, kept.starting_at(near.values)
+        end = minimise(pool, begin, near.nuisances, watch, near.rows)
     iterations = end.iterations
-    if end.last > first.last:
+    if near is None and end.last > before:
         # A start that leads astray: what was before is better, and a start as well.
         other = minimise(pool, kept.starting_at(kept.before), first.nuisances, watch)
         iterations += other.iterations
         end = min(end, other, key=lambda one: one.last)
     while True:
         linearised = Problem(pool, end.variables).linearised(end.x)
-        known = intervals(kept, end.values, clusters_of(pool.runs, linearised))
-        found = unseen(kept, pool.runs, linearised) or loose(kept, known)
+        samples = sum(rows.values.size for rows, _ in linearised)
+        known = intervals(kept, end.values, clusters_of(pool.runs, linearised), samples)
+        # What runs show was found out by the fit near by.
+        found = unseen(kept, pool.runs, linearised) or loose(kept, known) if near is None else []
         doubted = [one for one in found if one.name not in rough]
         if not doubted or not end.converged:
             break
@@ -161,11 +179,12 @@ def fit_with(pool: RunPool, parameters: ParameterSet, watch: Watch | None = None
         end.nuisances,
         tuple(known),
         tuple(lost),
-        first.last,
-        end.last,
+        before,
+        end.rest,
         iterations,
         end.converged,
         tuple(one for one in found if one.name in rough),
+        tuple(rows for rows, _ in linearised),
     )
 
 

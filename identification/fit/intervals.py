@@ -21,7 +21,7 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from .emulation import Rows
-from .loss import curvature, influence
+from .loss import curvature, influence, square_root
 from .parameters import ParameterSet
 from .runs import PreparedRun
 
@@ -121,7 +121,7 @@ def unseen(
 
 
 def intervals(
-    parameters: ParameterSet, values: FloatArray, clusters: Sequence[Cluster]
+    parameters: ParameterSet, values: FloatArray, clusters: Sequence[Cluster], samples: int
 ) -> list[Interval]:
     """Intervals of the parameters, the first of the problem's variables.
 
@@ -129,26 +129,35 @@ def intervals(
         parameters: that were fitted.
         values: (P,) of them.
         clusters: at the solution.
+        samples: weighted residuals that they are sums of.
     """
     from scipy.stats import t as student
 
     size = parameters.size
-    deviation = parameters.scale * np.sqrt(np.diag(covariance(clusters))[:size])
-    reach = student.ppf(0.5 + 0.5 * CONFIDENCE, freedom(clusters)[:size]) * deviation
+    held = np.zeros(len(clusters[0].pull))
+    away, slope = parameters.departures(values)
+    held[:size] = samples * parameters.hold * (square_root(away)[1] * slope * parameters.scale) ** 2
+    whole = np.sum([c.curvature for c in clusters], axis=0)
+    alone = np.diag(np.linalg.solve(whole + np.diag(held) + _ridge(whole), np.diag(held)))[:size]
+    # What runs do not tell is known as it was before.
+    before = np.clip(alone, 0.0, 1.0) * np.array([p.known for p in parameters.parameters]) ** 2
+    told = parameters.scale**2 * np.diag(covariance(clusters, held))[:size]
+    deviation = np.sqrt(told + np.where(alone > 0.0, before, 0.0))
+    reach = student.ppf(0.5 + 0.5 * CONFIDENCE, freedom(clusters, held)[:size]) * deviation
     return [
         Interval(one.name, float(v), float(d), float(v - r), float(v + r))
         for one, v, d, r in zip(parameters.parameters, values, deviation, reach, strict=True)
     ]
 
 
-def freedom(clusters: Sequence[Cluster]) -> FloatArray:
+def freedom(clusters: Sequence[Cluster], held: FloatArray) -> FloatArray:
     """(n,), how many clusters of equal weight would tell a variable's deviation as well.
 
     Each cluster adds to a variable's variance in proportion to what it tells of it, w_c; that of
     the sum is known as by (Σ w)² / Σ w² squares (Satterthwaite, Biometrics Bulletin 2, 1946).
     """
     whole = np.sum([c.curvature for c in clusters], axis=0)
-    inverse = np.linalg.inv(whole + _ridge(whole))
+    inverse = np.linalg.inv(whole + np.diag(held) + _ridge(whole))
     told = np.stack([np.einsum("ij,jk,ki->i", inverse, c.curvature, inverse) for c in clusters])
     count = told.sum(axis=0) ** 2 / np.maximum((told**2).sum(axis=0), 1e-300)
     return np.asarray(np.maximum(count, 1.0))
@@ -167,10 +176,10 @@ def loose(parameters: ParameterSet, known: Sequence[Interval]) -> list[Unseen]:
     ]
 
 
-def covariance(clusters: Sequence[Cluster]) -> FloatArray:
-    """(n, n), of the problem's variables."""
+def covariance(clusters: Sequence[Cluster], held: FloatArray) -> FloatArray:
+    """(n, n), of the problem's variables, where each is held with a curvature (n,)."""
     whole = np.sum([c.curvature for c in clusters], axis=0)
-    ridge = _ridge(whole)
+    ridge = np.diag(held) + _ridge(whole)
     moves = np.stack([np.linalg.solve(whole - c.curvature + ridge, c.pull) for c in clusters])
     moves -= moves.mean(axis=0)
     count = len(clusters)

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...core.arrays import FloatArray
 from .fitting import Fit
 from .minimum import minimise
 from .parameters import ParameterSet
@@ -20,11 +21,13 @@ from .run_pool import RunPool
 from .runs import PreparedRun
 from .selection import TRAITS, LeftOut, leave_out, losses_of
 
-FOLDS = 4
+FOLDS = 5
 FEWEST = 3
 """Runs that can be held back whole."""
 SLACK, PATH_SLACK = 0.01, 0.1
 """Share of the loss that is no difference, of all and of the TCP's path, which fewer tell of."""
+SURE = 0.9
+"""Probability with which a gain of runs held back is one of others, too."""
 NOTHING = 1e-3
 """Loss that nobody minds: that of places off by less than half a micrometre."""
 
@@ -52,9 +55,19 @@ class Judgement:
     @property
     def better(self) -> bool:
         """Whether the fitted model may take the place of the other."""
-        return _no_worse(self.before, self.after, SLACK) and _no_worse(
+        no_worse = _no_worse(self.before, self.after, SLACK) and _no_worse(
             self.path_before, self.path_after, PATH_SLACK
         )
+        small = float(np.mean(self.after)) <= NOTHING
+        return no_worse and (small or is_gain(self.gains))
+
+    @property
+    def gains(self) -> FloatArray:
+        """What each run gains, whole and path alike: the logarithm of its loss before over that
+        after. A run that is predicted badly by both models counts no more than others."""
+        pairs = ((self.before, self.after), (self.path_before, self.path_after))
+        each = [np.log((np.array(b) + NOTHING) / (np.array(a) + NOTHING)) for b, a in pairs]
+        return np.asarray(np.mean(each, axis=0))
 
     @property
     def worse(self) -> tuple[str, ...]:
@@ -70,6 +83,14 @@ class Judgement:
         return tuple(dict.fromkeys(worse))
 
     @property
+    def verdict(self) -> str:
+        """How the fitted model predicts, beside the one before it."""
+        if self.better:
+            return "predicts better than"
+        lost = self.worse or self.gains.mean() <= 0.0
+        return "predicts worse than" if lost else "is not sure to predict better than"
+
+    @property
     def told(self) -> str:
         """In a sentence."""
         held = "every other corner held back is" if self.by_corners else "runs held back are"
@@ -82,6 +103,17 @@ class Judgement:
 
 def _no_worse(before: Sequence[float], after: Sequence[float], slack: float) -> bool:
     return float(np.mean(after)) <= (1.0 + slack) * float(np.mean(before)) + NOTHING
+
+
+def is_gain(gains: FloatArray) -> bool:
+    """Whether gains of runs are more than chance: beyond their standard error times Student's t for
+    `SURE`; of two halves of a run, which say nothing of chance, whether they are any."""
+    from scipy.stats import t as student
+
+    if len(gains) < FEWEST:
+        return bool(gains.mean() > 0.0)
+    error = float(gains.std(ddof=1)) / np.sqrt(len(gains))
+    return bool(gains.mean() > student.ppf(SURE, len(gains) - 1) * error)
 
 
 def judge(
@@ -102,7 +134,7 @@ def judge(
         return _by_corners(fitted, near, workers)
     folds = min(len(fitted.runs), FOLDS)
     groups = [tuple(range(k, len(fitted.runs), folds)) for k in range(folds)]
-    made = leave_out(fitted.runs, fitted.nuisances, near, groups, workers, tell)
+    made = leave_out(fitted.runs, fitted.nuisances, near, groups, workers, tell, fitted.rows)
     return _judged(fitted, list(fitted.runs), made, False)
 
 
@@ -116,7 +148,8 @@ def _by_corners(fitted: Fit, near: ParameterSet, workers: int) -> Judgement | No
         taught = [run.only(mask) for run, mask in zip(fitted.runs, masks, strict=True)]
         held = [run.only(~mask) for run, mask in zip(fitted.runs, masks, strict=True)]
         with RunPool(taught, workers) as pool:
-            end = minimise(pool, near, fitted.nuisances)
+            rows = [one.only(mask) for one, mask in zip(fitted.rows, masks, strict=True)]
+            end = minimise(pool, near, fitted.nuisances, known=rows or None)
         indices = tuple(range(len(runs), len(runs) + len(held)))
         runs += held
         made.append(LeftOut.of(held, indices, fitted.nuisances, near, end))
@@ -164,4 +197,4 @@ def _helpful(runs: Sequence[PreparedRun], worse: Sequence[str]) -> tuple[str, ..
             f"with the {' and '.join(alone)}" if alone else "of other speeds and places than those"
         )
         found[f"runs {what} of {run.name}"] = None
-    return tuple(found)
+    return tuple(found) or ("more runs of these kinds",)

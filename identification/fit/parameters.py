@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,6 +25,7 @@ class FittedParameter:
         start: where the fit begins.
         lower, upper: what it may be.
         scale: how far it may well be from its start; the variable is (value − start) / scale.
+        known: standard deviation that its value before the fit is known with, as one robot's.
     """
 
     keys: tuple[str, ...]
@@ -32,6 +33,7 @@ class FittedParameter:
     lower: float
     upper: float
     scale: float
+    known: float = math.inf
 
     def __post_init__(self) -> None:
         if not self.keys:
@@ -50,6 +52,10 @@ class FittedParameter:
         return " + ".join(self.keys)
 
 
+DEVIATIONS = 1.96
+"""From the middle of an interval of 95 % to its end."""
+ALIKE = 0.05
+"""Share of a parameter's scale by which robots of a type differ though it is known exactly."""
 _SHARE = 0.5
 """Scale of what has no usual one, as a share of its start."""
 
@@ -79,7 +85,18 @@ def parameter(model: MotionModel, text: str) -> FittedParameter:
     scale = usual.scale or _SHARE * abs(start) or _SHARE
     if found["lower"] is not None:
         lower, upper = _number(found["lower"], text), _number(found["upper"], text)
-    return FittedParameter(keys, start, lower, upper, scale)
+    return FittedParameter(keys, start, lower, upper, scale, _known(model, keys, scale))
+
+
+def _known(model: MotionModel, keys: tuple[str, ...], scale: float) -> float:
+    """How well a parameter is known: as its interval says, if it was fitted before, and no better
+    than robots of a type are alike."""
+    name = " + ".join(keys)
+    for origin in model.provenance.values():
+        for text, (lower, upper) in zip(origin.fitted, origin.interval, strict=False):
+            if text.partition(" in ")[0].partition("=")[0].strip() == name:
+                return math.hypot(0.5 * (upper - lower) / DEVIATIONS, ALIKE * scale)
+    return scale
 
 
 _TEXT = re.compile(
@@ -127,10 +144,14 @@ class ParameterSet:
     Args:
         base: what is not fitted.
         parameters: what is.
+        hold: what it costs to leave what was `before`, in mean loss of the runs: so many times the
+            robust loss of the departure in standard deviations that it is `known` with; zero where
+            runs alone count.
     """
 
     base: MotionModel
     parameters: tuple[FittedParameter, ...]
+    hold: float = 0.0
 
     @classmethod
     def named(cls, base: MotionModel, texts: Iterable[str]) -> ParameterSet:
@@ -200,14 +221,18 @@ class ParameterSet:
     def starting_at(self, values: FloatArray) -> ParameterSet:
         """The same with other starts (P,)."""
         made = (
-            FittedParameter(
-                p.keys, float(v), min(p.lower, float(v)), max(p.upper, float(v)), p.scale
-            )
+            replace(p, start=float(v), lower=min(p.lower, float(v)), upper=max(p.upper, float(v)))
             for p, v in zip(self.parameters, values, strict=True)
         )
-        return ParameterSet(self.base, tuple(made))
+        return replace(self, parameters=tuple(made))
+
+    def departures(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(P,) each: how far values are from what was `before`, in the standard deviations that
+        it is known with, and by how much that grows with the value."""
+        slope = 1.0 / np.array([p.known for p in self.parameters])
+        return slope * (values - self.before), slope
 
     def without(self, names: Iterable[str]) -> ParameterSet:
         """The same without some parameters, which stay as the base has them."""
         gone = set(names)
-        return ParameterSet(self.base, tuple(p for p in self.parameters if p.name not in gone))
+        return replace(self, parameters=tuple(p for p in self.parameters if p.name not in gone))

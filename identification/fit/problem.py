@@ -15,6 +15,7 @@ from .loss import square_root
 from .parameters import ParameterSet
 from .run_pool import RunPool
 from .runs import PreparedRun
+from .secants import RunDerivatives, carried
 
 OFFSET_SCALE, CLOCK_SCALE, SIZE_SCALE, OVERRIDE_SCALE = 0.01, 0.01, 0.5, 0.01
 """s, 1, 1 and 1: the units of nuisances in the problem's variables."""
@@ -181,14 +182,30 @@ def first_nuisances(runs: Sequence[PreparedRun]) -> tuple[Nuisance, ...]:
 class Problem:
     """The least-squares problem for `flyby.core.sqp`.
 
+    Its Jacobian is carried on from where it was evaluated as long as that holds (`secants`).
+
     Args:
         pool: emulates the runs.
         variables: of the same runs.
+        known: residuals and derivatives of each run at the start, if they are known.
     """
 
-    def __init__(self, pool: RunPool, variables: Variables) -> None:
+    def __init__(
+        self, pool: RunPool, variables: Variables, known: Sequence[Rows] | None = None
+    ) -> None:
         self.pool = pool
         self.variables = variables
+        self.exact = True
+        """Whether the Jacobian asked for last was evaluated where it was asked for."""
+        self.carries = True
+        """Whether Jacobians may be carried on."""
+        self._residuals: tuple[FloatArray, list[FloatArray]] | None = None
+        self._known: tuple[FloatArray, list[RunDerivatives]] | None = None
+        if known is not None:
+            start = np.zeros(variables.size)
+            own = variables.nuisances(start)
+            made = [(rows, variables.jacobian(k, rows, own[k])) for k, rows in enumerate(known)]
+            self._known = start, _flat(made)
         self._scale = 1.0 / np.sqrt(
             sum(run.weight.shape[0] * run.weight.shape[1] for run in pool.runs)
         )
@@ -208,21 +225,48 @@ class Problem:
         """All of them, robust and scaled to one; NaN where a program cannot be driven."""
         v = self.variables
         found = self.pool.residuals(v.parameters.model(v.values(x)), v.nuisances(x))
-        parts = []
-        for run, one in zip(self.pool.runs, found, strict=True):
-            if isinstance(one, FlybyError):
-                parts.append(np.full(_rows(run), np.nan))
-            else:
-                parts.append(square_root(one.ravel())[0])
-        return np.asarray(self._scale * np.concatenate(parts))
+        values = [
+            np.full(_rows(run), np.nan) if isinstance(one, FlybyError) else one.ravel()
+            for run, one in zip(self.pool.runs, found, strict=True)
+        ]
+        self._residuals = x.copy(), values
+        parts = [square_root(one)[0] for one in values]
+        return np.concatenate([self._scale * np.concatenate(parts), self._held(x)[0]])
 
     def jacobian(self, x: FloatArray) -> FloatArray:
         """(R, n)."""
-        parts = []
-        for rows, J in self.linearised(x):
-            slope = square_root(rows.values)[1]
-            parts.append((slope[..., None] * J).reshape(-1, self.variables.size))
-        return np.asarray(self._scale * np.concatenate(parts))
+        made = self._carried(x)
+        self.exact = made is None
+        if made is None:
+            made = _flat(self.linearised(x))
+        self._known = x.copy(), made
+        parts = [square_root(one.values)[1][:, None] * one.jacobian for one in made]
+        return np.concatenate([self._scale * np.concatenate(parts), self._held(x)[1]])
+
+    def _carried(self, x: FloatArray) -> list[RunDerivatives] | None:
+        """Residuals and derivatives of each run at x, without any evaluation; None where that does
+        not do."""
+        if self._known is None or not self.carries:
+            return None
+        start, known = self._known
+        if np.array_equal(start, x):
+            return known
+        if self._residuals is None or not np.array_equal(self._residuals[0], x):
+            return None
+        return carried(known, x - start, self._residuals[1])
+
+    def _held(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(P,) and (P, n), what it costs to leave what was before; nothing where runs alone
+        count."""
+        v = self.variables
+        p = v.parameters
+        if p.hold == 0.0:
+            return np.zeros(0), np.zeros((0, v.size))
+        away, slope = p.departures(v.values(x))
+        held, by_away = square_root(away)
+        jacobian = np.zeros((p.size, v.size))
+        jacobian[:, : p.size] = np.diag(by_away * slope * p.scale)
+        return np.sqrt(p.hold) * held, np.sqrt(p.hold) * jacobian
 
     def linearised(self, x: FloatArray) -> list[tuple[Rows, FloatArray]]:
         """Weighted residuals of each run, and their derivatives (K, M, n) by the variables.
@@ -238,6 +282,12 @@ class Problem:
                 raise InputError(f"{self.pool.runs[k].name}: {rows}") from rows
             out.append((rows, v.jacobian(k, rows, nuisances[k])))
         return out
+
+
+def _flat(linearised: Sequence[tuple[Rows, FloatArray]]) -> list[RunDerivatives]:
+    return [
+        RunDerivatives(rows.values.ravel(), J.reshape(-1, J.shape[-1])) for rows, J in linearised
+    ]
 
 
 def _rows(run: PreparedRun) -> int:

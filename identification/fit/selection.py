@@ -17,7 +17,7 @@ from ...core.arrays import FloatArray
 from ...core.errors import FlybyError, InputError
 from ...core.motion.model.motion_model import MotionModel
 from ...core.program.zone import Radius
-from .emulation import Nuisance
+from .emulation import Nuisance, Rows
 from .keys import figure_of
 from .loss import loss
 from .minimum import Minimum, minimise
@@ -164,7 +164,7 @@ class LeftOut:
         with RunPool(still, 1) as pool:
             alone = minimise(pool, ParameterSet(model, ()), start)
             found = pool.residuals(model, alone.nuisances)
-        return cls(indices, alone.nuisances, model, *losses_of(runs, found), end.last)
+        return cls(indices, alone.nuisances, model, *losses_of(runs, found), end.rest)
 
 
 def losses_of(
@@ -192,6 +192,7 @@ def leave_out(
     groups: Sequence[tuple[int, ...]],
     workers: int = 1,
     tell: Callable[[str], None] | None = None,
+    known: Sequence[Rows] = (),
 ) -> list[LeftOut]:
     """Fit to all runs but a group, and predict the group; each group in its turn.
 
@@ -204,6 +205,7 @@ def leave_out(
         groups: indices of runs to leave out together.
         workers: processes.
         tell: called with how far the work is.
+        known: residuals and derivatives of each run where fits begin, if they are known.
 
     Raises:
         InputError: a group holds all runs, or a program cannot be driven.
@@ -216,7 +218,8 @@ def leave_out(
         if not rest:
             raise InputError("no run would be left to fit to")
         with RunPool([runs[k] for k in rest], workers) as pool:
-            end = minimise(pool, parameters, [nuisances[k] for k in rest])
+            rows = [known[k] for k in rest] if known else None
+            end = minimise(pool, parameters, [nuisances[k] for k in rest], known=rows)
         begin = [nuisances[k] for k in group]
         found.append(LeftOut.of([runs[k] for k in group], group, begin, parameters, end))
     return found

@@ -45,8 +45,8 @@ p.note { color: #555 }
 {% for line in summary %}
 <p>{{ line }}</p>
 {% endfor %}
-{% if worse %}
-<p><b>What was fitted predicts worse than the model before it.</b></p>
+{% if refused %}
+<p><b>What was fitted {{ refused }} the model before it.</b></p>
 {% endif %}
 {% if not converged %}
 <p><b>The fit was ended before it could go no further.</b></p>
@@ -104,7 +104,7 @@ def page(
         _TEMPLATE,
         title=f"How {fitted.runs[0].robot.name} is driven",
         summary=_summary(fitted, outcomes, judged),
-        worse=judged is not None and not judged.better,
+        refused=None if judged is None or judged.better else judged.verdict,
         converged=fitted.converged,
         parameters=_parameters(fitted),
         unseen=fitted.unseen,

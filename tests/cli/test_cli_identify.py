@@ -253,7 +253,7 @@ def test_a_model_that_predicts_worse_is_not_written_unforced(
     flyby: Flyby, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     worse = Judgement(("square",), (0.1,), (0.2,), (0.1,), (0.2,), True, ("runs at 50 mm/s",))
-    monkeypatch.setattr("flyby.identification.fit.judge", lambda *given: worse)
+    monkeypatch.setattr("flyby.identification.fit.holding.judge", lambda *given: worse)
     out, report = tmp_path / "params.toml", tmp_path / "page.html"
     words = ("identify", folder, "--robot", ROBOT, *FIT, "--workers", 1, "--out", out)
     result = flyby(*words, "--report", report)

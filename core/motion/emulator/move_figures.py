@@ -1,15 +1,25 @@
-"""What a run did, move by move: lengths, greatest speeds, how far its zones reach."""
+"""What a run did, move by move: lengths, greatest speeds, how far its zones reach; and what it
+covers of speeds, zones and postures, beside what its motion model was taught by."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ...arrays import FloatArray
+from ...errors import Note
+from ...program.move import MoveJ
+from ...program.zone import Radius
 from ...robot.kinematics.chain_kernels import poses
 from ..geometry.corners import POSITION
 from ..geometry.corners import STOP as STOP_CORNER
+from ..model.motion_model import MotionModel
+from ..model.taught_range import TaughtRange, beyond
 from ..path.path import Path
+from ..timing.energy import loads_of
 from .run import Run
+
+_NOWHERE = 1e-4
+"""m of the TCP's way, below which a move is no leg but a turn."""
 
 
 def lengths_and_speeds(run: Run) -> tuple[FloatArray, FloatArray]:
@@ -61,3 +71,45 @@ def _distance(path: Path, segment: int, sigma: float, corner: int) -> float:
     rows = np.stack([route.ends.q[segment, near], path.q[sample]])
     _, position = poses(route.chains[segment], np.ascontiguousarray(rows))
     return float(np.linalg.norm(position[1] - position[0]))
+
+
+def range_of(run: Run) -> TaughtRange:
+    """What a run covers. Its speeds begin at the lowest that its moves of the TCP are programmed
+    at, as every move starts from rest or from another."""
+    route = run.path.route
+    lengths, tops = lengths_and_speeds(run)
+    moves = [run.program.moves[k] for k in route.moves]
+    slowest = [
+        min(move.speed.tcp, float(tops.max()))
+        for move in moves
+        if not isinstance(move, MoveJ) and move.speed.tcp is not None
+    ]
+    zones = [move.zone.tcp for move in moves[:-1] if isinstance(move.zone, Radius)]
+    driven = [zone for zone in zones if zone > 0.0]
+    legs = lengths[lengths > _NOWHERE]
+    known = [load.mass for load in loads_of(run.program, run.path) if load is not None]
+    q = run.trajectory.q
+    return TaughtRange(
+        tuple(sorted({type(move).__name__ for move in moves})),
+        len(driven) < len(moves) - 1,
+        (min([*slowest, float(tops.max())]), float(tops.max())),
+        (min(driven), max(driven)) if driven else None,
+        float(legs.min()) if len(legs) else None,
+        tuple(map(float, q.min(axis=0))),
+        tuple(map(float, q.max(axis=0))),
+        (min(known), max(known)) if known else None,
+    )
+
+
+def range_notes(run: Run, model: MotionModel) -> tuple[Note, ...]:
+    """One note where a run leaves what its motion model was taught by; none where it does not, or
+    nobody says what that was."""
+    left = () if model.taught is None else beyond(model.taught, range_of(run))
+    if not left:
+        return ()
+    return (
+        Note(
+            "beyond the runs that the motion model was fitted to, where it extrapolates (in "
+            f"brackets what they cover): {'; '.join(left)}"
+        ),
+    )

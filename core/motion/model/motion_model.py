@@ -18,6 +18,7 @@ from .kinds import POSITIVE, Choice, Range, RealNumber, Row, TruthValue
 from .provenance import Provenance
 from .rules import ArcTurn, DurationRule, LineTurn, OrientationZone, Overlap, Pace, Space
 from .servo import IDEAL, Servo
+from .taught_range import TaughtRange, merged
 from .torque import WITHOUT_LIMIT, Torque
 
 _WAIT = Range(0.0, 10.0)
@@ -260,6 +261,13 @@ class MotionModel:
             f"smoothing {f'{averages} ms' if averages else 'none'}, "
             f"{counted(stated, 'figure')}{f': {known}' if known else ''}"
         )
+
+    @property
+    def taught(self) -> TaughtRange | None:
+        """What the runs cover that its figures were fitted to; None where no fit says so."""
+        fits = (one.fit for one in self.provenance.values() if one.fit is not None)
+        ranges = [fit.taught for fit in fits if fit.taught is not None]
+        return merged(ranges) if ranges else None
 
     def ramp_at(self, jerk_fraction: float) -> float:
         """The `ramp` where a share of the jerk is programmed."""

@@ -5,6 +5,9 @@
     command = "flyby identify …"
     runs = 29
 
+    [fits.robotstudio.range]
+    speed_mps = [0.05, 1.5]
+
     [provenance]
     "zone.overlap" = { status = "published", source = "…" }
     "time.ramp_s" = { status = "fitted", by = "robotstudio", fitted = ["time.ramp_s in 0 .. 1"] }
@@ -20,6 +23,7 @@ from typing import Any, Literal, cast, get_args
 
 from ...errors import InputError, UnknownNameError
 from ...files.toml_text import command_text, key_text, pair_text, value_text
+from .taught_range import TaughtRange, range_entries, read_range
 
 Status = Literal["published", "fitted", "assumed"]
 
@@ -33,6 +37,7 @@ class FitRecord:
         source: whose logs were fitted to.
         command: that gives the figures, or what else was done.
         details: further entries of the file (runs, confidence, loss).
+        taught: what the runs cover; None if nobody says so.
 
     Raises:
         InputError: source or command is empty.
@@ -42,6 +47,7 @@ class FitRecord:
     source: str
     command: str
     details: Mapping[str, Any] = field(default_factory=dict)
+    taught: TaughtRange | None = None
 
     def __post_init__(self) -> None:
         for key in ("source", "command"):
@@ -121,8 +127,17 @@ def provenance_text(origins: Mapping[str, Provenance]) -> str:
 def _fit(name: str, entry: Any) -> FitRecord:
     key = f"fits.{name}"
     details = _table(key, entry)
+    taught = _range(f"{key}.range", details.pop("range", None))
     try:
-        return FitRecord(name, _word("source", details), _word("command", details), details)
+        told = _word("source", details), _word("command", details)
+        return FitRecord(name, *told, details, taught)
+    except InputError as error:
+        raise InputError(f"{key}: {error}") from error
+
+
+def _range(key: str, entry: Any) -> TaughtRange | None:
+    try:
+        return None if entry is None else read_range(entry)
     except InputError as error:
         raise InputError(f"{key}: {error}") from error
 
@@ -204,5 +219,10 @@ def _fit_text(name: str, fit: FitRecord) -> str:
         f"source = {value_text(fit.source)}",
         f"command = {command_text(fit.command)}",
     ]
-    lines += [f"{key_text(key)} = {value_text(value)}" for key, value in fit.details.items()]
+    tables = {"": fit.details}
+    if fit.taught is not None:
+        tables[f"\n[fits.{key_text(name)}.range]"] = range_entries(fit.taught)
+    for heading, entries in tables.items():
+        lines += [heading] if heading else []
+        lines += [f"{key_text(key)} = {value_text(value)}" for key, value in entries.items()]
     return "\n".join(lines)
