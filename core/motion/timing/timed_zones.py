@@ -18,7 +18,7 @@ from ..geometry.curves import Curves, parameter_slopes, pull_parameter_slopes
 from ..geometry.layout import Layout
 from ..geometry.pieces import Pieces
 
-TIMED = -4
+TIMED = -5
 """What stands for a row in `limits.PathLimits.binding` where the ceiling is that of such a zone."""
 ROOM = 2.5
 """What joints' limits of acceleration count in such zones: of 3000 random corners whose time is

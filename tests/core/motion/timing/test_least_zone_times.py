@@ -12,7 +12,11 @@ from hypothesis import strategies as st
 from flyby.core.motion.emulator.binding_limits import limit_shares
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.model.rules import OrientationZone
+from flyby.core.motion.timing.between_samples import BETWEEN
 from flyby.core.motion.timing.least_zone_times import LEAST_TIME
+from flyby.core.motion.timing.limits import CENTRIPETAL
+from flyby.core.motion.timing.superposed_legs import ZONE
+from flyby.core.motion.timing.timed_zones import TIMED
 from flyby.core.program.move import MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -97,3 +101,9 @@ def test_what_binds_is_named(abb) -> None:
 def test_what_logs_showed_of_the_controller() -> None:
     """Guards the file: a period of the planner."""
     assert find_vendor("abb").motion().zone_time == pytest.approx(0.004032)
+
+
+def test_what_stands_for_rows_is_told_apart() -> None:
+    """In one column of integers a path says what its ceilings are made of."""
+    codes = (ZONE, CENTRIPETAL, LEAST_TIME, TIMED)
+    assert len(set(codes)) == len(codes) and max(codes) < -1 < 0 < BETWEEN
