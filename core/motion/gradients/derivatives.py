@@ -25,12 +25,9 @@ from ..timing.energy import energy, loads_of, pull_energy
 from ..timing.timing import Timing
 from ..timing.torque import pull_torque_shares
 from .limits_gradient import SpeedGradient, pull_path_limits, pull_turning
-from .path_gradient import RouteGradient, pull_path
+from .path_gradient import SINGULAR_TARGET, RouteGradient, pull_path
 from .stamping_adjoint import stamp_adjoint
 from .timing_gradient import Seeds, pull_rests, seed_configuration
-
-_SINGULAR = 1e8
-"""Condition number (m and rad) of the Jacobian from which on a target counts as singular."""
 
 
 @dataclass(frozen=True)
@@ -289,7 +286,7 @@ class Derivatives:
             problem = (
                 f"derivatives of pose targets need an arm of six or seven joints, {name} has {size}"
             )
-        elif not np.linalg.cond(J) < _SINGULAR:
+        elif not np.linalg.cond(J) < SINGULAR_TARGET:
             problem = (
                 "the arm is singular at the target, where derivatives do not exist; use a joint "
                 "target, or another pose"

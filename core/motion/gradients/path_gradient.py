@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...arrays import FloatArray
+from ...errors import FaultCause, MotionError
+from ...robot.kinematics.chain_kernels import jacobians
 from ..geometry.corners import POSITION, STOP, Corners, ZoneGradient
 from ..geometry.curves import Samples, TcpCurves
 from ..geometry.joint_curves import CornerEdges, pull_joint_curves, pull_joint_legs
@@ -19,6 +21,9 @@ from ..path.joint_samples import pull_joint
 from ..path.path import Path
 from ..path.tcp_samples import States, pull_tcp
 from ..timing.timed_zones import TimedGradient
+
+SINGULAR_TARGET = 1e8
+"""Condition number (m and rad) of the Jacobian from which on a target counts as singular."""
 
 
 @dataclass
@@ -53,7 +58,11 @@ def pull_path(
             enters directly (speeds of arcs).
         timed_bar: gradient with respect to corners that are blended in time, where they enter
             directly (ceilings of speed); added to.
+
+    Raises:
+        MotionError: a line begins or ends on a singular configuration.
     """
+    _check_regular(path)
     route, layout, pieces = path.route, path.layout, path.pieces
     model = path.model
     layout_bar = LayoutGradient.zeros(layout)
@@ -187,6 +196,24 @@ def pull_corners(
                     continue
                 for name, index, part in reach.parts:
                     targets[name][index] += bar * part
+
+
+def _check_regular(path: Path) -> None:
+    """Refuse a path with singular samples, where q has no derivative by the pose."""
+    pieces, solved = path.pieces, path.route.solved
+    for stretch in stretches(path.route, path.layout, pieces):
+        if stretch.joint_space:
+            continue
+        met = stretch.start + np.flatnonzero(path.conditioning[stretch.start : stretch.stop] == 0.0)
+        J = jacobians(stretch.chain, np.ascontiguousarray(path.states.q[met]))[:, :, solved]
+        for row in met[~(np.linalg.cond(J) < SINGULAR_TARGET)]:
+            segment = int(pieces.segment[pieces.sample_pieces[row]])
+            raise MotionError(
+                "the move begins or ends where the arm is singular, where derivatives do not "
+                "exist; begin and end lines where the wrist is bent",
+                path.route.moves[segment],
+                cause=FaultCause.SINGULARITY,
+            )
 
 
 def _pull_edges(

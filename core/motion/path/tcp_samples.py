@@ -150,6 +150,33 @@ def approach(
 
 
 @inner
+def aim(
+    prescribed: IntArray,
+    curves: TcpCurves,
+    samples: Samples,
+    k: int,
+    sigma: float,
+    states: States,
+    row: int,
+    work: Scratch,
+) -> None:
+    """Write what the curves of sample k ask for at ``sigma``: the TCP's pose into ``work``
+    (``goal_R`` and row 0 of ``value``), its motion and the prescribed axes into ``row``."""
+    evaluate(curves.position, samples.position[k], sigma, work.basis, work.value)
+    evaluate(curves.turning, samples.turning[k], sigma, work.basis, work.turns)
+    if prescribed.size > 0:
+        evaluate(curves.prescribed, samples.prescribed[k], sigma, work.basis, work.carried)
+    reference = curves.reference[samples.turning[k]]
+    omega, alpha = orientation(reference, work.turns, work.turning, work.goal_R)
+    q, v, a = states.q[row], states.v[row], states.a[row]
+    for j in range(prescribed.size):
+        q[prescribed[j]] = work.carried[0, j]
+    for i in range(3):
+        v[i], v[3 + i] = work.value[1, i], omega[i]
+        a[i], a[3 + i] = work.value[2, i], alpha[i]
+
+
+@inner
 def state_at(
     chain: Chain,
     solved: IntArray,
@@ -167,22 +194,12 @@ def state_at(
     Returns:
         What Newton's method says (see `approach`).
     """
-    evaluate(curves.position, samples.position[k], sigma, work.basis, work.value)
-    evaluate(curves.turning, samples.turning[k], sigma, work.basis, work.turns)
-    if prescribed.size > 0:
-        evaluate(curves.prescribed, samples.prescribed[k], sigma, work.basis, work.carried)
-    reference = curves.reference[samples.turning[k]]
-    omega, alpha = orientation(reference, work.turns, work.turning, work.goal_R)
+    aim(prescribed, curves, samples, k, sigma, states, row, work)
     q, dq, ddq = states.q[row], states.dq[row], states.ddq[row]
-    for j in range(prescribed.size):
-        q[prescribed[j]] = work.carried[0, j]
     error, pivots = approach(chain, solved, work.goal_R, work.value[0], q, work)
     if not (error < CONVERGED and pivots >= SINGULAR):
         return error, pivots
     v, a = states.v[row], states.a[row]
-    for i in range(3):
-        v[i], v[3 + i] = work.value[1, i], omega[i]
-        a[i], a[3 + i] = work.value[2, i], alpha[i]
     _rates(work.J, work.square, work.order, solved, prescribed, work.carried[1], v, dq, work.rhs)
     motion(chain, q, dq, work.zero, work.bias_v, work.bias_a)
     for i in range(6):

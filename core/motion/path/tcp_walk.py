@@ -23,6 +23,7 @@ from ...robot.kinematics.tracking import pose_error, track
 from ..geometry.curve_bounds import bound_jerk
 from ..geometry.curves import Samples, TcpCurves
 from .branch_proof import LEAST, TubeWork, invert, make_tube_work, stays_in_tube
+from .singular_samples import EVEN, FIRST, ROUNDED, settle
 from .tcp_samples import CONVERGED, SINGULAR, Scratch, States, make_scratch, state_at
 
 JOINED = 1e-5
@@ -33,8 +34,6 @@ _LONGER, _SHORTER = 1.5, 0.5
 _HOP, _NEAR = 0.2, 0.05
 """Share of the way between two samples, and conditioning, below which a stretch to prove may lie
 next to a singular configuration."""
-_EVEN = 0.01
-"""Share of the joints' way past one that they may deviate from an even run."""
 _FINEST = 1e-7
 """Share of the way between two samples below which steps are not halved any more."""
 
@@ -115,6 +114,17 @@ def _furthest(a: FloatArray, b: FloatArray) -> float:
 
 
 @inner
+def _border(samples: Samples, k: int) -> float:
+    """σ up to which the curves of sample k go on."""
+    border = float(samples.sigma[k])
+    for i in range(k + 1, samples.sigma.size):
+        if samples.sigma[i] == border:
+            break
+        border = float(samples.sigma[i])
+    return border
+
+
+@inner
 def _keeps_branch(
     chain: Chain,
     solved: IntArray,
@@ -174,7 +184,8 @@ def _hop(
 
     Args:
         at: σ where the walk stands, in row 0.
-        side: sign of the Jacobian's determinant there; beyond the singularity it is the other.
+        side: sign of the Jacobian's determinant there; beyond the singularity it is the other. 0
+            on a singular configuration, beyond which it may be either.
         least: how far to hop at first, with the sign of the way.
         most: and at most.
         chain, single, solved, prescribed, place, curves, samples, k, walk, J, jerk, by_t, work,
@@ -183,8 +194,8 @@ def _hop(
     Returns:
         How far it hopped, row 0 then being there; 0 where joints do not run evenly.
     """
-    hop = least
-    while abs(hop) < most:
+    hop, jump = least, (ROUNDED if side == 0 else 0.0)
+    while abs(hop) <= most:
         way = turn = 0.0
         for j in range(walk.q.shape[1]):
             way = max(way, abs(hop * walk.dq[0, j]))
@@ -194,18 +205,22 @@ def _hop(
             break
         for j in range(walk.q.shape[1]):
             by_t[0, j] = walk.q[1, j]
-        error, met = state_at(
-            chain, solved, prescribed, curves, samples, k, at + hop, walk, 1, work
-        )
+        error, met = np.inf, 0.0
+        for _ in range(2 if side == 0 else 1):
+            # The first finds axes that hardly move the tool, the second their rates.
+            error, met = state_at(
+                chain, solved, prescribed, curves, samples, k, at + hop, walk, 1, work
+            )
         even = error < CONVERGED and met >= SINGULAR
         for j in range(walk.q.shape[1]):
-            even = even and abs(walk.q[1, j] - by_t[0, j]) <= _EVEN * way
+            even = even and abs(walk.q[1, j] - by_t[0, j]) <= EVEN * way + jump
             bend = walk.dq[1, j] - walk.dq[0, j] - hop * walk.ddq[0, j]
-            even = even and abs(hop * bend) <= _EVEN * way
+            even = even and abs(hop * bend) <= EVEN * way
         if even:
             beyond = States(walk.q[1:], walk.dq[1:], walk.ddq[1:], walk.v[1:], walk.a[1:])
-            even = _stand(chain, single, place, walk.q[1], J, tube) == -side
-            onward = hop / 8
+            beyond_side = _stand(chain, single, place, walk.q[1], J, tube)
+            even = beyond_side == -side or (side == 0 and beyond_side != 0)
+            onward = hop / (64 if side == 0 else 8)
             bound_jerk(curves, samples, k, at + hop + 0.5 * onward, 0.5 * abs(onward), taylor, jerk)
             if even and _keeps_branch(
                 chain, solved, prescribed, place, J, beyond, onward, jerk, by_t, tube
@@ -256,9 +271,17 @@ def sample_tcp(
     each = (curves.position, curves.turning, curves.prescribed)
     width = max(curve.coefficients.shape[1] for curve in each)
     work = _work(get_ident(), seed.size, prescribed.size, chain.joint.size, width)
-    failed, short, reached = _walk(
-        chain, solved, prescribed, curves, samples, seed, states, conditioning, work
-    )
+    given = -1
+    while True:
+        failed, short, reached = _walk(
+            chain, solved, prescribed, curves, samples, seed, given, states, conditioning, work
+        )
+        if failed <= given or short > 0.0:
+            break
+        if not settle(chain, solved, prescribed, curves, samples, failed, reached, states):
+            break
+        conditioning[failed] = 0.0
+        given = failed
     if short < 0.0:
         short = _shortfall(chain, solved, states.q[failed], work.pose)
     return failed, short, reached
@@ -272,11 +295,16 @@ def _walk(
     curves: TcpCurves,
     samples: Samples,
     seed: FloatArray,
+    given: int,
     states: States,
     conditioning: FloatArray,
     scratch: _Work,
 ) -> tuple[int, float, float]:
-    """`sample_tcp`, with a negative length for how far the TCP stays short, where it is asked."""
+    """`sample_tcp`, with a negative length for how far the TCP stays short, where it is asked.
+
+    Args:
+        given: the sample whose state stands already and from which the walk goes on; -1 at first.
+    """
     size = seed.size
     work, tube, walk, J = scratch.pose, scratch.tube, scratch.walk, scratch.J
     jerk, by_t, taylor, place = scratch.jerk, scratch.by_t, scratch.taylor, scratch.place
@@ -297,8 +325,10 @@ def _walk(
     # ``border``.
     centre, slope, reach = scratch.centre, scratch.slope, np.inf
     slope[:] = 0.0
-    origin = sure = border = samples.sigma[0]
-    for k in range(samples.sigma.size):
+    origin = sure = border = samples.sigma[max(given, 0)]
+    if given >= 0:
+        border = _border(samples, given)
+    for k in range(given + 1, samples.sigma.size):
         goal = samples.sigma[k]
         at = samples.sigma[max(k - 1, 0)]
         if goal == at:
@@ -313,11 +343,7 @@ def _walk(
             if not (error < CONVERGED and pivots >= SINGULAR and apart <= JOINED):
                 _copy(centre, states.q[k])
                 return k, (0.0 if pivots < SINGULAR else max(error, apart)), goal
-            sure = border = goal
-            for i in range(k + 1, samples.sigma.size):
-                if samples.sigma[i] == border:
-                    break
-                border = samples.sigma[i]
+            sure, border = goal, _border(samples, k)
             continue
         whole = goal - at
         _copy_row(states, k - 1, walk, 0)
@@ -331,10 +357,15 @@ def _walk(
                 _copy(walk.dq[0], slope)
                 origin = at
                 side = _stand(chain, single, place, centre, J, tube)
+                if k == given + 1 and at == samples.sigma[given]:
+                    side = 0
                 left = border - at
                 step = left if abs(left) <= reach else np.copysign(reach, whole)
                 proven, at_once = False, True
-                while not proven and (abs(step) > least or step == left):
+                if side == 0:
+                    # Nothing is proven of a singular configuration, and next to it little.
+                    step = 0.25 * np.copysign(min(abs(whole), FIRST * abs(border - at)), whole)
+                while side != 0 and not proven and (abs(step) > least or step == left):
                     bound_jerk(curves, samples, k, at + 0.5 * step, 0.5 * abs(step), taylor, jerk)
                     proven = _keeps_branch(
                         chain, solved, prescribed, place, J, walk, step, jerk, by_t, tube
@@ -355,7 +386,7 @@ def _walk(
                         at,
                         side,
                         4 * step,
-                        min(256 * abs(step), abs(goal - at)),
+                        abs(goal - at) if side == 0 else min(256 * abs(step), abs(goal - at)),
                         walk,
                         J,
                         jerk,
@@ -365,7 +396,8 @@ def _walk(
                         tube,
                     )
                     if hop != 0.0:
-                        at, pivots, hop_at = at + hop, 0.0, _HOP * abs(whole)
+                        at = goal if hop == goal - at else at + hop
+                        pivots, hop_at = 0.0, _HOP * abs(whole)
                     elif not proven:
                         conditioning[k] = min(pivots, conditioning[k - 1])
                         _copy(centre, states.q[k])
