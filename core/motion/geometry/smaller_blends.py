@@ -92,7 +92,7 @@ def _used(segments: Segments, i: int, size: Reach, assumed: float | None) -> Rea
     """V / (2 A r), at most one; None where nothing bounds the acceleration."""
     ends = segments.ends
     slower = i + int(np.argmin(ends.speed[i : i + 2]))
-    A = least(*(_acceleration(segments, k, assumed) for k in (i, i + 1)))
+    A = least(*(acceleration_along(segments, k, assumed) for k in (i, i + 1)))
     if math.isinf(A.value):
         return None
     v = float(ends.speed[slower])
@@ -104,12 +104,12 @@ def _used(segments: Segments, i: int, size: Reach, assumed: float | None) -> Rea
 
 def _risen(segments: Segments, i: int, reach: Reach, assumed: float | None) -> Reach:
     """The square of the speed that leg i comes to from rest at the zone's edge, over 2 A r."""
-    own, next_one = (_acceleration(segments, k, assumed) for k in (i, i + 1))
+    own, next_one = (acceleration_along(segments, k, assumed) for k in (i, i + 1))
     before = reach.inverse() + Reach(-1.0)
     return before if own.value <= next_one.value else before * own * next_one.inverse()
 
 
-def _acceleration(segments: Segments, k: int, assumed: float | None) -> Reach:
+def acceleration_along(segments: Segments, k: int, assumed: float | None) -> Reach:
     """m/s² along segment k; inf where nothing bounds it."""
     own = float(segments.ends.acceleration[k])
     if math.isinf(own):

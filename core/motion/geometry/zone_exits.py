@@ -1,4 +1,7 @@
-"""How far the TCP gets from a waypoint along a joint line: what ends a zone of a joint move."""
+"""How far the TCP gets from a waypoint along a joint line, and by how much the tool turns.
+
+That is what ends a zone of a joint move.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,10 @@ from ...arrays import FloatArray
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import jacobian, pose
 from ...robot.kinematics.lean import inner, lean
+from ...spatial.rotation import rotation_vector
+
+Apart = tuple[float, FloatArray, FloatArray]
+"""How far, in m or rad, and its derivatives by the joints there and at the waypoint."""
 
 
 def first_exit(
@@ -107,9 +114,7 @@ def _distance(
     return math.sqrt(square)
 
 
-def tcp_apart(
-    chain: Chain, q_wp: FloatArray, q_other: FloatArray, share: float
-) -> tuple[float, FloatArray, FloatArray]:
+def tcp_apart(chain: Chain, q_wp: FloatArray, q_other: FloatArray, share: float) -> Apart:
     """How far the TCP is from the waypoint at a share of a joint line, and how fast that changes.
 
     Args:
@@ -154,3 +159,47 @@ def _tcp_apart(
                 pull[j] += (p[i] - p_wp[i]) / distance * J[i, j]
                 pull_wp[j] += (p[i] - p_wp[i]) / distance * J_wp[i, j]
     return distance
+
+
+def first_turn(
+    chain: Chain, q_wp: FloatArray, q_other: FloatArray, angle: float, limit: float
+) -> float:
+    """`first_exit` by the tool: the share at which it has turned by ``angle`` rad.
+
+    No joint turns it faster than by itself, which makes each step of the search safe down to steps
+    of 1e-4 of the line.
+    """
+    turning = np.zeros(q_wp.size, dtype=np.bool_)
+    turning[chain.joint[~chain.prismatic]] = True
+    fastest = float(np.abs(q_other - q_wp)[turning].sum())
+    low = share = 0.0
+    while True:
+        gap = angle - tool_apart(chain, q_wp, q_other, share)[0]
+        if gap <= 0.0:
+            break
+        if share >= limit or fastest == 0.0:
+            return -1.0
+        low, share = share, min(limit, share + max(gap / fastest, 1e-4))
+    while share - low > 1e-15 * share:
+        middle = 0.5 * (low + share)
+        if middle in (low, share):
+            break
+        if tool_apart(chain, q_wp, q_other, middle)[0] < angle:
+            low = middle
+        else:
+            share = middle
+    return 0.5 * (low + share)
+
+
+def tool_apart(chain: Chain, q_wp: FloatArray, q_other: FloatArray, share: float) -> Apart:
+    """`tcp_apart` of the tool's orientation: the angle in rad between there and the waypoint."""
+    q = (1 - share) * q_wp + share * q_other
+    R, p, J = np.empty((2, 3, 3)), np.empty(3), np.empty((2, 6, q.size))
+    jacobian(chain, q_wp, R[0], p, J[0])
+    jacobian(chain, q, R[1], p, J[1])
+    turn = rotation_vector(R[1] @ R[0].T)
+    angle = float(np.linalg.norm(turn))
+    if angle == 0.0:
+        return 0.0, np.zeros(q.size), np.zeros(q.size)
+    axis = turn / angle
+    return angle, axis @ J[1, 3:], axis @ J[0, 3:]

@@ -8,7 +8,7 @@ the vendor was active.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -22,12 +22,14 @@ from .corners import JOINT_CORNER, POSITION, TCP_CORNER, Corners, Room, TimedBle
 from .neighbour_zones import STILL, way_towards_neighbour
 from .reach import Part, Reach, least
 from .segments import ARC_SEGMENT, JOINT_SEGMENT, Segments
-from .smaller_blends import share_kept
+from .smaller_blends import acceleration_along, share_kept
 from .timed_blends import timed_blend
-from .zone_exits import first_exit, tcp_apart
+from .zone_exits import Apart, first_exit, first_turn, tcp_apart, tool_apart
 
 _NOTHING = 1e-9
 """A reach below is no zone."""
+_DISTANCE, _TURN = (first_exit, tcp_apart), (first_turn, tool_apart)
+"""What tells how far the TCP, or by how much the tool, is from a waypoint along a joint line."""
 _Reaches = tuple[tuple[Reach, Reach], ...]
 """Of position, turning and prescribed axes, into the segment before a corner and the one after."""
 _Wanted = list[_Reaches] | dict[int, _Reaches]
@@ -175,11 +177,7 @@ class ZonePlanner:
         if isinstance(zone, Fine) or self._stops(i):
             return ((Reach(0.0), Reach(0.0)),) * 3
         if isinstance(zone, SpeedFraction):
-            raise MotionError(
-                "a zone by speed (C_VEL) needs timing before geometry, which is not emulated; "
-                "use a distance (C_DIS)",
-                self._moves[i],
-            )
+            return (self._within(i, self._braking(i, zone.fraction), 0.0),) * 3
         if isinstance(zone, ContourFraction):
             half = self._model.neighbour_fraction
             share = Reach(zone.fraction * half, (("tcp", i, half),))
@@ -216,9 +214,8 @@ class ZonePlanner:
         limit = Reach(self._model.neighbour_fraction)
         turn = float(self._segments.turn[segment])
         if self._segments.ends.kind[segment] == JOINT_SEGMENT:
-            raise MotionError(
-                "a zone by orientation next to a joint move is not emulated; use a distance",
-                self._moves[corner],
+            return self._joint_exit(
+                segment, corner, Reach(angle, (("angle", corner, 1.0),)), limit, _TURN
             )
         if turn <= angle * 1e-12 or turn == 0.0:
             return limit
@@ -230,26 +227,55 @@ class ZonePlanner:
 
     def _by_radius(self, i: int, zone: Radius, radius: float, name: str) -> tuple[Reach, Reach]:
         """Reaches of a sphere of ``radius`` m round waypoint i, the same on both sides."""
-        size = Reach(radius, ((name, i, 1.0),))
+        return self._within(i, Reach(radius, ((name, i, 1.0),)), zone.angle, name == "tcp")
+
+    def _within(
+        self, i: int, wanted: Reach, angle: float, told: bool = False
+    ) -> tuple[Reach, Reach]:
+        """Reaches of a sphere of ``wanted`` m, or in pure reorientation of ``angle`` rad.
+
+        ``told``: whether a cut is worth a note.
+        """
+        size = wanted
         if self._model.overlap is Overlap.HALF:
             for segment in (i, i + 1):
                 half = self._half(segment, i)
                 if half is not None and half.value < size.value * (1 - 1e-9):
                     size = half
-            if name == "tcp" and size.value < radius * (1 - 1e-9):
+            if told and size.value < wanted.value * (1 - 1e-9):
                 self._note(
                     i,
-                    f"zone of {1e3 * radius:g} mm cut to {1e3 * size.value:.4g} mm: it may reach "
-                    "no further than half way to a neighbouring point",
+                    f"zone of {1e3 * wanted.value:g} mm cut to {1e3 * size.value:.4g} mm: it may "
+                    "reach no further than half way to a neighbouring point",
                 )
-        return self._exit(i, i, size, zone), self._exit(i + 1, i, size, zone)
+        return self._exit(i, i, size, angle), self._exit(i + 1, i, size, angle)
+
+    def _braking(self, i: int, fraction: float) -> Reach:
+        """How far before waypoint i, in m, braking towards it has come down to a share of the
+        programmed speed: (f v)² / 2 A."""
+        speed = float(self._segments.ends.speed[i])
+        if self._segments.ends.kind[i] == JOINT_SEGMENT or math.isinf(speed):
+            raise MotionError(
+                "a zone by speed (C_VEL) needs a move of the TCP with a programmed speed; use a "
+                "distance (C_DIS)",
+                self._moves[i],
+            )
+        a = acceleration_along(self._segments, i, self._model.tcp_acceleration)
+        if math.isinf(a.value):
+            raise MotionError(
+                "a zone by speed (C_VEL) needs an acceleration to brake with: program one, or set "
+                "limit.tcp_acceleration in the motion model",
+                self._moves[i],
+            )
+        v = Reach(fraction * speed, (("tcp", i, speed), ("speed", i, fraction)))
+        return v * v * a.scaled(2.0).inverse()
 
     def _half(self, segment: int, corner: int) -> Reach | None:
         return way_towards_neighbour(
             self._segments, self._chains, segment, corner, self._model.neighbour_fraction
         )
 
-    def _exit(self, segment: int, corner: int, size: Reach, zone: Radius) -> Reach:
+    def _exit(self, segment: int, corner: int, size: Reach, angle: float) -> Reach:
         """Share of a segment inside the sphere round the waypoint of ``corner``."""
         s = self._segments
         limit = Reach(self._furthest)
@@ -257,7 +283,7 @@ class ZonePlanner:
             return self._joint_exit(segment, corner, size, limit)
         length = float(s.length[segment])
         if length < STILL:
-            return self._by_angle(segment, zone.angle, corner)
+            return self._by_angle(segment, angle, corner)
         if s.ends.kind[segment] != ARC_SEGMENT:
             share = size * Reach(length, (("length", segment, 1.0),)).inverse()
             return least(share, limit)
@@ -272,15 +298,30 @@ class ZonePlanner:
         parts.append(("arc", segment, slope * size.value / swept - 2 * half / swept**2))
         return least(Reach(2 * half / swept, tuple(parts)), limit)
 
-    def _joint_exit(self, segment: int, corner: int, size: Reach, limit: Reach) -> Reach:
-        """First exit from the sphere on a joint line; derivatives by the implicit function."""
+    def _joint_exit(
+        self,
+        segment: int,
+        corner: int,
+        size: Reach,
+        limit: Reach,
+        measure: tuple[Callable[..., float], Callable[..., Apart]] = _DISTANCE,
+    ) -> Reach:
+        """First exit from a zone on a joint line; derivatives by the implicit function.
+
+        Args:
+            segment, corner: the line, and the corner of the zone.
+            size: of the zone.
+            limit: share of the line that it reaches at most.
+            measure: what size is of.
+        """
+        exits, apart = measure
         chain = self._chains[segment]
         near, far = (1, 0) if segment == corner else (0, 1)
         q_wp, q_other = self._segments.ends.q[segment, near], self._segments.ends.q[segment, far]
-        share = first_exit(chain, q_wp, q_other, size.value, limit.value)
+        share = exits(chain, q_wp, q_other, size.value, limit.value)
         if share < 0.0:
             return limit
-        _, pull, pull_wp = tcp_apart(chain, q_wp, q_other, share)
+        _, pull, pull_wp = apart(chain, q_wp, q_other, share)
         speed = float(pull @ (q_other - q_wp))
         if speed <= 0.0:
             return Reach(share)

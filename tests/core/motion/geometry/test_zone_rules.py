@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -28,6 +30,7 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.tool import Tool
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction
 from flyby.core.spatial.pose import Pose
+from flyby.core.spatial.rotation import rotation_vector
 
 SPEED = Speed(tcp=0.2, reorientation=3.0)
 HALF, SHRINK, SKIP = (MotionModel(overlap=overlap) for overlap in Overlap)
@@ -136,17 +139,122 @@ def test_a_vendor_may_stop_between_a_move_and_a_pure_reorientation(abb) -> None:
     assert "stops here" in stopping.notes[0].message
 
 
-@pytest.mark.parametrize("zone", [SpeedFraction(0.5), Angle(0.1)])
-def test_zones_that_are_not_emulated_name_the_move(abb, zone) -> None:
+def test_a_zone_by_speed_beside_nothing_that_brakes_names_the_move(abb) -> None:
     moves = (
-        MoveJ(abb.target((1, 0, 0)), SPEED, zone),
+        MoveJ(abb.target((1, 0, 0)), SPEED, SpeedFraction(0.5)),
         MoveL(abb.target((1, 1, 0)), SPEED, FINE),
     )
     with pytest.raises(MotionError, match=r"move 1.*use a distance"):
         abb.controller().plan(Program(moves, start=abb.start))
+    moves = (MoveL(abb.target((1, 0, 0)), SPEED, SpeedFraction(0.5)), *moves[1:])
+    with pytest.raises(MotionError, match=r"move 1.*limit.tcp_acceleration"):
+        abb.controller(MotionModel()).plan(Program(moves, start=abb.start))
+
+
+def test_a_zone_by_speed_begins_where_braking_has_come_down_to_it(abb) -> None:
+    """Stopping at the waypoint instead, the TCP passes the zone's edge at that speed."""
+    speed, share = Speed(tcp=0.4, tcp_acceleration=2.0), 0.7
+    controller = abb.controller(MotionModel(neighbour_fraction=0.5))
+    first, second = abb.target((1, 0, 0)), abb.target((1, 1, 0))
+    blended, stopped = (
+        Program((MoveL(first, speed, zone), MoveL(second, speed, FINE)), start=abb.start)
+        for zone in (SpeedFraction(share), FINE)
+    )
+    path = controller.plan(blended)
+    before = float(path.corners.reach[0, POSITION, 0] * path.segments.length[0])
+    assert before == pytest.approx((share * speed.tcp) ** 2 / (2 * speed.tcp_acceleration))
+    run = controller.run(stopped, period=0.001)
+    left = np.linalg.norm(run.trajectory.position - first.pose.position, axis=1)
+    at = int(np.argmin(left))
+    steps = np.linalg.norm(np.diff(run.trajectory.position, axis=0), axis=1)
+    fast = np.append(steps / np.diff(run.trajectory.t), 0.0)
+    there = float(np.interp(before, left[:at][::-1], fast[:at][::-1]))
+    assert there == pytest.approx(share * speed.tcp, rel=0.02)
+
+
+def test_a_zone_by_orientation_beside_a_joint_move(abb) -> None:
+    angle = 0.05
+    turned = abb.target((1, 0, 0), (0, 0.4, 0))
+    moves = (
+        MoveL(turned, SPEED, Angle(angle)),
+        MoveJ(abb.target((1, 1, 0), (0.5, 0.4, 0)), SPEED, FINE),
+    )
+    path = abb.controller().plan(Program(moves, start=abb.start))
+    assert path.corners.kind[0] == JOINT_CORNER
+    q = path.segments.ends.q[1]
+    share = path.corners.reach[0, POSITION, 1]
+    here, there = (
+        abb.robot.flange_pose(x).matrix()[:3, :3] for x in (q[0], q[0] + share * (q[1] - q[0]))
+    )
+    assert np.linalg.norm(rotation_vector(there @ here.T)) == pytest.approx(angle)
 
 
 ZONES = [Radius(0.04, 0.06, 0.05, 0.1), ContourFraction(0.6), Angle(0.05), Radius(0.07, 0.2)]
+
+
+BRAKED = Speed(tcp=0.4, tcp_acceleration=2.5)
+OTHERS = [SpeedFraction(0.7), SpeedFraction(0.3), Angle(0.04), Angle(0.05)]
+
+
+@pytest.mark.parametrize("model", [HALF, SHRINK, OWN])
+def test_the_reverse_of_zones_by_speed_and_by_orientation(abb, model) -> None:
+    """Over shares, angles, speeds, accelerations and joints."""
+    t = abb.target
+    moves = (
+        MoveL(t((1, 0, 0), (0, 0.2, 0)), BRAKED, OTHERS[0]),
+        MoveL(t((1, 1, 0)), BRAKED, OTHERS[1]),
+        MoveL(t((0.4, 1, 0.2), (0.3, 0, 0)), BRAKED, OTHERS[2]),
+        MoveJ(t((0, 0, 0.6), (0, 0.5, 0)), BRAKED, OTHERS[3]),
+        MoveJ(t((0.6, 0, 0.2)), BRAKED, FINE),
+    )
+    route = abb.controller(model).plan(Program(moves, start=abb.start)).route
+    ends, zones = route.ends, list(route.zones)
+    weights = np.random.default_rng(0).normal(size=(4, 3, 2))
+
+    def total(zones) -> float:
+        planner = ZonePlanner(make_segments(ends), route.chains, model, route.moves)
+        return float(np.sum(weights * planner.corners(zones).reach))
+
+    segments = make_segments(ends)
+    corners = ZonePlanner(segments, route.chains, model, route.moves).corners(zones)
+    bar, out = SegmentsGradient.zeros(segments), EndsGradient.zeros(ends)
+    by_zone = ZoneGradient.zeros(4)
+    pull_corners(corners, weights, np.zeros(4), TimedGradient.zeros(0, 4), bar, out, by_zone)
+    h = 1e-6
+    for i, field, name in (
+        (0, "fraction", "tcp"),
+        (1, "fraction", "tcp"),
+        (2, "angle", "angle"),
+        (3, "angle", "angle"),
+    ):
+        at = getattr(zones[i], field)
+        above, below = (
+            total([*zones[:i], replace(zones[i], **{field: at + step}), *zones[i + 1 :]])
+            for step in (h, -h)
+        )
+        numeric = (above - below) / (2 * h)
+        assert getattr(by_zone, name)[i] == pytest.approx(numeric, rel=1e-5, abs=1e-6), (i, name)
+    of = {"speed": (0, 1), "acceleration": (0, 1)}
+    for name, rows in of.items():
+        for row in rows:
+            assert getattr(out, name)[row] == pytest.approx(
+                _slope(getattr(ends, name), row, lambda: total(zones)), rel=1e-5, abs=1e-7
+            ), (name, row)
+    for k in (3, 4):
+        for i in np.ndindex(2, 6):
+            numeric = _slope(ends.q[k], i, lambda: total(zones))
+            assert out.q[k][i] == pytest.approx(numeric, rel=1e-4, abs=1e-5), (k, i)
+    assert np.abs(out.speed[:2]).min() > 0.01
+
+
+def _slope(array, index, value, h: float = 1e-6) -> float:
+    old = array[index]
+    array[index] = old + h
+    above = value()
+    array[index] = old - h
+    below = value()
+    array[index] = old
+    return (above - below) / (2 * h)
 
 
 @pytest.mark.parametrize("model", [HALF, SHRINK, OWN])
