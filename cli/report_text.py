@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..core.display import counted
 from ..core.driving.driven_program import Fault
@@ -16,6 +16,9 @@ from ..tasks.files.source_places import fault_json, note_json, place_json
 from ..tasks.results.report import COLUMNS, MoveReport, Report, move_row, seconds
 from ..tasks.results.shares import shares
 from .console import complain_of_fault, print_rich, print_table, warn
+
+if TYPE_CHECKING:
+    from ..core.collision.clearance import Approach
 
 MOST_ALIKE = 3
 """Notes that say the same of several places, before the rest of them is only counted."""
@@ -37,10 +40,27 @@ def print_report(report: Report, program: Program) -> None:
         f"{report.program} on {report.robot}: {told}; "
         f"TCP path {1e3 * report.length:.1f} mm, at most {1e3 * report.top_speed:.0f} mm/s"
     )
+    for line in clearance_lines(report, program):
+        print_rich(line)
     spent = shares(program, report)
     if spent.total and (spent.passes or spent.devices):
         print_rich(str(spent))
     print_notes(report, program.questions)
+
+
+def clearance_lines(report: Report, program: Program) -> list[str]:
+    """How near a run comes to the cell, and the arm to itself: a line each."""
+    sides = {"to the cell": report.to_cell, "between the arm's own parts": report.own}
+    return [
+        f"clearance {side}: {met} ({_named(program, met.move)})"
+        for side, met in sides.items()
+        if met is not None
+    ]
+
+
+def _named(program: Program, move: int) -> str:
+    span = program.moves[move].statement
+    return f"move {move + 1}" + ("" if span is None else f", line {span.line}")
 
 
 def print_notes(report: Report, questions: Sequence[Question] = ()) -> None:
@@ -107,8 +127,18 @@ def report_json(report: Report) -> dict[str, Any]:
         "moves": [_move_json(move) for move in report.moves],
         "parts": [{"first": first, "last": last} for first, last in report.parts],
         "faults": [fault_json(fault) for fault in report.faults],
+        "clearance": {
+            side: _approach_json(met)
+            for side, met in (("to_cell", report.to_cell), ("own", report.own))
+        },
         "warnings": [note_json(note) for note in report.notes],
     }
+
+
+def _approach_json(met: Approach | None) -> dict[str, Any] | None:
+    if met is None:
+        return None
+    return {"distance_m": met.distance, "pair": list(met.pair), "move": met.move + 1}
 
 
 def asked_json(program: Program, report: Report) -> dict[str, Any]:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..core.errors import FlybyError, MotionError, SourceError
+from ..core.errors import FlybyError, MotionError, SourceError, Span
+from .cell_course import CellCourse
 from .options.keywords import by_keywords
-from .setup import RobotOptions, start_of, with_setup
+from .setup import RobotOptions, Setup, start_of, with_setup
 
 if TYPE_CHECKING:
+    from ..core.driving.driven_program import DrivenPart
+    from ..core.lint.finding import Finding
     from ..core.program.program import Program
     from .results.findings import Findings
 
@@ -26,16 +30,85 @@ def check_with(program: Program, options: CheckOptions) -> Findings:
         program: as `flyby.read` gives it.
 
     Raises:
-        InputError: nobody says which robot.
+        InputError: nobody says which robot, or a statement both takes a part of the cell and lets
+            go of it.
     """
     from ..core.lint.check import check as look
     from .results.findings import Findings
 
     program, setup = with_setup(program, options)
-    return Findings(look(program, setup.vendor, setup.robot, start_of(program)))
+    course = CellCourse.of(program, setup)
+
+    def around(parts: Sequence[DrivenPart]) -> list[Finding]:
+        return [*_part_findings(course), *_clearance_findings(course, setup, parts)]
+
+    start = start_of(program)
+    return Findings(look(course.program, setup.vendor, setup.robot, start, around))
 
 
 check = by_keywords(check_with, CheckOptions)
+
+
+def _part_findings(course: CellCourse) -> list[Finding]:
+    from ..core.lint.check import PART
+
+    fix = "correct the part in the cell file (attach, release, near_mm, pose), or the program"
+    return [
+        _finding(course, PART, note.message, fix, note.move, note.span) for note in course.notes
+    ]
+
+
+def _clearance_findings(
+    course: CellCourse, setup: Setup, parts: Sequence[DrivenPart]
+) -> list[Finding]:
+    """Moves that come too near, and where all of them come nearest."""
+    found, notes = course.clearances(setup, parts)
+    if setup.cell is None or not (found or notes):
+        return []
+    from ..core.collision.clearance import nearest_of
+    from ..core.lint.check import CLEARANCE, COLLISION, NEAREST
+
+    allow = "or let them touch: [allow] pairs in the cell file"
+    told = []
+    for met in (side for move in found for side in (move.cell, move.own) if side is not None):
+        pair = " and ".join(met.pair)
+        if met.distance <= 0.0:
+            message = str(met).removeprefix("none, ")
+            fix = f"move the targets, the obstacle or the part, {allow}"
+            told.append(_finding(course, COLLISION, message, fix, met.move, size=-met.distance))
+        elif met.distance < setup.cell.clearance:
+            wanted = f"{1e3 * setup.cell.clearance:g} mm"
+            message = f"{pair} come within {1e3 * met.distance:.1f} mm, {wanted} are to be kept"
+            fix = f"move the targets, ask for less (clearance_mm), {allow}"
+            size = setup.cell.clearance - met.distance
+            told.append(_finding(course, CLEARANCE, message, fix, met.move, size=size))
+    sides = zip(("to the cell", "between the arm's own parts"), nearest_of(found), strict=True)
+    for side, least in sides:
+        if least is not None:
+            message = f"clearance {side}: {least}"
+            told.append(
+                _finding(course, NEAREST, message, "nothing, if that is enough", least.move)
+            )
+    fix = "complete the cell file"
+    told += [_finding(course, NEAREST, n.message, fix, n.move, n.span) for n in notes]
+    return told
+
+
+def _finding(
+    course: CellCourse,
+    rule: str,
+    message: str,
+    fix: str,
+    move: int | None,
+    span: Span | None = None,
+    size: float | None = None,
+) -> Finding:
+    from ..core.lint.check import rules
+    from ..core.lint.finding import Finding
+
+    if span is None and move is not None:
+        span = course.program.moves[move].statement
+    return Finding(rule, rules()[rule][0], message, fix, move, span, size)
 
 
 def unread(error: FlybyError) -> Findings:

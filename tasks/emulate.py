@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..core.display import counted
+from .cell_course import CellCourse
 from .options.entries import TIME, Extent, number, switch
 from .options.keywords import by_keywords
 from .setup import RobotOptions, start_of, with_setup
@@ -41,26 +42,33 @@ def emulate_with(program: Program, options: EmulateOptions) -> Run:
 
     Raises:
         MotionError: no move can be driven, or with ``strict`` any cannot; the message names it.
-        InputError: nobody says which robot.
+        InputError: nobody says which robot, or a statement both takes a part of the cell and lets
+            go of it.
     """
     from ..core.driving.driven_program import refusal
     from ..core.driving.past_faults import drive
     from ..core.motion.emulator.controller import Controller
-    from ..core.motion.emulator.move_figures import range_notes
+    from ..core.motion.emulator.move_figures import load_notes, range_notes
     from .results.runs import Run
 
     program, setup = with_setup(program, options)
     options.say(f"emulating {counted(program.moves, 'move')}")
     controller = Controller(setup.vendor, setup.robot)
-    driven = drive(controller, program, start_of(program), options.period)
+    course = CellCourse.of(program, setup)
+    driven = drive(controller, course.program, start_of(program), options.period)
     if options.strict and driven.faults:
         raise refusal(driven.faults)
-    noted = (
-        replace(part, run=replace(part.run, notes=(*part.run.notes, *beyond)))
+    noted = tuple(
+        replace(part, run=replace(part.run, notes=(*part.run.notes, *more)))
         for part in driven.parts
-        for beyond in (range_notes(part.run, controller.model),)
+        for more in [
+            range_notes(part.run, controller.model) + load_notes(part.run, controller.model)
+        ]
     )
-    return Run.of(replace(driven, parts=tuple(noted)), setup.robot)
+    options.say("measuring clearances")
+    clearances, odd = course.clearances(setup, noted)
+    own = replace(program, notes=(*program.notes, *course.notes, *odd))
+    return Run.of(replace(driven, program=own, parts=noted), setup.robot, clearances)
 
 
 emulate = by_keywords(emulate_with, EmulateOptions)

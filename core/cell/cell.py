@@ -19,6 +19,7 @@ from ..robot.assembly import assemble
 from ..robot.kinematics.chain_kernels import poses
 from ..robot.model import Robot
 from .geometry import Geometry, Mesh
+from .part import Part
 
 if TYPE_CHECKING:
     from ..registry import Registry
@@ -53,6 +54,7 @@ class Cell:
         tool_geometries: shapes of tools by the tool's name, in the flange's frame (in the world
             for a stationary tool).
         obstacles: what stands around.
+        parts: what the robot picks and places.
         allowed: pairs of names that may touch; printed in every report.
         motion: file of how this robot is driven, on top of what its vendor states; None for that.
         file: the file that the cell was read from.
@@ -65,6 +67,7 @@ class Cell:
     frames: Mapping[str, WorkObject] = field(default_factory=dict)
     tool_geometries: Mapping[str, Geometry] = field(default_factory=dict)
     obstacles: tuple[Obstacle, ...] = ()
+    parts: tuple[Part, ...] = ()
     allowed: tuple[tuple[str, str], ...] = ()
     motion: Path | None = None
     file: Path | None = None
@@ -149,7 +152,11 @@ class Cell:
         return tuple(f"{file}: {doubt}" for file, doubt in doubts if doubt is not None)
 
     def _meshes(self) -> list[Mesh]:
-        geometries = (*self.tool_geometries.values(), *(o.geometry for o in self.obstacles))
+        geometries = (
+            *self.tool_geometries.values(),
+            *(obstacle.geometry for obstacle in self.obstacles),
+            *(part.geometry for part in self.parts),
+        )
         return [g.shape for g in geometries if isinstance(g.shape, Mesh)]
 
 

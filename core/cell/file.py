@@ -15,7 +15,8 @@ from ..robot.pose_table import pose_at
 from .arm import read_arm
 from .cell import Cell, Obstacle
 from .geometry import Geometry
-from .parts import read_geometry, read_load
+from .part import Part, read_part
+from .tables import read_geometry, read_load
 
 if TYPE_CHECKING:
     from ..registry import Registry
@@ -41,12 +42,14 @@ def load_cell(path: str | Path, registry: Registry) -> Cell:
     tools, shapes = _tools(file)
     tables = {axis.name for axis in axes if axis.role is ExternalRole.TABLE}
     obstacles = _obstacles(file, tables)
+    parts = _parts(file, tables, (*tools, *(o.name for o in obstacles)))
     frames = _frames(file, tables)
     clearance = _clearance(file)
     motion = Path(path).parent / file.text("motion") if file.has("motion") else None
     allow = file.table("allow")
     file.finish()
-    known = {*tools, *(obstacle.name for obstacle in obstacles), "base", *robot.axis_names}
+    things = (*(obstacle.name for obstacle in obstacles), *(part.name for part in parts))
+    known = {*tools, *things, "base", *robot.axis_names}
     return Cell(
         robot=robot,
         vendor=file.text("robot").partition("/")[0],
@@ -55,6 +58,7 @@ def load_cell(path: str | Path, registry: Registry) -> Cell:
         frames=frames,
         tool_geometries=shapes,
         obstacles=obstacles,
+        parts=parts,
         motion=motion,
         allowed=_allowed(allow, known),
         file=file.file,
@@ -120,6 +124,16 @@ def _obstacles(file: TomlTable, tables: Collection[str]) -> tuple[Obstacle, ...]
         obstacles.append(Obstacle(name, geometry, _carrier(table, "carried_by", tables)))
         table.finish()
     return tuple(obstacles)
+
+
+def _parts(file: TomlTable, tables: Collection[str], others: Collection[str]) -> tuple[Part, ...]:
+    parts: list[Part] = []
+    for table in file.listed_tables("part"):
+        part = read_part(table, sorted(tables))
+        if part.name in (*others, *(known.name for known in parts)):
+            raise table.error("name", f"something else in the cell is called {part.name!r} already")
+        parts.append(part)
+    return tuple(parts)
 
 
 def _carrier(table: TomlTable, key: str, tables: Collection[str]) -> str | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 from ..door import spelt
@@ -20,6 +20,7 @@ from .run_rules import RUN_RULES
 
 CANNOT_DRIVE = "cannot-drive"
 CANNOT_READ = "cannot-read"
+COLLISION, CLEARANCE, NEAREST, PART = "collision", "clearance", "nearest", "part"
 
 
 def rules() -> dict[str, tuple[Severity, str]]:
@@ -28,12 +29,20 @@ def rules() -> dict[str, tuple[Severity, str]]:
     own = {
         CANNOT_READ: (Severity.ERROR, "text that cannot be read"),
         CANNOT_DRIVE: (Severity.ERROR, "moves that the robot cannot drive"),
+        COLLISION: (Severity.ERROR, "bodies of a cell that overlap along a move"),
+        CLEARANCE: (Severity.WARNING, "moves that come nearer than the clearance of the cell"),
+        NEAREST: (Severity.INFO, "where the robot comes nearest to the cell, and to itself"),
+        PART: (Severity.WARNING, "parts of a cell that are not taken or released as it says"),
     }
     return {**own, **{rule.id: (rule.severity, rule.summary) for rule in known}}
 
 
 def check(
-    program: Program, vendor: Vendor, robot: Robot, start: JointTarget | None = None
+    program: Program,
+    vendor: Vendor,
+    robot: Robot,
+    start: JointTarget | None = None,
+    around: Callable[[Sequence[DrivenPart]], Iterable[Finding]] | None = None,
 ) -> tuple[Finding, ...]:
     """All findings, in the order of the program's text.
 
@@ -43,6 +52,7 @@ def check(
         program: the program.
         vendor, robot: whose it is.
         start: where the robot stands; None for the program's own start, else its first target.
+        around: finds what the parts that can be driven meet in their cell; None without one.
     """
     wording = None if vendor.speaks is None else vendor.speaks.wording
     subject = ProgramSubject(program, robot, wording)
@@ -55,6 +65,8 @@ def check(
             for finding in rule.findings(subject_of_run, part.run.program):
                 move = None if finding.move is None else part.first + finding.move
                 found.append(replace(finding, move=move))
+    if around is not None:
+        found += around(parts)
     return tuple(sorted(_once(found), key=_place))
 
 

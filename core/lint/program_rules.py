@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from ..door import spelt
+from ..door import called, spelt
 from ..program.move import Move, MoveJ, Opaque, Wait
 from ..program.target import JointTarget, PoseTarget
 from ..program.zone import FINE, Angle, ContourFraction, Radius, Zone
@@ -166,6 +166,32 @@ def _alike(first: PoseTarget, second: PoseTarget) -> bool:
     return near and 2 * float(np.arcsin(half_turn)) < _SAME_TURN
 
 
+def _payload_exceeded(subject: ProgramSubject) -> Iterator[Hit]:
+    """Where what the flange carries begins to be more than the robot is rated for."""
+    robot, before = subject.robot, 0.0
+    for i, move in enumerate(subject.program.moves):
+        tool = move.tool.load if move.tool.robot_held else None
+        carried = [
+            (load, name)
+            for load, name in ((tool, f"tool {move.tool.name}"), (move.load, "the payload"))
+            if load is not None and load.mass > 0.0
+        ]
+        mass = sum(load.mass for load, _ in carried)
+        if robot.payload is not None and mass > robot.payload + _SLACK and mass != before:
+            told = " and ".join(
+                f"{load.name or name} of {load.mass:.4g} kg" for load, name in carried
+            )
+            yield Hit(
+                f"the flange carries {mass:.4g} kg from here on ({told}); {robot.name} is rated "
+                f"for {robot.payload:g} kg",
+                f"carry less, or take a robot rated for {mass:.4g} kg ({called('robots')}); if "
+                "the mass is wrong, correct it where it is declared",
+                i,
+                size=mass,
+            )
+        before = mass
+
+
 def _reader_notes(subject: ProgramSubject) -> Iterator[Hit]:
     for note in subject.program.notes:
         meant = f"nothing, if meant so; else answer what is open by {spelt('answers')}"
@@ -186,6 +212,12 @@ PROGRAM_RULES = (
         _zone_switched_off,
     ),
     Rule("joint-limit", Severity.ERROR, "joint targets outside the robot's range", _joint_limit),
+    Rule(
+        "payload-exceeded",
+        Severity.ERROR,
+        "loads of tool and payload beyond the robot's rated payload",
+        _payload_exceeded,
+    ),
     Rule("speed-beyond-robot", Severity.WARNING, "joint speeds above the robot's", _speed_beyond),
     Rule(
         "duplicate-target",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 from ..display import counted, in_line
 from ..errors import Note
 from ..notebook import PictureCurve, page, picture, table
+from .call import Call
 from .cycle import Cycle
 from .entry_point import EntryPoint
 from .move import Move, MoveC, MoveJ, MoveL, Statement
@@ -62,6 +63,7 @@ class Program:
         questions: what the source asks that no file says; not part of the value.
         entries: routines that it may begin with, where that was asked or it drives nothing; not
             part of the value.
+        calls: of its own routines, in their order; not part of the value.
         cycle: the last pass of the loop that production runs in, if there is one; not part of the
             value.
         reading: the source files, for the patcher; None if it was not read; not part of the value.
@@ -75,6 +77,7 @@ class Program:
     notes: tuple[Note, ...] = field(default=(), compare=False)
     questions: tuple[Question, ...] = field(default=(), compare=False, repr=False)
     entries: tuple[EntryPoint, ...] = field(default=(), compare=False, repr=False)
+    calls: tuple[Call, ...] = field(default=(), compare=False, repr=False)
     cycle: Cycle | None = field(default=None, compare=False, repr=False)
     reading: ReadFrom | None = field(default=None, compare=False, repr=False)
     setup: DrivenBy | None = field(default=None, compare=False, repr=False)
@@ -118,7 +121,7 @@ class Program:
         """The program of the moves from index ``first`` to before ``stop``, with what is between.
 
         What stands before the first of them belongs to it, what stands behind the last as well.
-        Where it does not begin as the whole it has neither its start nor its notes.
+        Where it does not begin as the whole it has neither its start, its notes nor its calls.
         """
         kept: list[Statement] = []
         count = 0
@@ -131,7 +134,7 @@ class Program:
                 kept.append(statement)
         if first == 0:
             return replace(self, statements=tuple(kept))
-        return replace(self, statements=tuple(kept), start=None, notes=())
+        return replace(self, statements=tuple(kept), start=None, notes=(), calls=())
 
     def with_moves(self, moves: tuple[Move, ...]) -> Program:
         """The same program with each move replaced by the one at its index in ``moves``.

@@ -5,8 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..errors import InputError
+from ..robot.inertia import Inertia
 from ..spatial.pose import IDENTITY, Pose, Quaternion, Vector3
+from ..spatial.rotation import quaternion_from_matrix
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +36,15 @@ class Load:
         numbers = (self.mass, *self.centre, *self.inertia, *self.axes)
         if not all(map(math.isfinite, numbers)) or self.mass < 0 or min(self.inertia) < 0:
             raise InputError(f"a load needs finite numbers, mass and inertia not negative: {self}")
+
+    @classmethod
+    def of_body(cls, body: Inertia, name: str | None = None) -> Load:
+        """A body by its principal moments."""
+        moments, axes = np.linalg.eigh(np.array(body.tensor))
+        axes[:, 2] *= np.sign(np.linalg.det(axes))
+        a, b, c = (max(0.0, float(moment)) for moment in moments)
+        w, x, y, z = (float(part) for part in quaternion_from_matrix(axes))
+        return cls(body.mass, body.centre, (a, b, c), (w, x, y, z), name)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -20,6 +21,9 @@ from ...core.program.target import JointTarget
 from ...core.program.zone import Fine, Radius
 from ...core.robot.model import Robot
 from ..options.texts import fixed
+
+if TYPE_CHECKING:
+    from ...core.collision.clearance import Approach, MoveClearance
 
 COLUMNS = (
     ("#", "right"),
@@ -166,6 +170,8 @@ class Report:
         parts: that are driven without a gap: the first and the last move of each, from 1.
         faults: moves that cannot be driven.
         notes: what the user should know.
+        to_cell: where arm, tool and what is carried come nearest to the cell; None without a cell.
+        own: where the arm's links, the tool and what is carried come nearest to each other.
     """
 
     program: str
@@ -180,6 +186,8 @@ class Report:
     parts: tuple[tuple[int, int], ...]
     faults: tuple[Fault, ...]
     notes: tuple[Note, ...]
+    to_cell: Approach | None = None
+    own: Approach | None = None
 
     def __repr__(self) -> str:
         told = [f"{1e3 * self.length:.1f} mm", counted(self.moves, "move")]
@@ -201,8 +209,10 @@ class Report:
         return sum(move.time for move in self.moves)
 
 
-def make_report(driven: DrivenProgram, robot: Robot) -> Report:
-    """The report of a driven program."""
+def make_report(
+    driven: DrivenProgram, robot: Robot, clearances: Sequence[MoveClearance] = ()
+) -> Report:
+    """The report of a driven program, and of how near its moves come."""
     faults = {fault.move: fault for fault in driven.faults}
     moves = [_empty(i, move, faults.get(i)) for i, move in enumerate(driven.program.moves)]
     waiting = 0.0
@@ -211,6 +221,11 @@ def make_report(driven: DrivenProgram, robot: Robot) -> Report:
             number = part.first + i + 1
             moves[number - 1] = replace(row, number=number, begin=row.begin + clock)
         waiting += float(part.run.path.route.dwell.sum())
+    to_cell = own = None
+    if clearances:
+        from ...core.collision.clearance import nearest_of
+
+        to_cell, own = nearest_of(clearances)
     return Report(
         program=driven.program.name,
         robot=robot.name,
@@ -224,6 +239,8 @@ def make_report(driven: DrivenProgram, robot: Robot) -> Report:
         parts=tuple((p.first + 1, p.first + len(p.run.program.moves)) for p in driven.parts),
         faults=driven.faults,
         notes=driven.notes,
+        to_cell=to_cell,
+        own=own,
     )
 
 

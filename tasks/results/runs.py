@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from ...core.display import counted
 from ...core.driving.driven_program import DrivenProgram
@@ -15,6 +16,9 @@ from ...core.notebook import PictureCurve, page, picture
 from ...core.robot.model import Robot
 from .report import MoveTable, Report, make_report
 
+if TYPE_CHECKING:
+    from ...core.collision.clearance import MoveClearance
+
 
 @dataclass(frozen=True, repr=False)
 class Run(DrivenProgram):
@@ -23,14 +27,20 @@ class Run(DrivenProgram):
 
     Args:
         robot: that was driven.
+        clearances: how near its moves come, as far as they come nearer than those before or than
+            the cell allows; empty without a cell.
     """
 
     robot: Robot = field(kw_only=True)
+    clearances: tuple[MoveClearance, ...] = field(default=(), kw_only=True)
 
     @classmethod
-    def of(cls, driven: DrivenProgram, robot: Robot) -> Run:
+    def of(
+        cls, driven: DrivenProgram, robot: Robot, clearances: tuple[MoveClearance, ...] = ()
+    ) -> Run:
         """A driven program with its robot."""
-        return cls(driven.program, driven.parts, driven.faults, robot=robot)
+        parts, faults = driven.parts, driven.faults
+        return cls(driven.program, parts, faults, robot=robot, clearances=clearances)
 
     def __repr__(self) -> str:
         return f"{super().__repr__()[:-1]} on {self.robot.name}>"
@@ -62,7 +72,7 @@ class Run(DrivenProgram):
     @cached_property
     def report(self) -> Report:
         """All figures of the run, move by move."""
-        return make_report(self, self.robot)
+        return make_report(self, self.robot, self.clearances)
 
     @property
     def moves(self) -> MoveTable:

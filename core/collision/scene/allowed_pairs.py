@@ -59,9 +59,9 @@ def sort_pairs(cell: Cell, bodies: tuple[Body, ...], frames: FrameTree) -> Pairs
     exclusions: list[Exclusion] = []
     for i, j in combinations(range(len(bodies)), 2):
         first, second = bodies[i], bodies[j]
-        if first.part == second.part and first.kind is second.kind:
+        if first.thing == second.thing and first.kind is second.kind:
             continue
-        reason = _reason(cell, first, second, frames)
+        reason = exclusion_reason(cell, first, second, frames)
         if reason is None:
             kept.append((i, j))
         else:
@@ -69,7 +69,8 @@ def sort_pairs(cell: Cell, bodies: tuple[Body, ...], frames: FrameTree) -> Pairs
     return Pairs(np.array(kept, dtype=np.int64).reshape(-1, 2), tuple(exclusions))
 
 
-def _reason(cell: Cell, first: Body, second: Body, frames: FrameTree) -> str | None:
+def exclusion_reason(cell: Cell, first: Body, second: Body, frames: FrameTree) -> str | None:
+    """Why two bodies are not looked at together; None if they are."""
     if (frames.moves[first.frame] == frames.moves[second.frame]).all():
         return "they do not move against each other"
     if _adjacent(cell.robot, first, second):
@@ -153,11 +154,6 @@ def overlap_notes(
 
 
 def _own(pairs: Pairs, bodies: tuple[Body, ...]) -> NDArray[np.bool_]:
-    """Which pairs are of links and tools that the robot carries, (P,)."""
-    own = np.array(
-        [
-            body.kind is BodyKind.LINK or (body.kind is BodyKind.TOOL and body.frame > 0)
-            for body in bodies
-        ]
-    )
+    """Which pairs are of the arm and what it carries, (P,)."""
+    own = np.array([body.own for body in bodies])
     return np.asarray(own[pairs.kept].all(axis=1))

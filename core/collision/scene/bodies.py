@@ -30,6 +30,8 @@ class BodyKind(StrEnum):
     LINK = "link"
     TOOL = "tool"
     OBSTACLE = "obstacle"
+    HELD = "held part"
+    PART = "part"
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +40,9 @@ class Body:
 
     Args:
         name: for messages, unique in the scene: ``J3``, ``gun``, ``fixture (2)``.
-        part: what allowed pairs call it: ``base``, the joint before the link, the tool or the
-            obstacle; several bodies may make one part.
+        thing: what it is one of the bodies of: ``J3``, ``gun``, ``fixture``, ``crate 2``.
+        part: what allowed pairs call it: ``base``, the joint before the link, the tool, the
+            obstacle or the kind of part.
         kind: what the part is.
         frame: that carries it, a row of `flyby.core.collision.scene.frames.FrameTree`.
         solid: its shape.
@@ -47,11 +50,18 @@ class Body:
     """
 
     name: str
+    thing: str
     part: str
     kind: BodyKind
     frame: int
     solid: Solid
     placement: Pose
+
+    @property
+    def own(self) -> bool:
+        """Whether it is of the arm, or carried by it."""
+        held = self.kind is BodyKind.TOOL and self.frame > WORLD
+        return held or self.kind in (BodyKind.LINK, BodyKind.HELD)
 
 
 class Bodies(NamedTuple):
@@ -73,10 +83,10 @@ def bodies_of(cell: Cell, tool: Tool) -> Bodies:
     found: list[Body] = list(_links(cell.robot))
     notes: list[Note] = []
     for name in _present_tools(cell, tool):
-        solids, odd = _tool_solids(name, cell.tool_geometries[name])
+        solids, odd = tool_like_solids(name, cell.tool_geometries[name])
         frame, placement = _tool_place(cell, name)
         notes += odd
-        found += _pieces(name, name, BodyKind.TOOL, frame, placement, solids)
+        found += pieces_of(name, name, BodyKind.TOOL, frame, placement, solids)
     notes += _tool_notes(cell, tool)
     for obstacle in cell.obstacles:
         solids, odd = _obstacle_solids(obstacle.geometry)
@@ -133,7 +143,7 @@ def _links(robot: Robot) -> Iterable[Body]:
             if link == 0:
                 frame, placement = base.frame, base.placement @ shape.placement
             full = part if len(shapes) == 1 else f"{part} ({number})"
-            yield Body(full, part, BodyKind.LINK, frame, shape.shape, placement)
+            yield Body(full, part, part, BodyKind.LINK, frame, shape.shape, placement)
 
 
 def _present_tools(cell: Cell, mounted: Tool) -> list[str]:
@@ -152,7 +162,12 @@ def _tool_place(cell: Cell, name: str) -> tuple[int, Pose]:
     return WORLD, geometry.placement
 
 
-def _tool_solids(name: str, geometry: Geometry) -> tuple[list[Solid], list[Note]]:
+def tool_like_solids(name: str, geometry: Geometry) -> tuple[list[Solid], list[Note]]:
+    """The convex solids of what a robot carries, and what is odd about them.
+
+    Raises:
+        InputError: the mesh cannot be used.
+    """
     if isinstance(geometry.shape, Mesh):
         return tool_solids(name, geometry.shape)
     return [geometry.shape], []
@@ -168,15 +183,16 @@ def _obstacle(robot: Robot, obstacle: Obstacle, solids: list[Solid]) -> list[Bod
     carrier = obstacle.carried_by
     frame = WORLD if carrier is None else frame_of_axis(robot, carrier)
     name = obstacle.name
-    return _pieces(name, name, BodyKind.OBSTACLE, frame, obstacle.geometry.placement, solids)
+    return pieces_of(name, name, BodyKind.OBSTACLE, frame, obstacle.geometry.placement, solids)
 
 
-def _pieces(
-    name: str, part: str, kind: BodyKind, frame: int, placement: Pose, solids: list[Solid]
+def pieces_of(
+    thing: str, part: str, kind: BodyKind, frame: int, placement: Pose, solids: list[Solid]
 ) -> list[Body]:
+    """The bodies of one thing, see `Body`."""
     if len(solids) == 1:
-        return [Body(name, part, kind, frame, solids[0], placement)]
+        return [Body(thing, thing, part, kind, frame, solids[0], placement)]
     return [
-        Body(f"{name} ({number})", part, kind, frame, solid, placement)
+        Body(f"{thing} ({number})", thing, part, kind, frame, solid, placement)
         for number, solid in enumerate(solids, 1)
     ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from copy import copy
 from functools import cached_property
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...arrays import FloatArray
 from ...cell.cell import Cell
 from ...errors import InputError, Note
+from ...handling.arrangement import Arrangement
 from ...program.tool import FLANGE, Tool
 from ...robot.model import Robot
 from ..distance.answers import Contact, Distances, RecentDistances
@@ -24,6 +26,7 @@ from .allowed_pairs import Exclusion, always_touching, drop_own_overlaps, overla
 from .bodies import Body, bodies_of
 from .frames import FrameTree, distance_gradients, frame_tree, place_bodies
 from .outline import Outlines, outlines_of
+from .part_bodies import part_bodies, part_pairs, part_solids, refuse_parts
 
 TOUCH = 1e-9
 """m within which bodies count as touching."""
@@ -37,6 +40,7 @@ class CollisionScene:
     Args:
         cell: robot, tools, obstacles.
         tool: the mounted tool; its shape is the one that the cell has for its name.
+        parts: where the cell's parts are, all of them; None for a cell without.
 
     Attributes:
         bodies: every solid, and what carries it.
@@ -46,21 +50,21 @@ class CollisionScene:
         notes: what a user should know of shapes and pairs.
 
     Raises:
-        InputError: the robot has no shapes, the cell does not know the tool, or a mesh cannot
-            be used.
+        InputError: the robot has no shapes, the cell does not know the tool, a mesh cannot be
+            used, or the cell has parts and nobody says where they are.
     """
 
-    def __init__(self, cell: Cell, tool: Tool = FLANGE) -> None:
+    def __init__(self, cell: Cell, tool: Tool = FLANGE, parts: Arrangement | None = None) -> None:
+        if parts is None:
+            refuse_parts(cell)
         found = bodies_of(cell, tool)
         self.cell = cell
         self.tool = tool
         self.robot: Robot = cell.robot
-        self.bodies: tuple[Body, ...] = found.bodies
         self.frames: FrameTree = frame_tree(cell.robot)
-        self._carriers = np.array([body.frame for body in self.bodies], dtype=np.int64)
-        places = np.array([body.placement.matrix() for body in self.bodies])
-        self._rotation = np.ascontiguousarray(places[:, :3, :3])
-        self._translation = np.ascontiguousarray(places[:, :3, 3])
+        self._standing = found.bodies
+        self._part_solids, odd = part_solids(cell.parts)
+        self._set_bodies(parts or ())
         solids = [body.solid for body in self.bodies]
         nesting = Nesting(solids)
         self._hulls = hulls_of(solids)
@@ -68,14 +72,45 @@ class CollisionScene:
         self._contacts: ContactEngine = FclEngine(solids, nesting)
         self._recent = RecentDistances()
 
-        pairs = sort_pairs(cell, self.bodies, self.frames)
+        pairs = sort_pairs(cell, self._standing, self.frames)
         always = always_touching(self.robot, pairs.kept, self._touching)
         notes = overlap_notes(pairs, self.bodies, always)
         pairs = drop_own_overlaps(pairs, self.bodies, always)
-        self.pairs: NDArray[np.int64] = pairs.kept
-        self._pairs = [(int(a), int(b)) for a, b in pairs.kept]
+        self._standing_pairs = pairs.kept
         self.exclusions: tuple[Exclusion, ...] = pairs.exclusions
-        self.notes: tuple[Note, ...] = (*found.notes, *notes)
+        self.notes: tuple[Note, ...] = (*found.notes, *odd, *notes)
+        self._set_pairs(parts or ())
+
+    def rearranged(self, parts: Arrangement) -> CollisionScene:
+        """The same scene with its parts elsewhere.
+
+        Args:
+            parts: all of them, in the order of this scene's.
+        """
+        other = copy(self)
+        other.__dict__.pop("outlines", None)
+        other._recent = RecentDistances()
+        other._set_bodies(parts)
+        other._set_pairs(parts)
+        return other
+
+    def _set_bodies(self, parts: Arrangement) -> None:
+        """Put all bodies in their places."""
+        placed = part_bodies(self.robot, parts, self._part_solids)
+        self.bodies: tuple[Body, ...] = (*self._standing, *placed)
+        self._carriers = np.array([body.frame for body in self.bodies], dtype=np.int64)
+        places = np.array([body.placement.matrix() for body in self.bodies])
+        self._rotation = np.ascontiguousarray(places[:, :3, :3])
+        self._translation = np.ascontiguousarray(places[:, :3, 3])
+
+    def _set_pairs(self, parts: Arrangement) -> None:
+        """Find the pairs of parts, those that always overlap the arm which holds them left out."""
+        gone = frozenset(placed.name for placed in parts if placed.gone)
+        pairs = part_pairs(self.cell, self.bodies, len(self._standing), self.frames, gone)
+        own = np.array([self.bodies[a].own and self.bodies[b].own for a, b in pairs], dtype=bool)
+        own[own] = always_touching(self.robot, pairs[own], self._touching)
+        self.pairs: NDArray[np.int64] = np.concatenate([self._standing_pairs, pairs[~own]])
+        self._pairs = [(int(a), int(b)) for a, b in self.pairs]
 
     @property
     def body_names(self) -> tuple[str, ...]:
@@ -170,6 +205,40 @@ class CollisionScene:
         """
         chunks = [self._least(rows, within) for rows in _chunks(self._rows(q))]
         return np.concatenate([np.empty(0), *chunks])
+
+    def nearest(
+        self, q: ArrayLike, pairs: NDArray[np.int64], within: float = math.inf
+    ) -> tuple[float, int, int] | None:
+        """The least signed distance of chosen pairs over all configurations q (M, N).
+
+        Args:
+            q: rad or m.
+            pairs: (K,), rows of `pairs`.
+            within: m.
+
+        Returns:
+            distance in m, sample and row of `pairs`; None if all are at least ``within`` apart.
+        """
+        rows = self._rows(q)
+        least: tuple[float, int, int] | None = None
+        for start in range(0, len(rows) if len(pairs) else 0, CHUNK):
+            R, p = self._place(rows[start : start + CHUNK])
+            found, bound = self._closed_forms(R, p, self.pairs[pairs], within)
+            m, k = np.unravel_index(int(found.distance.argmin()), found.distance.shape)
+            if found.distance[m, k] < within:
+                within = float(found.distance[m, k])
+                least = within, start + int(m), int(pairs[k])
+            places = _places(R, p)
+            for entry in np.argsort(bound, axis=None).tolist():
+                m, k = np.unravel_index(entry, bound.shape)
+                if not bound[m, k] < within:
+                    break
+                a, b = self._pairs[pairs[k]]
+                witness = self._distances.distance(a, b, places[int(m)], within)
+                if witness is not None:
+                    within = float(witness.distance)
+                    least = within, start + int(m), int(pairs[k])
+        return least
 
     def gradients(
         self, q: ArrayLike, found: Distances, which: tuple[ArrayLike, ArrayLike]

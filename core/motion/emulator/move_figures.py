@@ -6,6 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...arrays import FloatArray
+from ...display import counted
+from ...door import called
 from ...errors import Note
 from ...program.move import MoveJ
 from ...program.zone import Radius
@@ -111,5 +113,29 @@ def range_notes(run: Run, model: MotionModel) -> tuple[Note, ...]:
         Note(
             "beyond the runs that the motion model was fitted to, where it extrapolates (in "
             f"brackets what they cover): {'; '.join(left)}"
+        ),
+    )
+
+
+def load_notes(run: Run, model: MotionModel) -> tuple[Note, ...]:
+    """One note where a program carries a load of which the motion model knows nothing.
+
+    No figure of a model depends on the load: accelerations are those of the runs that it was fitted
+    to, or the catalogue's. Where those runs tell what they carried, `range_notes` speaks.
+    """
+    if model.taught is not None and model.taught.payload is not None:
+        return ()
+    moves = [(k, run.program.moves[k].load) for k in run.path.route.moves]
+    carried = [(k, load.mass) for k, load in moves if load is not None and load.mass > 0.0]
+    if not carried:
+        return ()
+    least, most = min(mass for _, mass in carried), max(mass for _, mass in carried)
+    masses = f"{most:.4g} kg" if most - least < 1e-3 * most else f"{least:.4g} to {most:.4g} kg"
+    return (
+        Note(
+            f"a payload of {masses} is carried on {counted(carried, 'move')}, here first: what "
+            "acceleration owes to load the motion model does not know, so the real robot may be "
+            f"slower there; fit it to logs with that load ({called('identify')})",
+            carried[0][0],
         ),
     )

@@ -191,6 +191,12 @@ def stands_in(name: str, text: str) -> bool:
     return any(map(word.search, (key(text), " ".join(text.split()).casefold())))
 
 
+def stands_at(name: str, text: str, span: Span | None) -> bool:
+    """Whether a key is a statement's place, ``file:line``, or stands in it; see `stands_in`."""
+    place = "" if span is None else f"{_place(span.file)}:{span.line}"
+    return name in (place, place.rpartition("/")[2]) or stands_in(name, text)
+
+
 def _skipped(name: str, value: object, path: str | Path) -> str:
     if value != "skip":
         raise InputError(f'{path}: {name} in [calls] is "skip", not {value!r}')
@@ -292,16 +298,14 @@ class Course:
         """
         if not listed and not self.answers.durations:
             return 0.0
-        place = f"{_place(span.file)}:{span.line}"
-        found = [k for k in self.answers.durations if k in (place, place.rpartition("/")[2])]
-        found += [k for k in self.answers.durations if stands_in(k, text)]
+        found = [k for k in self.answers.durations if stands_at(k, text, span)]
         self._asked |= {("durations", k) for k in found}
         told = max((self.answers.durations[k] for k in found), default=0.0)
         if not listed and not found:
             return 0.0
         shown = " ".join(text.split()).rstrip(";")
         plain = len(shown) <= _LONGEST_KEY and stands_in(key(shown), text)
-        name = shown if plain else place.rpartition("/")[2]
+        name = shown if plain else f"{_place(span.file).rpartition('/')[2]}:{span.line}"
         self._ask(
             Question(QuestionKind.PAUSE, "durations", name, span, "s", told, answered=bool(found))
         )

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from ...errors import LeftOpenError, Note, ParseError, SourceError, Span
+from ...program.call import Call
 from ...program.move import Move, MoveJ, Opaque, Statement, Wait
 from ...program.origin import MoveOrigin
 from ...program.speed import Speed
@@ -102,6 +103,7 @@ class Transcript:
         course: says how long the robot stands at them, and whether programs go on.
 
     Attributes:
+        calls: of the program's own routines, see `called`.
         left_out: why motions were left out, see `leave_out`.
     """
 
@@ -110,6 +112,7 @@ class Transcript:
         self._course = course
         self.notes = Notes()
         self.parts: list[MoveParts] = []
+        self.calls: list[Call] = []
         self.left_out: list[LeftOpenError] = []
         self._statements: list[Statement] = []
 
@@ -132,6 +135,10 @@ class Transcript:
         """Put a move at the end of the program."""
         self._statements.append(move)
         self.parts.append(parts)
+
+    def called(self, span: Span) -> None:
+        """A routine of the program is entered by the call at a place."""
+        self.calls.append(Call(self.text_of(span), len(self._statements), span))
 
     def keep(
         self, span: Span, name: str, why: str, stops: bool = False, device: bool = False

@@ -13,7 +13,7 @@ from typing import NoReturn
 from weakref import proxy
 
 from ...errors import InputError, Note, SourceError, Span
-from ...program import move
+from ...program import call, move
 from ...program.move import Wait
 from ...program.program import Program
 from ..execution.analysis import Analysis
@@ -105,6 +105,7 @@ def run_lines(program: LineProgram, grammar: Grammar, options: ReadOptions) -> P
         options.entry or name or "main",
         notes=run.notes(),
         questions=run.course.questions(),
+        calls=run.calls(),
         cycle=run.course.cycle,
     )
 
@@ -140,6 +141,10 @@ class _Interpreter:
     def statements(self) -> tuple[move.Statement, ...]:
         """What was carried out."""
         return self._out.statements(self._reads)
+
+    def calls(self) -> tuple[call.Call, ...]:
+        """Routines that were entered, but for the first."""
+        return tuple(self._out.calls)
 
     def notes(self) -> tuple[Note, ...]:
         """What is to be said about the run."""
@@ -270,6 +275,7 @@ class _Interpreter:
             )
             raise SourceError(unknown_name("routine", name, known, offer), statement.span)
         self.meter.call(name, statement.span)
+        self._out.called(statement.span)
         try:
             self._routine(body)
         finally:

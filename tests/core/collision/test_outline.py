@@ -52,7 +52,7 @@ def placed(solid: Solid, turn: np.ndarray, at: np.ndarray) -> tuple[Body, np.nda
     """A body of a frame, and points of it in the frame."""
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = matrix_from_rotation_vector(turn), at
-    body = Body("thing", "thing", BodyKind.OBSTACLE, 0, solid, Pose.from_matrix(matrix))
+    body = Body("thing", "thing", "thing", BodyKind.OBSTACLE, 0, solid, Pose.from_matrix(matrix))
     points = np.concatenate([touching_points(solid, 4000), extremes(solid)])
     return body, points @ matrix[:3, :3].T + at
 

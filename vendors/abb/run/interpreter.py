@@ -483,6 +483,8 @@ class Interpreter:
         for declaration in routine.declarations:
             self.data.declare(declaration, scope)
         self.meter.call(routine.text, span)
+        if self._frames:
+            self.out.called(span)
         where, self.out.notes.where = self.out.notes.where, scope.where
         self._frames.append(Frame(routine, scope))
         try:

@@ -152,5 +152,6 @@ def _program(
         notes=(*notes, *run.notes()),
         questions=run.course.questions(),
         entries=() if driven else entry_points(data, own),
+        calls=tuple(run.out.calls),
         cycle=run.course.cycle,
     )

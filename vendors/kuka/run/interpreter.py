@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 
 from ....core.errors import LeftOpenError, Note, SourceError, Span
+from ....core.program.call import Call as ProgramCall
 from ....core.program.entry_point import EntryPoint
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.analysis import Analysis
@@ -139,7 +140,7 @@ class Interpreter:
             **Kinematics(robot, evaluator, placements, targets, position, notes).functions(),
         }
         self._position = position
-        self._routines = Routines(data, evaluator, meter, scopes, flow.run_body)
+        self._routines = Routines(data, evaluator, meter, transcript, scopes, flow.run_body)
         self._calls = Calls(
             data, evaluator, course, self._routines, basis, functions, writes, keeping
         )
@@ -198,6 +199,10 @@ class Interpreter:
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""
         return self._transcript.statements(self._evaluator.reads)
+
+    def calls(self) -> tuple[ProgramCall, ...]:
+        """Routines that were entered, but for the first."""
+        return tuple(self._transcript.calls)
 
     def notes(self) -> tuple[Note, ...]:
         """What is to be said about the run."""

@@ -84,6 +84,7 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
             notes=(*notes, *run.notes()),
             questions=run.course.questions(),
             entries=() if run.driven else run.entry_points(library.main_unit.routines),
+            calls=run.calls(),
             cycle=run.course.cycle,
         )
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from ....core.errors import SourceError
 from ....core.source.execution.limits import Meter
+from ....core.source.execution.transcript import Transcript
 from ....core.source.text.arguments import wrong_count
 from ..syntax.tree import Block, Call, Name, Routine
 from ..values.data import Data
@@ -24,6 +25,7 @@ class Routines:
         data: of the program.
         evaluator: for arguments.
         meter: counts calls.
+        transcript: remembers them.
         scopes: of the routines under way, the innermost last.
         run_body: carries out the statements of a routine.
     """
@@ -33,12 +35,14 @@ class Routines:
         data: Data,
         evaluator: Evaluator,
         meter: Meter,
+        transcript: Transcript,
         scopes: list[Scope],
         run_body: Callable[[Block, Scope], None],
     ) -> None:
         self._data = data
         self._evaluator = evaluator
         self._meter = meter
+        self._transcript = transcript
         self._scopes = scopes
         self._run_body = run_body
 
@@ -53,6 +57,8 @@ class Routines:
         """
         self._data.declare_module(module)
         self._meter.call(routine.text, call.span)
+        if len(self._scopes) > 1:
+            self._transcript.called(call.span)
         kind = "DEF" if routine.returns is None else "DEFFCT"
         scope = Scope(f"{kind} {routine.text}", module, returns=routine.returns)
         back = self._hand_over(routine, call, caller, scope)

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ....core.program.move import Move
 from ....core.program.tool import Load
-from ....core.robot.inertia import Inertia, carried_inertia
+from ....core.robot.inertia import carried_inertia
 from ....core.spatial.pose import Pose
-from ....core.spatial.rotation import quaternion_from_matrix
 
 
 def flange_load(move: Move) -> Load | None:
@@ -19,18 +16,10 @@ def flange_load(move: Move) -> Load | None:
     if tool is None:
         held = move.tool.tcp if move.tool.robot_held else move.work_object.pose
         return _placed(move.load, held)
-    return _principal(carried_inertia(move.tool, move.load))
+    return Load.of_body(carried_inertia(move.tool, move.load))
 
 
 def _placed(load: Load, frame: Pose) -> Load:
     """A load declared in ``frame``, seen from the flange."""
     at = frame @ Pose(load.centre, load.axes)
     return Load(load.mass, at.position, load.inertia, at.quaternion, load.name)
-
-
-def _principal(body: Inertia) -> Load:
-    moments, axes = np.linalg.eigh(np.array(body.tensor))
-    axes[:, 2] *= np.sign(np.linalg.det(axes))
-    a, b, c = (max(0.0, float(moment)) for moment in moments)
-    w, x, y, z = (float(part) for part in quaternion_from_matrix(axes))
-    return Load(body.mass, body.centre, (a, b, c), (w, x, y, z))

@@ -120,6 +120,7 @@ def enter(run: CallsRun, function: Function, node: Call, caller: Scope) -> Locat
     _pass_arguments(run, function, node, caller, scope)
     run.entered.add(define.name)
     run.meter.call(define.name, span)
+    run.out.called(span)
     run.work(_CALL, span)
     statement, reader = run.statement, run.literals.reader
     run.literals.reader = ELSEWHERE

@@ -62,6 +62,7 @@ def run_program(
         notes=run.notes(),
         questions=run.course.questions(),
         entries=() if run.out.move_index else points(),
+        calls=tuple(run.out.calls),
         cycle=run.course.cycle,
     )
 

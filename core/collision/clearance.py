@@ -1,0 +1,207 @@
+"""How near a driven program comes: to the cell, and with the arm's own parts to each other.
+
+Looked at on the path's samples and, where it is nearest, between them: no proof, which is
+`flyby.core.collision.proof`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import FloatArray
+from ..cell.cell import Cell
+from ..errors import InputError, Note
+from ..handling.arrangement import Arrangement
+from ..handling.handling import Handling
+from ..motion.path.path import Path
+from ..program.program import Program
+from ..program.tool import Tool
+from .scene.bodies import BodyKind
+from .scene.scene import CollisionScene
+
+RESTING = 2e-3
+"""m by which a part may be off, or in, what it rests on where it is taken or released."""
+_BETWEEN = 16
+"""Configurations looked at on each side of the sample that is nearest."""
+
+
+@dataclass(frozen=True, slots=True)
+class Approach:
+    """Where two bodies come near each other.
+
+    Args:
+        distance: m; negative by the depth where they overlap.
+        pair: names of the bodies.
+        move: index in the program.
+    """
+
+    distance: float
+    pair: tuple[str, str]
+    move: int
+
+    def __str__(self) -> str:
+        first, second = self.pair
+        if self.distance > 0.0:
+            return f"{1e3 * self.distance:.1f} mm between {first} and {second}"
+        # Where the surface of a mesh is cut there is no depth.
+        depth = f" by {-1e3 * self.distance:.1f} mm" if self.distance < -1e-6 else ""
+        return f"none, {first} and {second} overlap{depth}"
+
+
+@dataclass(frozen=True, slots=True)
+class MoveClearance:
+    """How near one move comes; None where all is farther than was asked for.
+
+    Args:
+        move: index in the program.
+        cell: of arm, tool and what is carried to what stands or lies around.
+        own: of the arm's links, the tool and what is carried to each other.
+    """
+
+    move: int
+    cell: Approach | None
+    own: Approach | None
+
+
+class ClearanceMeter:
+    """Looks at runs of one program in its cell.
+
+    Args:
+        cell: what stands around.
+        program: the whole program, as it was read.
+        handling: where the cell's parts are; None for a cell without.
+    """
+
+    def __init__(self, cell: Cell, program: Program, handling: Handling | None = None) -> None:
+        self._cell = cell
+        self._program = program
+        self._handling = handling
+        self._scenes: dict[Tool, CollisionScene | None] = {}
+        self._recent: tuple[Tool, Arrangement, CollisionScene] | None = None
+        self.notes: list[Note] = []
+
+    def over(self, path: Path, first: int, within: float = math.inf) -> list[MoveClearance]:
+        """How near each move of a path comes.
+
+        Args:
+            path: of moves in a row.
+            first: index of the first of them in the whole program.
+            within: m; what is farther is not told. What is farther than the least so far is told
+                only within the cell's own clearance.
+
+        Raises:
+            InputError: a mesh cannot be used.
+        """
+        found: list[MoveClearance] = []
+        limits = [within, within]
+        owners = path.sample_moves()
+        for move in dict.fromkeys(owners.tolist()):
+            rows = np.ascontiguousarray(path.q[owners == move])
+            scene = self._scene(first + move)
+            if scene is None:
+                continue
+            own = _own_pairs(scene)
+            told: list[Approach | None] = []
+            left_out = self._resting(scene, first + move, rows)
+            for side, chosen in enumerate((~own & ~left_out, own)):
+                pairs = np.flatnonzero(chosen)
+                near = max(limits[side], min(self._cell.clearance, within))
+                met = self._nearest(scene, rows, pairs, near)
+                told.append(None if met is None else Approach(*met, first + move))
+                limits[side] = min(limits[side], math.inf if met is None else met[0])
+            found.append(MoveClearance(first + move, *told))
+        return found
+
+    def _nearest(
+        self, scene: CollisionScene, q: FloatArray, pairs: NDArray[np.int64], within: float
+    ) -> tuple[float, tuple[str, str]] | None:
+        """The least over samples (M, N), and round the nearest of them."""
+        met = scene.nearest(q, pairs, within)
+        if met is None:
+            return None
+        distance, sample, pair = met
+        ends = [q[k] for k in (sample - 1, sample + 1) if 0 <= k < len(q)]
+        between = [np.linspace(q[sample], end, _BETWEEN + 1, endpoint=False)[1:] for end in ends]
+        if between:
+            closer = scene.nearest(np.concatenate(between), pairs, distance)
+            if closer is not None:
+                distance, _, pair = closer
+        return distance, scene.pair_names(pair)
+
+    def _resting(self, scene: CollisionScene, move: int, q: FloatArray) -> NDArray[np.bool_]:
+        """Which pairs of a scene may touch on a move, (P,): what is taken there or released.
+
+        The tool and a part that it takes at the move's end or has released at its beginning; a
+        part that is carried, and what it rests on there.
+        """
+        left_out = np.zeros(len(scene.pairs), dtype=np.bool_)
+        if self._handling is None:
+            return left_out
+        handled = self._handling.handled[move]
+        if not handled:
+            return left_out
+        moves = len(self._handling.arrangements)
+        for row, pair in enumerate(scene.pairs.tolist()):
+            bodies = [scene.bodies[k] for k in pair]
+            kinds = {body.kind for body in bodies}
+            if not any(body.thing in handled for body in bodies):
+                continue
+            if kinds == {BodyKind.TOOL, BodyKind.PART}:
+                left_out[row] = any(b.own and b.kind is BodyKind.TOOL for b in bodies)
+            elif BodyKind.HELD in kinds and not all(body.own for body in bodies):
+                (name,) = (b.thing for b in bodies if b.kind is BodyKind.HELD)
+                ends = self._ends(name, move, moves, q)
+                distance, _ = scene.chosen_distances(
+                    ends, (np.arange(len(ends)), np.full(len(ends), row)), RESTING
+                )
+                left_out[row] = bool((np.abs(distance) < RESTING).any())
+        return left_out
+
+    def _ends(self, name: str, move: int, moves: int, q: FloatArray) -> FloatArray:
+        """Those ends of a move at which a part that it carries is taken or released, (K, N)."""
+        assert self._handling is not None
+        before = move > 0 and _held(self._handling.arrangements[move - 1], name)
+        after = move + 1 < moves and _held(self._handling.arrangements[move + 1], name)
+        ends = [*([] if before else [q[0]]), *([] if after else [q[-1]])]
+        return np.array(ends).reshape(-1, q.shape[1])
+
+    def _scene(self, move: int) -> CollisionScene | None:
+        """The scene of a move; None where shapes are not known, which is noted once."""
+        tool = self._program.moves[move].tool
+        parts = None if self._handling is None else self._handling.arrangements[move]
+        if tool not in self._scenes:
+            self._scenes[tool] = None
+            try:
+                made = self._scenes[tool] = CollisionScene(self._cell, tool, parts)
+                self.notes += made.notes
+            except InputError as error:
+                self.notes.append(Note(f"clearances are not known: {error}", move))
+        scene = self._scenes[tool]
+        if scene is None or parts is None:
+            return scene
+        if self._recent is None or self._recent[0] != tool or self._recent[1] is not parts:
+            self._recent = (tool, parts, scene.rearranged(parts))
+        return self._recent[2]
+
+
+def nearest_of(moves: Sequence[MoveClearance]) -> tuple[Approach | None, Approach | None]:
+    """The least clearance to the cell, and between the arm's own parts."""
+    cell = [move.cell for move in moves if move.cell is not None]
+    own = [move.own for move in moves if move.own is not None]
+    least = [min(side, key=lambda met: met.distance, default=None) for side in (cell, own)]
+    return least[0], least[1]
+
+
+def _own_pairs(scene: CollisionScene) -> NDArray[np.bool_]:
+    """Which pairs are of the arm and what it carries alone, (P,)."""
+    own = np.array([body.own for body in scene.bodies])
+    return np.asarray(own[scene.pairs].all(axis=1))
+
+
+def _held(parts: Arrangement, name: str) -> bool:
+    return any(placed.name == name and placed.held for placed in parts)

@@ -1,0 +1,1 @@
+"""Parts that are picked and placed: which a program carries on each move, where the others lie."""

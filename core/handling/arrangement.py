@@ -1,0 +1,60 @@
+"""Where parts are: on the flange, or where they lie."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..arrays import FloatArray
+from ..cell.part import Part
+from ..spatial.pose import Pose, Vector3
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedPart:
+    """One part at its place.
+
+    Args:
+        name: unique among all parts.
+        part: its kind.
+        pose: of its shape, in the flange's frame where it is held, else in that of ``carrier``.
+        held: whether the flange carries it.
+        carrier: external axis on which it lies; None for the world.
+        gone: whether it has left the cell.
+    """
+
+    name: str
+    part: Part
+    pose: Pose
+    held: bool = False
+    carrier: str | None = None
+    gone: bool = False
+
+
+Arrangement = tuple[PlacedPart, ...]
+"""All parts, always in the same order."""
+
+
+def at_first(parts: tuple[Part, ...]) -> Arrangement:
+    """Where parts lie before the program runs."""
+    return tuple(
+        PlacedPart(name, part, pose, carrier=part.carried_by)
+        for part in parts
+        for name, pose in part.pieces()
+    )
+
+
+def distance_to_box(point: Vector3, place: Pose, corners: FloatArray) -> float:
+    """m from a point to a box, 0 inside.
+
+    Args:
+        point: in the frame of ``place``.
+        place: of the box's frame.
+        corners: (8, 3) m, of the box along its frame's axes.
+    """
+    at = (place.inverse() @ Pose(point)).position
+    outside = (
+        max(low - x, 0.0, x - high)
+        for x, low, high in zip(at, corners.min(axis=0), corners.max(axis=0), strict=True)
+    )
+    return math.hypot(*outside)

@@ -1,0 +1,170 @@
+"""Which parts a program carries on each move, and where all others lie.
+
+The program's targets say where parts are taken and released, so that nothing has to be driven:
+what is carried belongs to the dynamics and to the shape of what is driven.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from ..arrays import FloatArray
+from ..cell.cell import Cell
+from ..cell.part import Part
+from ..errors import Note
+from ..program.program import Program
+from ..program.target import JointTarget
+from ..spatial.pose import Vector3
+from .arrangement import Arrangement, PlacedPart, at_first, distance_to_box
+from .cues import Cue, in_order
+from .flange import FlangeFollower
+
+
+@dataclass(frozen=True)
+class Handling:
+    """What a program does to the parts of its cell.
+
+    Args:
+        arrangements: where all parts are, one entry for each move of the program.
+        handled: names of the parts that are taken or released at an end of the move, one entry for
+            each move.
+        notes: what the user should know.
+    """
+
+    arrangements: tuple[Arrangement, ...]
+    handled: tuple[frozenset[str], ...]
+    notes: tuple[Note, ...]
+
+    def held(self, move: int) -> Arrangement:
+        """What the flange carries along a move."""
+        return tuple(placed for placed in self.arrangements[move] if placed.held)
+
+
+def handling_of(program: Program, cell: Cell, start: JointTarget | None = None) -> Handling:
+    """Follow the parts of a cell through a program.
+
+    Args:
+        program: as it was read.
+        cell: with the robot where it stands.
+        start: where the robot stands before the first move; None for the program's own start.
+
+    Raises:
+        InputError: a statement both takes a part and lets go of it, or a mesh cannot be used.
+    """
+    return _Trace(cell, len(program.moves), start or program.start).through(program)
+
+
+class _Trace:
+    """One pass through a program."""
+
+    def __init__(self, cell: Cell, moves: int, start: JointTarget | None) -> None:
+        self._cell = cell
+        self._flange = FlangeFollower(cell.robot, start)
+        self._now: Arrangement = at_first(cell.parts)
+        self._move = 0
+        self._boxes: dict[str, FloatArray] = {}
+        self._taken_at: dict[str, Vector3] = {}
+        self._handled: list[set[str]] = [set() for _ in range(moves)]
+        self._notes: list[Note] = []
+        self._met: set[tuple[str, str]] = set()
+
+    def through(self, program: Program) -> Handling:
+        arrangements = []
+        for step in in_order(program, self._cell.parts):
+            if isinstance(step, Cue):
+                for part in step.release:
+                    self._release(part, step)
+                for part in step.attach:
+                    self._attach(part, step)
+            else:
+                arrangements.append(self._now)
+                self._flange.moved(step)
+                self._move += 1
+        for part in self._cell.parts:
+            self._check_met(part)
+        handled = tuple(map(frozenset, self._handled))
+        return Handling(tuple(arrangements), handled, tuple(dict.fromkeys(self._notes)))
+
+    def _attach(self, part: Part, cue: Cue) -> None:
+        self._met.add(("attach", part.name))
+        flange, tcp = self._flange.flange, self._flange.tcp
+        if flange is None or tcp is None:
+            self._note(cue, f"attaches {part.name!r}, but nobody knows where the robot stands")
+            return
+        if self._taken_at.get(part.name) == tcp:
+            return  # said once more where it was taken
+        lying = [
+            placed
+            for placed in self._now
+            if placed.part is part and not placed.held and not placed.gone
+        ]
+        if not lying:
+            self._note(cue, f"attaches {part.name!r}, but none is left to take")
+            return
+        far = {placed: self._distance(placed, tcp) for placed in lying}
+        nearest = min(lying, key=far.__getitem__)
+        if far[nearest] > part.near:
+            self._note(
+                cue,
+                f"attaches {part.name!r}, but none is near: the TCP is {1e3 * far[nearest]:.0f} mm "
+                f"away from {nearest.name}, {1e3 * part.near:g} mm are allowed (near_mm)",
+            )
+            return
+        pose = flange.inverse() @ self._flange.frame(nearest.carrier) @ nearest.pose
+        self._put(nearest, replace(nearest, pose=pose, held=True, carrier=None))
+        self._taken_at[part.name] = tcp
+
+    def _release(self, part: Part, cue: Cue) -> None:
+        self._met.add(("release", part.name))
+        held = [placed for placed in self._now if placed.part is part and placed.held]
+        if not held:
+            self._note(cue, f"releases {part.name!r}, but none is held")
+            return
+        self._taken_at.pop(part.name, None)
+        flange = self._flange.flange
+        if flange is None:
+            self._note(
+                cue,
+                f"releases {part.name!r}, but nobody knows where the robot stands: it stays on the "
+                "tool",
+            )
+            return
+        for placed in held:
+            pose = self._flange.frame(part.released_on).inverse() @ flange @ placed.pose
+            there = replace(
+                placed, pose=pose, held=False, carrier=part.released_on, gone=part.leaves
+            )
+            self._put(placed, there)
+
+    def _distance(self, placed: PlacedPart, tcp: Vector3) -> float:
+        if placed.part.name not in self._boxes:
+            self._boxes[placed.part.name] = placed.part.geometry.corners
+        place = self._flange.frame(placed.carrier) @ placed.pose
+        return distance_to_box(tcp, place, self._boxes[placed.part.name])
+
+    def _put(self, before: PlacedPart, after: PlacedPart) -> None:
+        self._now = tuple(after if placed is before else placed for placed in self._now)
+        for move in (self._move - 1, self._move):
+            if 0 <= move < len(self._handled):
+                self._handled[move].add(after.name)
+
+    def _note(self, cue: Cue, message: str) -> None:
+        self._notes.append(Note(f"{cue.text!r} {message}", span=cue.span))
+
+    def _check_met(self, part: Part) -> None:
+        """Say which of a part's statements did not come up."""
+        where = "" if self._cell.file is None else f"{self._cell.file}: "
+        for word, names, left in (
+            ("attach", part.attach, "it lies where it is"),
+            ("release", part.release, "it stays on the tool"),
+        ):
+            taken = word == "attach" or ("attach", part.name) in self._met
+            if (word, part.name) not in self._met and taken:
+                shown = " or ".join(map(repr, names))
+                self._notes.append(
+                    Note(
+                        f"{where}part {part.name!r}: the program, as far as it ran, has no "
+                        f"statement with {shown} ({word}), so {left}; name a signal, a routine, a "
+                        "statement or file:line as they stand in the program"
+                    )
+                )

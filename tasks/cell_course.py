@@ -1,0 +1,63 @@
+"""A program in its cell: the parts that it carries, and how near all of it comes to the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from .setup import Setup, start_of
+
+if TYPE_CHECKING:
+    from ..core.collision.clearance import MoveClearance
+    from ..core.driving.driven_program import DrivenPart
+    from ..core.errors import Note
+    from ..core.handling.handling import Handling
+    from ..core.program.program import Program
+
+
+@dataclass(frozen=True)
+class CellCourse:
+    """What a program does in its cell.
+
+    Args:
+        program: its moves carry the parts that are held.
+        handling: of the cell's parts; None for no cell, or one without parts.
+        notes: what there is to say of the parts.
+    """
+
+    program: Program
+    handling: Handling | None = None
+    notes: tuple[Note, ...] = ()
+
+    @classmethod
+    def of(cls, program: Program, setup: Setup) -> CellCourse:
+        """Follow the parts of the setup's cell through a program.
+
+        Raises:
+            InputError: a statement both takes a part and lets go of it, or a mesh cannot be used.
+        """
+        if setup.cell is None or not setup.cell.parts:
+            return cls(program)
+        from ..core.handling.handling import handling_of
+        from ..core.handling.loads import with_loads
+
+        handling = handling_of(program, setup.cell, start_of(program))
+        loaded, notes = with_loads(program, handling)
+        return cls(loaded, handling, (*handling.notes, *notes))
+
+    def clearances(
+        self, setup: Setup, parts: Sequence[DrivenPart]
+    ) -> tuple[tuple[MoveClearance, ...], tuple[Note, ...]]:
+        """How near each driven move comes, and what is not known of it; nothing without a cell.
+
+        Raises:
+            InputError: a mesh cannot be used.
+        """
+        if setup.cell is None:
+            return (), ()
+        from ..core.collision.clearance import ClearanceMeter
+
+        meter = ClearanceMeter(setup.cell, self.program, self.handling)
+        found = [move for part in parts for move in meter.over(part.run.path, part.first)]
+        return tuple(found), tuple(meter.notes)
