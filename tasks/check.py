@@ -12,6 +12,7 @@ from .options.keywords import by_keywords
 from .setup import RobotOptions, Setup, start_of, with_setup
 
 if TYPE_CHECKING:
+    from ..core.collision.clearance import Approach
     from ..core.driving.driven_program import DrivenPart
     from ..core.lint.finding import Finding
     from ..core.program.program import Program
@@ -69,23 +70,31 @@ def _clearance_findings(
     from ..core.lint.check import CLEARANCE, COLLISION, NEAREST
 
     allow = "or let them touch: [allow] pairs in the cell file"
+    worst: dict[tuple[object, ...], Approach] = {}
+    for move in found:
+        for side in (move.cell, move.own):
+            if side is not None and (side.overlaps or side.distance < setup.cell.clearance):
+                # Of a line in a loop the worst pass counts.
+                place = course.program.moves[side.move].statement or side.move
+                key = side is move.own, side.overlaps, place
+                worst[key] = min(worst.get(key, side), side, key=lambda met: met.distance)
     told = []
-    for met in (side for move in found for side in (move.cell, move.own) if side is not None):
-        pair = " and ".join(met.pair)
-        if met.distance <= 0.0:
+    for met in worst.values():
+        if met.overlaps:
             message = str(met).removeprefix("none, ")
             fix = f"move the targets, the obstacle or the part, {allow}"
-            told.append(_finding(course, COLLISION, message, fix, met.move, size=-met.distance))
-        elif met.distance < setup.cell.clearance:
-            wanted = f"{1e3 * setup.cell.clearance:g} mm"
-            message = f"{pair} come within {1e3 * met.distance:.1f} mm, {wanted} are to be kept"
+            told.append(_finding(course, COLLISION, message, fix, met.move))
+        else:
+            message = (
+                f"{' and '.join(met.pair)} come within {1e3 * met.distance:.1f} mm, "
+                f"{1e3 * setup.cell.clearance:g} mm are to be kept"
+            )
             fix = f"move the targets, ask for less (clearance_mm), {allow}"
-            size = setup.cell.clearance - met.distance
-            told.append(_finding(course, CLEARANCE, message, fix, met.move, size=size))
+            told.append(_finding(course, CLEARANCE, message, fix, met.move))
     sides = zip(("to the cell", "between the arm's own parts"), nearest_of(found), strict=True)
-    for side, least in sides:
+    for what, least in sides:
         if least is not None:
-            message = f"clearance {side}: {least}"
+            message = f"clearance {what}: {least}"
             told.append(
                 _finding(course, NEAREST, message, "nothing, if that is enough", least.move)
             )
@@ -101,14 +110,13 @@ def _finding(
     fix: str,
     move: int | None,
     span: Span | None = None,
-    size: float | None = None,
 ) -> Finding:
     from ..core.lint.check import rules
     from ..core.lint.finding import Finding
 
     if span is None and move is not None:
         span = course.program.moves[move].statement
-    return Finding(rule, rules()[rule][0], message, fix, move, span, size)
+    return Finding(rule, rules()[rule][0], message, fix, move, span)
 
 
 def unread(error: FlybyError) -> Findings:

@@ -19,7 +19,7 @@ from ..robot.assembly import assemble
 from ..robot.kinematics.chain_kernels import poses
 from ..robot.model import Robot
 from .geometry import Geometry, Mesh
-from .part import Part
+from .workpiece import Workpiece
 
 if TYPE_CHECKING:
     from ..registry import Registry
@@ -67,7 +67,7 @@ class Cell:
     frames: Mapping[str, WorkObject] = field(default_factory=dict)
     tool_geometries: Mapping[str, Geometry] = field(default_factory=dict)
     obstacles: tuple[Obstacle, ...] = ()
-    parts: tuple[Part, ...] = ()
+    parts: tuple[Workpiece, ...] = ()
     allowed: tuple[tuple[str, str], ...] = ()
     motion: Path | None = None
     file: Path | None = None

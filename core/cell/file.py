@@ -15,8 +15,8 @@ from ..robot.pose_table import pose_at
 from .arm import read_arm
 from .cell import Cell, Obstacle
 from .geometry import Geometry
-from .part import Part, read_part
 from .tables import read_geometry, read_load
+from .workpiece import Workpiece, read_part
 
 if TYPE_CHECKING:
     from ..registry import Registry
@@ -126,8 +126,10 @@ def _obstacles(file: TomlTable, tables: Collection[str]) -> tuple[Obstacle, ...]
     return tuple(obstacles)
 
 
-def _parts(file: TomlTable, tables: Collection[str], others: Collection[str]) -> tuple[Part, ...]:
-    parts: list[Part] = []
+def _parts(
+    file: TomlTable, tables: Collection[str], others: Collection[str]
+) -> tuple[Workpiece, ...]:
+    parts: list[Workpiece] = []
     for table in file.listed_tables("part"):
         part = read_part(table, sorted(tables))
         if part.name in (*others, *(known.name for known in parts)):

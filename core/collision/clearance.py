@@ -22,7 +22,7 @@ from ..motion.path.path import Path
 from ..program.program import Program
 from ..program.tool import Tool
 from .scene.bodies import BodyKind
-from .scene.scene import CollisionScene
+from .scene.scene import TOUCH, CollisionScene
 
 RESTING = 2e-3
 """m by which a part may be off, or in, what it rests on where it is taken or released."""
@@ -44,9 +44,14 @@ class Approach:
     pair: tuple[str, str]
     move: int
 
+    @property
+    def overlaps(self) -> bool:
+        """Whether they touch."""
+        return self.distance < TOUCH
+
     def __str__(self) -> str:
         first, second = self.pair
-        if self.distance > 0.0:
+        if not self.overlaps:
             return f"{1e3 * self.distance:.1f} mm between {first} and {second}"
         # Where the surface of a mesh is cut there is no depth.
         depth = f" by {-1e3 * self.distance:.1f} mm" if self.distance < -1e-6 else ""
@@ -91,8 +96,8 @@ class ClearanceMeter:
         Args:
             path: of moves in a row.
             first: index of the first of them in the whole program.
-            within: m; what is farther is not told. What is farther than the least so far is told
-                only within the cell's own clearance.
+            within: m; what is farther is left out. So is what is farther than the least so far and
+                than the cell's own clearance.
 
         Raises:
             InputError: a mesh cannot be used.
@@ -136,37 +141,40 @@ class ClearanceMeter:
     def _resting(self, scene: CollisionScene, move: int, q: FloatArray) -> NDArray[np.bool_]:
         """Which pairs of a scene may touch on a move, (P,): what is taken there or released.
 
-        The tool and a part that it takes at the move's end or has released at its beginning; a
-        part that is carried, and what it rests on there.
+        That is the tool and a part that it takes at the move's end or has released at its
+        beginning, and a part that is carried with what it rests on there, as long as it does not
+        go deeper into it.
         """
         left_out = np.zeros(len(scene.pairs), dtype=np.bool_)
-        if self._handling is None:
-            return left_out
-        handled = self._handling.handled[move]
+        handled = frozenset() if self._handling is None else self._handling.handled[move]
         if not handled:
             return left_out
-        moves = len(self._handling.arrangements)
-        for row, pair in enumerate(scene.pairs.tolist()):
-            bodies = [scene.bodies[k] for k in pair]
-            kinds = {body.kind for body in bodies}
-            if not any(body.thing in handled for body in bodies):
-                continue
-            if kinds == {BodyKind.TOOL, BodyKind.PART}:
-                left_out[row] = any(b.own and b.kind is BodyKind.TOOL for b in bodies)
-            elif BodyKind.HELD in kinds and not all(body.own for body in bodies):
-                (name,) = (b.thing for b in bodies if b.kind is BodyKind.HELD)
-                ends = self._ends(name, move, moves, q)
-                distance, _ = scene.chosen_distances(
-                    ends, (np.arange(len(ends)), np.full(len(ends), row)), RESTING
-                )
-                left_out[row] = bool((np.abs(distance) < RESTING).any())
+        for row, (a, b) in enumerate(scene.pairs.tolist()):
+            first, second = sorted((scene.bodies[a], scene.bodies[b]), key=lambda body: body.kind)
+            kinds = first.kind, second.kind
+            if kinds == (BodyKind.PART, BodyKind.TOOL):
+                left_out[row] = first.thing in handled and second.own
+            elif first.kind is BodyKind.HELD and first.thing in handled and not second.own:
+                left_out[row] = self._rests(scene, row, first.thing, move, q)
         return left_out
 
-    def _ends(self, name: str, move: int, moves: int, q: FloatArray) -> FloatArray:
+    def _rests(self, scene: CollisionScene, row: int, name: str, move: int, q: FloatArray) -> bool:
+        """Whether a part that is carried lies on the other of a pair where it is handled."""
+        ends = self._ends(name, move, q)
+        near, _ = scene.chosen_distances(
+            ends, (np.arange(len(ends)), np.full(len(ends), row)), RESTING
+        )
+        if not (near < RESTING).any():
+            return False
+        deepest = scene.nearest(q, np.array([row]), 0.0)
+        return deepest is None or deepest[0] >= -RESTING
+
+    def _ends(self, name: str, move: int, q: FloatArray) -> FloatArray:
         """Those ends of a move at which a part that it carries is taken or released, (K, N)."""
         assert self._handling is not None
-        before = move > 0 and _held(self._handling.arrangements[move - 1], name)
-        after = move + 1 < moves and _held(self._handling.arrangements[move + 1], name)
+        parts = self._handling.arrangements
+        before = move > 0 and _held(parts[move - 1], name)
+        after = move + 1 < len(parts) and _held(parts[move + 1], name)
         ends = [*([] if before else [q[0]]), *([] if after else [q[-1]])]
         return np.array(ends).reshape(-1, q.shape[1])
 

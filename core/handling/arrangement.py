@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from ..arrays import FloatArray
-from ..cell.part import Part
+from ..cell.workpiece import Workpiece
 from ..spatial.pose import Pose, Vector3
 
 
@@ -24,7 +24,7 @@ class PlacedPart:
     """
 
     name: str
-    part: Part
+    part: Workpiece
     pose: Pose
     held: bool = False
     carrier: str | None = None
@@ -35,7 +35,7 @@ Arrangement = tuple[PlacedPart, ...]
 """All parts, always in the same order."""
 
 
-def at_first(parts: tuple[Part, ...]) -> Arrangement:
+def at_first(parts: tuple[Workpiece, ...]) -> Arrangement:
     """Where parts lie before the program runs."""
     return tuple(
         PlacedPart(name, part, pose, carrier=part.carried_by)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from ..cell.part import Part
+from ..cell.workpiece import Workpiece
 from ..errors import InputError, Span
 from ..program.event import EventAnchor
 from ..program.move import Move, Opaque
@@ -24,11 +24,11 @@ class Cue(NamedTuple):
 
     text: str
     span: Span | None
-    attach: tuple[Part, ...]
-    release: tuple[Part, ...]
+    attach: tuple[Workpiece, ...]
+    release: tuple[Workpiece, ...]
 
 
-def in_order(program: Program, parts: Sequence[Part]) -> Iterator[Cue | Move]:
+def in_order(program: Program, parts: Sequence[Workpiece]) -> Iterator[Cue | Move]:
     """The moves of a program and what takes parts between them.
 
     What happens a distance before a target counts at the target, where the part is meant to be
@@ -60,11 +60,13 @@ def in_order(program: Program, parts: Sequence[Part]) -> Iterator[Cue | Move]:
 class _Cues:
     """Looks texts up; a line in a loop is looked up once."""
 
-    def __init__(self, parts: Sequence[Part]) -> None:
+    def __init__(self, parts: Sequence[Workpiece]) -> None:
         self._parts = [
             (part, tuple(map(key, part.attach)), tuple(map(key, part.release))) for part in parts
         ]
-        self._known: dict[tuple[str, str, int], tuple[tuple[Part, ...], tuple[Part, ...]]] = {}
+        self._known: dict[
+            tuple[str, str, int], tuple[tuple[Workpiece, ...], tuple[Workpiece, ...]]
+        ] = {}
 
     def of(self, text: str, span: Span | None) -> Iterator[Cue]:
         place = (text, "", 0) if span is None else (text, span.file, span.line)
@@ -74,7 +76,9 @@ class _Cues:
         if attach or release:
             yield Cue(" ".join(text.split()).rstrip(";"), span, attach, release)
 
-    def _look_up(self, text: str, span: Span | None) -> tuple[tuple[Part, ...], tuple[Part, ...]]:
+    def _look_up(
+        self, text: str, span: Span | None
+    ) -> tuple[tuple[Workpiece, ...], tuple[Workpiece, ...]]:
         attach, release = [], []
         for part, taking, letting_go in self._parts:
             takes, lets_go = (

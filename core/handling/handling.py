@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from ..arrays import FloatArray
 from ..cell.cell import Cell
-from ..cell.part import Part
+from ..cell.workpiece import Workpiece
 from ..errors import Note
 from ..program.program import Program
 from ..program.target import JointTarget
@@ -85,7 +85,7 @@ class _Trace:
         handled = tuple(map(frozenset, self._handled))
         return Handling(tuple(arrangements), handled, tuple(dict.fromkeys(self._notes)))
 
-    def _attach(self, part: Part, cue: Cue) -> None:
+    def _attach(self, part: Workpiece, cue: Cue) -> None:
         self._met.add(("attach", part.name))
         flange, tcp = self._flange.flange, self._flange.tcp
         if flange is None or tcp is None:
@@ -114,11 +114,13 @@ class _Trace:
         self._put(nearest, replace(nearest, pose=pose, held=True, carrier=None))
         self._taken_at[part.name] = tcp
 
-    def _release(self, part: Part, cue: Cue) -> None:
+    def _release(self, part: Workpiece, cue: Cue) -> None:
         self._met.add(("release", part.name))
         held = [placed for placed in self._now if placed.part is part and placed.held]
         if not held:
-            self._note(cue, f"releases {part.name!r}, but none is held")
+            # Before anything is taken programs open their grippers to begin with.
+            if ("attach", part.name) in self._met:
+                self._note(cue, f"releases {part.name!r}, but none is held")
             return
         self._taken_at.pop(part.name, None)
         flange = self._flange.flange
@@ -151,7 +153,7 @@ class _Trace:
     def _note(self, cue: Cue, message: str) -> None:
         self._notes.append(Note(f"{cue.text!r} {message}", span=cue.span))
 
-    def _check_met(self, part: Part) -> None:
+    def _check_met(self, part: Workpiece) -> None:
         """Say which of a part's statements did not come up."""
         where = "" if self._cell.file is None else f"{self._cell.file}: "
         for word, names, left in (

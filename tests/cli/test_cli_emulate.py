@@ -149,7 +149,14 @@ def test_a_cell_brings_robot_and_base(flyby: Flyby, tmp_path: Path) -> None:
     by_cell = flyby("emulate", SQUARE, "--cell", cell, "--json")
     by_name = flyby("emulate", SQUARE, "--robot", ROBOT, "--json")
     assert by_cell.exit_code == 0, by_cell.output
-    assert json.loads(by_cell.stdout) == json.loads(by_name.stdout)
+    told, bare = json.loads(by_cell.stdout), json.loads(by_name.stdout)
+    near = told.pop("clearance")
+    assert bare.pop("clearance") == {"to_cell": None, "own": None}
+    assert told == bare
+    # Nothing stands there but the robot itself.
+    assert near["to_cell"] is None
+    assert near["own"]["distance_m"] > 0.0
+    assert len(near["own"]["pair"]) == 2
     moved = cell.with_name("moved.toml")
     moved.write_text(cell.read_text().replace("[0, 0, 0]", "[0, 0, 9000]"))
     assert "cannot be reached" in flyby("emulate", SQUARE, "--cell", moved).stderr
@@ -239,3 +246,12 @@ def test_nothing_is_written_when_the_program_cannot_be_driven(
     result = flyby("emulate", program, "--robot", ROBOT, "--csv", tmp_path / "a.csv")
     assert result.exit_code == 1
     assert list(tmp_path.iterdir()) == [program]
+
+
+def test_clearances_are_told_with_bodies_move_and_line(flyby: Flyby) -> None:
+    examples = SQUARE.parent
+    result = flyby("emulate", examples / "pick.script", "--cell", examples / "cell" / "pick.toml")
+    assert result.exit_code == 0, result.output
+    told = " ".join(result.stdout.split())
+    assert "to the cell: 40.0 mm between bottle 1 and bottle 2 (move 4, line 18)" in told
+    assert "clearance between the arm's own parts:" in told

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...cell.cell import Cell
-from ...cell.part import Part
+from ...cell.workpiece import Workpiece
 from ...errors import InputError, Note
 from ...handling.arrangement import Arrangement
 from ...robot.model import Robot
@@ -35,7 +35,7 @@ def refuse_parts(cell: Cell) -> None:
         )
 
 
-def part_solids(parts: Iterable[Part]) -> tuple[dict[str, list[Solid]], list[Note]]:
+def part_solids(parts: Iterable[Workpiece]) -> tuple[dict[str, list[Solid]], list[Note]]:
     """The solids of each kind of part, convex as a tool's, and what is odd about them.
 
     Raises:

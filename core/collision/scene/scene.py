@@ -217,7 +217,8 @@ class CollisionScene:
             within: m.
 
         Returns:
-            distance in m, sample and row of `pairs`; None if all are at least ``within`` apart.
+            distance in m, sample and row of `pairs`; None if all are at least ``within`` apart. Of
+            several pairs that overlap it need not be that which is deepest, where one is a mesh.
         """
         rows = self._rows(q)
         least: tuple[float, int, int] | None = None

@@ -53,6 +53,8 @@ _MOST_PASSES = 10_000
 _LARGEST = 1e300
 _LONGEST_KEY = 80
 """Characters of a statement that is a key as it stands."""
+_ROUND_SIGNS = re.compile(r" ?([^\w\s$]) ?")
+"""A sign with the blanks round it, which do not count."""
 _LONGEST = 86_400.0
 """s of a pause: a day."""
 
@@ -188,7 +190,8 @@ def stands_in(name: str, text: str) -> bool:
         text: of the statement.
     """
     word = re.compile(rf"(?<![\w$]){re.escape(name)}(?!\w)")
-    return any(map(word.search, (key(text), " ".join(text.split()).casefold())))
+    line = " ".join(text.split()).casefold()
+    return any(map(word.search, (key(text), line, _ROUND_SIGNS.sub(r"\1", line))))
 
 
 def stands_at(name: str, text: str, span: Span | None) -> bool:

@@ -8,13 +8,24 @@ import numpy as np
 import pytest
 
 from flyby.core.errors import MotionError, Note, SourceError, Span
-from flyby.core.lint.check import CANNOT_DRIVE, CANNOT_READ, check, rules, unreadable
+from flyby.core.lint.check import (
+    CANNOT_DRIVE,
+    CANNOT_READ,
+    CLEARANCE,
+    COLLISION,
+    NEAREST,
+    PART,
+    check,
+    rules,
+    unreadable,
+)
 from flyby.core.lint.finding import Severity
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.origin import MoveOrigin, Origin, Ownership
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
+from flyby.core.program.tool import FLANGE, Load, Tool
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
@@ -36,8 +47,11 @@ def joint(q, **speed):
     return MoveJ(JointTarget(tuple(map(float, np.radians(q)))), replace(SPEED, **speed))
 
 
-def line(x=0.0, y=0.0, z=0.0, zone=FINE, turn=(0.0, 0.0, 0.0), name=None, **speed):
-    return MoveL(target(x, y, z, turn, name), replace(SPEED, **speed), zone)
+def line(
+    x=0.0, y=0.0, z=0.0, zone=FINE, turn=(0.0, 0.0, 0.0), name=None, tool=FLANGE, load=None, **speed
+):
+    speed = replace(SPEED, **speed)
+    return MoveL(target(x, y, z, turn, name), speed, zone, tool, load=load)
 
 
 def program(*statements, **more):
@@ -62,7 +76,12 @@ def arc(via: float, end: float) -> MoveC:
     return MoveC(line(end, 0.2).target, SPEED, via=line(via, 0.15).target)
 
 
+GRIPPER = Tool("gripper", load=Load(60.0))
 CASES = {
+    "payload-exceeded": (
+        program(line(0.2, tool=GRIPPER, load=Load(121.0)), line(0.1, tool=GRIPPER)),
+        program(line(0.2, tool=GRIPPER, load=Load(119.0)), line(0.1, tool=GRIPPER)),
+    ),
     "zone-last": (
         program(line(0.2, zone=Radius(0.01))),
         program(line(0.2)),
@@ -150,6 +169,18 @@ def test_a_rule_finds_what_is_bad_and_nothing_else(rule) -> None:
     assert rule not in {finding.rule for finding in found(good)}
 
 
+def test_a_payload_is_told_with_its_figures_where_it_begins() -> None:
+    bad, _ = CASES["payload-exceeded"]
+    heavier = replace(bad, statements=(*bad.statements, line(0.2, load=Load(200.0, name="block"))))
+    first, second = (f for f in found(heavier) if f.rule == "payload-exceeded")
+    assert "carries 181 kg" in first.message
+    assert "tool gripper of 60 kg and the payload of 121 kg" in first.message
+    assert "rated for 180 kg" in first.message
+    assert "rated for 181 kg" in first.fix
+    assert (first.move, second.move) == (1, 3)
+    assert "block of 200 kg" in second.message
+
+
 def test_a_singular_stretch_is_found() -> None:
     assert "singular" in {finding.rule for finding in found(singular_line())}
     assert "singular" not in {finding.rule for finding in found(program(line(0.2)))}
@@ -164,6 +195,7 @@ def test_waypoints_that_are_left_out_are_found() -> None:
 
 def test_every_rule_has_an_example() -> None:
     elsewhere = {"singular", "waypoint-left-out", "unused-target", CANNOT_READ}
+    elsewhere |= {COLLISION, CLEARANCE, NEAREST, PART}  # of cells: tests/tasks/test_cell_course.py
     assert set(rules()) == {*CASES, *elsewhere}
 
 

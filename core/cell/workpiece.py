@@ -19,7 +19,7 @@ _MOST = 1000
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class Workpiece:
     """Parts of one kind.
 
     Args:
@@ -58,7 +58,7 @@ class Part:
             yield name, self.geometry.placement @ Pose(step, IDENTITY.quaternion)
 
 
-def read_part(table: TomlTable, axes: list[str]) -> Part:
+def read_part(table: TomlTable, axes: list[str]) -> Workpiece:
     """``[[part]]``; see ``docs/reference/cell.md``.
 
     Args:
@@ -72,7 +72,7 @@ def read_part(table: TomlTable, axes: list[str]) -> Part:
     if geometry is None:
         raise table.error("mesh", "is missing, and so are box_mm, sphere_mm and the like")
     count, pitch = _pattern(table)
-    part = Part(
+    part = Workpiece(
         name=table.text("name"),
         geometry=geometry,
         attach=_cues(table, "attach"),

@@ -1,0 +1,112 @@
+"""Programs in their cells: clearances and parts, as `flyby.check` and `flyby.emulate` tell them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import flyby
+from flyby.core.errors import InputError
+from flyby.core.lint.check import CLEARANCE, COLLISION, NEAREST, PART
+from flyby.core.lint.finding import Finding
+
+ROOT = Path(__file__).parents[2]
+PICK = ROOT / "examples" / "pick.script"
+CELL = (ROOT / "examples" / "cell" / "pick.toml").read_text("utf-8")
+
+
+@pytest.fixture
+def cell(tmp_path: Path):
+    def made(*changes: tuple[str, str]) -> Path:
+        text = CELL
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new)
+        path = tmp_path / "cell.toml"
+        path.write_text(text, "utf-8")
+        return path
+
+    return made
+
+
+def found(path: Path) -> dict[str, list[Finding]]:
+    rules: dict[str, list[Finding]] = {}
+    for finding in flyby.check(flyby.read(PICK, cell=path)):
+        rules.setdefault(finding.rule, []).append(finding)
+    return rules
+
+
+def test_the_example_is_clear_and_both_figures_are_told(cell) -> None:
+    rules = found(cell())
+    assert not {COLLISION, CLEARANCE, PART, "payload-exceeded"} & rules.keys()
+    to_cell, own = rules[NEAREST]
+    assert "clearance to the cell: 40.0 mm between bottle 1 and bottle 2" in to_cell.message
+    assert "between the arm's own parts" in own.message
+    run = flyby.emulate(flyby.read(PICK, cell=cell()))
+    assert run.report.to_cell is not None and run.report.own is not None
+    assert run.report.to_cell.distance == pytest.approx(0.04, abs=1e-4)
+    # What the bottles weigh is nothing that the program states.
+    assert all(move.load is None for move in run.program.moves)
+    assert [move.load is not None for move in run.parts[0].run.program.moves[2:6]] == [
+        False,
+        True,
+        True,
+        True,
+    ]
+
+
+def test_a_part_that_stays_where_it_is_released_is_hit_by_the_next(cell) -> None:
+    (hit,) = found(cell(("leaves = true", "leaves = false")))[COLLISION]
+    assert "bottle 1 and bottle 2 overlap by" in hit.message
+    assert hit.span is not None and hit.span.line == 20
+
+
+def test_less_than_the_clearance_is_a_warning(cell) -> None:
+    warned = found(cell(("clearance_mm = 5", "clearance_mm = 45")))[CLEARANCE]
+    assert any("come within 40.0 mm, 45 mm are to be kept" in f.message for f in warned)
+    assert {f.span.line for f in warned if f.span is not None} >= {18}
+
+
+def test_parts_that_are_not_met_are_found_with_their_line(cell) -> None:
+    (none,) = found(cell(("count = [2]", "count = [1]"), ("[-100]", "[0]")))[PART][:1]
+    assert "none is left to take" in none.message
+    assert none.span is not None and none.span.line == 16
+    (never,) = found(cell(("(0, True)", "(7, True)")))[PART]
+    assert "cell.toml" in never.message
+    assert "set_standard_digital_out(7, True)" in never.message
+
+
+def test_a_part_too_heavy_is_found_where_it_is_lifted(cell) -> None:
+    (heavy,) = found(cell(("mass_kg = 0.6", "mass_kg = 20")))["payload-exceeded"]
+    assert "carries 20.8 kg" in heavy.message
+    assert "bottle 1 of 20 kg" in heavy.message
+    assert "rated for 12.5 kg" in heavy.message
+    assert heavy.span is not None and heavy.span.line == 18
+
+
+def test_what_acceleration_owes_to_load_is_said(cell) -> None:
+    run = flyby.emulate(flyby.read(PICK, cell=cell()))
+    (note,) = [note for note in run.notes if "owes to load" in note.message]
+    assert "0.6 kg is carried on 6 moves" in note.message
+    bare = flyby.emulate(flyby.read(PICK, cell=cell(("mass_kg = 0.6", ""))))
+    assert not [note for note in bare.notes if "owes to load" in note.message]
+
+
+def test_a_tool_that_the_cell_does_not_know_is_said_and_nothing_refused(cell) -> None:
+    path = cell(("[tool.tcp]", "[tool.other]"))
+    run = flyby.emulate(flyby.read(PICK, cell=path))
+    assert run.report.to_cell is None
+    assert [note for note in run.notes if "clearances are not known" in note.message]
+
+
+def test_a_program_without_a_cell_has_no_clearance() -> None:
+    run = flyby.emulate(flyby.read(PICK, robot="ur/ur10e"))
+    assert run.report.to_cell is None
+    assert run.clearances == ()
+
+
+@pytest.mark.parametrize("task", ["zones", "optimize"])
+def test_proofs_refuse_cells_with_parts(cell, task: str) -> None:
+    with pytest.raises(InputError, match="parts that are picked and placed"):
+        getattr(flyby, task)(flyby.read(PICK, cell=cell()))
