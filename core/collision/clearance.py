@@ -146,37 +146,23 @@ class ClearanceMeter:
         go deeper into it.
         """
         left_out = np.zeros(len(scene.pairs), dtype=np.bool_)
-        handled = frozenset() if self._handling is None else self._handling.handled[move]
-        if not handled:
+        if self._handling is None:
+            return left_out
+        before, behind = self._handling.before[move], self._handling.behind[move]
+        if not before | behind:
             return left_out
         for row, (a, b) in enumerate(scene.pairs.tolist()):
             first, second = sorted((scene.bodies[a], scene.bodies[b]), key=lambda body: body.kind)
             kinds = first.kind, second.kind
             if kinds == (BodyKind.PART, BodyKind.TOOL):
-                left_out[row] = first.thing in handled and second.own
-            elif first.kind is BodyKind.HELD and first.thing in handled and not second.own:
-                left_out[row] = self._rests(scene, row, first.thing, move, q)
+                left_out[row] = first.thing in before | behind and second.own
+            elif first.kind is BodyKind.HELD and not second.own:
+                ends = [
+                    *(q[:1] if first.thing in before else ()),
+                    *(q[-1:] if first.thing in behind else ()),
+                ]
+                left_out[row] = bool(ends) and _rests(scene, row, np.array(ends), q)
         return left_out
-
-    def _rests(self, scene: CollisionScene, row: int, name: str, move: int, q: FloatArray) -> bool:
-        """Whether a part that is carried lies on the other of a pair where it is handled."""
-        ends = self._ends(name, move, q)
-        near, _ = scene.chosen_distances(
-            ends, (np.arange(len(ends)), np.full(len(ends), row)), RESTING
-        )
-        if not (near < RESTING).any():
-            return False
-        deepest = scene.nearest(q, np.array([row]), 0.0)
-        return deepest is None or deepest[0] >= -RESTING
-
-    def _ends(self, name: str, move: int, q: FloatArray) -> FloatArray:
-        """Those ends of a move at which a part that it carries is taken or released, (K, N)."""
-        assert self._handling is not None
-        parts = self._handling.arrangements
-        before = move > 0 and _held(parts[move - 1], name)
-        after = move + 1 < len(parts) and _held(parts[move + 1], name)
-        ends = [*([] if before else [q[0]]), *([] if after else [q[-1]])]
-        return np.array(ends).reshape(-1, q.shape[1])
 
     def _scene(self, move: int) -> CollisionScene | None:
         """The scene of a move; None where shapes are not known, which is noted once."""
@@ -211,5 +197,11 @@ def _own_pairs(scene: CollisionScene) -> NDArray[np.bool_]:
     return np.asarray(own[scene.pairs].all(axis=1))
 
 
-def _held(parts: Arrangement, name: str) -> bool:
-    return any(placed.name == name and placed.held for placed in parts)
+def _rests(scene: CollisionScene, row: int, ends: FloatArray, q: FloatArray) -> bool:
+    """Whether a part that is carried along q (M, N) lies on the other of a pair at ends (K, N)."""
+    which = np.arange(len(ends)), np.full(len(ends), row)
+    near, _ = scene.chosen_distances(ends, which, RESTING)
+    if not (near < RESTING).any():
+        return False
+    deepest = scene.nearest(q, np.array([row]), 0.0)
+    return deepest is None or deepest[0] >= -RESTING

@@ -6,18 +6,23 @@ what is carried belongs to the dynamics and to the shape of what is driven.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 from ..arrays import FloatArray
 from ..cell.cell import Cell
 from ..cell.workpiece import Workpiece
 from ..errors import Note
+from ..program.move import Move
 from ..program.program import Program
 from ..program.target import JointTarget
-from ..spatial.pose import Vector3
+from ..spatial.pose import Pose, Vector3
 from .arrangement import Arrangement, PlacedPart, at_first, distance_to_box
 from .cues import Cue, in_order
 from .flange import FlangeFollower
+
+_SAME = 1e-6
+"""m, and of quaternions, within which the flange has not moved."""
 
 
 @dataclass(frozen=True)
@@ -26,13 +31,14 @@ class Handling:
 
     Args:
         arrangements: where all parts are, one entry for each move of the program.
-        handled: names of the parts that are taken or released at an end of the move, one entry for
-            each move.
+        before, behind: names of the parts that are taken or released where the move begins, and
+            where it ends, likewise.
         notes: what the user should know.
     """
 
     arrangements: tuple[Arrangement, ...]
-    handled: tuple[frozenset[str], ...]
+    before: tuple[frozenset[str], ...]
+    behind: tuple[frozenset[str], ...]
     notes: tuple[Note, ...]
 
     def held(self, move: int) -> Arrangement:
@@ -61,10 +67,12 @@ class _Trace:
         self._cell = cell
         self._flange = FlangeFollower(cell.robot, start)
         self._now: Arrangement = at_first(cell.parts)
-        self._move = 0
         self._boxes: dict[str, FloatArray] = {}
         self._taken_at: dict[str, Vector3] = {}
-        self._handled: list[set[str]] = [set() for _ in range(moves)]
+        self._before: list[set[str]] = [set() for _ in range(moves)]
+        self._behind: list[set[str]] = [set() for _ in range(moves)]
+        self._stays: list[bool] = []
+        self._fresh: set[str] = set()
         self._notes: list[Note] = []
         self._met: set[tuple[str, str]] = set()
 
@@ -78,12 +86,20 @@ class _Trace:
                     self._attach(part, step)
             else:
                 arrangements.append(self._now)
-                self._flange.moved(step)
-                self._move += 1
+                self._drive(step)
         for part in self._cell.parts:
             self._check_met(part)
-        handled = tuple(map(frozenset, self._handled))
-        return Handling(tuple(arrangements), handled, tuple(dict.fromkeys(self._notes)))
+        before, behind = (tuple(map(frozenset, sets)) for sets in (self._before, self._behind))
+        return Handling(tuple(arrangements), before, behind, tuple(dict.fromkeys(self._notes)))
+
+    def _drive(self, move: Move) -> None:
+        """Follow a move; what was handled before one that goes nowhere is so before the next."""
+        came_from = self._flange.flange
+        self._flange.moved(move)
+        self._before[len(self._stays)] |= self._fresh
+        self._stays.append(_alike(came_from, self._flange.flange))
+        if not self._stays[-1]:
+            self._fresh.clear()
 
     def _attach(self, part: Workpiece, cue: Cue) -> None:
         self._met.add(("attach", part.name))
@@ -146,9 +162,11 @@ class _Trace:
 
     def _put(self, before: PlacedPart, after: PlacedPart) -> None:
         self._now = tuple(after if placed is before else placed for placed in self._now)
-        for move in (self._move - 1, self._move):
-            if 0 <= move < len(self._handled):
-                self._handled[move].add(after.name)
+        self._fresh.add(after.name)
+        for move in reversed(range(len(self._stays))):
+            self._behind[move].add(after.name)
+            if not self._stays[move]:
+                break
 
     def _note(self, cue: Cue, message: str) -> None:
         self._notes.append(Note(f"{cue.text!r} {message}", span=cue.span))
@@ -170,3 +188,11 @@ class _Trace:
                         "statement or file:line as they stand in the program"
                     )
                 )
+
+
+def _alike(first: Pose | None, second: Pose | None) -> bool:
+    """Whether the flange stands at both; nobody knows of a place that is not known."""
+    if first is None or second is None:
+        return False
+    turned = abs(sum(a * b for a, b in zip(first.quaternion, second.quaternion, strict=True)))
+    return math.dist(first.position, second.position) < _SAME and turned > 1.0 - _SAME**2

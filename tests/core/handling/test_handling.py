@@ -116,7 +116,16 @@ def test_the_part_that_is_nearest_is_taken() -> None:
     kind = part(count=(3, 1, 1), pitch=(0.1, 0.0, 0.0))
     made = handled(to((0.61, 0.0, 0.3)), ON, to((0.0, 0.4, 0.5)), parts=(kind,))
     assert [p.name for p in made.arrangements[1] if p.held] == ["crate 2"]
-    assert made.handled == (frozenset({"crate 2"}), frozenset({"crate 2"}))
+    nothing, crate = frozenset[str](), frozenset({"crate 2"})
+    assert (made.before, made.behind) == ((nothing, crate), (crate, nothing))
+
+
+def test_moves_that_go_nowhere_are_no_way_to_a_part() -> None:
+    here, there = to((0.5, 0.0, 0.3)), to((0.0, 0.4, 0.5))
+    made = handled(there, here, here, ON, here, there, there)
+    crate = frozenset({"crate"})
+    assert [bool(names) for names in made.behind] == [False, True, True, False, False, False]
+    assert [names == crate for names in made.before] == [False] * 3 + [True, True, False]
 
 
 def test_what_is_said_once_more_at_the_same_place_takes_no_other() -> None:
