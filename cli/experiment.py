@@ -50,6 +50,8 @@ def _tell(found: DesignedExperiment, out: Path) -> None:
 
     made = found.experiment
     print_table(COLUMNS, found.rows())
+    for line in found.topics():
+        print_rich(line)
     for note in made.notes:
         warn(note)
     print_rich(
@@ -61,6 +63,8 @@ def _tell(found: DesignedExperiment, out: Path) -> None:
 
 def _json(made: Experiment, written: list[Path]) -> dict[str, Any]:
     """SI units, in the keys."""
+    from ..identification.experiment.record import corner_data, purpose_data
+
     return {
         "robot": made.robot.name,
         "period_s": made.period,
@@ -72,10 +76,8 @@ def _json(made: Experiment, written: list[Path]) -> dict[str, Any]:
                 "kind": str(run.candidate.kind),
                 "posture": run.candidate.posture + 1,
                 "speed_mps": run.candidate.speed,
-                "corners": [
-                    {"turn_rad": corner.turn, "radius_m": corner.radius}
-                    for corner in run.candidate.corners
-                ],
+                "corners": [corner_data(corner) for corner in run.candidate.corners],
+                **purpose_data(run),
                 "duration_s": run.duration,
                 "gain_nats": run.gain,
                 "clearance": None if run.certificate is None else run.certificate.message,

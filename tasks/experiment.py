@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..core.door import given, spelt
 from ..core.errors import OptionError
@@ -28,8 +29,10 @@ if TYPE_CHECKING:
     from ..core.cell.cell import Cell
     from ..core.program.tool import Tool
     from ..core.robot.model import Robot
-    from ..identification.experiment.plan import Kind, Plan
+    from ..identification.experiment.plan import Plan
     from .results.experiments import DesignedExperiment
+
+Word = TypeVar("Word", bound=StrEnum)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +49,14 @@ class ExperimentOptions(CellOptions):
     overhead: float = number(
         60.0, "Seconds that a run takes beside its motion.", TIME, NOT_NEGATIVE
     )
-    postures: int = number(3, "How many postures to look for.", COUNT)
+    about: str | Sequence[str] | None = value(
+        None,
+        "Open questions of the motion model that runs shall settle, such as short-legs,turns; runs "
+        "of all kinds if unset.",
+    )
+    postures: int | None = number(
+        None, "How many postures to look for; 3, or 8 about postures, if unset.", COUNT
+    )
     at: Sequence[str | Sequence[float]] = value(
         (),
         "A posture instead: axis values in degrees; may be given several times.",
@@ -110,6 +120,7 @@ def _tool(name: str | None, cell: Cell) -> Tool:
 def _plan(robot: Robot, options: ExperimentOptions, tool: Tool) -> Plan:
     import numpy as np
 
+    from ..identification.experiment.kinds import KINDS, Topic
     from ..identification.experiment.plan import Plan
 
     chosen: dict[str, Any] = {}
@@ -119,8 +130,15 @@ def _plan(robot: Robot, options: ExperimentOptions, tool: Tool) -> Plan:
         chosen["radii"] = texts.several(options.zones, spelt("zones"), 1e-3)
     if options.speeds is not None:
         chosen["speeds"] = texts.several(options.speeds, spelt("speeds"), 1e-3)
+    if options.kinds is not None and options.about is not None:
+        raise OptionError(
+            f"{spelt('kinds')} and {spelt('about')}: a topic says which kinds of moves there are; "
+            "leave one of them out"
+        )
     if options.kinds is not None:
-        chosen["kinds"] = _kinds(options.kinds)
+        chosen["kinds"] = _known("kinds", options.kinds, KINDS)
+    if options.about is not None:
+        chosen["about"] = _known("about", options.about, tuple(Topic))
     stands = [np.array(texts.configuration(one, spelt("at"), robot)) for one in options.at]
     return Plan(
         postures=stands or options.postures,
@@ -135,11 +153,12 @@ def _plan(robot: Robot, options: ExperimentOptions, tool: Tool) -> Plan:
     )
 
 
-def _kinds(given: str | Sequence[str]) -> tuple[Kind, ...]:
-    from ..identification.experiment.plan import Kind
-
-    words = given.replace(",", " ").split() if isinstance(given, str) else list(given)
+def _known(option: str, asked: str | Sequence[str], known: tuple[Word, ...]) -> tuple[Word, ...]:
+    """Those of the known words that are asked for."""
+    words = asked.replace(",", " ").split() if isinstance(asked, str) else list(asked)
     for word in words:
-        if word not in list(Kind):
-            raise OptionError(f"{spelt('kinds')} {word}: {', '.join(Kind)}")
-    return tuple(kind for kind in Kind if kind in words)
+        if word not in list(known):
+            raise OptionError(f"{spelt(option)} {word}: {', '.join(known)}")
+    if not words:
+        raise OptionError(f"{spelt(option)}: name at least one of {', '.join(known)}")
+    return tuple(one for one in known if one in words)

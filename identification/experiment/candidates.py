@@ -9,20 +9,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...core.arrays import FloatArray
 from ...core.errors import FlybyError
-from ...core.motion.emulator.controller import Controller
 from ...core.motion.emulator.run import Run
-from ...core.program.move import Move, MoveC, MoveJ
-from ...core.program.program import Program
-from ...core.program.speed import Speed
-from ...core.program.target import JointTarget
-from ...core.program.zone import FINE
+from ...core.program.move import Move, MoveJ
+from ...core.program.zone import FINE, ContourFraction, Zone
 from .checking import Refused, check
-from .plan import CandidateRun, Kind, Plan, PlannedCorner, Skipped
-from .postures import Site
-from .star import Leg, Spoke, Star
-from .words import Words
+from .family import Made, RunFamily, joint_target
+from .kinds import Kind
+from .plan import SPEEDS, CandidateRun, PlannedCorner, Skipped
+from .star import Leg, Spoke
 
 LEGS: dict[Kind, tuple[Leg, ...]] = {
     Kind.LINES: (Leg.LINE,),
@@ -30,10 +25,19 @@ LEGS: dict[Kind, tuple[Leg, ...]] = {
     Kind.ARCS: (Leg.ARC,),
     Kind.LINES_AND_JOINTS: (Leg.LINE, Leg.JOINT),
     Kind.LINES_AND_ARCS: (Leg.LINE, Leg.ARC),
+    Kind.JOINTS_AND_ARCS: (Leg.JOINT, Leg.ARC),
     Kind.TURNS: (Leg.TURN,),
     Kind.LINE_STOPS: (Leg.LINE,),
     Kind.JOINT_STOPS: (Leg.JOINT,),
+    Kind.CONTOURS: (Leg.JOINT,),
+    Kind.UNEQUAL_LINES: (Leg.LINE,),
+    Kind.UNEQUAL_JOINTS: (Leg.JOINT,),
+    Kind.CORNER_TURNS: (Leg.TURN,),
 }
+SLOWER = {Kind.UNEQUAL_LINES: 0.4, Kind.UNEQUAL_JOINTS: 0.4}
+"""Speed behind corners, as a share of that before them, of kinds where it is another one."""
+CONTOUR_SHARES = (0.25, 0.5, 1.0)
+"""Of zones that are given by a share of the contour."""
 LONGEST_LEG = 0.25
 """Of a leg, as a share of the reach."""
 ZONE_ROOM = 2.2
@@ -48,8 +52,6 @@ STOP_SHARES = (1.0, -1.0, 0.6, -0.4, 0.3, -0.1, 0.1, 0.0, 0.03)
 """Places on a straight leg, and beyond the centre, between which stops are driven."""
 AXIS_SWING = math.radians(60)
 """rad by which a single joint moves at most."""
-APPROACH = 0.25
-"""m/s, about, on the way to the start."""
 
 
 @dataclass(frozen=True)
@@ -60,83 +62,50 @@ class _Signed(PlannedCorner):
         sign: -1 or 1.
     """
 
-    sign: float
+    sign: float = 1.0
 
 
 @dataclass(frozen=True)
-class PostureFamily:
-    """Everything at one posture.
+class PostureFamily(RunFamily):
+    """Everything at one posture."""
 
-    Args:
-        words: of the vendor's language.
-        controller: that emulates.
-        plan: what was asked for.
-        radii: of the zones, m.
-        number: of the posture, from 0.
-        site: the posture.
-        reach: of the robot, m.
-        random: what is drawn from.
-    """
-
-    words: Words
-    controller: Controller
-    plan: Plan
-    radii: tuple[float, ...]
-    number: int
-    site: Site
-    reach: float
-    random: np.random.Generator
-
-    def candidates(self) -> Iterator[tuple[CandidateRun, Run] | Skipped]:
+    def candidates(self) -> Iterator[Made]:
         """All runs with their emulations, and what is not possible."""
         for kind in self.plan.kinds:
             if kind is Kind.SINGLE_AXES:
                 yield from self._single_axes()
                 continue
-            for speed in self.plan.speeds:
+            for speed in self.plan.speeds or SPEEDS:
                 yield from (
-                    self._corners(kind, speed) if kind.has_corners else self._stops(kind, speed)
+                    self.corners(kind, speed) if kind.has_corners else self._stops(kind, speed)
                 )
-
-    def _place(self, kind: Kind, speed: float | None = None) -> str:
-        at = "" if speed is None else f" at {1e3 * speed:.5g} mm/s"
-        return f"{kind}{at}, posture {self.number + 1}"
-
-    def _name(self, kind: Kind, speed: float | None, number: int | None = None) -> str:
-        parts = [f"p{self.number + 1}", kind.short]
-        parts += [] if speed is None else [f"v{1e3 * speed:.5g}".replace(".", "d")]
-        parts += [] if number is None else [str(number + 1)]
-        return "_".join(parts)
-
-    def _star(self) -> Star:
-        robot, site = self.controller.robot, self.site
-        return Star(self.words.vendor, robot, self.plan.tool, site.q, site.plane)
 
     # Corners
 
-    def _corners(self, kind: Kind, speed: float) -> Iterator[tuple[CandidateRun, Run] | Skipped]:
+    def corners(self, kind: Kind, speed: float) -> Iterator[Made]:
         """The runs of all corners; where there is no room for the largest zones, without them."""
         first = self.random.uniform(0, 2 * math.pi)
-        corners = self._shuffled()
+        corners = self._shuffled(kind)
         try:
             self._check_speed(kind, speed, corners, first)
         except Refused as error:
-            yield Skipped(self._place(kind, speed), str(error))
+            yield Skipped(self.place(kind, speed), str(error))
             return
+        radii = sorted({corner.radius for corner in corners})
         without: list[Skipped] = []
-        for count in range(len(self.radii), 0, -1):
-            kept = self.radii[:count]
+        for count in range(len(radii), 0, -1):
+            kept = radii[:count]
             some = [corner for corner in corners if corner.radius in kept]
             try:
                 made = self._grown(kind, speed, some, first)
             except FlybyError as error:
-                zone = f"{self._place(kind, speed)}, zone {1e3 * kept[-1]:.5g} mm"
+                zone = f"{self.place(kind, speed)}, zone {1e3 * kept[-1]:.5g} mm"
                 without.append(Skipped(zone, str(error)))
                 continue
             yield from without
             yield from made
             return
-        yield Skipped(self._place(kind, speed), without[-1].reason)
+        yield Skipped(self.place(kind, speed), without[-1].reason)
 
     def _check_speed(
         self, kind: Kind, speed: float, corners: Sequence[_Signed], first: float
@@ -147,8 +116,9 @@ class PostureFamily:
         Raises:
             Refused: it is not.
         """
-        smallest = [corner for corner in corners if corner.radius == min(self.radii)]
-        ramp = 0.5 * (LONGEST_LEG * self.reach - min(self.radii))
+        least = min(corner.radius for corner in corners)
+        smallest = [corner for corner in corners if corner.radius == least]
+        ramp = 0.5 * (LONGEST_LEG * self.reach - least)
         try:
             self._pieces(kind, speed, smallest, ramp, first)
         except Refused as error:
@@ -178,13 +148,16 @@ class PostureFamily:
                     raise
             ramp = min(GROWTH * ramp, last)
 
-    def _shuffled(self) -> list[_Signed]:
+    def _shuffled(self, kind: Kind) -> list[_Signed]:
         """All corners, small zones first, turns in a drawn order and to drawn sides."""
+        sizes: list[tuple[float, float | None]] = [(radius, None) for radius in self.radii]
+        if kind is Kind.CONTOURS:
+            sizes = [(0.0, share) for share in CONTOUR_SHARES]
         corners = []
-        for radius in self.radii:
+        for radius, share in sizes:
             for turn in self.random.permutation(self.plan.turns):
                 sign = self.random.choice([-1.0, 1.0])
-                corners.append(_Signed(float(turn), radius, float(sign)))
+                corners.append(_Signed(float(turn), radius, share, sign=float(sign)))
         return corners
 
     def _pieces(
@@ -205,39 +178,45 @@ class PostureFamily:
         first: float,
         number: int,
     ) -> CandidateRun:
-        star = self._star()
+        star = self.star()
         turns = [corner.sign * corner.turn for corner in corners]
         spokes = star.walk(LEGS[kind], turns, [_need(corner, ramp) for corner in corners], first)
         slopes = np.array([star.slope(spoke.angle) for spoke in spokes])
-        said = self._speeds(speed, slopes)
-        begin = star.approach(spokes[0], self._gentle(slopes))
+        said = self.speeds(speed, slopes)
+        behind = self.speeds(SLOWER.get(kind, 1.0) * speed, slopes)
+        begin = star.approach(spokes[0], self.gentle(slopes))
         moves: list[Move] = []
         for corner, (spoke, then) in zip(corners, pairwise(spokes), strict=True):
-            moves.append(star.inward(spoke, said[spoke.leg], self.words.zone(corner.radius)))
-            moves.append(star.outward(then, said[then.leg]))
-        designed = tuple(PlannedCorner(corner.turn, corner.radius) for corner in corners)
-        name = self._name(kind, speed, number)
-        return self._candidate(name, kind, speed, designed, begin, moves)
+            moves.append(star.inward(spoke, said[spoke.leg], self._zone(corner)))
+            moves.append(star.outward(then, behind[then.leg]))
+        designed = [PlannedCorner(corner.turn, corner.radius, corner.share) for corner in corners]
+        name = self.name(kind, speed, number)
+        return self.candidate(name, kind, speed, designed, begin, moves)
+
+    def _zone(self, corner: PlannedCorner) -> Zone:
+        if corner.share is not None:
+            return ContourFraction(corner.share)
+        return self.words.zone(corner.radius)
 
     # Stops and single axes
 
-    def _stops(self, kind: Kind, speed: float) -> Iterator[tuple[CandidateRun, Run] | Skipped]:
+    def _stops(self, kind: Kind, speed: float) -> Iterator[Made]:
         """Straight moves of several lengths, a stop behind each."""
         angle = self.random.uniform(0, 2 * math.pi)
         length = min(0.5 * LONGEST_LEG * self.reach, max(0.04, 0.6 * speed))
         try:
-            star = self._star()
+            star = self.star()
             spoke = Spoke(angle, LEGS[kind][0], length)
             slopes = np.array([star.slope(angle)])
-            said = self._speeds(speed, slopes)[spoke.leg]
-            begin = star.approach(spoke, self._gentle(slopes), STOP_SHARES[0])
+            said = self.speeds(speed, slopes)[spoke.leg]
+            begin = star.approach(spoke, self.gentle(slopes), STOP_SHARES[0])
             moves = [star.to(spoke, share, said) for share in STOP_SHARES[1:]]
-            candidate = self._candidate(self._name(kind, speed), kind, speed, (), begin, moves)
+            candidate = self.candidate(self.name(kind, speed), kind, speed, (), begin, moves)
             yield candidate, check(self.controller, candidate, self.plan.margin)
         except FlybyError as error:
-            yield Skipped(self._place(kind, speed), str(error))
+            yield Skipped(self.place(kind, speed), str(error))
 
-    def _single_axes(self) -> Iterator[tuple[CandidateRun, Run] | Skipped]:
+    def _single_axes(self) -> Iterator[Made]:
         """One joint after the other to and fro, as far as it may and a quarter of that."""
         limits, q = self.controller.robot.limits, self.site.q
         said = self.words.fastest()
@@ -249,44 +228,14 @@ class PostureFamily:
             for share in (1.0, 0.0, 0.25, 0.0):
                 there = q.copy()
                 there[joint] += round(share * swing, 5)
-                moves.append(MoveJ(_joint_target(there), said, FINE, self.plan.tool))
-        begin = MoveJ(_joint_target(q), said, FINE, self.plan.tool)
+                moves.append(MoveJ(joint_target(there), said, FINE, self.plan.tool))
+        begin = MoveJ(joint_target(q), said, FINE, self.plan.tool)
         kind = Kind.SINGLE_AXES
-        candidate = self._candidate(self._name(kind, None), kind, None, (), begin, moves)
+        candidate = self.candidate(self.name(kind, None), kind, None, (), begin, moves)
         try:
             yield candidate, check(self.controller, candidate, self.plan.margin)
         except FlybyError as error:
-            yield Skipped(self._place(kind), str(error))
-
-    # All runs
-
-    def _speeds(self, speed: float, slopes: FloatArray) -> dict[Leg, Speed]:
-        path, arc = self.words.path_speed(speed), self.words.path_speed(speed, MoveC)
-        joint = self.words.joint_speed(speed, slopes)
-        return {Leg.LINE: path, Leg.TURN: path, Leg.ARC: arc, Leg.JOINT: joint}
-
-    def _gentle(self, slopes: FloatArray) -> Speed:
-        """Of the way to the start."""
-        return self.words.joint_speed(APPROACH, slopes)
-
-    def _candidate(
-        self,
-        name: str,
-        kind: Kind,
-        speed: float | None,
-        corners: tuple[PlannedCorner, ...],
-        begin: MoveJ,
-        moves: Sequence[Move],
-    ) -> CandidateRun:
-        # Stars and axes are approached in joints.
-        assert isinstance(begin.target, JointTarget)
-        program = Program((begin, *moves), name, begin.target)
-        start = np.array(begin.target.joints)
-        return CandidateRun(name, kind, self.number, speed, corners, program, start)
-
-
-def _joint_target(q: FloatArray) -> JointTarget:
-    return JointTarget(tuple(float(value) for value in q))
+            yield Skipped(self.place(kind), str(error))
 
 
 def _need(corner: PlannedCorner, ramp: float) -> float:

@@ -15,7 +15,7 @@ from ...core.program.program import Program
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget
 from ...core.program.tool import WORLD
-from ...core.program.zone import FINE, Radius
+from ...core.program.zone import Radius
 from ...core.robot.kinematics.chain_kernels import jacobians, poses
 from ...core.robot.work_chain import work_chain
 from .plan import CandidateRun
@@ -64,7 +64,9 @@ def check(
     run = controller.run(program, JointTarget(tuple(map(float, candidate.start))), _EVERY)
     _check_limits(controller, run, margin)
     _check_regular(controller, candidate, run)
-    if candidate.kind.has_corners:
+    if run.path.route.left_out:
+        raise Refused("a waypoint would be left out", longer_legs_help=True)
+    if candidate.kind.reaches_speed:
         _check_zones(run)
         _check_speeds(controller, run)
     return run
@@ -90,17 +92,12 @@ def _check_regular(controller: Controller, candidate: CandidateRun, run: Run) ->
 
 
 def _check_zones(run: Run) -> None:
-    """Every zone reaches as far as it is programmed, and no waypoint is left out."""
-    if run.path.route.left_out:
-        raise Refused("a waypoint would be left out", longer_legs_help=True)
+    """Every zone that has a radius reaches as far as it is programmed."""
     if run.path.model.overlap is Overlap.SKIP:
         return  # Zones are whole, or smaller because of the speed that they are entered with.
     for reach, move in zip(zone_reaches(run.path), run.path.route.moves, strict=True):
         zone = run.program.moves[move].zone
-        if zone == FINE:
-            continue
-        assert isinstance(zone, Radius)
-        if min(reach) < WHOLE * zone.tcp:
+        if isinstance(zone, Radius) and min(reach) < WHOLE * zone.tcp:
             raise Refused(
                 f"the zone of {1e3 * zone.tcp:.5g} mm would reach {1e3 * min(reach):.4g} mm only",
                 longer_legs_help=True,

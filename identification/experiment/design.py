@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from ...core.cell.floor import FLOOR, lifted
 from ...core.collision.proof.certificate import certify, scenes_of
 from ...core.collision.proof.verdict import Certificate
 from ...core.collision.scene.scene import CollisionScene
+from ...core.display import counted
 from ...core.errors import FlybyError, InputError
 from ...core.language import Sources
 from ...core.motion.emulator.controller import Controller
@@ -26,10 +27,13 @@ from ...core.source.patch.edits import difference
 from ...core.vendor import Vendor
 from .candidates import PostureFamily
 from .checking import Refused, check
+from .family import Made
 from .information import Informer
 from .plan import CandidateRun, Designed, Experiment, Plan, Skipped, usual_radii
 from .postures import Clear, Site, find_sites, given_site, reach_of
+from .purpose import purpose
 from .selection import Option, RunChoice
+from .topics import runs_about
 from .words import Words
 
 Say = Callable[[str], None]
@@ -97,7 +101,7 @@ class _Designer:
         sites = self._sites()
         candidates = self._candidates(sites)
         period = self._period(candidates)
-        informer = Informer.of(self.vendor, self.cell.robot, period)
+        informer = Informer.of(self.vendor, self.cell.robot, period, self.plan.about)
         choice = RunChoice(self._options(candidates, informer), self.plan)
         runs = self._chosen(choice, period)
         if not runs:
@@ -107,6 +111,7 @@ class _Designer:
         return Experiment(
             self.cell.robot,
             self.plan,
+            self.controller.model,
             period,
             tuple(sites),
             tuple(self._with_ways(runs)),
@@ -119,13 +124,14 @@ class _Designer:
     def _sites(self) -> list[Site]:
         robot, plan = self.cell.robot, self.plan
         self.say("looking for postures")
-        if not isinstance(plan.postures, int):
+        if plan.postures is not None and not isinstance(plan.postures, int):
             for q in plan.postures:
                 if np.shape(q) != (robot.size,):
                     raise InputError(f"a posture of {robot.name} has {robot.size} joint values")
             rows = [np.asarray(q, dtype=float) for q in plan.postures]
             return [given_site(robot, plan.tool, q, plan.margin, self.random) for q in rows]
-        return find_sites(robot, plan.tool, plan.postures, plan.margin, self._clear(), self.random)
+        count = plan.posture_count
+        return find_sites(robot, plan.tool, count, plan.margin, self._clear(), self.random)
 
     def _clear(self) -> Clear:
         scene = self.clearance.scene(self.plan)
@@ -149,7 +155,7 @@ class _Designer:
                 self.reach,
                 self.random,
             )
-            for made in family.candidates():
+            for made in self._family_runs(family):
                 if isinstance(made, Skipped):
                     self.skipped.append(made)
                 elif made[1].duration > 1.5 * self.plan.longest:
@@ -158,6 +164,12 @@ class _Designer:
                 else:
                     found.append(made[0])
         return found
+
+    def _family_runs(self, family: PostureFamily) -> Iterator[Made]:
+        if not self.plan.about:
+            return family.candidates()
+        topics = self.plan.topics_at(family.number)
+        return (made for topic in topics for made in runs_about(topic, family))
 
     def _period(self, candidates: list[CandidateRun]) -> float:
         """The plan's, or the first that the recorder takes."""
@@ -225,7 +237,8 @@ class _Designer:
         certificate = self.clearance.proof(run)
         if certificate is not None and not certificate.proven:
             raise Refused(str(certificate))
-        return Designed(candidate, program, sources, run, certificate, 0.0)
+        told = purpose(self.controller, candidate, run)
+        return Designed(candidate, program, sources, run, certificate, 0.0, purpose=told)
 
     def _read_back(self, sources: Sources) -> Program:
         with tempfile.TemporaryDirectory() as name:
@@ -257,8 +270,8 @@ class _Designer:
         return proof is not None and proof.proven
 
     def _notes(self, choice: RunChoice, sites: int) -> Iterable[str]:
-        if isinstance(self.plan.postures, int) and sites < self.plan.postures:
-            yield f"only {sites} of {self.plan.postures} postures were found"
+        if sites < self.plan.posture_count:
+            yield f"only {sites} of {self.plan.posture_count} postures were found"
         if not self.cell.robot.shapes:
             yield "nothing is known of the robot's shape: no collision is excluded"
         elif self.bare:
@@ -268,8 +281,14 @@ class _Designer:
                 f"no cell was given: it is proven that the arm touches {proven}, and nothing of "
                 "tools and surroundings"
             )
-        for level in choice.missing():
-            yield f"{level} has no place in the time there is"
+        missing = choice.missing()
+        for topic in self.plan.about:
+            count = sum(level.startswith(f"{topic}: ") for level in missing)
+            if count:
+                pairs = counted(count, "pair of conditions", "pairs of conditions")
+                yield f"{topic}: {pairs} have no place in the time there is"
+        if not self.plan.about:
+            yield from (f"{level} has no place in the time there is" for level in missing)
 
 
 def main_file(sources: Sources, vendor: Vendor) -> str:

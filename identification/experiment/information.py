@@ -18,17 +18,21 @@ the joints' own accelerations.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.motion.command.commanded_motion import stamped_motion
+from ...core.motion.command.servo import friction_at
+from ...core.motion.command.smoothing import States
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.model.blend import Blend
 from ...core.motion.model.elasticity import RIGID
 from ...core.motion.model.figures import Stage
 from ...core.motion.model.motion_model import MotionModel, first_change
+from ...core.motion.model.servo import IDEAL
 from ...core.motion.path.path import Path
 from ...core.motion.timing.timing import Timing
 from ...core.program.move import Move, MoveC, MoveJ, MoveL
@@ -37,6 +41,7 @@ from ...core.program.target import JointTarget
 from ...core.robot.model import Robot
 from ...core.vendor import Vendor
 from ..fit.keys import with_value
+from .kinds import Topic
 from .plan import CandidateRun, Precision
 
 NOISE = 1e-4
@@ -50,9 +55,11 @@ SMOOTHING = (0.05, 0.02)
 SETTLED = 0.7
 """Settling, as a share of all averages, that is looked at where a model waits for all of them."""
 SPREAD_BETA, SPREAD_WIDTH, SPREAD_SETTLING = 0.5, 0.02, 0.03
-SPREAD_SCALE, SPREAD_LEAD, SPREAD_NEARNESS = 0.2, 2e-4, 2e-3
+SPREAD_SCALE, SPREAD_LEAD, SPREAD_NEARNESS, SPREAD_LEAST_TIME = 0.2, 2e-4, 2e-3, 2e-3
 """Standard deviations beforehand: of β, of widths and settling in s, of accelerations as a share,
-of leads in s², of how near axes are to be to stops in rad."""
+of leads in s², of how near axes are to be to stops in rad, of least times of zones in s."""
+REORIENTATION, FRICTION = 20.0, 1e-4
+"""rad/s² and rad that are looked at where a model has none."""
 _STEP = 0.02
 """Of a difference quotient, in standard deviations."""
 
@@ -79,9 +86,14 @@ class StudiedFigure:
         return not self.bends or any(isinstance(move, self.bends) for move in passed)
 
 
-def studied(model: MotionModel, robot: Robot) -> MotionModel:
+def studied(model: MotionModel, robot: Robot, about: Sequence[Topic] = ()) -> MotionModel:
     """The model that sensitivities are taken at: rigid, with averages and settling, and with all
     figures of `figures_of`."""
+    if Topic.SHORT_LEGS in about:
+        model = replace(model, zone_time=max(model.zone_time, model.period))
+    if Topic.TURNS in about and model.reorientation_acceleration is None:
+        model = replace(model, reorientation_acceleration=REORIENTATION)
+    rubs = (FRICTION,) * robot.arm_size if Topic.REVERSALS in about else ()
     widths = tuple(width for width in model.smoothing if width > 0) or SMOOTHING
     settling = SETTLED * sum(widths) if model.settling is None else model.settling
     return replace(
@@ -93,11 +105,13 @@ def studied(model: MotionModel, robot: Robot) -> MotionModel:
         settling=settling,
         joint_acceleration_scale=tuple(map(model.acceleration_scale, range(robot.arm_size))),
         elasticity=RIGID,
+        servo=replace(IDEAL, friction=rubs, rise=model.servo.rise, fade=model.servo.fade),
     )
 
 
-def figures_of(model: MotionModel) -> list[StudiedFigure]:
-    """What a log can tell of a studied model, but for the leads of elastic joints."""
+def figures_of(model: MotionModel, about: Sequence[Topic] = ()) -> list[StudiedFigure]:
+    """What a log can tell of a studied model, but for the leads of elastic joints; of what only
+    runs about open questions show, as far as there are such."""
     found: list[StudiedFigure] = []
     for name, blend in (
         ("tcp", model.tcp),
@@ -125,6 +139,19 @@ def figures_of(model: MotionModel) -> list[StudiedFigure]:
     for joint, scale in enumerate(model.joint_acceleration_scale):
         key = f"limit.joint_acceleration_scale[{joint}]"
         found.append(StudiedFigure(key, scale, SPREAD_SCALE * scale))
+    if Topic.SHORT_LEGS in about:
+        found.append(StudiedFigure("zone.least_time_s", model.zone_time, SPREAD_LEAST_TIME))
+    if Topic.POSTURES in about:
+        for joint, share in enumerate(model.torque.own):
+            found.append(StudiedFigure(f"torque.own_s2[{joint}]", share, SPREAD_SCALE * share))
+        for joint, share in enumerate(model.torque.weight):
+            if share > 0.0:
+                found.append(StudiedFigure(f"torque.weight[{joint}]", share, SPREAD_SCALE))
+    if Topic.REVERSALS in about:
+        for joint, rubs in enumerate(model.servo.friction):
+            found.append(StudiedFigure(f"servo.friction_rad[{joint}]", rubs, FRICTION))
+        for key, way in (("rise", model.servo.rise), ("fade", model.servo.fade)):
+            found.append(StudiedFigure(f"servo.friction_{key}_rad", way, 0.5 * way))
     return found
 
 
@@ -152,10 +179,12 @@ class Informer:
     period: float
 
     @classmethod
-    def of(cls, vendor: Vendor, robot: Robot, period: float) -> Informer:
-        """For the vendor's own model of the robot."""
-        model = studied(vendor.motion_of(robot), robot)
-        return cls(vendor, robot, model, tuple(figures_of(model)), period)
+    def of(
+        cls, vendor: Vendor, robot: Robot, period: float, about: Sequence[Topic] = ()
+    ) -> Informer:
+        """For the vendor's own model of the robot, and what runs are about."""
+        model = studied(vendor.motion_of(robot), robot, about)
+        return cls(vendor, robot, model, tuple(figures_of(model, about)), period)
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -180,9 +209,10 @@ class Informer:
         path = controller.plan(program, start)
         timing = controller.stamp(program, path)
         t = np.arange(0.0, timing.duration, self.period)
-        q, dq, ddq = _commanded(controller, program, path, timing, t)
+        q, dq, ddq = states = _commanded(controller, program, path, timing, t)
+        rubbed = _rubbed(controller, program, path, timing, t, states)
         columns = [
-            (self._shifted(figure, program, path, start, t) - q).ravel() / _STEP
+            (self._shifted(figure, program, path, start, t) - q - rubbed).ravel() / _STEP
             if figure.shows_in(program)
             else np.zeros(q.size)
             for figure in self.figures
@@ -203,7 +233,9 @@ class Informer:
         controller = Controller(self.vendor, self.robot, model)
         if first_change(self.model, model) is Stage.PATH:
             path = controller.plan(program, start)
-        return _commanded(controller, program, path, controller.stamp(program, path), t)[0]
+        timing = controller.stamp(program, path)
+        states = _commanded(controller, program, path, timing, t)
+        return states[0] + _rubbed(controller, program, path, timing, t, states)
 
     def precision(self, information: FloatArray) -> tuple[Precision, ...]:
         """What is known of each figure after runs with this information, (K, K)."""
@@ -222,8 +254,23 @@ def nats(information: FloatArray) -> float:
 
 def _commanded(
     controller: Controller, program: Program, path: Path, timing: Timing, t: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+) -> States:
     return controller.smoothing(program, path).command(stamped_motion(timing), t)
+
+
+def _rubbed(
+    controller: Controller,
+    program: Program,
+    path: Path,
+    timing: Timing,
+    t: FloatArray,
+    states: States,
+) -> FloatArray:
+    """(T, N), how far friction sets the joints off."""
+    if not controller.model.servo.rubs:
+        return np.zeros_like(states[0])
+    smoothing = controller.smoothing(program, path)
+    return friction_at(controller.model.servo, smoothing, stamped_motion(timing), t, states)
 
 
 def _information(S: FloatArray, clock: FloatArray) -> FloatArray:

@@ -7,14 +7,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from typing import Any
+
+from markupsafe import Markup
 
 from ..pages import render_markdown
-from .plan import Designed, Experiment, Skipped
+from .kinds import Topic
+from .plan import Alternative, Designed, Experiment, Skipped
+from .purpose import DECISIONS, QUESTIONS, fit_text
 from .selection import seconds_of
 
 LOG_SUFFIX = ".csv"
 _UNUSED = 12
 """Runs that there was no time for, that are listed."""
+UNKNOWN = "nothing that the model knows of"
 _TEMPLATE = """\
 {% macro table(heading, rows) %}
 |{% for cell in heading %} {{ cell }} |{% endfor %}
@@ -69,6 +75,25 @@ there*: whether the straight way in joint space from the end of the run before i
 clear; *by hand*: it is not, so jog the robot to the start: the first move of the program goes \
 there straight. *gain*: what the run tells of the motion model beyond those before it.
 
+{% if topics %}
+## What the runs are for
+
+*If instead*: what may be so instead of what is emulated; how much longer the run takes then, and \
+how far from the emulated path it runs. `flyby compare NAME.json` says which of them the log is \
+nearest to.
+
+{% for topic in topics %}
+### {{ topic.name }}
+
+{{ topic.question }} {{ topic.decision }}
+
+{{ table(("run", "motion, s", "figures that it shows", "if instead"), topic.rows) }}
+{% if topic.fits %}
+With the logs beside the records: `flyby identify FOLDER --robot ROBOT{{ topic.fits }}`
+
+{% endif %}
+{% endfor %}
+{% endif %}
 ## Postures
 
 {{ table(axes, postures) }}
@@ -112,6 +137,7 @@ def page(experiment: Experiment, cell: str | None) -> str:
         overhead=f"{experiment.plan.overhead:.0f}",
         runs=list(_rows(experiment)),
         axes=("", *experiment.robot.axis_names),
+        topics=list(_topics(experiment)),
         postures=list(_postures(experiment)),
         precision=list(_precision(experiment)),
         skipped=_left_out(experiment.skipped),
@@ -140,19 +166,64 @@ def described(made: Designed) -> tuple[str, str, str, str, str]:
     """Kind, speed in mm/s, number of corners, turns in degrees and zones in mm of a run."""
     candidate = made.candidate
     turns = sorted({round(math.degrees(corner.turn), 2) for corner in candidate.corners})
-    radii = sorted({1e3 * corner.radius for corner in candidate.corners})
+    ordered = sorted(candidate.corners, key=lambda one: (one.share or 0.0, one.radius))
+    zones = dict.fromkeys(one.zone.removesuffix(" mm") for one in ordered)
     return (
         str(candidate.kind),
         "" if candidate.speed is None else f"{1e3 * candidate.speed:.5g}",
         str(len(candidate.corners) or ""),
         " ".join(f"{turn:.4g}" for turn in turns),
-        " ".join(f"{radius:.4g}" for radius in radii),
+        " ".join(zones),
     )
 
 
 def way(made: Designed, first: bool) -> str:
     """Whether the way to a run is proven."""
     return "proven" if made.way_proven and not first else "by hand"
+
+
+def _topics(experiment: Experiment) -> Iterable[dict[str, Any]]:
+    """What stands of each topic that has runs."""
+    for topic in Topic:
+        runs = [one for one in experiment.runs if one.topic is topic]
+        if not runs:
+            continue
+        keys = dict.fromkeys(key for one in runs for key in one.figures)
+        texts = sorted(text for key in keys if (text := fit_text(experiment.model, key)))
+        yield {
+            "name": topic,
+            "question": QUESTIONS[topic],
+            "decision": DECISIONS[topic],
+            "rows": [
+                (one.candidate.name, f"{one.duration:.1f}", grouped(one.figures), instead(one))
+                for one in runs
+            ],
+            # Keys of the model alone, which hold no marks that a page must not have.
+            "fits": Markup("".join(f" --fit '{text}'" for text in texts)),
+        }
+
+
+def instead(made: Designed) -> str:
+    """What may be so instead of what is emulated, and what it would change."""
+    found = () if made.purpose is None else made.purpose.alternatives
+    return "; ".join(f"{one.what}: {_changed(one)}" for one in found) or UNKNOWN
+
+
+def _changed(one: Alternative) -> str:
+    if one.turned is None:
+        return f"{one.longer:+.2f} s, {1e3 * one.apart:.2g} mm"
+    return f"joints {1e3 * one.turned:.2g} mrad"
+
+
+def grouped(keys: Iterable[str]) -> str:
+    """Keys of figures, entries of one list together: ``torque.own_s2[0, 1]``."""
+    lists: dict[str, list[str]] = {}
+    for key in keys:
+        name, _, index = key.partition("[")
+        lists.setdefault(name, []).extend([index.rstrip("]")] if index else [])
+    return ", ".join(
+        f"{name}[{', '.join(entries)}]" if entries else name for name, entries in lists.items()
+    )
 
 
 def _postures(experiment: Experiment) -> Iterable[Sequence[str]]:

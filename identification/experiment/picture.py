@@ -11,6 +11,7 @@ from ...core.cell.cell import Cell
 from ...drawing.cell import show_space
 from ...drawing.solids import obstacle_triangles, robot_triangles
 from ...drawing.style import STYLE, figure_file
+from .kinds import Kind
 from .plan import Designed, Experiment
 from .postures import Site
 
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 
 
 OBSTACLE, ARM = "#b8b3a8", "#f2a043"
+LABELS = 190.0
+"""Points of height that labels of figures have."""
 MOST_PANELS = 6
 """Postures that are drawn in their planes."""
 TILTED = 0.02
@@ -42,15 +45,16 @@ def draw_experiment(cell: Cell, experiment: Experiment) -> bytes:
 def _figure(cell: Cell, experiment: Experiment) -> Figure:
     from matplotlib.figure import Figure
 
-    panels = min(len(experiment.sites), MOST_PANELS)
+    flat = [number for number in range(len(experiment.sites)) if _flat_runs(experiment, number)]
+    shown = flat[:MOST_PANELS] or [0]
     figure = Figure(figsize=(16, 9.5), layout="constrained")
     halves: Any = figure.subfigures(1, 2, width_ratios=(1.0, 1.15))
     space, right = halves
     colours = _colours(experiment)
     _draw_space(space.add_subplot(projection="3d"), cell, experiment, colours)
     upper, lower = right.subfigures(2, 1, height_ratios=(1.2, 1.0))
-    row = upper.subplots(1, panels, squeeze=False)[0]
-    for number, axes in enumerate(row):
+    row = upper.subplots(1, len(shown), squeeze=False)[0]
+    for number, axes in zip(shown, row, strict=True):
         _draw_plane(axes, experiment, number, colours)
     counts, precision = lower.subplots(1, 2, width_ratios=(1.0, 1.1))
     _draw_counts(counts, experiment)
@@ -66,12 +70,8 @@ def _figure(cell: Cell, experiment: Experiment) -> Figure:
 
 
 def _colours(experiment: Experiment) -> dict[str, str]:
-    kinds = [kind for kind in experiment.plan.kinds if kind in _kinds(experiment)]
-    return {str(kind): f"C{k}" for k, kind in enumerate(kinds)}
-
-
-def _kinds(experiment: Experiment) -> set[str]:
-    return {str(run.candidate.kind) for run in experiment.runs}
+    driven = {run.candidate.kind for run in experiment.runs}
+    return {str(kind): f"C{k % 10}" for k, kind in enumerate(one for one in Kind if one in driven)}
 
 
 def _draw_space(axes: Any, cell: Cell, experiment: Experiment, colours: dict[str, str]) -> None:
@@ -100,17 +100,18 @@ def _draw_space(axes: Any, cell: Cell, experiment: Experiment, colours: dict[str
 
 def _draw_plane(axes: Axes, experiment: Experiment, number: int, colours: dict[str, str]) -> None:
     """The corners of one posture, seen square to their plane."""
-    site = experiment.sites[number]
-    for run in experiment.runs:
-        if run.candidate.posture != number:
-            continue
-        points = _in_plane(run, site, experiment)
-        if points is not None:
-            colour = colours[str(run.candidate.kind)]
-            axes.plot(*points.T, color=colour, linewidth=0.9)
+    for run, points in _flat_runs(experiment, number):
+        axes.plot(*points.T, color=colours[str(run.candidate.kind)], linewidth=0.9)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_title(f"posture {number + 1}, in its plane, mm")
+    axes.set_title(f"posture {number + 1}, in its plane, mm", fontsize=9)
     axes.tick_params(labelsize=7)
+
+
+def _flat_runs(experiment: Experiment, number: int) -> list[tuple[Designed, FloatArray]]:
+    """The runs at a posture that lie in its plane, with their points (T, 2) mm there."""
+    here = [run for run in experiment.runs if run.candidate.posture == number]
+    points = ((run, _in_plane(run, experiment.sites[number], experiment)) for run in here)
+    return [(run, flat) for run, flat in points if flat is not None]
 
 
 def _in_plane(run: Designed, site: Site, experiment: Experiment) -> FloatArray | None:
@@ -158,7 +159,7 @@ def _draw_precision(axes: Axes, experiment: Experiment) -> None:
     labels = [
         one.key.replace("joint_acceleration_scale", "joint_acc") for one in experiment.precision
     ]
-    axes.set_yticks(places, labels, fontsize=7)
+    axes.set_yticks(places, labels, fontsize=min(7.0, LABELS / len(labels)))
     axes.invert_yaxis()
     axes.set_xlim(0, 100)
     axes.set_xlabel("standard deviation, % of that before")

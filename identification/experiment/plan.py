@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 
@@ -15,9 +14,11 @@ from ...core.door import spelt
 from ...core.errors import InputError, OptionError
 from ...core.language import Sources
 from ...core.motion.emulator.run import Run
+from ...core.motion.model.motion_model import MotionModel
 from ...core.program.program import Program
 from ...core.program.tool import FLANGE, Tool
 from ...core.robot.model import Robot
+from .kinds import KINDS, Kind, Topic
 from .postures import Site
 
 TURNS = tuple(math.radians(turn) for turn in (30, 60, 90, 120, 150))
@@ -27,46 +28,8 @@ RADII = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2)
 SMALLEST_SHARE, LARGEST_SHARE = 0.0015, 0.08
 """Of the robot's reach, between which the usual zones lie."""
 ZONE_LEVELS = 4
-
-
-class Kind(StrEnum):
-    """What the moves of a run are; of mixed ones every other leg is of the second sort."""
-
-    LINES = "lines"
-    JOINTS = "joints"
-    ARCS = "arcs"
-    LINES_AND_JOINTS = "lines-joints"
-    LINES_AND_ARCS = "lines-arcs"
-    TURNS = "turns"
-    """Lines along which the tool turns, otherwise before the corner than behind it."""
-    LINE_STOPS = "line-stops"
-    """Lines of several lengths with stops between them."""
-    JOINT_STOPS = "joint-stops"
-    SINGLE_AXES = "single-axes"
-    """One joint after the other, as fast as the language lets it go."""
-
-    @property
-    def short(self) -> str:
-        """For names of programs."""
-        return _SHORT[self]
-
-    @property
-    def has_corners(self) -> bool:
-        """Whether the runs pass fly-by points."""
-        return self not in (Kind.LINE_STOPS, Kind.JOINT_STOPS, Kind.SINGLE_AXES)
-
-
-_SHORT = {
-    Kind.LINES: "line",
-    Kind.JOINTS: "joint",
-    Kind.ARCS: "arc",
-    Kind.LINES_AND_JOINTS: "linejoint",
-    Kind.LINES_AND_ARCS: "linearc",
-    Kind.TURNS: "turn",
-    Kind.LINE_STOPS: "stopline",
-    Kind.JOINT_STOPS: "stopjoint",
-    Kind.SINGLE_AXES: "axes",
-}
+POSTURES, MANY_POSTURES, FEW_POSTURES = 3, 8, 2
+"""How many there are where nobody says: of all runs; of those about postures; of other topics."""
 
 
 @dataclass(frozen=True)
@@ -76,9 +39,10 @@ class Plan:
     Args:
         turns: changes of direction at the corners, rad, in (0, π).
         radii: of the zones, m; None for `usual_radii` of the robot.
-        speeds: of the TCP, m/s.
+        speeds: of the TCP, m/s; None for the usual ones of the kinds, or topics.
         kinds: of moves.
-        postures: how many, or the configurations (N,) themselves.
+        about: the open questions that runs are to settle; none for runs of all kinds.
+        postures: how many, or the configurations (N,) themselves; None for the usual number.
         minutes: at the robot; None for all runs.
         overhead: s, what a run takes beside its motion: to load, to start, to fetch the log.
         longest: s, that one run may last.
@@ -93,9 +57,10 @@ class Plan:
 
     turns: tuple[float, ...] = TURNS
     radii: tuple[float, ...] | None = None
-    speeds: tuple[float, ...] = SPEEDS
-    kinds: tuple[Kind, ...] = tuple(Kind)
-    postures: int | Sequence[FloatArray] = 3
+    speeds: tuple[float, ...] | None = None
+    kinds: tuple[Kind, ...] = KINDS
+    about: tuple[Topic, ...] = ()
+    postures: int | Sequence[FloatArray] | None = None
     minutes: float | None = 60.0
     overhead: float = 60.0
     longest: float = 30.0
@@ -107,7 +72,7 @@ class Plan:
     def __post_init__(self) -> None:
         _check("angles", self.turns, math.pi, math.degrees, "°")
         _check("zones", self.radii or (1e-3,), 1.0, lambda value: 1e3 * value, " mm")
-        _check("speeds", self.speeds, 10.0, lambda value: 1e3 * value, " mm/s")
+        _check("speeds", self.speeds or SPEEDS, 10.0, lambda value: 1e3 * value, " mm/s")
         for name in ("longest", "margin"):
             if not 0 < getattr(self, name) < math.inf:
                 raise OptionError(f"{spelt(name)}: must be above zero and finite")
@@ -117,7 +82,7 @@ class Plan:
             raise OptionError(f"{spelt('minutes')}: must be above zero and finite")
         if not self.kinds:
             raise OptionError(f"{spelt('kinds')}: an experiment needs at least one")
-        count = self.postures if isinstance(self.postures, int) else len(self.postures)
+        count = self.posture_count
         if not 1 <= count <= 99:
             raise OptionError(f"{spelt('postures')}: an experiment has 1 to 99, not {count}")
         if not self.tool.robot_held:
@@ -125,6 +90,20 @@ class Plan:
                 f"the tool {self.tool.name} stands still: records of runs know tools that the "
                 "robot carries"
             )
+
+    @property
+    def posture_count(self) -> int:
+        """How many postures are wanted."""
+        if isinstance(self.postures, int):
+            return self.postures
+        if self.postures is not None:
+            return len(self.postures)
+        return MANY_POSTURES if Topic.POSTURES in self.about else POSTURES
+
+    def topics_at(self, posture: int) -> tuple[Topic, ...]:
+        """What runs at a posture, counted from 0, are about."""
+        few = self.postures is None and posture >= FEW_POSTURES
+        return tuple(one for one in self.about if one is Topic.POSTURES or not few)
 
 
 def _check(
@@ -160,10 +139,68 @@ class PlannedCorner:
     Args:
         turn: change of the TCP's direction, rad.
         radius: of the zone, m.
+        share: of the contour, in zones that are given by one instead.
     """
 
     turn: float
     radius: float
+    share: float | None = None
+
+    @property
+    def zone(self) -> str:
+        """In words."""
+        if self.share is not None:
+            return f"{100 * self.share:.5g} %"
+        return f"{1e3 * self.radius:.5g} mm"
+
+
+@dataclass(frozen=True)
+class Study:
+    """What a run is for that settles an open question.
+
+    Args:
+        topic: the question.
+        levels: of the factors that the runs about it cross.
+        joints: whose figures it shows, counted from 0; none for all.
+    """
+
+    topic: Topic
+    levels: frozenset[str]
+    joints: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """How a run would be driven if the motion model were another one.
+
+    Args:
+        what: is otherwise then, in words.
+        longer: s that the run takes more than as emulated.
+        apart: m, greatest distance of the motors' TCP from where it goes as emulated.
+        turned: rad (m), greatest distance of a joint from where it is at the same time as emulated;
+            None where the run takes another time.
+    """
+
+    what: str
+    longer: float
+    apart: float
+    turned: float | None = None
+
+
+@dataclass(frozen=True)
+class Purpose:
+    """What a run is for, in words and numbers.
+
+    Args:
+        question: that it settles.
+        figures: of the motion model that it shows, by their keys.
+        alternatives: which its log tells from what is emulated; those that change nothing, or
+            under which it cannot be driven, are left out.
+    """
+
+    question: str
+    figures: tuple[str, ...]
+    alternatives: tuple[Alternative, ...]
 
 
 @dataclass(frozen=True)
@@ -178,6 +215,7 @@ class CandidateRun:
         corners: in their order.
         program: begins with a joint move to ``start``, a stop.
         start: (N,), where the measured motion begins.
+        study: the open question that it is about; None of the usual runs.
     """
 
     name: str
@@ -187,6 +225,7 @@ class CandidateRun:
     corners: tuple[PlannedCorner, ...]
     program: Program
     start: FloatArray
+    study: Study | None = None
 
 
 @dataclass(frozen=True)
@@ -212,11 +251,22 @@ class Designed:
     certificate: Certificate | None
     gain: float
     way_proven: bool | None = None
+    purpose: Purpose | None = None
 
     @property
     def duration(self) -> float:
         """s, emulated."""
         return self.run.duration
+
+    @property
+    def topic(self) -> Topic | None:
+        """The open question that it is about; None of the usual runs."""
+        return None if self.candidate.study is None else self.candidate.study.topic
+
+    @property
+    def figures(self) -> tuple[str, ...]:
+        """Keys of the figures that a run about an open question shows."""
+        return () if self.purpose is None else self.purpose.figures
 
 
 @dataclass(frozen=True)
@@ -251,6 +301,7 @@ class Experiment:
     Args:
         robot: that drives them.
         plan: what was asked for.
+        model: the robot's motion, as far as it is known.
         period: s between the samples of the logs.
         sites: the postures, with the planes that the corners lie in.
         runs: the most informative first.
@@ -262,6 +313,7 @@ class Experiment:
 
     robot: Robot
     plan: Plan
+    model: MotionModel
     period: float
     sites: tuple[Site, ...]
     runs: tuple[Designed, ...]

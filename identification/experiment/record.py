@@ -9,11 +9,11 @@ from ...core.errors import InputError
 from ...core.program.move import Move, MoveC, MoveJ, MoveL
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget
-from ...core.program.zone import FINE, Radius, Zone
+from ...core.program.zone import FINE, ContourFraction, Radius, Zone
 from ...core.robot.model import Robot
 from ...core.spatial.pose import IDENTITY, Pose
 from ..logs.records import SPEEDS
-from .plan import Designed
+from .plan import Designed, PlannedCorner
 
 _USUAL = Speed()
 
@@ -43,14 +43,38 @@ def record(made: Designed, robot: Robot, log: str, period: float) -> dict[str, A
             "kind": str(candidate.kind),
             "posture": candidate.posture + 1,
             "speed_mps": candidate.speed,
-            "corners": [{"turn_rad": c.turn, "radius_m": c.radius} for c in candidate.corners],
+            "corners": [corner_data(corner) for corner in candidate.corners],
             "start_rad": candidate.start.tolist(),
             "duration_s": made.duration,
+            **purpose_data(made),
         },
         **held,
         "moves": [
             {"i": k, **_move(move, robot.base)} for k, move in enumerate(made.program.moves, 1)
         ],
+    }
+
+
+def corner_data(corner: PlannedCorner) -> dict[str, float]:
+    """A corner in SI units, in the keys."""
+    if corner.share is not None:
+        return {"turn_rad": corner.turn, "contour_fraction": corner.share}
+    return {"turn_rad": corner.turn, "radius_m": corner.radius}
+
+
+def purpose_data(made: Designed) -> dict[str, Any]:
+    """What a run about an open question is for; nothing of the usual runs."""
+    if made.purpose is None:
+        return {}
+    instead = [
+        {"if": one.what, "longer_s": one.longer, "apart_m": one.apart, "joints_rad": one.turned}
+        for one in made.purpose.alternatives
+    ]
+    return {
+        "about": str(made.topic),
+        "question": made.purpose.question,
+        "figures": list(made.purpose.figures),
+        "instead": instead,
     }
 
 
@@ -82,8 +106,12 @@ def _pose(pose: Pose) -> dict[str, Any]:
 def _zone(zone: Zone) -> dict[str, Any]:
     if zone == FINE:
         return {"fine": True}
+    if isinstance(zone, ContourFraction):
+        return {"contour_fraction": zone.fraction}
     if not isinstance(zone, Radius):
-        raise InputError(f"records of runs know zones with a radius, not {zone}")
+        raise InputError(
+            f"records of runs know zones with a radius or a share of the contour, not {zone}"
+        )
     said = {
         "radius_m": zone.tcp,
         "pzone_ori_m": zone.reorientation,

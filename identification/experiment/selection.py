@@ -2,8 +2,10 @@
 
 First every level of every factor (posture, kind of moves, speed, zone) gets a run, since a fit is
 judged by conditions that it has not seen: of the runs with the most new levels the one that tells
-most a second. Then, greedily, whatever tells most a second: information of runs adds up, log det is
-submodular, and the greedy choice is the usual one for such a budget.
+most a second. Runs about open questions cross their factors, and every pair of levels gets a run;
+the question of which the least is covered comes next. Then, greedily, whatever tells most a second:
+information of runs adds up, log det is submodular, and the greedy choice is the usual one for such
+a budget.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from .information import nats
+from .kinds import Topic
 from .plan import CandidateRun, Plan, Skipped
 
 
@@ -36,6 +39,8 @@ class Option:
     def levels(self) -> frozenset[str]:
         """The levels of factors that it has."""
         made = self.candidate
+        if made.study is not None:
+            return made.study.levels
         found = {f"posture {made.posture + 1}", f"the kind {made.kind}"}
         if made.speed is not None:
             found.add(f"a speed of {1e3 * made.speed:.5g} mm/s")
@@ -67,9 +72,24 @@ class RunChoice:
         fit = [option for option in self._open if self._cost(option) <= self._left]
         if not fit:
             return None
+        topics = {t for t in map(_topic, fit) if t is not None and self._share(t) < 1.0}
+        if topics:
+            behind = min(sorted(topics), key=self._share)
+            fit = [option for option in fit if _topic(option) is behind]
         fresh = [len(option.levels - self._had) for option in fit]
         fit = [option for option, new in zip(fit, fresh, strict=True) if new == max(fresh)]
         return max(fit, key=lambda option: self._gain(option) / self._cost(option))
+
+    def _share(self, topic: Topic) -> float:
+        """How much is covered of what runs about a topic that still fit could cover."""
+        wanted = {
+            level
+            for option in self._open
+            if _topic(option) is topic and self._cost(option) <= self._left
+            for level in option.levels
+        }
+        had = {level for level in self._had if level.startswith(f"{topic}: ")}
+        return len(had) / len(wanted | had)
 
     def take(self, option: Option) -> float:
         """Take a run; returns what it tells beyond those before, in nats."""
@@ -105,6 +125,11 @@ class RunChoice:
 
     def _gain(self, option: Option) -> float:
         return nats(self.information + option.information) - nats(self.information)
+
+
+def _topic(option: Option) -> Topic | None:
+    study = option.candidate.study
+    return None if study is None else study.topic
 
 
 def seconds_of(duration: float, plan: Plan) -> float:

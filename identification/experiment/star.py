@@ -46,6 +46,8 @@ class Leg(StrEnum):
     JOINT = "joint"
     ARC = "arc"
     TURN = "turn"
+    SPIN = "spin"
+    """No leg: the tool turns at the centre."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +57,10 @@ class Spoke:
     Args:
         angle: of its direction at the centre, in the star's plane, rad.
         leg: its sort.
-        length: m, of the TCP's way; of joint legs by the tangent at the centre.
-        number: place in the walk.
+        length: m, of the TCP's way; of joint legs by the tangent at the centre; of turns at the
+            centre rad.
+        number: place in the walk; of turns at the centre the axis, three of which are square to
+            each other.
     """
 
     angle: float
@@ -151,13 +155,13 @@ class Star:
         target = self._target(self._pose(spoke, 1.0), self._configuration(spoke, 1.0), spoke.leg)
         return self._along(spoke, target, speed, FINE)
 
-    def to(self, spoke: Spoke, share: float, speed: Speed) -> Move:
-        """The move along a straight leg, or beyond the centre (negative shares), to a stop."""
+    def to(self, spoke: Spoke, share: float, speed: Speed, zone: Zone = FINE) -> Move:
+        """The move to a place on a straight leg, or beyond the centre (negative shares)."""
         if spoke.leg is Leg.JOINT:
-            return MoveJ(_joints(self.end(spoke, share)), speed, FINE, self.tool)
+            return MoveJ(_joints(self.end(spoke, share)), speed, zone, self.tool)
         q = self._configuration(spoke, share)
         target = self._target(self._pose(spoke, share), q, spoke.leg)
-        return MoveL(target, speed, FINE, self.tool)
+        return MoveL(target, speed, zone, self.tool)
 
     def _along(self, spoke: Spoke, target: PoseTarget, speed: Speed, zone: Zone) -> Move:
         if spoke.leg is not Leg.ARC:
@@ -183,6 +187,9 @@ class Star:
         R, p = self.place
         along = self.direction(spoke.angle)
         way = share * spoke.length
+        if spoke.leg is Leg.SPIN:
+            axes = (along, self.direction(spoke.angle + 0.5 * math.pi), self.plane[:, 2])
+            return _pose(matrix_from_rotation_vector(way * axes[spoke.number % 3]) @ R, p)
         if spoke.leg is Leg.ARC:
             radius = spoke.length / SWEEP
             aside = self.direction(spoke.angle + 0.5 * math.pi)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,8 @@ JOINT_SHARE = 0.9
 """Of a joint's acceleration limit that is programmed at most."""
 FASTEST = 7.0
 """m/s, where a language sets no bound."""
+LEAST_SPEED = 5e-4
+"""m/s of the TCP that is programmed at least."""
 REORIENTATION, EXTERNAL_LINEAR, EXTERNAL_ANGULAR = math.radians(500), 5.0, math.radians(1000)
 """rad/s, m/s and rad/s, as in RAPID's predefined speeds; said where there are words for them."""
 
@@ -85,8 +87,24 @@ class Words:
         angle = math.radians(0.15 * 1e3 * radius)
         return Radius(radius, 1.5 * radius, 1.5 * radius, angle, 1.5 * radius, angle)
 
-    def path_speed(self, speed: float, kind: type[MoveL | MoveC] = MoveL) -> Speed:
+    @property
+    def top(self) -> float:
+        """m/s, the greatest speed of the TCP that the language takes."""
+        return FASTEST if self.vendor.speaks is None else self.vendor.speaks.fastest
+
+    def path_speed(
+        self,
+        speed: float,
+        kind: type[MoveL | MoveC] = MoveL,
+        slopes: FloatArray | None = None,
+    ) -> Speed:
         """Of lines and arcs, at a speed of the TCP in m/s.
+
+        Args:
+            speed: m/s.
+            kind: of moves.
+            slopes: (K, N), change of the joints per m of the TCP's way, where a stated
+                acceleration need not reach the speed, but is to keep the joints within theirs.
 
         Raises:
             InputError: the language takes no such speed.
@@ -95,13 +113,20 @@ class Words:
         words = self.of(kind)
         said = frozenset({"reorientation"}) if words is None else words.speeds
         accelerated = words is not None and "tcp_acceleration" in words.needs
+        ramp = _ramp(speed, LEAST_TCP_ACCELERATION)
+        if slopes is not None:
+            ramp = max(LEAST_TCP_ACCELERATION, min(ramp, self._along(slopes)))
         return Speed(
             tcp=speed,
             reorientation=REORIENTATION if "reorientation" in said else None,
             external_linear=EXTERNAL_LINEAR if "external_linear" in said else None,
             external_angular=EXTERNAL_ANGULAR if "external_angular" in said else None,
-            tcp_acceleration=_ramp(speed, LEAST_TCP_ACCELERATION) if accelerated else None,
+            tcp_acceleration=ramp if accelerated else None,
         )
+
+    def _along(self, slopes: FloatArray) -> float:
+        """m/s² of the TCP that keep the joints within what joint moves are accelerated by."""
+        return round(self._joint_acceleration() / float(np.abs(slopes).max()), 1)
 
     def joint_speed(self, speed: float, slopes: FloatArray) -> Speed:
         """Of joint moves, at which the TCP reaches a speed, m/s, in the quickest direction.
@@ -128,20 +153,43 @@ class Words:
         """Of joint moves that shall reach the joints' own limits."""
         speaks = self.vendor.speaks
         if speaks is None or speaks.pace == "tcp":
-            return self.path_speed(FASTEST if speaks is None else speaks.fastest)
+            return self.path_speed(self.top)
         if speaks.pace == "joint_fraction":
             return Speed(joint_fraction=1.0)
         return self._leading(float(self.robot.limits.velocity.min()))
 
+    def joint_alone(self, joint: int, rate: float, lever: float) -> Speed:
+        """Of a joint move of one joint, at a rate in rad/s, or the least that the language takes.
+
+        Args:
+            joint: counted from 0.
+            rate: rad/s.
+            lever: m, of the TCP about the joint.
+        """
+        speaks = self.vendor.speaks
+        pace = "tcp" if speaks is None else speaks.pace
+        if pace == "tcp":
+            # The tool turns as fast as the joint, wherever the TCP is.
+            speed = self.path_speed(max(LEAST_SPEED, round(rate * lever, 4)))
+            return speed if speed.reorientation is None else replace(speed, reorientation=rate)
+        if pace == "joint_fraction":
+            share = rate / float(self.robot.limits.velocity[joint])
+            step = (0.0 if speaks is None else speaks.share_step) or 1e-3
+            return Speed(joint_fraction=min(1.0, max(step, round(share / step) * step)))
+        return self._leading(rate)
+
     def _leading(self, rate: float) -> Speed:
         """Of joint moves by the leading joint's speed, rad/s."""
-        limits = self.robot.limits
-        rate = round(min(rate, float(limits.velocity.min())), 4)
-        most = JOINT_SHARE * float(limits.acceleration.min())
+        rate = round(min(rate, float(self.robot.limits.velocity.min())), 4)
+        acceleration = min(_ramp(rate, LEAST_JOINT_ACCELERATION), self._joint_acceleration())
+        return Speed(joint=rate, joint_acceleration=acceleration)
+
+    def _joint_acceleration(self) -> float:
+        """rad/s² that are programmed at most."""
+        most = JOINT_SHARE * float(self.robot.limits.acceleration.min())
         if self.vendor.speaks is not None:
             most = min(most, self.vendor.speaks.most.get("joint_acceleration", most))
-        acceleration = min(_ramp(rate, LEAST_JOINT_ACCELERATION), most)
-        return Speed(joint=rate, joint_acceleration=acceleration)
+        return most
 
     def _check(self, speed: float) -> None:
         speaks: Dialect | None = self.vendor.speaks

@@ -2,9 +2,9 @@
 
 The log is a file as `read_samples` takes it; the JSON names robot, tool, start and
 moves in SI units (``target_pose`` as ``xyz_m`` with ``quat_wxyz`` or ``rotvec``, or
-``target_joints_rad``; ``zone.radius_m`` or ``rule_radius_m``; speeds in ``speed``, see `SPEEDS`,
-or, for URScript, ``params``; ``arc_orientation`` of arcs). `flyby.identification.experiment.record`
-writes them.
+``target_joints_rad``; ``zone.radius_m``, ``rule_radius_m`` or ``contour_fraction``; speeds in
+``speed``, see `SPEEDS`, or, for URScript, ``params``; ``arc_orientation`` of arcs).
+`flyby.identification.experiment.record` writes them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from ...core.program.program import Program
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget
 from ...core.program.tool import FLANGE, Tool
-from ...core.program.zone import FINE, Radius, Zone
+from ...core.program.zone import FINE, ContourFraction, Radius, Zone
 from ...core.robot.model import Robot
 from ...core.spatial.pose import Pose
 from ...core.spatial.rotation import matrix_from_rotation_vector, quaternion_from_matrix
@@ -227,6 +227,8 @@ def _tool(data: Mapping[str, Any]) -> Tool:
 def _zone(entry: Mapping[str, Any]) -> Zone:
     if entry.get("fine", False):
         return FINE
+    if "contour_fraction" in entry:
+        return ContourFraction(float(entry["contour_fraction"]))
     radius = float(entry.get("radius_m", entry.get("rule_radius_m", 0.0)))
     if radius == 0.0:
         return FINE

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from ...core.cell.cell import Cell
 from ...core.display import counted
@@ -14,10 +16,11 @@ from ...identification.experiment.page import LOG_SUFFIX, described, way
 from ...identification.experiment.page import page as make_page
 from ...identification.experiment.picture import draw_experiment
 from ...identification.experiment.plan import Experiment
-from ...identification.experiment.record import record
+from ...identification.experiment.purpose import QUESTIONS
+from ...identification.experiment.record import purpose_data, record
 
-PAGE, PICTURE, RECORD = "README.md", "overview.png", ".json"
-"""The first two are always written."""
+PAGE, PICTURE, PLAN, RECORD = "README.md", "overview.png", "plan.json", ".json"
+"""The first two are always written; the plan if runs are about open questions."""
 COLUMNS = (
     ("", "right"),
     ("run", "left"),
@@ -59,9 +62,36 @@ class DesignedExperiment:
                 found[f"{name}/{source}"] = text.encode()
             told = record(run, made.robot, name + LOG_SUFFIX, made.period)
             found[name + RECORD] = (json.dumps(told, indent=1) + "\n").encode()
+        if made.plan.about:
+            plan = {"robot": made.robot.name, "runs": list(self._purposes())}
+            found[PLAN] = (json.dumps(plan, indent=1) + "\n").encode()
         found[PAGE] = make_page(made, None if self.file is None else self.file.name).encode()
         found[PICTURE] = draw_experiment(self.cell, made)
         return found
+
+    def _purposes(self) -> Iterator[dict[str, Any]]:
+        """What each run is for, in SI units, in the order in which they are driven."""
+        made, clock = self.experiment, 0.0
+        for run in made.runs:
+            clock += run.duration + made.plan.overhead
+            yield {
+                "run": run.candidate.name,
+                "duration_s": run.duration,
+                "over_at_s": clock,
+                **purpose_data(run),
+            }
+
+    def topics(self) -> Iterator[str]:
+        """A line for each open question that runs are about."""
+        made = self.experiment
+        for topic in made.plan.about:
+            runs = [run for run in made.runs if run.topic is topic]
+            if runs:
+                seconds = sum(run.duration + made.plan.overhead for run in runs)
+                yield (
+                    f"{topic}: {counted(runs, 'run')}, {seconds / 60:.0f} min. "
+                    f"{' '.join(QUESTIONS[topic].split())}"
+                )
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -123,6 +123,8 @@ def test_files_are_replaced_only_when_told(folders, flyby: Flyby) -> None:
     ("status", "options", "message"),
     [
         (2, ("--kinds", "splines"), "--kinds splines: lines, joints"),
+        (2, ("--kinds", "rests"), "--kinds rests: lines, joints"),
+        (2, ("--about", "turns"), "--kinds and --about: a topic says"),
         (2, ("--tool", "gun"), "give --cell"),
         (2, ("--angles", "0"), "--angles: 0° does not lie between 0 and 180°"),
         (2, ("--speeds", "100,-5"), "--speeds: -5 mm/s does not lie between 0 and 1e+04 mm/s"),
@@ -145,6 +147,47 @@ def test_what_is_no_use_is_refused(
     result = flyby("experiment", "--robot", "ur/ur5e", "--out", out, *SMALL, *options)
     assert result.exit_code == status and message in " ".join(result.stderr.split())
     assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ("speed", "--about speed: short-legs, turns, postures, reversals, blends"),
+        (" , ", "--about: name at least one of short-legs"),
+    ],
+)
+def test_unknown_questions_name_the_known(
+    flyby: Flyby, tmp_path: Path, asked: str, message: str
+) -> None:
+    out = tmp_path / "runs"
+    result = flyby("experiment", "--robot", "ur/ur5e", "--out", out, "--about", asked)
+    assert result.exit_code == 2 and message in " ".join(result.stderr.split())
+    assert not out.exists()
+
+
+def test_runs_about_questions_come_with_a_plan(flyby: Flyby, tmp_path: Path) -> None:
+    out = tmp_path / "runs"
+    words = ("--about", "postures,reversals", "--postures", 1, "--minutes", 4)
+    result = flyby("experiment", "--robot", "kuka/kr3-r540", "--out", out, *words, "--json")
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    plan = json.loads((out / "plan.json").read_text("utf-8"))
+    names = [run["run"] for run in plan["runs"]]
+    assert names == [run["name"] for run in told["runs"]] and "p1_rest" in names
+    clock = 0.0
+    for run, again in zip(plan["runs"], told["runs"], strict=True):
+        record = json.loads((out / f"{run['run']}.json").read_text("utf-8"))
+        assert run["about"] == again["about"] == record["design"]["about"]
+        assert run["figures"] == record["design"]["figures"] and run["question"].endswith("?")
+        assert run["over_at_s"] == pytest.approx(clock + run["duration_s"] + 60.0)
+        clock = run["over_at_s"]
+        for other in run["instead"]:
+            changed = (abs(other["longer_s"]), other["apart_m"], other["joints_rad"] or 0.0)
+            assert other["if"] and max(changed) > 1e-6
+    rest = next(run for run in plan["runs"] if run["about"] == "postures")
+    assert any("80 %" in other["if"] and other["longer_s"] > 0.05 for other in rest["instead"])
+    text = (out / "README.md").read_text("utf-8")
+    assert "## What the runs are for" in text and "### reversals" in text
 
 
 def test_a_cell_and_a_posture_are_taken(flyby: Flyby, tmp_path: Path) -> None:

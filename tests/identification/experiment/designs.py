@@ -8,7 +8,8 @@ from functools import cache
 from flyby.core.cell.cell import Cell
 from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.experiment.design import design
-from flyby.identification.experiment.plan import Experiment, Kind, Plan
+from flyby.identification.experiment.kinds import Kind
+from flyby.identification.experiment.plan import Experiment, Plan
 
 ROBOTS = ("abb/irb1200-5-090", "kuka/kr30-3", "ur/ur3", "ur/ur10e")
 SMALL = Plan(

@@ -29,8 +29,9 @@ from flyby.core.source.patch.edits import difference
 from flyby.core.spatial.pose import Pose
 from flyby.identification.experiment import postures
 from flyby.identification.experiment.design import _unlabelled, design, main_file
+from flyby.identification.experiment.kinds import Kind
 from flyby.identification.experiment.page import page
-from flyby.identification.experiment.plan import Kind, Plan
+from flyby.identification.experiment.plan import Plan
 from flyby.identification.experiment.record import record
 from flyby.identification.logs import load_run
 

@@ -16,9 +16,9 @@ from flyby.core.program.tool import FLANGE
 from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.experiment import information
 from flyby.identification.experiment.information import SCATTER, Informer, nats
+from flyby.identification.experiment.kinds import Kind
 from flyby.identification.experiment.plan import (
     CandidateRun,
-    Kind,
     Plan,
     PlannedCorner,
     usual_radii,
