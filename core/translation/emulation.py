@@ -12,8 +12,10 @@ from ..errors import MotionError
 from ..motion.emulator.controller import Controller
 from ..motion.geometry.pieces import Sampling
 from ..motion.model.motion_model import MotionModel
+from ..motion.model.rules import Overlap
 from ..motion.path.building import build_path
 from ..motion.path.path import OverlapError, Path, Route
+from ..motion.path.programmed_speeds import with_programmed
 from ..motion.path.route import RouteFinder
 from ..motion.timing.timing import Timing
 from ..program.program import Program
@@ -68,6 +70,20 @@ class Party:
             raise
         except MotionError as error:
             raise placed(error, program) from error
+
+    def repaced(self, path: Path, program: Program) -> Path:
+        """The path of a program that has other speeds now, where corners depend on them: blends of
+        joint moves that are planned in time (`motion.geometry.timed_blends`).
+
+        Raises:
+            MotionError: a stretch that the arm cannot follow.
+        """
+        if self.model.joint.kind != "quintic":
+            return path
+        # While speeds are sought blends that overlap shrink: none may leave a waypoint out.
+        overlap = Overlap.SHRINK if self.model.overlap is Overlap.SKIP else self.model.overlap
+        model = replace(self.model, overlap=overlap)
+        return self.path(with_programmed(path.route, program), program, model)
 
     def timing(self, program: Program, path: Path) -> Timing:
         """When the robot is where.

@@ -113,9 +113,11 @@ class Pacer:
             else:
                 stated = self._line(i, self._path_acceleration(path, segment.get(i)))
             moves[i] = replace(move, speed=stated)
-        paced = self._in_time(program.with_moves(tuple(moves)), path, segment)
-        self._tell_slower(paced, path)
-        return paced
+        return self._in_time(program.with_moves(tuple(moves)), path, segment)
+
+    def again(self, program: Program, path: Path) -> Program:
+        """A program that was paced, on a path that has changed since."""
+        return self._in_time(program, path, {move: k for k, move in enumerate(path.route.moves)})
 
     # ------------------------------------------------------------------- lines and arcs
 
@@ -319,6 +321,7 @@ class Pacer:
         before: tuple[FloatArray, FloatArray] | None = None
         for _ in range(_ROUNDS):
             program = self._at(program, sought, 1.0 / slow)
+            path = self._target.repaced(path, program)
             spent = self._target.timing(program, path).settled_durations()[rows]
             error = wanted - spent
             if (np.abs(error) < _MET * wanted).all():
@@ -386,8 +389,8 @@ class Pacer:
             moves[i] = replace(moves[i], speed=_with(moves[i].speed, name, number))
         return program.with_moves(tuple(moves))
 
-    def _tell_slower(self, program: Program, path: Path) -> None:
-        """Losses of moves that the new robot cannot drive as fast."""
+    def tell_slower(self, program: Program, path: Path) -> None:
+        """Losses of moves that the new robot cannot drive as fast; the path is the program's."""
         spent = self._target.timing(program, path).settled_durations()
         for k, i in enumerate(path.route.moves):
             if i not in self._old.segment:

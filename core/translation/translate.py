@@ -131,9 +131,13 @@ class _Translator:
         wanted = self._wanted(new_route, path)
         made, new_path = self._zoned(said, new_route, wanted)
         if self.dialect is not None:
-            made = Pacer(driven, self.target, self.dialect, losses).pace(made, new_path)
+            pacer = Pacer(driven, self.target, self.dialect, losses)
+            made = pacer.pace(made, new_path)
             if self.target.model.centripetal is not None:  # how corners are cut depends on speeds
                 made, new_path = self._zoned(made, self.target.route(made, start), wanted)
+                made = pacer.again(made, new_path)
+                new_path = self.target.repaced(new_path, made)
+            pacer.tell_slower(made, new_path)
         self._tell_zones(new_path, wanted, losses)
         return Translation(
             replace(

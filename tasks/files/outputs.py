@@ -78,10 +78,10 @@ def check_folder(option: str, folder: Path | None) -> None:
     if folder is None:
         return
     with _asked(option, folder):
-        if folder.exists() and not folder.is_dir():
-            raise InputError(f"{option} {folder}: is no folder; name another")
-        if not folder.absolute().parent.is_dir():
-            raise InputError(f"{option} {folder}: there is no folder {folder.parent}")
+        there = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+        if not there.is_dir():
+            which = "" if there == folder else f"{there} "
+            raise InputError(f"{option} {folder}: {which}is no folder; name another")
 
 
 def write_in(
@@ -91,7 +91,7 @@ def write_in(
     inputs: Iterable[Path],
     replace_existing: bool,
 ) -> list[Path]:
-    """Write files into a folder, all or none; it is made if it is missing.
+    """Write files into a folder, all or none; it is made, with those round it, if it is missing.
 
     Args:
         option: that names the folder.

@@ -63,7 +63,7 @@ def test_a_folder_that_cannot_be_one_is_refused_before_work_begins(
     flyby: Flyby, square: Path, tmp_path: Path
 ) -> None:
     words = ("translate", square, "--robot", "kuka/kr30-3", "--from", ROBOT, "--out")
-    for out in (square, tmp_path / "no" / "where"):
+    for out in (square, square / "a" / "b"):
         result = flyby(*words, out)
         assert result.exit_code == 1
         assert "folder" in result.stderr

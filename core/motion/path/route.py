@@ -5,7 +5,6 @@ Where a move of the TCP arrives is found by walking down its nominal path.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
@@ -42,6 +41,7 @@ from ..model.blend import PARABOLA
 from ..model.rules import ArcTurn, LineTurn
 from .configurations import ConfigurationFinder, Label, located
 from .path import Route
+from .programmed_speeds import programmed
 from .route_checks import check_near, half_turns, is_arc
 from .tcp_samples import CONVERGED, States
 from .tcp_walk import sample_tcp
@@ -290,7 +290,6 @@ class RouteFinder:
                     legs.straight.append(i)
         pairs = np.stack([np.arange(count), np.arange(count) + 1], -1)
         prescribed = known[:, self._targets.prescribed]
-        speeds = [moves[i].speed for i in stage.moves]
         return Ends(
             kind,
             np.zeros((count, 2, size)),
@@ -301,11 +300,7 @@ class RouteFinder:
             via_rotation,
             follows,
             (kind == LINE_SEGMENT) & (self._line_turn is LineTurn.SWIVEL),
-            _programmed([v.tcp for v in speeds]),
-            _programmed([v.tcp_acceleration for v in speeds]),
-            # A time takes the place of speeds.
-            _programmed([None if v.duration is not None else v.joint for v in speeds]),
-            _programmed([None if v.duration is not None else v.joint_acceleration for v in speeds]),
+            **programmed([moves[i].speed for i in stage.moves]),
         )
 
     def _joint_end(self, move: Move, i: int, q: FloatArray) -> FloatArray:
@@ -430,11 +425,6 @@ def _waypoints(program: Program) -> dict[int, _Waypoint]:
             index += 1
             found[index] = _Waypoint(statement.zone)
     return found
-
-
-def _programmed(values: Sequence[float | None]) -> FloatArray:
-    """(M,), inf where none is."""
-    return np.array([math.inf if value is None else value for value in values])
 
 
 def _joined(parts: Sequence[Ends]) -> Ends:
