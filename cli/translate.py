@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -10,18 +11,22 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.display import counted
-from ..core.errors import OptionError
+from ..core.errors import FlybyError, InputError, OptionError
+from ..core.program.entry_point import ALL
 from ..tasks.catalogue import registry
-from ..tasks.files.outputs import check_folder, write_in
+from ..tasks.files.outputs import check_folder, encoded, write_in
 from ..tasks.files.source_places import note_json, short_place
-from ..tasks.read import TextOptions, read_with
+from ..tasks.read import SourceOptions, TextOptions, read_with
 from ..tasks.setup import setup_of_program
 from ..tasks.translate import TranslateOptions, target_of, translate_with
-from .console import print_json, print_rich, print_table, progress
+from ..tasks.translate import written as written_of
+from .console import fail, print_json, print_rich, print_table, progress
 from .parameters import AsJson, Force, Out, ProgramFile, with_options
 
 if TYPE_CHECKING:
     from ..core.errors import Note
+    from ..core.language import Sources
+    from ..core.program.program import Program
     from ..core.robot.model import Robot
     from ..core.translation.translate import Translation
 
@@ -53,23 +58,78 @@ def translate(
             f"of {vendor}) or --cell: corners and times are taken from its motion"
         )
     source = text.for_robot(old, cell)
+    if source.entry == ALL:
+        if json:
+            raise OptionError("--json is of one program: name one entry, not all")
+        _each(program, source, options, out, force)
+        return
     with progress("reading the program") as say:
         after = target_of(options)
-        read = read_with(program, source)
-        made = translate_with(read, replace(options, report=say))
-        sources = after.vendor.write(made.program, after.robot)
-        written: list[Path] = []
-        if out is not None:
-            files = {Path(name): code.encode() for name, code in sources.items()}
-            written = write_in("--out", out, files, [program, *source.inputs()], force)
+        read, made, sources = _translated(program, source, replace(options, report=say))
+        written = _put(out, encoded(sources), [program, *source.inputs()], force)
     if json:
         print_json(_json(made, setup_of_program(read).robot, after.robot, written))
     else:
         _tell(program, made, after.robot, list(sources), written)
 
 
+def _translated(
+    program: Path, source: SourceOptions, options: TranslateOptions
+) -> tuple[Program, Translation, Sources]:
+    """A program, what has become of it, and the files of that."""
+    read = read_with(program, source)
+    made = translate_with(read, options)
+    options.say("driving what is written")
+    return read, made, written_of(made)
+
+
+def _each(
+    program: Path,
+    source: SourceOptions,
+    options: TranslateOptions,
+    out: Path | None,
+    force: bool,
+) -> None:
+    """Translate every routine that a program may begin with, each into a folder of its name."""
+    with progress("reading the program"):
+        after = target_of(options)
+        entries = [entry for entry in read_with(program, source).entries if entry.moves]
+    if not entries:
+        raise InputError(f"{program}: no routine in it moves the robot")
+    files: dict[Path, bytes] = {}
+    failed = False
+    for entry in entries:
+        print_rich(f"\n{entry}")
+        if entry.parameters:
+            print_rich(f"takes arguments: --entry '{entry.name}({', '.join(entry.parameters)})'")
+            continue
+        one = replace(source, entry=entry.name)
+        try:
+            with progress(f"translating {entry.name}") as say:
+                _, made, sources = _translated(program, one, replace(options, report=say))
+        except FlybyError as error:
+            fail(str(error))
+            failed = True
+            continue
+        files |= {Path(entry.name) / name: data for name, data in encoded(sources).items()}
+        _tell(program, made, after.robot, list(sources), None)
+    for path in _put(out, files, [program, *source.inputs()], force):
+        print_rich(f"wrote {path}")
+    if out is None:
+        print_rich("nothing was written: --out names a folder, in which each gets one of its own")
+    if failed:
+        raise typer.Exit(1)
+
+
+def _put(
+    out: Path | None, files: Mapping[Path, bytes], inputs: Sequence[Path], force: bool
+) -> list[Path]:
+    """Write files, if there is a place for them."""
+    return [] if out is None else write_in("--out", out, files, inputs, force)
+
+
 def _tell(
-    program: Path, made: Translation, robot: Robot, names: list[str], written: list[Path]
+    program: Path, made: Translation, robot: Robot, names: list[str], written: list[Path] | None
 ) -> None:
     alike: dict[str, list[Note]] = {}
     for note in made.losses:
@@ -81,10 +141,28 @@ def _tell(
     count = len(made.losses)
     lost = "everything was carried over" if not count else f"{count} could not be carried over"
     print_rich(f"{counted(made.program.moves, 'move')} for {robot.name}: {lost}")
-    for path in written:
+    if made.unmapped:
+        print_rich(_signals(made))
+    for path in written or ():
         print_rich(f"wrote {path}")
-    if not written:
+    if written == []:
         print_rich(f"nothing was written: --out names a folder for {', '.join(names)}")
+
+
+def _signals(made: Translation) -> str:
+    """What is to be written into the answers so that signals are carried over."""
+    return "\n".join(
+        [
+            "signals that are not carried over, as nobody says what they are on the new robot; the "
+            "lines for it, to be filled in, of a file that --io takes:",
+            "[signals]",
+            *(f"{_quoted(name)} = {_quoted(other)}" for name, other in made.unmapped.items()),
+        ]
+    )
+
+
+def _quoted(name: str) -> str:
+    return f'"{name}"'
 
 
 def _lines(program: Path, notes: list[Note]) -> str:
@@ -106,5 +184,6 @@ def _json(made: Translation, before: Robot, after: Robot, written: list[Path]) -
         "to": after.name,
         "moves": len(made.program.moves),
         "losses": [note_json(note) for note in made.losses],
+        "unmapped_signals": dict(made.unmapped),
         "files": [str(path) for path in written],
     }

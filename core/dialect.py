@@ -18,7 +18,9 @@ from .program.speed import Speed
 from .program.zone import Radius, Zone
 
 if TYPE_CHECKING:
+    from .program.event import Event
     from .program.move import Move
+    from .program.signal import SignalAction
 
 _VISIBLE = re.compile(r"[^\r\n]")
 _LISTED = re.compile(r"(?:\[[^\]]*\]|\{[^}]*\}|[^,\[{])+")
@@ -92,11 +94,52 @@ class OutputWords:
         switch: text of the action that turns a digital output, by its name, on or off.
         level: text of the action that sets an analogue output, by its name, to a value.
         longest_lead: s that an event's time may be at most.
+        from_start: whether distances may count from a move's start.
+        along_joint: whether places on the way of joint moves may have distances.
     """
 
     switch: Callable[[str, bool], str]
     level: Callable[[str, float], str]
     longest_lead: float
+    from_start: bool = True
+    along_joint: bool = True
+
+    def takes(self, event: Event, move: Move) -> bool:
+        """Whether an event has a place that there are words for."""
+        from .program.event import EventAnchor
+        from .program.move import MoveJ
+
+        if abs(event.time) > self.longest_lead:
+            return False
+        if event.distance == 0:
+            return True
+        here = self.from_start or event.anchor is EventAnchor.END
+        return here and (self.along_joint or not isinstance(move, MoveJ))
+
+
+def _as_it_is(text: str) -> str:
+    return text
+
+
+@dataclass(frozen=True)
+class SignalWords:
+    """How a language sets outputs and waits for signals, in statements of their own.
+
+    Args:
+        read: what a statement does with signals; None if that is not known, or nothing.
+        said: the statement of an action; None if there is none.
+        spelt: a signal as the language spells it; None for what is no name of one.
+        example: what a signal of such an action is called, with ``?`` for what the user fills in.
+        event: the statement that the text of an event on the way is short for.
+        stops: whether the robot stops where an output is set.
+    """
+
+    read: Callable[[str], SignalAction | None]
+    said: Callable[[SignalAction], str | None]
+    spelt: Callable[[str], str | None]
+    example: Callable[[SignalAction], str]
+    event: Callable[[str], str] = _as_it_is
+    stops: bool = False
 
 
 @dataclass(frozen=True)
@@ -279,6 +322,7 @@ class Dialect:
         arcs: which arcs there are.
         wording: how its texts are searched; None if they are not.
         outputs: how outputs are set on the way of a move; None where there is nothing of the kind.
+        signals: how outputs are set and signals are waited for; None if that is not known.
     """
 
     joint: MoveWords
@@ -303,6 +347,7 @@ class Dialect:
     arcs: ArcRules = ArcRules()
     wording: Wording | None = None
     outputs: OutputWords | None = None
+    signals: SignalWords | None = None
 
     def __post_init__(self) -> None:
         if self.pace not in PACES or self.pace not in self.joint.speeds:

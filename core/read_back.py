@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .errors import FlybyError, InputError, MotionError
+from .program.folding import usable
 from .program.move import Move, Statement, Wait
 from .program.program import Program
 from .program.target import JointTarget, PoseTarget
@@ -64,7 +65,8 @@ def check_alone(
     reading = program.reading
     answers = reading.options.answers if isinstance(reading, Reading) else Answers()
     # What was decided at lines of the old files means nothing in the new ones.
-    answers = replace(answers, branches={}, passes={})
+    passes = max((len(s.passes) for s in usable(program) if s.endless), default=1)
+    answers = replace(answers, branches={}, passes={}, cycles=passes)
     options = ReadOptions(None, robot, answers, _UNLIMITED)
     with tempfile.TemporaryDirectory() as folder:
         for name, text in sources.items():

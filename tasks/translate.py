@@ -8,12 +8,21 @@ from typing import TYPE_CHECKING
 from ..core.display import counted
 from ..core.door import given
 from ..core.errors import InputError
-from .options.entries import REQUIRED, TaskOptions, value
+from .options.entries import REQUIRED, TaskOptions, switch, value
 from .options.keywords import by_keywords
 from .options.texts import pose
-from .setup import RobotOptions, Setup, controller_of, with_setup, writable_robot
+from .setup import (
+    RobotOptions,
+    Setup,
+    controller_of,
+    setup_of_program,
+    start_of,
+    with_setup,
+    writable_robot,
+)
 
 if TYPE_CHECKING:
+    from ..core.language import Sources
     from ..core.program.program import Program
     from ..core.spatial.pose import Pose
     from ..core.translation.translate import Translation
@@ -30,6 +39,10 @@ class TranslateOptions(TaskOptions):
         "The new robot's base in the old one's world: x,y,z,rx,ry,rz in mm and degrees. "
         "Without it both stand at the same place.",
         pose,
+    )
+    flat: bool = switch(
+        "All moves one after the other, each with a speed and a zone of its own; without it loops "
+        "and routines are kept whose moves are the same every time."
     )
 
 
@@ -59,15 +72,57 @@ def translate_with(program: Program, options: TranslateOptions) -> Translation:
     program, before = with_setup(program, RobotOptions())
     after = target_of(options)
     controller_of(program, before)  # refuses faults
+    if not options.flat:
+        program = _with_second_cycle(program)
     options.say(f"translating {counted(program.moves, 'move')}")
-    return carried(program, before, after, options.base)
+    return carried(program, before, after, options.base, keep=not options.flat)
 
 
 translate = by_keywords(translate_with, TranslateOptions)
 
 
+def _with_second_cycle(program: Program) -> Program:
+    """A program that runs in a loop without an end, read for two passes if both are alike.
+
+    How the robot comes from the end of a pass to its beginning is then known.
+    """
+    from ..core.program.folding import alike, usable
+    from ..core.source.reading import Reading
+
+    reading = program.reading
+    once = any(s.endless and len(s.passes) == 1 for s in usable(program))
+    if not once or not isinstance(reading, Reading) or reading.again({}) != program:
+        return program
+    answers = replace(reading.options.answers, cycles=2)
+    twice = replace(reading, options=replace(reading.options, answers=answers)).again({})
+    loops = [s for s in usable(twice) if s.endless and len(s.passes) == 2]
+    if not loops or not all(alike(twice.statements, s) for s in loops):
+        return program
+    return replace(twice, setup=program.setup)
+
+
+def written(made: Translation) -> Sources:
+    """The source files of a translation, which have been read again and driven.
+
+    Raises:
+        FlybyError: the language cannot say what the program holds.
+        MotionError: the new robot cannot drive what is written; the line of the old program is
+            named.
+    """
+    from ..core.translation.hand_out import check_driven
+
+    program, setup = made.program, setup_of_program(made.program)
+    sources = setup.vendor.write(program, setup.robot, {"structure": made.structure})
+    check_driven(made, sources, setup.vendor, setup.robot)
+    return sources
+
+
 def carried(
-    program: Program, before: Setup, after: Setup, base: str | Pose | None = None
+    program: Program,
+    before: Setup,
+    after: Setup,
+    base: str | Pose | None = None,
+    keep: bool = False,
 ) -> Translation:
     """The program for another robot.
 
@@ -75,17 +130,25 @@ def carried(
         program: for the robot that there is.
         before, after: the robots.
         base: the new robot's world in the old one's; None if it stands where the old one does.
+        keep: whether loops and routines are kept.
 
     Raises:
         MotionError: the translation must refuse; the message names move and line.
     """
+    from ..core.source.reading import Reading
+    from ..core.translation.signals import SignalMap
     from ..core.translation.translate import translate
 
+    reading = program.reading
+    answers = reading.options.answers.signals if isinstance(reading, Reading) else {}
     place = before.robot.base if base is None else pose(base, "base")
     made = translate(
         program,
         (before.vendor, before.robot),
         (after.vendor, after.robot),
         place,
+        keep,
+        SignalMap.of(answers),
+        start_of(program),
     )
     return replace(made, program=replace(made.program, setup=after))

@@ -18,6 +18,7 @@ from .files.texts import OWN
 from .options.entries import TaskOptions, choice, switch, value
 from .options.keywords import by_keywords
 from .setup import RobotOptions, Setup, with_setup
+from .translate import written
 
 if TYPE_CHECKING:
     from ..core.language import Sources
@@ -63,8 +64,9 @@ def write_with(
     and a solution's text is the one that its proof is of.
 
     Args:
-        what: a program or a translation, written anew with all its moves in one routine, or what
-            another task has made: a `Solution`, a recording, an experiment, a painting.
+        what: a program, written anew with all its moves in one routine, a translation, with the
+            loops and routines that it keeps, or what another task has made: a `Solution`, a
+            recording, an experiment, a painting.
         out: a folder, which is made if it is missing, or of a program the file's name, beside
             which further ones are put if the language takes several.
 
@@ -79,7 +81,10 @@ def write_with(
     from ..core.translation.translate import Translation
 
     out, inputs = Path(out), _read(what)
+    chosen = {} if options.opaque is None else {"opaque": options.opaque}
     if isinstance(what, Translation):
+        written(what)  # refuses what the new robot cannot drive
+        chosen["structure"] = what.structure
         what = what.program
     if not isinstance(what, Program):
         if not isinstance(what, WithFiles):
@@ -94,7 +99,6 @@ def write_with(
         return tuple(write_in(spelt("out"), out, files, inputs, options.force))
     program, setup = with_setup(what, options)
     folder = out.suffix.lower() not in setup.vendor.suffixes
-    chosen = {} if options.opaque is None else {"opaque": options.opaque}
     files = sources_by_path(program, setup, out, chosen, folder=folder, option=spelt("out"))
     made = out if folder else None
     check_outputs({spelt("out"): files}, inputs, options.force, made)

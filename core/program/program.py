@@ -14,6 +14,7 @@ from .cycle import Cycle
 from .entry_point import EntryPoint
 from .move import Move, MoveC, MoveJ, MoveL, Statement
 from .question import Question
+from .section import Section
 from .target import JointTarget
 from .zone import zone_shown
 
@@ -66,6 +67,8 @@ class Program:
         calls: of its own routines, in their order; not part of the value.
         cycle: the last pass of the loop that production runs in, if there is one; not part of the
             value.
+        sections: which statements come from which routine or loop of the source, in the order in
+            which these begin; not part of the value.
         reading: the source files, for the patcher; None if it was not read; not part of the value.
         setup: the robot that it was read for, for tasks that name no other; not part
             of the value.
@@ -79,6 +82,7 @@ class Program:
     entries: tuple[EntryPoint, ...] = field(default=(), compare=False, repr=False)
     calls: tuple[Call, ...] = field(default=(), compare=False, repr=False)
     cycle: Cycle | None = field(default=None, compare=False, repr=False)
+    sections: tuple[Section, ...] = field(default=(), compare=False, repr=False)
     reading: ReadFrom | None = field(default=None, compare=False, repr=False)
     setup: DrivenBy | None = field(default=None, compare=False, repr=False)
 
@@ -133,8 +137,10 @@ class Program:
             if count > first or (count == first and not moves):
                 kept.append(statement)
         if first == 0:
-            return replace(self, statements=tuple(kept))
-        return replace(self, statements=tuple(kept), start=None, notes=(), calls=())
+            return replace(self, statements=tuple(kept), sections=())
+        return replace(
+            self, statements=tuple(kept), start=None, notes=(), calls=(), sections=()
+        )
 
     def with_moves(self, moves: tuple[Move, ...]) -> Program:
         """The same program with each move replaced by the one at its index in ``moves``.

@@ -43,6 +43,18 @@ class Party:
         turns = self.model.line_turn, self.model.arc_turn
         return RouteFinder(self.robot, self.vendor.label, *turns, arcs, self.vendor.nearest)
 
+    def start(self, program: Program) -> JointTarget | None:
+        """Where the emulator takes the robot to stand at first; None for where the program says.
+
+        Raises:
+            MotionError: the program cannot be driven from anywhere.
+        """
+        if program.start is not None:
+            return None
+        q = Controller(self.vendor, self.robot).plan(program).route.ends.q[0, 0].tolist()
+        arm = self.robot.arm_size
+        return JointTarget(tuple(q[:arm]), tuple(q[arm:]))
+
     def route(self, program: Program, start: JointTarget | None = None) -> Route:
         """The route, on which the speed may change at every waypoint.
 

@@ -18,6 +18,7 @@ class Losses:
     def __init__(self, program: Program) -> None:
         self._program = program
         self._told: dict[tuple[object, ...], tuple[Note, float]] = {}
+        self._unmapped: dict[str, str] = {}
 
     def at(self, move: int, message: str, kind: str | None = None, size: float = 0.0) -> None:
         """Something that move ``move`` of the source loses.
@@ -33,6 +34,18 @@ class Losses:
     def statement(self, span: Span | None, message: str) -> None:
         """Something that a statement that is no move loses."""
         self._add((message, span), Note(message, None, span), 0.0)
+
+    def unmapped(self, name: str, example: str) -> None:
+        """A signal of which nobody says what it is called on the new robot.
+
+        Args:
+            example: what it may be called there.
+        """
+        self._unmapped.setdefault(name, example)
+
+    def signals_to_map(self) -> dict[str, str]:
+        """All such signals, with examples, in the order of the program."""
+        return dict(self._unmapped)
 
     def sorted(self) -> tuple[Note, ...]:
         """In the order of the program's text; what a line loses every time is listed once."""

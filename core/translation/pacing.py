@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..dialect import Dialect, MoveWords
 from ..motion.path.path import Path
 from ..program.move import Move, MoveJ
@@ -44,6 +44,7 @@ _SHOWN = {
     "reorientation_acceleration": ("acceleration of reorientation", "°/s²", 180.0 / math.pi),
 }
 """What bounded numbers are called, their unit, and how many of it an SI unit is."""
+_NUMBERS = tuple(part.name for part in fields(Speed) if part.name != "name")
 _SLOWEST = 1e-4
 """m/s, rad/s or share; no move is made slower."""
 _SIGNIFICANT = 4
@@ -85,7 +86,12 @@ class Pacer:
     """States the speeds of a program for another language."""
 
     def __init__(
-        self, old: EmulatedProgram, target: Party, dialect: Dialect, losses: LossesOfPart
+        self,
+        old: EmulatedProgram,
+        target: Party,
+        dialect: Dialect,
+        losses: LossesOfPart,
+        tied: Sequence[Sequence[int]] = (),
     ) -> None:
         self._old = old
         self._target = target
@@ -94,6 +100,7 @@ class Pacer:
         spoken = old.party.vendor.speaks
         self._same_pace = spoken is not None and spoken.pace == dialect.pace
         self._own = spoken is not None and spoken is dialect
+        self._tied = {i: tuple(moves) for moves in tied for i in moves}
         self._sought: dict[int, str] = {}
         self._held: dict[int, str] = {}
 
@@ -113,7 +120,22 @@ class Pacer:
             else:
                 stated = self._line(i, self._path_acceleration(path, segment.get(i)))
             moves[i] = replace(move, speed=stated)
+        self._tie(moves)
         return self._in_time(program.with_moves(tuple(moves)), path, segment)
+
+    def _tie(self, moves: list[Move]) -> None:
+        """Give moves that are one the least of their numbers."""
+        for tied in dict.fromkeys(self._tied.values()):
+            speeds = [moves[i].speed for i in tied]
+            sought = {self._sought[i] for i in tied if i in self._sought}
+            known = [{n for n in _NUMBERS if getattr(s, n) is not None} for s in speeds]
+            if len(sought) > 1 or any(names != known[0] for names in known):
+                for i in tied:  # they cannot be one: each has its own
+                    del self._tied[i]
+                continue
+            least = {name: min(getattr(s, name) for s in speeds) for name in known[0]}
+            for i in tied:
+                moves[i] = replace(moves[i], speed=replace(moves[i].speed, **least))
 
     def again(self, program: Program, path: Path) -> Program:
         """A program that was paced, on a path that has changed since."""
@@ -302,8 +324,9 @@ class Pacer:
             if not sought:
                 break
             program, late = self._matched(program, path, segment, sought)
-            sought = [i for i in late if self._may_accelerate(program.moves[i])]
-            program = self._accelerated(program, {i: late[i] for i in sought})
+            slow = [i for i in late if self._may_accelerate(program.moves[i])]
+            program = self._accelerated(program, {i: late[i] for i in slow})
+            sought = [k for i in slow for k in self._tied.get(i, (i,)) if k in segment]
         return program
 
     def _matched(
@@ -314,15 +337,21 @@ class Pacer:
         Times are nearly linear in the inverse of a speed: secant steps in it, all moves at once.
         """
         rows = [segment[i] for i in sought]
-        wanted = self._old.peaks.duration[[self._old.segment[i] for i in sought]]
-        value = np.array([getattr(program.moves[i].speed, self._sought[i]) for i in sought])
-        most = np.array([self._most(path, i, segment[i]) for i in sought])
+        # Moves that are one take as long as before all together.
+        leads = [self._tied.get(i, (i,))[0] for i in sought]
+        first, group = np.unique(leads, return_index=True, return_inverse=True)[1:]
+        one = [sought[k] for k in first]
+        old = self._old.peaks.duration[[self._old.segment[i] for i in sought]]
+        wanted = _sums(group, old)
+        value = np.array([getattr(program.moves[i].speed, self._sought[i]) for i in one])
+        most = np.full(len(one), np.inf)
+        np.minimum.at(most, group, [self._most(path, i, segment[i]) for i in sought])
         slow = 1.0 / np.minimum(value, most)
         before: tuple[FloatArray, FloatArray] | None = None
         for _ in range(_ROUNDS):
-            program = self._at(program, sought, 1.0 / slow)
+            program = self._at(program, one, 1.0 / slow)
             path = self._target.repaced(path, program)
-            spent = self._target.timing(program, path).settled_durations()[rows]
+            spent = _sums(group, self._target.timing(program, path).settled_durations()[rows])
             error = wanted - spent
             if (np.abs(error) < _MET * wanted).all():
                 break
@@ -334,8 +363,8 @@ class Pacer:
             slow = np.clip(slow + step, np.maximum(1.0 / most, 0.2 * slow), 5.0 * slow)
         # Late at the greatest speed: not for want of speed, nor for its rounding.
         late = (spent > (1 + _TOLD) * wanted) & (slow * most < 1.0 + _TOLD)
-        factors = {sought[int(k)]: float(spent[k] / wanted[k]) for k in np.flatnonzero(late)}
-        return self._at(program, sought, 1.0 / slow), factors
+        factors = {one[int(k)]: float(spent[k] / wanted[k]) for k in np.flatnonzero(late)}
+        return self._at(program, one, 1.0 / slow), factors
 
     def _may_accelerate(self, move: Move) -> bool:
         """Whether a move's acceleration is below what the new robot can do."""
@@ -366,7 +395,8 @@ class Pacer:
             most = self._most_acceleration
             share = name == "joint_acceleration_fraction"
             number = self._stepped(min(1.0, value)) if share else _rounded(min(most, value))
-            moves[i] = replace(moves[i], speed=_with(moves[i].speed, name, number))
+            for k in self._tied.get(i, (i,)):
+                moves[k] = replace(moves[k], speed=_with(moves[k].speed, name, number))
         return program.with_moves(tuple(moves))
 
     def _most(self, path: Path, i: int, k: int) -> float:
@@ -386,17 +416,42 @@ class Pacer:
             name = self._sought[i]
             share = name == "joint_fraction"
             number = self._stepped(value) if share else _rounded(value)
-            moves[i] = replace(moves[i], speed=_with(moves[i].speed, name, number))
+            for k in self._tied.get(i, (i,)):
+                moves[k] = replace(moves[k], speed=_with(moves[k].speed, name, number))
         return program.with_moves(tuple(moves))
+
+    def _in_time_together(self, moves: Sequence[int], spent: FloatArray) -> set[int]:
+        """The moves that are one with others and take no longer than before together.
+
+        Args:
+            moves: that are driven.
+            spent: s, on each.
+        """
+        sums: dict[int, FloatArray] = {}
+        for k, i in enumerate(moves):
+            if i in self._tied and i in self._sought and i in self._old.segment:
+                times = np.array([spent[k], self._old.peaks.duration[self._old.segment[i]]])
+                lead = self._tied[i][0]
+                sums[lead] = sums.get(lead, np.zeros(2)) + times
+        return {i for i in moves if i in self._tied and _kept(sums.get(self._tied[i][0]))}
 
     def tell_slower(self, program: Program, path: Path) -> None:
         """Losses of moves that the new robot cannot drive as fast; the path is the program's."""
         spent = self._target.timing(program, path).settled_durations()
+        together = self._in_time_together(path.route.moves, spent)
         for k, i in enumerate(path.route.moves):
             if i not in self._old.segment:
                 continue
             wanted = float(self._old.peaks.duration[self._old.segment[i]])
-            if spent[k] > wanted * (1 + _TOLD) and spent[k] > wanted + _SHORT:
+            if i in together and abs(spent[k] - wanted) > max(_TOLD * wanted, _SHORT):
+                self._losses.at(
+                    i,
+                    f"takes {spent[k]:.3f} s instead of {wanted:.3f} s: one speed serves all that "
+                    "this line drives, which take as long as before together",
+                    "time",
+                    abs(float(spent[k]) - wanted),
+                )
+            elif spent[k] > wanted * (1 + _TOLD) and spent[k] > wanted + _SHORT:
                 self._losses.at(
                     i,
                     f"takes {spent[k]:.3f} s instead of {wanted:.3f} s: the limits of "
@@ -404,6 +459,17 @@ class Pacer:
                     "time",
                     float(spent[k]) - wanted,
                 )
+
+
+def _sums(group: IntArray, values: FloatArray) -> FloatArray:
+    """The sum of the values of each group."""
+    sums: FloatArray = np.bincount(group, values).astype(np.float64)
+    return sums
+
+
+def _kept(times: FloatArray | None) -> bool:
+    """Whether the new time is as long as the old one, or less."""
+    return times is not None and bool(times[0] <= times[1] * (1 + _TOLD))
 
 
 def _said(speed: Speed, words: MoveWords) -> dict[str, Any]:

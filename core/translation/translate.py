@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..dialect import Dialect
 from ..display import counted, in_line
-from ..errors import Note, Span
+from ..errors import Note
 from ..motion.emulator.controller import Controller
 from ..motion.geometry.segments import make_segments
 from ..motion.model.rules import Overlap
 from ..motion.path.path import Path, Route
 from ..notebook import PictureCurve, page, picture, table
-from ..program.event import Event
-from ..program.move import ArcOrientation, MoveC, MoveJ, MoveL, Opaque, Statement, Wait
+from ..program.folding import alike, usable, variants, with_one_cycle
+from ..program.move import ArcOrientation, MoveC, MoveJ, MoveL, Statement
 from ..program.program import Program
+from ..program.section import moved
 from ..program.target import JointTarget
 from ..program.zone import FINE, Angle, Radius, SpeedFraction, Zone
 from ..robot.model import Robot
+from ..source.write.options import StructureStyle
 from ..spatial.pose import IDENTITY, Pose
 from ..vendor import Vendor
 from .corners import EmulatedCorner, corners_of, fit_zones
@@ -29,7 +31,10 @@ from .frames import Frames
 from .half_turns import decided
 from .losses import Losses, LossesOfPart
 from .pacing import EmulatedProgram, Pacer
+from .rewording import Rewording
+from .signals import SignalMap
 from .targets import Placer
+from .ties import Ties
 
 LOSSES = (("line", "left"), ("what could not be carried over", "left"))
 """Columns of a table of losses."""
@@ -39,6 +44,7 @@ _CUT_SMALL = 5e-5
 """m of difference between cuts that is not told."""
 _TURN_TOLD = 1e-2
 """rad of turn beside a waypoint from which on the zone of reorientation matters."""
+_NO_FURTHER = "zones reach no further here"
 _RIGID = 1e-6
 """rad by which a tool that follows an arc rigidly may miss the orientation of its end."""
 _RIGID_TOLD = 1e-3
@@ -54,12 +60,22 @@ class Translation:
         losses: what could not be carried over, in the order of the source; moves and lines are
             the source's.
         start: where the new robot stands at first.
+        unmapped: signals of which nobody says what they are called on the new robot, each with an
+            example of such a name.
+        keep: whether it has its loops and routines.
     """
 
     program: Program
     losses: tuple[Note, ...]
     start: JointTarget
     original: Program = field(repr=False)
+    unmapped: Mapping[str, str] = field(default_factory=dict)
+    keep: bool = False
+
+    @property
+    def structure(self) -> str:
+        """The option ``structure`` with which it is written."""
+        return StructureStyle.KEEP if self.keep else StructureStyle.FLAT
 
     def __repr__(self) -> str:
         lost = counted(self.losses, "loss", "losses")
@@ -81,6 +97,9 @@ def translate(
     source: tuple[Vendor, Robot],
     target: tuple[Vendor, Robot],
     base: Pose = IDENTITY,
+    keep: bool = False,
+    signals: SignalMap | None = None,
+    start: JointTarget | None = None,
 ) -> Translation:
     """A program for another robot, by the rules of ``docs/guides/translation.md``.
 
@@ -88,12 +107,18 @@ def translate(
         program: for the source robot.
         source, target: vendor and robot of either side.
         base: the new robot's world (for a robot of the catalogue: its base) in the old robot's.
+        keep: whether moves of one line have one speed and one zone in all passes and calls that
+            are alike, for a program that is written with its loops and routines.
+        signals: what the old robot's signals are called on the new one.
+        start: where the old robot stands at first; None for the program's own start, else where
+            the emulator takes it to stand.
 
     Raises:
         MotionError: the old robot cannot drive the program, the new one cannot reach a target or
             follow a line, or the new language has no such frames; the message names move and line.
     """
-    return _Translator(program, Party(*source), Party(*target), base).run()
+    sides = Party(*source), Party(*target)
+    return _Translator(program, *sides, base, keep, signals or SignalMap(), start).run()
 
 
 @dataclass
@@ -102,7 +127,12 @@ class _Translator:
     source: Party
     target: Party
     base: Pose
+    keep: bool
+    signals: SignalMap
+    start: JointTarget | None
     losses: Losses = field(init=False)
+    _ties: Ties = field(init=False)
+    _shared: set[int] = field(init=False)
 
     def __post_init__(self) -> None:
         self.losses = Losses(self.source_program)
@@ -115,10 +145,13 @@ class _Translator:
         """The steps, one after the other."""
         drivable, kept = self._drivable()
         losses = self.losses.through(kept)
-        route = self.source.route(drivable)
+        if self.start is not None:
+            drivable = replace(drivable, start=self.start)
+        begin = self.source.start(drivable)
+        route = self.source.route(drivable, begin)
         program = decided(drivable, route, losses)
         if program is not drivable:
-            route = self.source.route(program)
+            route = self.source.route(program, begin)
         path = self.source.path(route, program)
         driven = EmulatedProgram.of(self.source, program, path)
         frames = Frames(self.base, self.dialect)
@@ -126,28 +159,32 @@ class _Translator:
         placed, start = placer.place(program, route, losses)
         new_route = self.target.route(placed, start)
         said = self._with_said_arcs(placed, new_route, losses)
+        ties = self._ties = Ties(said.statements, usable(said))
+        self._shared = {move for moves in ties.moves() for move in moves}
         if said is not placed:
             new_route = self.target.route(said, start)
         wanted = self._wanted(new_route, path)
-        made, new_path = self._zoned(said, new_route, wanted)
+        made, new_path = self._zoned(said, new_route, wanted, start)
         if self.dialect is not None:
-            pacer = Pacer(driven, self.target, self.dialect, losses)
+            pacer = Pacer(driven, self.target, self.dialect, losses, ties.moves())
             made = pacer.pace(made, new_path)
             if self.target.model.centripetal is not None:  # how corners are cut depends on speeds
-                made, new_path = self._zoned(made, self.target.route(made, start), wanted)
+                again = self.target.route(made, start)
+                made, new_path = self._zoned(made, again, wanted, start)
                 made = pacer.again(made, new_path)
                 new_path = self.target.repaced(new_path, made)
             pacer.tell_slower(made, new_path)
         self._tell_zones(new_path, wanted, losses)
+        worded = self._worded(made)
+        self._tell_structure(worded)
+        worded = with_one_cycle(worded)
         return Translation(
-            replace(
-                made,
-                statements=tuple(self._worded(made)),
-                start=None if self.source_program.start is None else start,
-            ),
+            replace(worded, start=None if self.source_program.start is None else start),
             self.losses.sorted(),
             start,
             self.source_program,
+            self.losses.signals_to_map(),
+            self.keep,
         )
 
     # ------------------------------------------------------------- what is driven at all
@@ -163,14 +200,17 @@ class _Translator:
                 f"left out, as the controller of {self.source.robot.name} leaves it out: its blend "
                 "overlaps a neighbouring one",
             )
-        statements, index = [], 0
+        statements: list[Statement] = []
+        places, index = [], 0
         for statement in program.statements:
+            places.append(len(statements))
             if isinstance(statement, MoveJ | MoveL | MoveC):
                 index += 1
                 if index - 1 in left_out:
                     continue
             statements.append(statement)
-        return replace(program, statements=tuple(statements)), kept
+        sections = moved(usable(program), [*places, len(statements)]) if self.keep else ()
+        return replace(program, statements=tuple(statements), sections=sections), kept
 
     def _with_known_zones(self, program: Program) -> Program:
         moves = list(program.moves)
@@ -224,7 +264,11 @@ class _Translator:
     # --------------------------------------------------------------------------- zones
 
     def _zoned(
-        self, program: Program, route: Route, wanted: Sequence[EmulatedCorner]
+        self,
+        program: Program,
+        route: Route,
+        wanted: Sequence[EmulatedCorner],
+        start: JointTarget,
     ) -> tuple[Program, Path]:
         """The program with zones that cut its corners as wanted, and its path."""
         path = fit_zones(self.target, self.dialect, program, route, wanted)
@@ -233,7 +277,11 @@ class _Translator:
             for move in range(route.moves[i], route.moves[i + 1]):
                 zones[move] = zone
         moves = [replace(move, zone=zones[i]) for i, move in enumerate(program.moves)]
-        return program.with_moves(tuple(moves)), path
+        zoned = program.with_moves(tuple(moves))
+        tied = self._ties.with_one_zone(zoned, route.moves)
+        if tied == zoned:
+            return zoned, path
+        return tied, self.target.path(self.target.route(tied, start), tied)
 
     def _wanted(self, route: Route, old: Path) -> list[EmulatedCorner]:
         """What the old controller makes of each corner of the new route."""
@@ -264,10 +312,12 @@ class _Translator:
             return
         apart = abs(found.cut - wanted.cut)
         if apart > max(_CUT_SMALL, _CUT_TOLD * wanted.cut):
+            shared = move in self._shared
+            why = "one zone serves all that this line drives" if shared else _NO_FURTHER
             losses.at(
                 move,
                 f"passes the waypoint at {1e3 * found.cut:.2f} mm instead of "
-                f"{1e3 * wanted.cut:.2f} mm: zones reach no further here",
+                f"{1e3 * wanted.cut:.2f} mm: {why}",
                 "cut",
                 apart,
             )
@@ -283,35 +333,36 @@ class _Translator:
 
     # ---------------------------------------------------------------------- statements
 
-    def _worded(self, program: Program) -> list[Statement]:
-        """The statements; what belongs to another language becomes comments."""
+    def _worded(self, program: Program) -> Program:
+        """The program with what belongs to another language in words of its own, or as comments."""
         if self.source.vendor.name == self.target.vendor.name:
-            return list(program.statements)
-        found: list[Statement] = []
-        for statement in program.statements:
-            if isinstance(statement, Opaque):
-                found += self._comments(statement)
-            elif isinstance(statement, Wait):
-                found.append(statement)
-            else:
-                for event in statement.events:
-                    found += self._event(event)
-                found.append(replace(statement, events=()))
-        return found
+            return program
+        sides = self.source, self.target
+        return Rewording(*sides, self.signals, self.losses, self._ties).of(program)
 
-    def _comments(self, statement: Opaque) -> list[Opaque]:
-        if statement.text.strip():
-            shown = statement.text.strip().splitlines()[0][:60]
-            self.losses.statement(statement.span, f"becomes a comment: {shown}")
-        return self._commented(statement.text, statement.span)
-
-    def _event(self, event: Event) -> list[Opaque]:
-        self.losses.statement(event.span, f"an event on the way becomes a comment: {event.text}")
-        return self._commented(event.text, event.span)
-
-    def _commented(self, text: str, span: Span | None) -> list[Opaque]:
-        """A comment for each line, in ASCII: controllers do not agree on any other encoding."""
-        if self.dialect is None:
-            return [Opaque(text, span=span)]
-        lines = text.encode("ascii", "replace").decode().splitlines() or [""]
-        return [Opaque(self.dialect.comment + line.strip(), span=span) for line in lines]
+    def _tell_structure(self, program: Program) -> None:
+        """Loops and routines that cannot be written as such."""
+        statements, sections = program.statements, usable(program)
+        for section in sections:
+            moves = any(
+                isinstance(s, MoveJ | MoveL | MoveC)
+                for s in statements[section.begin : section.end]
+            )
+            if moves and section.passes and not alike(statements, section):
+                self.losses.statement(
+                    section.span,
+                    f"{section.name}: its passes differ, and are written one after the other",
+                )
+            elif moves and section.endless and section.tested:
+                self.losses.statement(
+                    section.span, f"{section.name}: becomes a loop without an end"
+                )
+        for classes in variants(statements, sections).values():
+            if len(classes) > 1:
+                name = classes[0][0].name
+                names = (name, *(f"{name}_{k + 2}" for k in range(len(classes) - 1)))
+                self.losses.statement(
+                    classes[1][0].span,
+                    f"{name} does something else here than at first: it is written as "
+                    f"{', '.join(names[:-1])} and {names[-1]}",
+                )

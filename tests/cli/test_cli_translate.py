@@ -198,3 +198,95 @@ def test_a_further_file_is_read_with_the_program(
     result = flyby(*words)
     assert result.exit_code == 0, result.output
     assert len(json.loads(result.stdout)["moves"]) == 2
+
+
+PICKS = (
+    "WHILE TRUE DO",
+    "  WaitDI diPart, 1;",
+    "  FOR i FROM 1 TO 3 DO",
+    "    MoveL Offs(p1,100,0,0), v500, z10, tool0;",
+    "    MoveL Offs(p1,100,100,0), v500, z10, tool0;",
+    "  ENDFOR",
+    "  Set doGlue;",
+    "ENDWHILE",
+)
+
+
+@pytest.fixture
+def picks(small: Small) -> Path:
+    return small("\n".join(PICKS).rstrip(";"))
+
+
+def test_loops_are_kept_unless_all_moves_are_to_stand_one_after_the_other(
+    flyby: Flyby, picks: Path, tmp_path: Path
+) -> None:
+    words = ("translate", picks, "--robot", "kuka/kr30-3", "--from", ROBOT, "--out")
+    assert flyby(*words, tmp_path / "kept").exit_code == 0
+    (source,) = (tmp_path / "kept").glob("*.src")
+    assert "LOOP" in source.read_text()
+    assert "FOR flyby_1=1 TO 3" in source.read_text()
+    assert flyby(*words, tmp_path / "flat", "--flat").exit_code == 0
+    (source,) = (tmp_path / "flat").glob("*.src")
+    assert "LOOP" not in source.read_text()
+    assert source.read_text().count("LIN ") == 6
+
+
+def test_signals_are_named_once_and_carried_with_their_lines(
+    flyby: Flyby, picks: Path, tmp_path: Path
+) -> None:
+    words = ("translate", picks, "--robot", "kuka/kr30-3", "--from", ROBOT)
+    told = flyby(*words).stdout
+    assert told.count('"doGlue" = "$OUT[?]"') == 1
+    assert told.count('"diPart" = "$IN[?]"') == 1
+    report = json.loads(flyby(*words, "--json").stdout)
+    assert report["unmapped_signals"] == {"diPart": "$IN[?]", "doGlue": "$OUT[?]"}
+    answers = tmp_path / "io.toml"
+    answers.write_text('[signals]\ndoGlue = "$OUT[3]"\ndiPart = ["digital_in[1]", "$IN[7]"]\n')
+    out = tmp_path / "krc"
+    result = flyby(*words, "--io", answers, "--out", out)
+    assert "[signals]" not in result.stdout
+    (source,) = out.glob("*.src")
+    assert "WAIT FOR $IN[7]" in source.read_text()
+    assert "$OUT[3]=TRUE" in source.read_text()
+    answers.write_text("[signals]\ndoGlue = 3\n")
+    assert "doGlue in [signals] is the name of a signal" in flyby(*words, "--io", answers).stderr
+
+
+def test_folders_in_folders_are_made_and_nothing_is_left_of_what_is_refused(
+    flyby: Flyby, square: Path, tmp_path: Path
+) -> None:
+    words = ("translate", square, "--from", ROBOT, "--out", tmp_path / "a" / "b")
+    assert flyby(*words, "--robot", "ur/ur3").exit_code == 1
+    assert not (tmp_path / "a").exists()
+    assert flyby(*words, "--robot", "kuka/kr30-3").exit_code == 0
+    assert len(list((tmp_path / "a" / "b").iterdir())) == 2
+
+
+def test_the_input_is_never_written_over(flyby: Flyby, square: Path) -> None:
+    before = square.read_text()
+    words = ("translate", square, "--robot", "abb/irb6640-235-255", "--from", ROBOT, "--force")
+    result = flyby(*words, "--out", square.parent)
+    assert square.read_text() == before or "would overwrite" in result.stderr
+
+
+def test_every_routine_gets_a_folder_of_its_name(
+    flyby: Flyby, small: Small, tmp_path: Path
+) -> None:
+    path = small(*SQUARE)
+    text = path.read_text().replace(
+        "ENDMODULE",
+        "  PROC pick()\n    MoveL Offs(p1,50,0,0), v500, fine, tool0;\n"
+        "    MoveL Offs(p1,90,0,0), v500, fine, tool0;\n  ENDPROC\n"
+        "  PROC place(num n)\n    MoveJ Offs(p1,n,0,0), v500, fine, tool0;\n  ENDPROC\nENDMODULE",
+    )
+    path.write_text(text)
+    words = ("translate", path, "--robot", "kuka/kr30-3", "--from", ROBOT, "--entry")
+    out = tmp_path / "krc"
+    result = flyby(*words, "all", "--out", out)
+    assert result.exit_code == 0, result.output
+    assert sorted(p.name for p in out.iterdir()) == ["main", "pick"]
+    assert "--entry 'place(n)'" in result.stdout
+    assert flyby(*words, "all", "--json").exit_code == 2
+    made = tmp_path / "one"
+    assert flyby(*words, "place(40)", "--start", "0,0,0,0,30,0", "--out", made).exit_code == 0
+    assert list(made.glob("*.src"))

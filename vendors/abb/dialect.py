@@ -15,6 +15,7 @@ from ...core.dialect import (
 )
 from ...core.program.zone import Radius
 from .motion.arcs import ARCS
+from .signals import SIGNALS
 
 _SPEEDS = frozenset(
     {
@@ -116,4 +117,5 @@ RAPID = Dialect(
     arcs=ARCS,
     wording=_WORDING,
     outputs=_OUTPUTS,
+    signals=SIGNALS,
 )

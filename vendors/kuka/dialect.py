@@ -19,6 +19,7 @@ from ...core.dialect import (
 )
 from ...core.program.zone import Angle, ContourFraction, Radius
 from .settings_in_force import unsaid
+from .signals import SIGNALS
 
 _NAME = r"[^\W\d][\w$]*"
 _DECLARED = rf"{_NAME}(?:[ \t]*\[[^\]\r\n]*\])?"
@@ -168,5 +169,6 @@ KRL = Dialect(
     fastest=3.0,
     most=_MOST,
     wording=_WORDING,
-    outputs=OutputWords(_switch, _level, longest_lead=1.0),
+    outputs=OutputWords(_switch, _level, 1.0, from_start=False, along_joint=False),
+    signals=SIGNALS,
 )

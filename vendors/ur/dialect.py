@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from ...core.dialect import Dialect, Mention, MoveWords, Orientation, RoutineText, Wording
 from ...core.program.zone import Radius
+from .signals import SIGNALS
 
 _BLOCKS = re.compile(
     r"\b(?P<routine>(?:def|thread|sec)\s+(?P<name>\w+)\s*\((?P<parameters>[^)]*)\))"
@@ -85,4 +86,5 @@ URSCRIPT = Dialect(
     most=_MOST,
     path_acceleration=1.2,
     wording=_WORDING,
+    signals=SIGNALS,
 )

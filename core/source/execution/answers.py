@@ -24,6 +24,9 @@ A file of answers is TOML::
     rGripperOpen = 0.4
     di_PressDone = 6
 
+    [signals]                    # what a signal is on another robot, for translations
+    do_gripper = "$OUT[3]"
+
 Without an answer waits are satisfied at once, and branches and loops are decided by rule (see
 `flow`). What was decided so is noted with its line.
 """
@@ -40,6 +43,7 @@ from ...errors import InputError, Note, SourceError, Span, UnknownNameError
 from ...files.reading import read_toml
 from ...program.cycle import Cycle
 from ...program.question import Answer, Question, QuestionKind
+from .sections import Sections
 
 
 class Fields(tuple[tuple[str, "Answer"], ...]):
@@ -48,7 +52,7 @@ class Fields(tuple[tuple[str, "Answer"], ...]):
     __slots__ = ()
 
 
-_TABLES = ("values", "sequences", "branches", "passes", "calls", "durations")
+_TABLES = ("values", "sequences", "branches", "passes", "calls", "durations", "signals")
 _MOST_PASSES = 10_000
 _LARGEST = 1e300
 _LONGEST_KEY = 80
@@ -74,6 +78,7 @@ class Answers:
         goes_on: whether a program goes on behind what nobody knows: a routine that is not at hand
             is stepped over, a move whose target is not known is `open`. Else both are refused.
         cycles: passes of a loop without an end that moves the robot.
+        signals: what signals are called on other robots; a reader does not ask for them.
     """
 
     values: Mapping[str, Answer] = field(default_factory=dict)
@@ -85,6 +90,7 @@ class Answers:
     file: str = ""
     goes_on: bool = False
     cycles: int = 1
+    signals: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def names(self, table: str) -> Iterable[str]:
         """What a table of the file has answers to, in their order."""
@@ -95,6 +101,7 @@ class Answers:
             "passes": self.passes,
             "calls": sorted(self.skipped),
             "durations": self.durations,
+            "signals": (),
         }
         return own[table]
 
@@ -133,7 +140,18 @@ def load_answers(path: str | Path) -> Answers:
         frozenset(_skipped(k, v, path) for k, v in tables.get("calls", {}).items()),
         {key(k): _seconds(v, path, k) for k, v in tables.get("durations", {}).items()},
         str(path),
+        signals={k: _signals(v, path, k) for k, v in tables.get("signals", {}).items()},
     )
+
+
+def _signals(value: object, path: str | Path, name: str) -> tuple[str, ...]:
+    names = value if isinstance(value, list) else [value]
+    if not names or not all(isinstance(one, str) and one.strip() for one in names):
+        raise InputError(
+            f"{path}: {name} in [signals] is the name of a signal on the other robot, in quotes, "
+            f"or a list of them, not {value!r}"
+        )
+    return tuple(names)
 
 
 def key(text: str) -> str:
@@ -240,11 +258,13 @@ class Course:
     Attributes:
         turned: how often an answer in turn was another one than that before it.
         cycle: the last pass of a loop that production runs in; None if there is none.
+        sections: which routines and loops have left which statements.
     """
 
     answers: Answers = field(default_factory=Answers)
     turned: int = 0
     cycle: Cycle | None = None
+    sections: Sections = field(default_factory=Sections)
     _asked: set[tuple[str, str]] = field(default_factory=set)
     _turns: dict[str, int] = field(default_factory=dict)
     _decided: dict[tuple[str, int, str], tuple[Note, int]] = field(default_factory=dict)

@@ -36,6 +36,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Generic
 
+from ...errors import Span
 from .analysis import Analysis
 from .branches import ActiveBlocks, Branches
 from .endings import Endings, Loop, Passes, Start
@@ -82,7 +83,9 @@ class Flow(Generic[Block]):
         outer, nesting.loop = nesting.loop, nesting.number()
         passes = Passes(loop, self._endings.start())
         try:
-            self._run(passes, goes_on, run, run_pass or (lambda: run(loop.body)), tested_first)
+            with self._host.course.sections.loop(loop.words, loop.span, not loop.endless) as begins:
+                run_pass = run_pass or (lambda: run(loop.body))
+                self._run(passes, goes_on, run, run_pass, tested_first, begins)
         except EndlessError as error:
             _goes_on(error, passes)
             raise
@@ -96,6 +99,7 @@ class Flow(Generic[Block]):
         run: Callable[[Block], bool],
         run_pass: Callable[[], bool],
         tested: bool,
+        begins: Callable[[], None],
     ) -> None:
         host, loop = self._host, passes.loop
         while True:
@@ -116,6 +120,7 @@ class Flow(Generic[Block]):
                 elif passes.left_to_others:
                     continue
             self._endings.look(passes)
+            begins()
             if not run_pass():
                 return
             host.meter.statement(loop.span)
@@ -162,15 +167,21 @@ class Flow(Generic[Block]):
         return True
 
     @contextmanager
-    def routine(self) -> Iterator[None]:
-        """Inside a routine: jumps and ways out of others do not count."""
+    def routine(self, name: str, span: Span) -> Iterator[None]:
+        """Inside a routine: jumps and ways out of others do not count.
+
+        Args:
+            name: of the routine.
+            span: of the call.
+        """
         nesting = self._nesting
         outer = nesting.routine, nesting.loop
         nesting.routine, nesting.loop = nesting.number(), 0
         self.label(None)  # where the routine begins
         nesting.depth += 1
         try:
-            yield
+            with self._host.course.sections.routine(name, span):
+                yield
         except EndlessError as error:
             for place, passes in self._jumps.items():
                 if place[0] == nesting.routine:

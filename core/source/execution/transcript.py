@@ -115,6 +115,7 @@ class Transcript:
         self.calls: list[Call] = []
         self.left_out: list[LeftOpenError] = []
         self._statements: list[Statement] = []
+        course.sections.statements = self._statements
 
     @property
     def move_index(self) -> int:

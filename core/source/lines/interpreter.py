@@ -107,6 +107,7 @@ def run_lines(program: LineProgram, grammar: Grammar, options: ReadOptions) -> P
         questions=run.course.questions(),
         calls=run.calls(),
         cycle=run.course.cycle,
+        sections=run.course.sections.found(run.course.cycle),
     )
 
 
@@ -136,7 +137,7 @@ class _Interpreter:
     def run(self, body: Body) -> None:
         """Carry a routine out to its end."""
         with suppress(_Finished):
-            self._routine(body)
+            self._routine(body, "", Span(self._program.file, 1, 1, 0, 0))
 
     def statements(self) -> tuple[move.Statement, ...]:
         """What was carried out."""
@@ -169,8 +170,8 @@ class _Interpreter:
 
     # -------------------------------------------------------------------- statements
 
-    def _routine(self, body: Body) -> None:
-        with self._flow.routine(), suppress(_Returned):
+    def _routine(self, body: Body, name: str, span: Span) -> None:
+        with self._flow.routine(name, span), suppress(_Returned):
             try:
                 self._body(body)
             except _Jumped as found:
@@ -277,7 +278,7 @@ class _Interpreter:
         self.meter.call(name, statement.span)
         self._out.called(statement.span)
         try:
-            self._routine(body)
+            self._routine(body, name, statement.span)
         finally:
             self.meter.back()
 

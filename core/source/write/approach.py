@@ -12,8 +12,10 @@ from dataclasses import replace
 from itertools import zip_longest
 
 from ...dialect import Dialect
+from ...program.folding import usable
 from ...program.move import MoveJ
 from ...program.program import Program
+from ...program.section import moved
 from ...program.speed import Speed
 from ...program.target import JointTarget, Target
 from ...program.zone import FINE
@@ -60,7 +62,9 @@ def with_approach(program: Program, dialect: Dialect | None, robot: Robot) -> Pr
         return program
     frames = {part: getattr(first, part) for part in ("tool", "work_object", "load")}
     move = MoveJ(start, approach_speed(dialect, robot), FINE, **frames)
-    return replace(program, statements=(move, *program.statements))
+    places = range(1, len(program.statements) + 2)
+    sections = moved(usable(program), places)
+    return replace(program, statements=(move, *program.statements), sections=sections)
 
 
 def _same(target: Target, start: JointTarget) -> bool:

@@ -34,6 +34,15 @@ class OpaqueStyle(StrEnum):
     counts."""
 
 
+class StructureStyle(StrEnum):
+    """What becomes of the loops and routines that a program was read from."""
+
+    FLAT = "flat"
+    """All statements are written one after the other, in one routine."""
+    KEEP = "keep"
+    """Loops whose passes are alike are written as loops, routines as routines."""
+
+
 def as_comments() -> str:
     """How a user has it done, for messages."""
     return given("opaque", OpaqueStyle.COMMENT if at_command_line() else f'"{OpaqueStyle.COMMENT}"')

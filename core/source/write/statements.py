@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterable
 from typing import TypeVar
 
 from ...errors import InputError, MotionError
-from ...program.move import Move, Opaque, Wait
+from ...program.move import Move, Opaque, Statement, Wait
 from ...program.program import Program
+from .structure import Structure
 
 Line = TypeVar("Line")
 
@@ -17,6 +18,7 @@ def lines_of_statements(
     wait: Callable[[Wait], Iterable[Line]],
     opaque: Callable[[Opaque], Iterable[Line]],
     move: Callable[[Move, int], Iterable[Line]],
+    structure: Structure[Line] | None = None,
 ) -> list[Line]:
     """The lines of all statements.
 
@@ -24,24 +26,29 @@ def lines_of_statements(
         wait, opaque: the lines of statements that are no moves.
         move: those of a move with its index, and of what must be said before it; what the language
             cannot say it refuses (`InputError`).
+        structure: writes loops and routines; None for all statements one after the other.
 
     Raises:
         MotionError: the language cannot say a move; it is named by number.
     """
+
+    def said(statement: Statement, index: int) -> Iterable[Line]:
+        if isinstance(statement, Wait):
+            return () if statement.device else wait(statement)
+        if isinstance(statement, Opaque):
+            return opaque(statement)
+        try:
+            return list(move(statement, index))
+        except MotionError:
+            raise
+        except InputError as error:
+            raise MotionError(str(error), index, statement.statement) from None
+
+    if structure is not None:
+        return structure.lines(program, said)
     lines: list[Line] = []
     index = 0
     for statement in program.statements:
-        if isinstance(statement, Wait):
-            lines += [] if statement.device else wait(statement)
-        elif isinstance(statement, Opaque):
-            lines += opaque(statement)
-        else:
-            try:
-                lines += move(statement, index)
-            except MotionError:
-                raise
-            except InputError as error:
-                span = None if statement.origin is None else statement.origin.statement
-                raise MotionError(str(error), index, span) from None
-            index += 1
+        lines += said(statement, index)
+        index += not isinstance(statement, Wait | Opaque)
     return lines

@@ -488,7 +488,7 @@ class Interpreter:
         where, self.out.notes.where = self.out.notes.where, scope.where
         self._frames.append(Frame(routine, scope))
         try:
-            with self.flow.routine():
+            with self.flow.routine(routine.text, span):
                 self.run_block(self.tree.body(routine), scope)
         except _Returned as returned:
             return returned.value

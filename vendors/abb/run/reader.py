@@ -154,4 +154,5 @@ def _program(
         entries=() if driven else entry_points(data, own),
         calls=tuple(run.out.calls),
         cycle=run.course.cycle,
+        sections=run.course.sections.found(run.course.cycle),
     )

@@ -84,17 +84,25 @@ def _tail(move: Move, said: Said, operands: Operands) -> Line:
 
 
 class WrittenSettings:
-    """What holds until it is changed, with the values that a program starts with."""
+    """What holds until it is changed.
 
-    def __init__(self) -> None:
-        self._load = literal(load_record(None))
-        self._held = {
-            "ConfJ": "ConfJ \\On;",
-            "ConfL": "ConfL \\On;",
-            "AccSet": "AccSet 100,100;",
-            "PathAccLim": "PathAccLim FALSE,FALSE;",
-            "CirPathMode": "CirPathMode \\PathFrame;",
-        }
+    Args:
+        known: whether it is what a program starts with; else nothing is known.
+    """
+
+    def __init__(self, known: bool = True) -> None:
+        self._load = literal(load_record(None)) if known else ""
+        self._held: dict[str, str] = (
+            {}
+            if not known
+            else {
+                "ConfJ": "ConfJ \\On;",
+                "ConfL": "ConfL \\On;",
+                "AccSet": "AccSet 100,100;",
+                "PathAccLim": "PathAccLim FALSE,FALSE;",
+                "CirPathMode": "CirPathMode \\PathFrame;",
+            }
+        )
 
     def changes(self, move: Move, operands: Operands) -> list[Line]:
         """The instructions that must stand before a move."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from ....core.errors import InputError
-from ....core.source.write.options import OpaqueStyle
+from ....core.source.write.options import OpaqueStyle, StructureStyle
 from ..values.records import AXIS_KINDS, EXTERNAL_AXES
 
 
@@ -34,6 +34,7 @@ class RapidOptions:
 
     zones: ZoneStyle = ZoneStyle.OWN
     opaque: OpaqueStyle = OpaqueStyle.KEEP
+    structure: StructureStyle = StructureStyle.FLAT
     external_axes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:

@@ -10,15 +10,16 @@ from ....core.program.move import Move, MoveC, Opaque, Wait
 from ....core.program.program import Program
 from ....core.source.text.files import lines_of
 from ....core.source.text.names import Names
-from ....core.source.write.options import OpaqueStyle
+from ....core.source.write.options import OpaqueStyle, StructureStyle
 from ....core.source.write.statements import lines_of_statements
 from .arc_limits import check_arc
 from .events import Events
 from .formatting import NAME_RULES
-from .instructions import Line, WrittenSettings, move_line
+from .instructions import Line, move_line
 from .numbers import number
 from .operands import Operands
 from .options import RapidOptions, ZoneStyle
+from .structure import Structure
 
 ENTRY = "main"
 SUFFIX = ".mod"
@@ -54,11 +55,21 @@ def write(program: Program, options: RapidOptions, around: TextAround = TextArou
         MotionError: RAPID cannot say a move; it is named by number.
     """
     operands = Operands(options)
-    lines = _body(program, operands, options)
     module = module_name(program)
-    names = operands.declarations.names(Names(NAME_RULES, [module, ENTRY, *around.names]))
-    texts = ["".join(p if isinstance(p, str) else names[p] for p in line) for line in lines]
-    main = [*around.before, *texts, *around.after]
+    taken = [module, ENTRY, *around.names]
+    structure = Structure(*taken)
+    lines = _body(program, operands, options, structure)
+    names = operands.declarations.names(Names(NAME_RULES, [*taken, *structure.taken]))
+
+    def texts(lines: list[Line]) -> list[str]:
+        return ["".join(p if isinstance(p, str) else names[p] for p in line) for line in lines]
+
+    main = [*around.before, *texts(lines), *around.after]
+    routines = [
+        line
+        for name, body in structure.routines.items()
+        for line in ("", f"PROC {name}()", *_indented(texts(body)), "ENDPROC")
+    ]
     return "\n".join(
         [
             f"MODULE {module}",
@@ -66,7 +77,7 @@ def write(program: Program, options: RapidOptions, around: TextAround = TextArou
             *_indented([*around.data, *operands.declarations.lines(names)]),
             "",
             *_indented([f"PROC {ENTRY}()", *_indented(main), "ENDPROC"]),
-            *_indented(around.routines),
+            *_indented([*routines, *around.routines]),
             "ENDMODULE",
             "",
         ]
@@ -87,9 +98,11 @@ def _header(options: RapidOptions) -> list[str]:
     return lines
 
 
-def _body(program: Program, operands: Operands, options: RapidOptions) -> list[Line]:
-    """The instructions of the entry routine."""
-    settings, events = WrittenSettings(), Events(operands, options.opaque)
+def _body(
+    program: Program, operands: Operands, options: RapidOptions, structure: Structure
+) -> list[Line]:
+    """The instructions of the entry routine; those of others are the structure's."""
+    events = Events(operands, options.opaque)
     moves = program.moves
 
     def wait(statement: Wait) -> list[Line]:
@@ -100,10 +113,11 @@ def _body(program: Program, operands: Operands, options: RapidOptions) -> list[L
         if isinstance(statement, MoveC):
             check_arc(moves[index - 1] if index else None, statement)
         said = events.of(statement)
-        changes = settings.changes(statement, operands)
+        changes = structure.held.changes(statement, operands)
         return [*changes, *said.before, move_line(statement, said, operands)]
 
-    return lines_of_statements(program, wait, lambda o: _opaque(o, options.opaque), move)
+    kept = structure if options.structure is StructureStyle.KEEP else None
+    return lines_of_statements(program, wait, lambda o: _opaque(o, options.opaque), move, kept)
 
 
 def _opaque(statement: Opaque, style: OpaqueStyle) -> list[Line]:

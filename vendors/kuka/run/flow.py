@@ -12,6 +12,7 @@ from ....core.source.execution.host import Undecided
 from ....core.source.execution.transcript import Notes
 from ..syntax.tree import (
     Block,
+    Call,
     Exit,
     Expression,
     For,
@@ -23,6 +24,7 @@ from ..syntax.tree import (
     Number,
     Repeat,
     Return,
+    Routine,
     Switch,
     Truth,
     While,
@@ -75,10 +77,10 @@ class Flow:
         self._notes = notes
         self._jumps: dict[int, Block] = {}  # bodies of loops that a GOTO closes, by its id
 
-    def run_body(self, body: Block, scope: Scope) -> None:
+    def run_body(self, routine: Routine, call: Call, scope: Scope) -> None:
         """The statements of a routine."""
-        with self._rules.routine():
-            self._run_block(body, scope)
+        with self._rules.routine(routine.text, call.span):
+            self._run_block(routine.body, scope)
 
     # ------------------------------------------------------------------- branches
 

@@ -86,6 +86,7 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
             entries=() if run.driven else run.entry_points(library.main_unit.routines),
             calls=run.calls(),
             cycle=run.course.cycle,
+            sections=run.course.sections.found(run.course.cycle),
         )
 
 

@@ -8,7 +8,7 @@ from ....core.errors import SourceError
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.transcript import Transcript
 from ....core.source.text.arguments import wrong_count
-from ..syntax.tree import Block, Call, Name, Routine
+from ..syntax.tree import Call, Name, Routine
 from ..values.data import Data
 from ..values.elements import Path
 from ..values.evaluator import Evaluator
@@ -37,7 +37,7 @@ class Routines:
         meter: Meter,
         transcript: Transcript,
         scopes: list[Scope],
-        run_body: Callable[[Block, Scope], None],
+        run_body: Callable[[Routine, Call, Scope], None],
     ) -> None:
         self._data = data
         self._evaluator = evaluator
@@ -65,7 +65,7 @@ class Routines:
         self._scopes.append(scope)
         value: Value | None = None
         try:
-            self._run_body(routine.body, scope)
+            self._run_body(routine, call, scope)
         except Returned as returned:
             value = returned.value
         except Jump as jump:

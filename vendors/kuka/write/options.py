@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ....core.source.write.options import OpaqueStyle
+from ....core.source.write.options import OpaqueStyle, StructureStyle
 
 
 @dataclass(frozen=True, slots=True)
@@ -12,3 +12,4 @@ class KrlOptions:
     """How a program is written."""
 
     opaque: OpaqueStyle = OpaqueStyle.KEEP
+    structure: StructureStyle = StructureStyle.FLAT

@@ -14,7 +14,7 @@ from ....core.robot.model import Robot
 from ....core.source.text.files import lines_of
 from ....core.source.text.names import Names
 from ....core.source.write.declarations import NewDatum
-from ....core.source.write.options import OpaqueStyle, chosen
+from ....core.source.write.options import OpaqueStyle, StructureStyle, chosen
 from ....core.source.write.statements import lines_of_statements
 from ..motion.configuration import KukaConfiguration, label
 from ..syntax.names import NAME_RULES
@@ -24,6 +24,7 @@ from .instructions import Line, Phrases, stated_positions, trigger
 from .numbers import number
 from .options import KrlOptions
 from .speeds import check_external
+from .structure import Structure
 
 HEADER = ("&ACCESS RVP", "&REL 1")
 INI = (
@@ -89,12 +90,23 @@ def compose(
     module = module_name(program)
     data = DataList()
     phrases = Phrases(robot, data, stated_positions(program, robot))
-    lines = _Body(program, phrases, options).lines()
-    names = data.names(Names(NAME_RULES, [module]))
-    body = ["".join(names[p] if isinstance(p, NewDatum) else p for p in line) for line in lines]
-    whole = [*around.header, *INI, "", *around.before, *body, *around.after]
+    structure = Structure(module)
+    lines = _Body(program, phrases, options, structure).lines()
+    names = data.names(Names(NAME_RULES, [module, *structure.taken]))
+
+    def texts(lines: Sequence[Line]) -> list[str]:
+        named = ((names[p] if isinstance(p, NewDatum) else p for p in line) for line in lines)
+        return ["".join(parts) for parts in named]
+
+    declared = structure.declared()
+    whole = [*around.header, *declared, *INI, "", *around.before, *texts(lines), *around.after]
+    further = [
+        line
+        for name, body in structure.routines.items()
+        for line in ("", f"DEF {name}( )", *structure.declared(name), *texts(body), "END")
+    ]
     return {
-        f"{module}.src": source_text(f"{module}( )", whole),
+        f"{module}.src": source_text(f"{module}( )", whole, further),
         f"{module}.dat": _data(module, data, names),
     }
 
@@ -104,9 +116,9 @@ def module_name(program: Program) -> str:
     return Names(NAME_RULES).claim(program.name, "PROG")
 
 
-def source_text(routine: str, body: Sequence[str]) -> str:
-    """A file with one routine, given by its name and parameters."""
-    lines = [*HEADER, "&COMMENT Written by flyby", f"DEF {routine}", *body, "END"]
+def source_text(routine: str, body: Sequence[str], further: Sequence[str] = ()) -> str:
+    """A file with a routine, given by its name and parameters, and further ones of its own."""
+    lines = [*HEADER, "&COMMENT Written by flyby", f"DEF {routine}", *body, "END", *further]
     return "\n".join(lines) + "\n"
 
 
@@ -118,11 +130,13 @@ def _data(module: str, data: DataList, names: dict[NewDatum, str]) -> str:
 class _Body:
     """The statements of a program, from the first to the last."""
 
-    def __init__(self, program: Program, phrases: Phrases, options: KrlOptions) -> None:
+    def __init__(
+        self, program: Program, phrases: Phrases, options: KrlOptions, structure: Structure
+    ) -> None:
         self._program = program
         self._phrases = phrases
         self._options = options
-        self._held: dict[str, Line] = {}
+        self._structure = structure
         self._defined = False
 
     def lines(self) -> list[Line]:
@@ -132,6 +146,7 @@ class _Body:
             lambda wait: [(f"WAIT SEC {number(wait.duration)}",)],
             lambda opaque: self._opaque(opaque.text),
             self._move,
+            self._structure if self._options.structure is StructureStyle.KEEP else None,
         )
 
     def _opaque(self, text: str) -> list[Line]:
@@ -143,8 +158,8 @@ class _Body:
         move = self._with_status(move, index)
         lines: list[Line] = []
         for variable, line in self._phrases.settings(move):
-            if self._held.get(variable) != line:
-                self._held[variable] = line
+            if self._structure.held.get(variable) != line:
+                self._structure.held[variable] = line
                 lines.append(line)
         for event in move.events:
             lines += self._event(event, move)

@@ -129,7 +129,7 @@ def enter(run: CallsRun, function: Function, node: Call, caller: Scope) -> Locat
     found = NOTHING
     try:
         scope.define(define.body)
-        with run.flow.routine():
+        with run.flow.routine(define.name, span):
             run.run_block(define.body, scope)
     except Returned as returned:
         found = returned.found

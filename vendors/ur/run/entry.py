@@ -64,6 +64,7 @@ def run_program(
         entries=() if run.out.move_index else points(),
         calls=tuple(run.out.calls),
         cycle=run.course.cycle,
+        sections=run.course.sections.found(run.course.cycle),
     )
 
 

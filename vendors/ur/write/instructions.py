@@ -49,6 +49,10 @@ class Phrases:
         self._standpoint.moved(move)
         return line
 
+    def passed(self, move: Move) -> None:
+        """A move is driven by a line that is written already."""
+        self._standpoint.moved(move)
+
     def _line(self, move: Move) -> Line:
         if isinstance(move, MoveC):
             return self._arc(move)
@@ -102,11 +106,14 @@ class WrittenSettings:
 
     A controller starts with the TCP and payload of its installation: the TCP is always set before
     the first move, and the payload as soon as the program states one.
+
+    Args:
+        known: whether it is what a program starts with; else nothing is known.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, known: bool = True) -> None:
         self._tcp = ""
-        self._payload_set = _payload_call(*NO_PAYLOAD)
+        self._payload_set = _payload_call(*NO_PAYLOAD) if known else ""
         self._work_object = WORLD
 
     def changes(self, move: Move) -> list[str]:

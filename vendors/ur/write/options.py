@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from ....core.source.write.options import OpaqueStyle
+from ....core.source.write.options import OpaqueStyle, StructureStyle
 
 
 class ShareStyle(StrEnum):
@@ -27,4 +27,5 @@ class ScriptOptions:
     """
 
     opaque: OpaqueStyle = OpaqueStyle.KEEP
+    structure: StructureStyle = StructureStyle.FLAT
     shares: ShareStyle = ShareStyle.MOVEJ

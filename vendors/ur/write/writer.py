@@ -12,13 +12,14 @@ from ....core.program.program import Program
 from ....core.robot.model import Robot
 from ....core.source.text.files import lines_of
 from ....core.source.text.names import Names
-from ....core.source.write.options import OpaqueStyle, as_comments, chosen
+from ....core.source.write.options import OpaqueStyle, StructureStyle, as_comments, chosen
 from ....core.source.write.statements import lines_of_statements
 from ..syntax.names import NAME_RULES
 from .declarations import Line
 from .formatting import comment, number
-from .instructions import Phrases, WrittenSettings
+from .instructions import Phrases
 from .options import ScriptOptions
+from .structure import Structure
 
 SUFFIX = ".script"
 _STEP = "  "
@@ -71,25 +72,38 @@ def body(program: Program, robot: Robot, options: ScriptOptions, *taken: str) ->
         InputError, MotionError: as `write`.
     """
     phrases = Phrases(robot, program, options.shares)
-    lines = _lines(program, phrases, options.opaque)
     names = Names(NAME_RULES, taken)
     name = names.claim(program.name, "program")
-    given = phrases.declarations.names(names)
-    statements = ["".join(p if isinstance(p, str) else given[p] for p in line) for line in lines]
-    return Script(name, phrases.declarations.lines(given), statements)
+    structure = Structure(names, phrases)
+    lines = _lines(program, phrases, options, structure)
+    given = phrases.declarations.names(Names(NAME_RULES, [*taken, name, *structure.taken]))
+
+    def texts(lines: list[Line]) -> list[str]:
+        return ["".join(p if isinstance(p, str) else given[p] for p in line) for line in lines]
+
+    functions = [
+        line
+        for called, body in structure.routines.items()
+        for line in (f"def {called}():", *indented(texts(body)), "end")
+    ]
+    declared = phrases.declarations.lines(given)
+    return Script(name, [*declared, *functions], texts(lines))
 
 
-def _lines(program: Program, phrases: Phrases, style: OpaqueStyle) -> list[Line]:
-    settings = WrittenSettings()
+def _lines(
+    program: Program, phrases: Phrases, options: ScriptOptions, structure: Structure
+) -> list[Line]:
+    style = options.opaque
 
     def wait(statement: Wait) -> list[Line]:
         return [(f"sleep({number(statement.duration)})",)]
 
     def move(statement: Move, index: int) -> list[Line]:
-        before = [*_events(statement, style), *settings.changes(statement)]
+        before = [*_events(statement, style), *structure.held.changes(statement)]
         return [*((line,) for line in before), phrases.move(statement)]
 
-    return lines_of_statements(program, wait, lambda o: _opaque(o, style), move)
+    kept = structure if options.structure is StructureStyle.KEEP else None
+    return lines_of_statements(program, wait, lambda o: _opaque(o, style), move, kept)
 
 
 def _opaque(statement: Opaque, style: OpaqueStyle) -> list[Line]:

@@ -174,7 +174,7 @@ class Run:
     def execute(self, *statements: Statement) -> str:
         """The names of the moves that are driven, and what is said."""
         try:
-            with self.flow.routine():
+            with self.flow.routine("main", Span("a", 1, 1, 0, 0)):
                 self.block(block(*statements))
         except (Ended, Returned):
             pass
