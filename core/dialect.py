@@ -323,6 +323,8 @@ class Dialect:
         wording: how its texts are searched; None if they are not.
         outputs: how outputs are set on the way of a move; None where there is nothing of the kind.
         signals: how outputs are set and signals are waited for; None if that is not known.
+        structure: whether its writer takes the option ``structure`` (`StructureStyle`), and so
+            writes loops and routines.
     """
 
     joint: MoveWords
@@ -348,6 +350,7 @@ class Dialect:
     wording: Wording | None = None
     outputs: OutputWords | None = None
     signals: SignalWords | None = None
+    structure: bool = False
 
     def __post_init__(self) -> None:
         if self.pace not in PACES or self.pace not in self.joint.speeds:

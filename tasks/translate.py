@@ -72,10 +72,12 @@ def translate_with(program: Program, options: TranslateOptions) -> Translation:
     program, before = with_setup(program, RobotOptions())
     after = target_of(options)
     controller_of(program, before)  # refuses faults
-    if not options.flat:
+    spoken = after.vendor.speaks
+    keep = not options.flat and spoken is not None and spoken.structure
+    if keep:
         program = _with_second_cycle(program)
     options.say(f"translating {counted(program.moves, 'move')}")
-    return carried(program, before, after, options.base, keep=not options.flat)
+    return carried(program, before, after, options.base, keep)
 
 
 translate = by_keywords(translate_with, TranslateOptions)
@@ -112,7 +114,7 @@ def written(made: Translation) -> Sources:
     from ..core.translation.hand_out import check_driven
 
     program, setup = made.program, setup_of_program(made.program)
-    sources = setup.vendor.write(program, setup.robot, {"structure": made.structure})
+    sources = setup.vendor.write(program, setup.robot, made.options)
     check_driven(made, sources, setup.vendor, setup.robot)
     return sources
 

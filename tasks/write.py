@@ -84,7 +84,7 @@ def write_with(
     chosen = {} if options.opaque is None else {"opaque": options.opaque}
     if isinstance(what, Translation):
         written(what)  # refuses what the new robot cannot drive
-        chosen["structure"] = what.structure
+        chosen |= what.options
         what = what.program
     if not isinstance(what, Program):
         if not isinstance(what, WithFiles):

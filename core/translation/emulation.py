@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,6 +19,7 @@ from ..motion.path.path import OverlapError, Path, Route
 from ..motion.path.programmed_speeds import with_programmed
 from ..motion.path.route import RouteFinder
 from ..motion.timing.timing import Timing
+from ..program.move import Move
 from ..program.program import Program
 from ..program.target import JointTarget
 from ..robot.model import Robot
@@ -167,3 +169,34 @@ class Peaks:
             bend = np.sum(v * a, axis=1) / np.where(size > 0, size, 1.0)
             np.maximum.at(peaks[2], segment, np.abs(size * change + bend * square))
         return cls(timing.settled_durations(), joint, *peaks)
+
+
+@dataclass(frozen=True)
+class EmulatedProgram:
+    """A program on the old robot.
+
+    Args:
+        segment: index of the segment of each move that is driven.
+        change: (M, N), how far each segment turns the joints.
+        length: (M,) m of TCP path where that is a line or arc.
+    """
+
+    party: Party
+    moves: Sequence[Move]
+    segment: Mapping[int, int]
+    peaks: Peaks
+    change: FloatArray
+    length: FloatArray
+
+    @classmethod
+    def of(cls, party: Party, program: Program, path: Path) -> EmulatedProgram:
+        """A program along its path."""
+        ends = path.route.ends
+        return cls(
+            party,
+            program.moves,
+            {move: k for k, move in enumerate(path.route.moves)},
+            Peaks.of(party.timing(program, path)),
+            ends.q[:, 1] - ends.q[:, 0],
+            path.segments.length,
+        )

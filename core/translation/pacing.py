@@ -9,26 +9,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray
 from ..dialect import Dialect, MoveWords
 from ..motion.path.path import Path
 from ..program.move import Move, MoveJ
 from ..program.program import Program
 from ..program.speed import Speed
-from ..robot.model import Robot
-from .emulation import Party, Peaks
+from .emulation import EmulatedProgram, Party
 from .losses import LossesOfPart
+from .time_search import TimeSearch, leading_axis, rounded, rounded_down
 
-_ROUNDS = 8
-_GROWTHS = 4
-"""How often times are sought anew with greater accelerations."""
-_MET = 2e-3
-"""Share of a move's time by which it may miss what is wanted before another round is made."""
 _TOLD = 0.05
 """Share by which a move may be slower before that is reported."""
 _SHORT = 0.02
@@ -47,39 +42,6 @@ _SHOWN = {
 _NUMBERS = tuple(part.name for part in fields(Speed) if part.name != "name")
 _SLOWEST = 1e-4
 """m/s, rad/s or share; no move is made slower."""
-_SIGNIFICANT = 4
-"""Digits of the numbers that are sought."""
-
-
-@dataclass(frozen=True)
-class EmulatedProgram:
-    """A program on the old robot.
-
-    Args:
-        segment: index of the segment of each move that is driven.
-        change: (M, N), how far each segment turns the joints.
-        length: (M,) m of TCP path where that is a line or arc.
-    """
-
-    party: Party
-    moves: Sequence[Move]
-    segment: Mapping[int, int]
-    peaks: Peaks
-    change: FloatArray
-    length: FloatArray
-
-    @classmethod
-    def of(cls, party: Party, program: Program, path: Path) -> EmulatedProgram:
-        """A program along its path."""
-        ends = path.route.ends
-        return cls(
-            party,
-            program.moves,
-            {move: k for k, move in enumerate(path.route.moves)},
-            Peaks.of(party.timing(program, path)),
-            ends.q[:, 1] - ends.q[:, 0],
-            path.segments.length,
-        )
 
 
 class Pacer:
@@ -102,6 +64,7 @@ class Pacer:
         self._own = spoken is not None and spoken is dialect
         self._tied = {i: tuple(moves) for moves in tied for i in moves}
         self._sought: dict[int, str] = {}
+        self._search = TimeSearch(old, target, dialect, self._sought, self._tied)
         self._held: dict[int, str] = {}
 
     def pace(self, program: Program, path: Path) -> Program:
@@ -121,7 +84,7 @@ class Pacer:
                 stated = self._line(i, self._path_acceleration(path, segment.get(i)))
             moves[i] = replace(move, speed=stated)
         self._tie(moves)
-        return self._in_time(program.with_moves(tuple(moves)), path, segment)
+        return self._search.in_time(program.with_moves(tuple(moves)), path, segment)
 
     def _tie(self, moves: list[Move]) -> None:
         """Give moves that are one the least of their numbers."""
@@ -139,7 +102,8 @@ class Pacer:
 
     def again(self, program: Program, path: Path) -> Program:
         """A program that was paced, on a path that has changed since."""
-        return self._in_time(program, path, {move: k for k, move in enumerate(path.route.moves)})
+        segment = {move: k for k, move in enumerate(path.route.moves)}
+        return self._search.in_time(program, path, segment)
 
     # ------------------------------------------------------------------- lines and arcs
 
@@ -150,7 +114,7 @@ class Pacer:
         stated = _said(speed, words)
         tcp = speed.tcp
         if tcp is None and "tcp" in words.needs:
-            tcp = self._dialect.fastest if k is None else _rounded(float(peaks.tcp[k]))
+            tcp = self._dialect.fastest if k is None else rounded(float(peaks.tcp[k]))
         if tcp is not None:
             stated["tcp"] = min(max(tcp, _SLOWEST), self._dialect.fastest)
         acceleration = self._line_acceleration(i)
@@ -197,7 +161,7 @@ class Pacer:
         if not moved.any():
             return usual
         reached = float((most["joint_acceleration"] * lengths[moved] / ways[moved]).min())
-        return usual if reached <= usual else _rounded_down(reached)
+        return usual if reached <= usual else rounded_down(reached)
 
     def _words(self, i: int) -> MoveWords:
         return self._dialect.words(self._old.moves[i])
@@ -224,7 +188,7 @@ class Pacer:
             and self._old.moves[i].speed.joint_acceleration_fraction == share
         ]
         reached = max(alike, default=0.0)
-        return _rounded(reached) if reached > _SLOWEST else self._dialect.path_acceleration
+        return rounded(reached) if reached > _SLOWEST else self._dialect.path_acceleration
 
     def _keep_time(
         self, i: int, k: int, speed: Speed, words: MoveWords, stated: dict[str, Any]
@@ -234,7 +198,7 @@ class Pacer:
             self._sought[i] = "tcp"
         turning = self._old.length[k] < _STILL and "reorientation" not in words.speeds
         if turning and "duration" in words.speeds:
-            stated["duration"] = _rounded(float(self._old.peaks.duration[k]))
+            stated["duration"] = rounded(float(self._old.peaks.duration[k]))
 
     def _tell_line(self, i: int, k: int, speed: Speed, words: MoveWords) -> None:
         limit = speed.reorientation
@@ -264,15 +228,15 @@ class Pacer:
         stated = _said(speed, words)
         self._tell_jerk(i, speed, words)
         robot = self._target.robot
-        leading = _leading(robot, turned)
+        leading = leading_axis(robot, turned)
         share = _acceleration_share(self._old, speed, k)
         if "joint_acceleration_fraction" in words.speeds:
             least = self._dialect.least_acceleration_share
-            share = max(least, self._stepped(share))
+            share = max(least, self._search.stepped(share))
             stated["joint_acceleration_fraction"] = share
         if "joint_acceleration" in words.needs and not self._keeps(speed, "joint_acceleration"):
             limit = float(robot.limits.acceleration[leading])
-            stated["joint_acceleration"] = _rounded(share * limit)
+            stated["joint_acceleration"] = rounded(share * limit)
         self._bound(i, stated, self._dialect.most)
         pace = self._dialect.pace
         if self._same_pace and getattr(speed, pace) is not None:
@@ -282,7 +246,7 @@ class Pacer:
             self._sought[i] = pace
             if pace == "tcp" and float(self._old.peaks.tcp[k]) < _STILL:
                 stated["tcp"] = self._dialect.fastest
-                stated["reorientation"] = max(_SLOWEST, _rounded(float(self._old.peaks.turn[k])))
+                stated["reorientation"] = max(_SLOWEST, rounded(float(self._old.peaks.turn[k])))
                 self._sought[i] = "reorientation"
         return Speed(**stated)
 
@@ -295,7 +259,7 @@ class Pacer:
         greatest = {
             "tcp": self._dialect.fastest,
             "joint_fraction": 1.0,
-            "joint": _rounded_down(float(limits.velocity[leading])),
+            "joint": rounded_down(float(limits.velocity[leading])),
         }[self._dialect.pace]
         if k is None:
             return greatest
@@ -305,120 +269,7 @@ class Pacer:
         share = float((self._old.peaks.joint[k] / old).max())
         return greatest * min(1.0, max(0.01, share))
 
-    def _stepped(self, share: float) -> float:
-        """A share as the language says it, at least one step."""
-        step = self._dialect.share_step
-        if step == 0.0:
-            return share
-        return min(1.0, max(step, round(round(share / step) * step, 9)))
-
     # -------------------------------------------------------------------------- in time
-
-    def _in_time(self, program: Program, path: Path, segment: Mapping[int, int]) -> Program:
-        """The program with those numbers that were left to be sought.
-
-        Where a share of acceleration keeps a joint move from its time, the share grows.
-        """
-        sought = [i for i in self._sought if i in segment]
-        for _ in range(_GROWTHS):
-            if not sought:
-                break
-            program, late = self._matched(program, path, segment, sought)
-            slow = [i for i in late if self._may_accelerate(program.moves[i])]
-            program = self._accelerated(program, {i: late[i] for i in slow})
-            sought = [k for i in slow for k in self._tied.get(i, (i,)) if k in segment]
-        return program
-
-    def _matched(
-        self, program: Program, path: Path, segment: Mapping[int, int], sought: Sequence[int]
-    ) -> tuple[Program, dict[int, float]]:
-        """The program with numbers that meet the times, and by what factor moves are late.
-
-        Times are nearly linear in the inverse of a speed: secant steps in it, all moves at once.
-        """
-        rows = [segment[i] for i in sought]
-        # Moves that are one take as long as before all together.
-        leads = [self._tied.get(i, (i,))[0] for i in sought]
-        first, group = np.unique(leads, return_index=True, return_inverse=True)[1:]
-        one = [sought[k] for k in first]
-        old = self._old.peaks.duration[[self._old.segment[i] for i in sought]]
-        wanted = _sums(group, old)
-        value = np.array([getattr(program.moves[i].speed, self._sought[i]) for i in one])
-        most = np.full(len(one), np.inf)
-        np.minimum.at(most, group, [self._most(path, i, segment[i]) for i in sought])
-        slow = 1.0 / np.minimum(value, most)
-        before: tuple[FloatArray, FloatArray] | None = None
-        for _ in range(_ROUNDS):
-            program = self._at(program, one, 1.0 / slow)
-            path = self._target.repaced(path, program)
-            spent = _sums(group, self._target.timing(program, path).settled_durations()[rows])
-            error = wanted - spent
-            if (np.abs(error) < _MET * wanted).all():
-                break
-            step = slow * (wanted / np.maximum(spent, 1e-9) - 1.0)
-            if before is not None:
-                slope = (spent - before[1]) / np.where(slow == before[0], np.inf, slow - before[0])
-                step = np.where(slope > 1e-9, error / np.maximum(slope, 1e-9), step)
-            before = slow, spent
-            slow = np.clip(slow + step, np.maximum(1.0 / most, 0.2 * slow), 5.0 * slow)
-        # Late at the greatest speed: not for want of speed, nor for its rounding.
-        late = (spent > (1 + _TOLD) * wanted) & (slow * most < 1.0 + _TOLD)
-        factors = {one[int(k)]: float(spent[k] / wanted[k]) for k in np.flatnonzero(late)}
-        return self._at(program, one, 1.0 / slow), factors
-
-    def _may_accelerate(self, move: Move) -> bool:
-        """Whether a move's acceleration is below what the new robot can do."""
-        speed = move.speed
-        if not isinstance(move, MoveJ):
-            return False
-        if self._accelerates_by == "joint_acceleration_fraction":
-            return speed.joint_acceleration_fraction < 1.0
-        most = self._most_acceleration
-        return speed.joint_acceleration is not None and speed.joint_acceleration < most
-
-    @property
-    def _most_acceleration(self) -> float:
-        """rad/s² that a joint move may state."""
-        own = float(self._target.robot.limits.acceleration.max())
-        return min(own, self._dialect.most.get("joint_acceleration", math.inf))
-
-    @property
-    def _accelerates_by(self) -> str:
-        share = "joint_acceleration_fraction"
-        return share if share in self._dialect.joint.speeds else "joint_acceleration"
-
-    def _accelerated(self, program: Program, late: Mapping[int, float]) -> Program:
-        """The program with moves accelerated by the square of the factor by which they are late."""
-        moves, name = list(program.moves), self._accelerates_by
-        for i, factor in late.items():
-            value = getattr(moves[i].speed, name) * 1.05 * factor**2
-            most = self._most_acceleration
-            share = name == "joint_acceleration_fraction"
-            number = self._stepped(min(1.0, value)) if share else _rounded(min(most, value))
-            for k in self._tied.get(i, (i,)):
-                moves[k] = replace(moves[k], speed=_with(moves[k].speed, name, number))
-        return program.with_moves(tuple(moves))
-
-    def _most(self, path: Path, i: int, k: int) -> float:
-        """The greatest value of the number that is sought."""
-        name = self._sought[i]
-        if name == "joint_fraction":
-            return 1.0
-        if name == "joint":
-            turned = path.route.ends.q[k, 1] - path.route.ends.q[k, 0]
-            leading = _leading(self._target.robot, turned)
-            return _rounded_down(float(self._target.robot.limits.velocity[leading]))
-        return self._dialect.fastest if name == "tcp" else 4 * np.pi
-
-    def _at(self, program: Program, sought: Sequence[int], values: FloatArray) -> Program:
-        moves = list(program.moves)
-        for i, value in zip(sought, map(float, values), strict=True):
-            name = self._sought[i]
-            share = name == "joint_fraction"
-            number = self._stepped(value) if share else _rounded(value)
-            for k in self._tied.get(i, (i,)):
-                moves[k] = replace(moves[k], speed=_with(moves[k].speed, name, number))
-        return program.with_moves(tuple(moves))
 
     def _in_time_together(self, moves: Sequence[int], spent: FloatArray) -> set[int]:
         """The moves that are one with others and take no longer than before together.
@@ -461,12 +312,6 @@ class Pacer:
                 )
 
 
-def _sums(group: IntArray, values: FloatArray) -> FloatArray:
-    """The sum of the values of each group."""
-    sums: FloatArray = np.bincount(group, values).astype(np.float64)
-    return sums
-
-
 def _kept(times: FloatArray | None) -> bool:
     """Whether the new time is as long as the old one, or less."""
     return times is not None and bool(times[0] <= times[1] * (1 + _TOLD))
@@ -478,34 +323,11 @@ def _said(speed: Speed, words: MoveWords) -> dict[str, Any]:
     return {name: value for name, value in values.items() if value is not None}
 
 
-def _with(speed: Speed, name: str, value: float) -> Speed:
-    changed: dict[str, Any] = {name: value}
-    return replace(speed, **changed)
-
-
-def _leading(robot: Robot, turned: FloatArray) -> int:
-    """The axis of the arm that needs the longest for its way."""
-    arm = robot.arm_size
-    return int(np.argmax(np.abs(turned[:arm]) / robot.limits.velocity[:arm]))
-
-
 def _acceleration_share(old: EmulatedProgram, speed: Speed, k: int | None) -> float:
     """The share of the joints' acceleration that a joint move is programmed with."""
     share = speed.joint_acceleration_fraction
     if speed.joint_acceleration is None or k is None:
         return share
     robot = old.party.robot
-    limit = float(robot.limits.acceleration[_leading(robot, old.change[k])])
+    limit = float(robot.limits.acceleration[leading_axis(robot, old.change[k])])
     return min(share, speed.joint_acceleration / limit)
-
-
-def _rounded(value: float) -> float:
-    """The value with so many digits as mean something."""
-    return float(f"{value:.{_SIGNIFICANT}g}")
-
-
-def _rounded_down(value: float) -> float:
-    """The same, of a limit: at most the value."""
-    rounded = _rounded(value)
-    step = 10.0 ** (math.floor(math.log10(value)) + 1 - _SIGNIFICANT)
-    return rounded if rounded <= value else _rounded(value - step)

@@ -26,11 +26,11 @@ from ..source.write.options import StructureStyle
 from ..spatial.pose import IDENTITY, Pose
 from ..vendor import Vendor
 from .corners import EmulatedCorner, corners_of, fit_zones
-from .emulation import Party
+from .emulation import EmulatedProgram, Party
 from .frames import Frames
 from .half_turns import decided
 from .losses import Losses, LossesOfPart
-from .pacing import EmulatedProgram, Pacer
+from .pacing import Pacer
 from .rewording import Rewording
 from .signals import SignalMap
 from .targets import Placer
@@ -73,9 +73,9 @@ class Translation:
     keep: bool = False
 
     @property
-    def structure(self) -> str:
-        """The option ``structure`` with which it is written."""
-        return StructureStyle.KEEP if self.keep else StructureStyle.FLAT
+    def options(self) -> dict[str, str]:
+        """The options of the writer with which it is written."""
+        return {"structure": StructureStyle.KEEP} if self.keep else {}
 
     def __repr__(self) -> str:
         lost = counted(self.losses, "loss", "losses")
@@ -118,6 +118,8 @@ def translate(
             follow a line, or the new language has no such frames; the message names move and line.
     """
     sides = Party(*source), Party(*target)
+    spoken = target[0].speaks
+    keep = keep and spoken is not None and spoken.structure
     return _Translator(program, *sides, base, keep, signals or SignalMap(), start).run()
 
 

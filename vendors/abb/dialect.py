@@ -118,4 +118,5 @@ RAPID = Dialect(
     wording=_WORDING,
     outputs=_OUTPUTS,
     signals=SIGNALS,
+    structure=True,
 )

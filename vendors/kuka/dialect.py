@@ -171,4 +171,5 @@ KRL = Dialect(
     wording=_WORDING,
     outputs=OutputWords(_switch, _level, 1.0, from_start=False, along_joint=False),
     signals=SIGNALS,
+    structure=True,
 )

@@ -87,4 +87,5 @@ URSCRIPT = Dialect(
     path_acceleration=1.2,
     wording=_WORDING,
     signals=SIGNALS,
+    structure=True,
 )
