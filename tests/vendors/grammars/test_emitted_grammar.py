@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
+from flyby.core.errors import FlybyError, Span
+from flyby.core.program.section import Section
 from flyby.testing.checks.subject import Subject
 
 from ..words import AbbWords, KukaWords, UrWords
@@ -36,3 +40,25 @@ class TestEmitted:
         robot = words.vendor.robot(data.draw(st.sampled_from(words.driven_robots())))
         program = data.draw(words.programs(robot))
         checks()[words.name](words.vendor.record(program, robot, words.periods[0]))
+
+    @PROGRAMS
+    @given(data=st.data())
+    def test_loops_and_routines_would_be_loaded(self, words: Subject, data: st.DataObject) -> None:
+        words.need("writer")
+        robot = words.vendor.robot(data.draw(st.sampled_from(words.driven_robots())))
+        program = data.draw(words.programs(robot))
+        count, span = len(program.statements), Span("main", 1, 1, 0, 0)
+        sections = (
+            Section("pick place", 0, count, span),
+            Section("FOR", count, 3 * count, span, (count, 2 * count)),
+            Section("Pick place", count, 2 * count, span),
+            Section("Pick place", 2 * count, 3 * count, span),
+        )
+        thrice = replace(program, statements=program.statements * 3, sections=sections)
+        try:
+            files = words.vendor.write(thrice, robot, {"structure": "keep"})
+        except FlybyError:
+            assume(False)  # where the robot comes from may decide what can be said
+        checks()[words.name](files)
+        text = "".join(files.values()).casefold()
+        assert text.count("pick_place(") + text.count("pick_place;") == 3  # two calls
