@@ -126,6 +126,7 @@ class Program:
 
         What stands before the first of them belongs to it, what stands behind the last as well.
         Where it does not begin as the whole it has neither its start, its notes nor its calls.
+        It has no sections.
         """
         kept: list[Statement] = []
         count = 0
@@ -138,9 +139,7 @@ class Program:
                 kept.append(statement)
         if first == 0:
             return replace(self, statements=tuple(kept), sections=())
-        return replace(
-            self, statements=tuple(kept), start=None, notes=(), calls=(), sections=()
-        )
+        return replace(self, statements=tuple(kept), start=None, notes=(), calls=(), sections=())
 
     def with_moves(self, moves: tuple[Move, ...]) -> Program:
         """The same program with each move replaced by the one at its index in ``moves``.

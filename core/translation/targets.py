@@ -105,7 +105,8 @@ class Placer:
         assert start is not None
         pairs = zip(program.moves, moves, q, strict=True)
         named = [self._named(*pair) for pair in pairs]
-        placed = replace(program.with_moves(tuple(named)), start=None, notes=(), reading=None)
+        carried = program.with_moves(tuple(named))
+        placed = replace(carried, start=None, notes=(), calls=(), reading=None)
         return placed, _joint_target(self._target.robot, start)
 
     # ---------------------------------------------------------------- poses and frames
