@@ -81,15 +81,17 @@ class Cell:
 
     def __repr__(self) -> str:
         name = "" if self.file is None else f" {self.file.name}"
-        return in_line(
-            f"Cell{name} with {self.robot.name}: {counted(self.obstacles, 'obstacle')}, "
-            f"{counted(len(self.tools) - 1, 'tool')}, clearance {1e3 * self.clearance:g} mm"
-        )
+        told = [counted(self.obstacles, "obstacle"), counted(len(self.tools) - 1, "tool")]
+        if self.parts:
+            told.append(counted(self.parts, "kind of part", "kinds of parts"))
+        told.append(f"clearance {1e3 * self.clearance:g} mm")
+        return in_line(f"Cell{name} with {self.robot.name}: {', '.join(told)}")
 
     def _repr_html_(self) -> str:
         at = self.robot.outline()
-        boxes = {o.name: self._box(o) for o in self.obstacles}
-        shapes = {o.name: type(o.geometry.shape).__name__ for o in self.obstacles}
+        things: tuple[Obstacle | Workpiece, ...] = (*self.obstacles, *self.parts)
+        boxes = {thing.name: self._box(thing) for thing in things}
+        shapes = {thing.name: type(thing.geometry.shape).__name__ for thing in things}
         rows = [(name, shapes[name], *_reach(box)) for name, box in boxes.items()]
         rows.insert(0, (self.robot.name, "robot", *_reach(at)))
         curves = [
@@ -98,11 +100,11 @@ class Cell:
         ]
         return page(repr(self)[1:-1], table(_COLUMNS, rows), picture(curves))
 
-    def _box(self, obstacle: Obstacle) -> FloatArray:
-        """Corners (8, 3) m in the world of the box round an obstacle, external axes at zero."""
-        stages = [*self.robot.frame_stages(obstacle.carried_by), obstacle.geometry.placement]
+    def _box(self, thing: Obstacle | Workpiece) -> FloatArray:
+        """Corners (8, 3) m in the world of the box round a thing, external axes at zero."""
+        stages = [*self.robot.frame_stages(thing.carried_by), thing.geometry.placement]
         R, p = poses(assemble(stages), np.zeros((1, self.robot.size)))
-        return np.asarray(obstacle.geometry.corners @ R[0].T + p[0])
+        return np.asarray(thing.geometry.corners @ R[0].T + p[0])
 
     def find_vendor(self, registry: Registry) -> Vendor:
         """The robot's vendor, who drives it as the cell says.

@@ -1,6 +1,6 @@
 """How near a driven program comes: to the cell, and with the arm's own parts to each other.
 
-Looked at on the path's samples and, where it is nearest, between them: no proof, which is
+Looked at in small steps along the path, and closer where it is nearest: no proof, which is
 `flyby.core.collision.proof`.
 """
 
@@ -26,6 +26,8 @@ from .scene.scene import TOUCH, CollisionScene
 
 RESTING = 2e-3
 """m by which a part may be off, or in, what it rests on where it is taken or released."""
+STEP = 0.01
+"""rad (or m of a linear axis) from one configuration that is looked at to the next, about."""
 _BETWEEN = 16
 """Configurations looked at on each side of the sample that is nearest."""
 
@@ -106,7 +108,8 @@ class ClearanceMeter:
         limits = [within, within]
         owners = path.sample_moves()
         for move in dict.fromkeys(owners.tolist()):
-            rows = np.ascontiguousarray(path.q[owners == move])
+            of_move = owners == move
+            rows = in_steps(path.q[of_move], path.states.dq[of_move], path.sigma[of_move])
             scene = self._scene(first + move)
             if scene is None:
                 continue
@@ -181,6 +184,28 @@ class ClearanceMeter:
         if self._recent is None or self._recent[0] != tool or self._recent[1] is not parts:
             self._recent = (tool, parts, scene.rearranged(parts))
         return self._recent[2]
+
+
+def in_steps(q: FloatArray, dq: FloatArray, sigma: FloatArray) -> FloatArray:
+    """Configurations along samples in steps of about `STEP`, by cubics through these.
+
+    Each joint runs steadily from sample to sample: near singular configurations, where derivatives
+    are large, a cubic would swing out.
+
+    Args:
+        q, dq: (M, N), samples and their derivatives with respect to σ.
+        sigma: (M,), σ of the samples, rising.
+    """
+    way = np.diff(q, axis=0)
+    counts = np.ceil(np.abs(way).max(axis=1, initial=0.0) / STEP).astype(np.int64)
+    counts = np.maximum(counts, 1)
+    k = np.repeat(np.arange(len(way)), counts)
+    t = (np.arange(len(k)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[k]
+    rise, most = np.diff(sigma)[:, None], 3.0 * np.abs(way)
+    first, last = (np.clip(np.nan_to_num(d * rise), -most, most)[k] for d in (dq[:-1], dq[1:]))
+    t, way = t[:, None], way[k]
+    cubic = t * (first + t * (3 * way - 2 * first - last + t * (first + last - 2 * way)))
+    return np.ascontiguousarray(np.concatenate([q[k] + cubic, q[-1:]]))
 
 
 def nearest_of(moves: Sequence[MoveClearance]) -> tuple[Approach | None, Approach | None]:

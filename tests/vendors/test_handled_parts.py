@@ -3,6 +3,7 @@ and on the way."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from flyby.core.cell.geometry import Geometry
 from flyby.core.cell.workpiece import Workpiece
 from flyby.core.handling.handling import Handling, handling_of
 from flyby.core.handling.loads import with_loads
+from flyby.core.lint.check import check
 from flyby.core.program.program import Program
 from flyby.core.program.tool import Load
 from flyby.core.registry import find_robot, find_vendor
@@ -165,3 +167,24 @@ def test_what_happens_on_the_way_takes_at_the_target(language: str) -> None:
     # The same words stand in statements between moves.
     between = program(language, *(VALUE if language == "abb" else SIGNAL)[language])
     assert held(handled(language, between, *cues[language])) == [False, False, True, False]
+
+
+DECLARED = {
+    "abb": "GripLoad [7,[0,0,50],[1,0,0,0],0,0,0];",
+    "kuka": "$LOAD={M 40.0,CM {X 0,Y 0,Z 50,A 0,B 0,C 0},J {X 0,Y 0,Z 0}}",
+    "ur": "set_target_payload(7.0, [0,0,0.05])",
+}
+RATED = {"abb": "7 kg from here on", "kuka": "40 kg from here on", "ur": "7 kg from here on"}
+
+
+def test_loads_that_a_program_declares_are_held_to_what_the_robot_is_rated_for(
+    language: str,
+) -> None:
+    made = program(language, DECLARED[language], "")
+    robot, vendor = find_robot(ROBOTS[language]), find_vendor(language)
+    (heavy,) = [f for f in check(made, vendor, robot) if f.rule == "payload-exceeded"]
+    assert RATED[language] in heavy.message
+    assert f"rated for {robot.payload:g} kg" in heavy.message
+    assert heavy.span == made.moves[2].statement
+    strong = replace(robot, payload=41.0)
+    assert "payload-exceeded" not in {f.rule for f in check(made, vendor, strong)}

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ...cell.cell import Cell
 from ...cell.workpiece import Workpiece
+from ...door import called
 from ...errors import InputError, Note
 from ...handling.arrangement import Arrangement
 from ...robot.model import Robot
@@ -28,10 +29,10 @@ def refuse_parts(cell: Cell) -> None:
         where = "the cell" if cell.file is None else str(cell.file)
         names = ", ".join(repr(part.name) for part in cell.parts)
         raise InputError(
-            f"{where} has parts that are picked and placed ({names}): they are followed by `flyby "
-            "emulate` and `flyby check`, not by what proves clearances or changes motions; here, "
-            "take a cell file without [[part]], with what is carried in the shape and mass of the "
-            "tool, and what lies around as [[obstacle]]"
+            f"{where} has parts that are picked and placed ({names}): they are followed by "
+            f"{called('emulate')} and {called('check')}, not by what proves clearances or changes "
+            "motions; here, take a cell file without [[part]], with what is carried in the shape "
+            "and mass of the tool, and what lies around as [[obstacle]]"
         )
 
 

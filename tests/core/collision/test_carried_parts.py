@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry, Mesh, Triangles
 from flyby.core.cell.workpiece import Workpiece
-from flyby.core.collision.clearance import ClearanceMeter, nearest_of
+from flyby.core.collision.clearance import STEP, ClearanceMeter, in_steps, nearest_of
 from flyby.core.collision.proof.certificate import scenes_of
 from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.errors import InputError
@@ -158,6 +158,28 @@ def test_proofs_refuse_cells_whose_parts_are_not_followed() -> None:
     cell = cell_of(arm(), parts=(part(Sphere(0.1)),))
     with pytest.raises(InputError, match=r"parts that are picked and placed \('crate'\)"):
         scenes_of(cell)(FLANGE)
+
+
+@FEW
+@given(st.tuples(*[st.floats(-3, 3)] * 3), st.integers(2, 40), st.floats(0.1, 2.0))
+def test_steps_are_small_and_follow_the_path(wave, count: int, length: float) -> None:
+    a, b, c = wave
+
+    def path(sigma):
+        return np.stack([a * sigma + b * np.sin(sigma), np.cos(c * sigma)], axis=1)
+
+    sigma = np.linspace(0.0, length, count)
+    q = path(sigma)
+    dq = np.stack([a + b * np.cos(sigma), -c * np.sin(c * sigma)], axis=1)
+    steps = in_steps(q, dq, sigma)
+    # A cubic is at most three times as steep as its chord.
+    assert np.abs(np.diff(steps, axis=0)).max(initial=0.0) <= 3 * STEP + 1e-9
+    for row in q:
+        assert np.abs(steps - row).max(axis=1).min() < 1e-9
+    fine = path(np.linspace(0.0, length, 2000))
+    off = np.abs(fine[:, None] - steps).max(axis=2).min(axis=1).max()
+    chords = np.abs(np.diff(q, axis=0)).max(initial=0.0)
+    assert off <= 2 * STEP + chords**2
 
 
 # Along runs
