@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..arrays import FloatArray
 from ..errors import InputError, Note
 from ..robot.shape import Shape
-from ..spatial.pose import IDENTITY, Pose
+from ..spatial.pose import IDENTITY, Pose, Vector3
 from .mesh_file import check_extent, read_scene
 
 MESH_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 25.4e-3}
@@ -150,8 +150,8 @@ class Geometry:
     placement: Pose = IDENTITY
 
     @property
-    def corners(self) -> FloatArray:
-        """(8, 3) m in the shape's own frame, of the box round it along the axes.
+    def box(self) -> tuple[Vector3, Vector3]:
+        """Its lowest and highest corner, m in the shape's own frame, of the box round it.
 
         Raises:
             InputError: the mesh cannot be used.
@@ -161,6 +161,17 @@ class Geometry:
         else:
             half = 0.5 * np.array(self.shape.size)
             ends = -half, half
+        (a, b, c), (d, e, f) = (end.tolist() for end in ends)
+        return (a, b, c), (d, e, f)
+
+    @property
+    def corners(self) -> FloatArray:
+        """(8, 3) m in the shape's own frame, of the box round it along the axes.
+
+        Raises:
+            InputError: the mesh cannot be used.
+        """
+        ends = self.box
         return np.array([[ends[k >> axis & 1][axis] for axis in range(3)] for k in range(8)])
 
 

@@ -154,17 +154,19 @@ class ClearanceMeter:
         before, behind = self._handling.before[move], self._handling.behind[move]
         if not before | behind:
             return left_out
-        for row, (a, b) in enumerate(scene.pairs.tolist()):
-            first, second = sorted((scene.bodies[a], scene.bodies[b]), key=lambda body: body.kind)
-            kinds = first.kind, second.kind
-            if kinds == (BodyKind.PART, BodyKind.TOOL):
-                left_out[row] = first.thing in before | behind and second.own
-            elif first.kind is BodyKind.HELD and not second.own:
-                ends = [
-                    *(q[:1] if first.thing in before else ()),
-                    *(q[-1:] if first.thing in behind else ()),
-                ]
-                left_out[row] = bool(ends) and _rests(scene, row, np.array(ends), q)
+        resting: list[tuple[int, int]] = []
+        things = [body.thing in before | behind for body in scene.bodies]
+        for row in np.flatnonzero(np.array(things)[scene.pairs].any(axis=1)).tolist():
+            first, second = (scene.bodies[k] for k in scene.pairs[row])
+            if first.kind is BodyKind.TOOL and second.kind is BodyKind.PART:
+                left_out[row] = first.own
+            elif first.own != second.own:
+                thing = next((b.thing for b in (first, second) if b.kind is BodyKind.HELD), "")
+                resting += [(0, row)] if thing in before else []
+                resting += [(len(q) - 1, row)] if thing in behind else []
+        for row in _at_rest(scene, q, resting):
+            deepest = scene.nearest(q, np.array([row]), 0.0)
+            left_out[row] = deepest is None or deepest[0] >= -RESTING
         return left_out
 
     def _scene(self, move: int) -> CollisionScene | None:
@@ -222,11 +224,10 @@ def _own_pairs(scene: CollisionScene) -> NDArray[np.bool_]:
     return np.asarray(own[scene.pairs].all(axis=1))
 
 
-def _rests(scene: CollisionScene, row: int, ends: FloatArray, q: FloatArray) -> bool:
-    """Whether a part that is carried along q (M, N) lies on the other of a pair at ends (K, N)."""
-    which = np.arange(len(ends)), np.full(len(ends), row)
-    near, _ = scene.chosen_distances(ends, which, RESTING)
-    if not (near < RESTING).any():
-        return False
-    deepest = scene.nearest(q, np.array([row]), 0.0)
-    return deepest is None or deepest[0] >= -RESTING
+def _at_rest(scene: CollisionScene, q: FloatArray, asked: list[tuple[int, int]]) -> list[int]:
+    """Rows of pairs that all but touch at one of the samples (K,) that each is asked at."""
+    if not asked:
+        return []
+    samples, rows = np.array(sorted(asked)).T
+    distance, _ = scene.chosen_distances(q, (samples, rows), RESTING)
+    return sorted(set(rows[distance < RESTING].tolist()))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..arrays import FloatArray
 from ..cell.workpiece import Workpiece
 from ..spatial.pose import Pose, Vector3
 
@@ -44,17 +43,13 @@ def at_first(parts: tuple[Workpiece, ...]) -> Arrangement:
     )
 
 
-def distance_to_box(point: Vector3, place: Pose, corners: FloatArray) -> float:
+def distance_to_box(point: Vector3, place: Pose, box: tuple[Vector3, Vector3]) -> float:
     """m from a point to a box, 0 inside.
 
     Args:
         point: in the frame of ``place``.
         place: of the box's frame.
-        corners: (8, 3) m, of the box along its frame's axes.
+        box: its lowest and highest corner.
     """
     at = (place.inverse() @ Pose(point)).position
-    outside = (
-        max(low - x, 0.0, x - high)
-        for x, low, high in zip(at, corners.min(axis=0), corners.max(axis=0), strict=True)
-    )
-    return math.hypot(*outside)
+    return math.hypot(*(max(low - x, 0.0, x - high) for x, low, high in zip(at, *box, strict=True)))

@@ -9,7 +9,7 @@ from ..program.target import JointTarget
 from ..robot.assembly import assemble
 from ..robot.kinematics.chain_kernels import poses
 from ..robot.model import Robot
-from ..spatial.pose import Pose, Vector3
+from ..spatial.pose import IDENTITY, Pose, Vector3
 
 
 class FlangeFollower:
@@ -55,6 +55,8 @@ class FlangeFollower:
 
     def frame(self, axis: str | None) -> Pose:
         """The frame behind an external axis, in the world; None for the world."""
+        if axis is None:
+            return IDENTITY
         R, p = poses(assemble(self._robot.frame_stages(axis)), self._q[None])
         matrix = np.eye(4)
         matrix[:3, :3], matrix[:3, 3] = R[0], p[0]

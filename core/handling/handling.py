@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from ..arrays import FloatArray
 from ..cell.cell import Cell
 from ..cell.workpiece import Workpiece
 from ..errors import Note
@@ -67,7 +66,7 @@ class _Trace:
         self._cell = cell
         self._flange = FlangeFollower(cell.robot, start)
         self._now: Arrangement = at_first(cell.parts)
-        self._boxes: dict[str, FloatArray] = {}
+        self._boxes: dict[str, tuple[Vector3, Vector3]] = {}
         self._taken_at: dict[str, Vector3] = {}
         self._before: list[set[str]] = [set() for _ in range(moves)]
         self._behind: list[set[str]] = [set() for _ in range(moves)]
@@ -117,12 +116,11 @@ class _Trace:
         if not lying:
             self._note(cue, f"attaches {part.name!r}, but none is left to take")
             return
-        far = {placed: self._distance(placed, tcp) for placed in lying}
-        nearest = min(lying, key=far.__getitem__)
-        if far[nearest] > part.near:
+        far, _, nearest = min((self._distance(p, tcp), k, p) for k, p in enumerate(lying))
+        if far > part.near:
             self._note(
                 cue,
-                f"attaches {part.name!r}, but none is near: the TCP is {1e3 * far[nearest]:.0f} mm "
+                f"attaches {part.name!r}, but none is near: the TCP is {1e3 * far:.0f} mm "
                 f"away from {nearest.name}, {1e3 * part.near:g} mm are allowed (near_mm)",
             )
             return
@@ -156,7 +154,7 @@ class _Trace:
 
     def _distance(self, placed: PlacedPart, tcp: Vector3) -> float:
         if placed.part.name not in self._boxes:
-            self._boxes[placed.part.name] = placed.part.geometry.corners
+            self._boxes[placed.part.name] = placed.part.geometry.box
         place = self._flange.frame(placed.carrier) @ placed.pose
         return distance_to_box(tcp, place, self._boxes[placed.part.name])
 

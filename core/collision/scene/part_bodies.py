@@ -76,16 +76,17 @@ def part_pairs(
         frames: that they ride on.
         gone: names of parts that have left the cell.
     """
-    kept: list[tuple[int, int]] = []
-    known: dict[tuple[object, ...], bool] = {}
-    there = [k for k in range(first, len(bodies)) if bodies[k].thing not in gone]
-    for j in there:
-        mine = bodies[j]
-        for i in (*range(first), *(k for k in there if k < j and bodies[k].frame != mine.frame)):
-            other = bodies[i]
-            asked = (mine.part, mine.kind, mine.frame, other.part, other.kind, other.frame)
-            if asked not in known:
-                known[asked] = exclusion_reason(cell, other, mine, frames) is None
-            if known[asked]:
-                kept.append((i, j))
-    return np.array(kept, dtype=np.int64).reshape(-1, 2)
+    there = np.array([k for k in range(first, len(bodies)) if bodies[k].thing not in gone], int)
+    rows = np.concatenate([np.arange(first), there])
+    i, j = (index.ravel() for index in np.meshgrid(rows, there, indexing="ij"))
+    # Things that lie on one frame do not move against each other, nor do those on the flange.
+    frame = np.array([body.frame for body in bodies], int)
+    chosen = (i < j) & ((i < first) | (frame[i] != frame[j]))
+    i, j = i[chosen], j[chosen]
+    # What is asked of a pair is the same for all bodies of a kind on a frame.
+    kinds: dict[tuple[object, ...], int] = {}
+    kind = np.array([kinds.setdefault((b.part, b.kind, b.frame), len(kinds)) for b in bodies], int)
+    _, at, which = np.unique(kind[i] * len(kinds) + kind[j], return_index=True, return_inverse=True)
+    asked = ((bodies[i[k]], bodies[j[k]]) for k in at)
+    counts = np.array([exclusion_reason(cell, a, b, frames) is None for a, b in asked], bool)
+    return np.asarray(np.stack([i, j], axis=1)[counts[which]])

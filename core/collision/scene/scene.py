@@ -230,15 +230,15 @@ class CollisionScene:
                 within = float(found.distance[m, k])
                 least = within, start + int(m), int(pairs[k])
             places = _places(R, p)
-            for entry in np.argsort(bound, axis=None).tolist():
-                m, k = np.unravel_index(entry, bound.shape)
+            left = np.argwhere(bound < within)
+            for m, k in left[np.argsort(bound[tuple(left.T)])].tolist():
                 if not bound[m, k] < within:
                     break
                 a, b = self._pairs[pairs[k]]
-                witness = self._distances.distance(a, b, places[int(m)], within)
+                witness = self._distances.distance(a, b, places[m], within)
                 if witness is not None:
                     within = float(witness.distance)
-                    least = within, start + int(m), int(pairs[k])
+                    least = within, start + m, int(pairs[k])
         return least
 
     def gradients(

@@ -275,8 +275,7 @@ def test_a_part_without_mass_weighs_nothing() -> None:
 @settings(max_examples=60, deadline=None)
 @given(places, poses, st.tuples(*[st.floats(0.01, 0.5)] * 3))
 def test_the_distance_to_a_box_is_that_of_its_nearest_point(point, place: Pose, size) -> None:
-    corners = Geometry(Box(size)).corners
-    found = distance_to_box(point, place, corners)
+    found = distance_to_box(point, place, Geometry(Box(size)).box)
     local = np.array((place.inverse() @ Pose(point)).position)
     nearest = np.clip(local, -np.array(size) / 2, np.array(size) / 2)
     assert found == pytest.approx(float(np.linalg.norm(local - nearest)), abs=1e-12)
