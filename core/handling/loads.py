@@ -29,7 +29,7 @@ def with_loads(program: Program, handling: Handling) -> tuple[Program, tuple[Not
     moves: list[Move] = []
     notes: list[Note] = []
     empty: Move | None = None
-    told: str | None = None
+    told: set[tuple[object, ...]] = set()
     for index, move in enumerate(program.moves):
         held = tuple(placed for placed in handling.held(index) if placed.part.load is not None)
         if not held:
@@ -42,10 +42,11 @@ def with_loads(program: Program, handling: Handling) -> tuple[Program, tuple[Not
             moves.append(replace(move, load=_joined(move, held)))
             continue
         moves.append(move)
-        names = ", ".join(placed.name for placed in held)
+        names = ", ".join(placed.part.name for placed in held)
         parts = sum(placed.part.load.mass for placed in held if placed.part.load is not None)
         declared, before = _mass(move), _mass(empty)
-        if names != told and abs(declared - before - parts) > _SAME * max(declared, parts):
+        said = names, declared, before
+        if said not in told and abs(declared - before - parts) > _SAME * max(declared, parts):
             notes.append(
                 Note(
                     f"the program declares a load of its own for {names}, {declared:g} kg with the "
@@ -55,7 +56,7 @@ def with_loads(program: Program, handling: Handling) -> tuple[Program, tuple[Not
                     move.statement,
                 )
             )
-        told = names
+            told.add(said)
     return program.with_moves(tuple(moves)), tuple(notes)
 
 
