@@ -43,7 +43,7 @@ class RobotOptions(TaskOptions):
     robot: str | Robot | None = value(None, "Robot, such as abb/irb6640-180-255 (`robots`).")
     cell: str | Path | Cell | None = value(
         None,
-        "Cell file: robot, base, external axes, tools, obstacles, clearance.",
+        "Cell file: robot, base, external axes, tools, obstacles, parts, clearance.",
         kind=Path,
     )
     motion: str | Path | None = value(
