@@ -41,7 +41,7 @@ def check_with(program: Program, options: CheckOptions) -> Findings:
     course = CellCourse.of(program, setup)
 
     def around(parts: Sequence[DrivenPart]) -> list[Finding]:
-        return [*_part_findings(course), *_clearance_findings(course, setup, parts)]
+        return [*_part_findings(course), *clearance_findings(course, setup, parts)]
 
     start = start_of(program)
     return Findings(look(course.program, setup.vendor, setup.robot, start, around))
@@ -59,7 +59,7 @@ def _part_findings(course: CellCourse) -> list[Finding]:
     ]
 
 
-def _clearance_findings(
+def clearance_findings(
     course: CellCourse, setup: Setup, parts: Sequence[DrivenPart]
 ) -> list[Finding]:
     """Moves that come too near, and where all of them come nearest."""

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from ..core.display import counted
 from ..core.door import given
 from ..core.errors import InputError
+from .cell_course import CellCourse
+from .check import clearance_findings
 from .options.entries import REQUIRED, TaskOptions, switch, value
 from .options.keywords import by_keywords
 from .options.texts import pose
@@ -22,7 +24,12 @@ from .setup import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..core.cell.cell import Cell
+    from ..core.driving.driven_program import DrivenPart
     from ..core.language import Sources
+    from ..core.lint.finding import Finding
     from ..core.program.program import Program
     from ..core.spatial.pose import Pose
     from ..core.translation.translate import Translation
@@ -115,8 +122,40 @@ def written(made: Translation) -> Sources:
 
     program, setup = made.program, setup_of_program(made.program)
     sources = setup.vendor.write(program, setup.robot, made.options)
-    check_driven(made, sources, setup.vendor, setup.robot)
+
+    def around(again: Program, parts: Sequence[DrivenPart]) -> list[Finding]:
+        return clearance_findings(CellCourse(again), setup, parts)
+
+    check_driven(made, sources, setup.vendor, setup.robot, around)
     return sources
+
+
+def _cell_of(before: Setup, after: Setup, place: Pose) -> Cell | None:
+    """What stands around the old robot, round the new one: what an axis moves or the robot picks
+    is left out.
+
+    Args:
+        place: the new robot's world in the old one's.
+    """
+    from ..core.cell.cell import Cell
+
+    cell = before.cell
+    if cell is None:
+        return None
+    back = place.inverse()
+    obstacles = (
+        replace(o, geometry=replace(o.geometry, placement=back @ o.geometry.placement))
+        for o in cell.obstacles
+        if o.carried_by is None
+    )
+    return Cell(
+        after.robot,
+        after.vendor.name,
+        tools=cell.tools,
+        tool_geometries=cell.tool_geometries,
+        obstacles=tuple(obstacles),
+        allowed=cell.allowed,
+    )
 
 
 def carried(
@@ -153,4 +192,5 @@ def carried(
         SignalMap.of(answers),
         start_of(program),
     )
+    after = replace(after, cell=_cell_of(before, after, place))
     return replace(made, program=replace(made.program, setup=after))

@@ -290,3 +290,28 @@ def test_every_routine_gets_a_folder_of_its_name(
     made = tmp_path / "one"
     assert flyby(*words, "place(40)", "--start", "0,0,0,0,30,0", "--out", made).exit_code == 0
     assert list(made.glob("*.src"))
+
+
+def test_a_program_that_would_meet_what_stands_around_is_not_written(
+    flyby: Flyby, tmp_path: Path
+) -> None:
+    ends = "[0,0,1,0],[0,0,1,0],[9E9,9E9,9E9,9E9,9E9,9E9]];"
+    program = tmp_path / "cell.mod"
+    program.write_text(
+        f"MODULE M\n  CONST robtarget p0:=[[1050,-100,750],{ends}\n"
+        f"  CONST robtarget p1:=[[1050,100,750],{ends}\n  PROC main()\n    ConfJ \\Off;\n"
+        "    MoveJ p0, v500, fine, tool0;\n    MoveJ p1, v500, fine, tool0;\n  ENDPROC\nENDMODULE\n"
+    )
+    cell = tmp_path / "cell.toml"
+    for away, status in ((0, 1), (900, 0)):
+        cell.write_text(
+            'robot = "abb/irb1600-6-145"\n[[obstacle]]\nname = "post"\nbox_mm = [80, 80, 200]\n'
+            f"pose = {{ xyz_mm = [1050, {100 + away}, 800] }}\n"
+        )
+        out = tmp_path / str(away)
+        words = ("translate", program, "--cell", cell, "--robot", "kuka/kr30-3", "--out", out)
+        result = flyby(*words)
+        assert result.exit_code == status, result.output
+        assert out.exists() == (status == 0)
+        if status:
+            assert re.search(r"cell.mod:7:5: move 2: .*overlap", result.stderr.replace("\n", " "))

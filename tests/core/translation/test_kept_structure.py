@@ -265,6 +265,6 @@ def test_what_cannot_be_driven_as_written_is_refused_with_the_old_line() -> None
     files = written(made, name, "keep")
     check_driven(made, files, find_vendor("kuka"), robot)
     far = {file: text.replace("X 1000", "X 8000") for file, text in files.items()}
-    with pytest.raises(MotionError, match="as written for kuka/kr30-3 it could not be driven") as e:
+    with pytest.raises(MotionError, match="what would be written for kuka/kr30-3 is at fault") as e:
         check_driven(made, far, find_vendor("kuka"), robot)
     assert e.value.span.line == PICKS[: PICKS.index("    MoveJ Offs(p1,0,0,100)")].count("\n") + 1
