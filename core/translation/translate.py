@@ -20,7 +20,7 @@ from ..program.move import ArcOrientation, MoveC, MoveJ, MoveL, Statement
 from ..program.program import Program
 from ..program.section import moved
 from ..program.target import JointTarget
-from ..program.zone import FINE, Angle, Radius, SpeedFraction, Zone
+from ..program.zone import FINE, Radius, Zone
 from ..robot.model import Robot
 from ..source.write.options import StructureStyle
 from ..spatial.pose import IDENTITY, Pose
@@ -192,8 +192,8 @@ class _Translator:
     # ------------------------------------------------------------- what is driven at all
 
     def _drivable(self) -> tuple[Program, list[int]]:
-        """The program with what is not emulated replaced, and which of its moves are kept."""
-        program = self._with_known_zones(self.source_program)
+        """The program without what the old robot leaves out, and which of its moves are kept."""
+        program = self.source_program
         left_out = self._left_out(program)
         kept = [i for i in range(len(program.moves)) if i not in left_out]
         for i in left_out:
@@ -213,22 +213,6 @@ class _Translator:
             statements.append(statement)
         sections = moved(usable(program), [*places, len(statements)]) if self.keep else ()
         return replace(program, statements=tuple(statements), sections=sections), kept
-
-    def _with_known_zones(self, program: Program) -> Program:
-        moves = list(program.moves)
-        for i, move in enumerate(moves):
-            beside_joint = isinstance(move, MoveJ) or (
-                i + 1 < len(moves) and isinstance(moves[i + 1], MoveJ)
-            )
-            reason = None
-            if isinstance(move.zone, SpeedFraction):
-                reason = "a zone by speed (C_VEL) is not emulated"
-            elif isinstance(move.zone, Angle) and beside_joint:
-                reason = "a zone by orientation (C_ORI) beside a joint move is not emulated"
-            if reason is not None:
-                self.losses.at(i, f"{reason}: it becomes a stop")
-                moves[i] = replace(move, zone=FINE)
-        return program.with_moves(tuple(moves))
 
     def _left_out(self, program: Program) -> set[int]:
         """Moves that the old robot's controller skips because blends overlap."""

@@ -161,11 +161,28 @@ def test_angles_become_radii_that_cut_alike(between) -> None:
     assert pair.corners(pair.run_new(made))[1].cut == pytest.approx(before.cut, rel=0.01)
 
 
-def test_zones_by_speed_become_stops_and_are_told(between) -> None:
+@pytest.mark.parametrize("new", ["abb", "ur"])
+def test_zones_by_speed_are_cut_alike_or_told(between, new) -> None:
+    pair = between("kuka", new)
+    program = corner(pair, SpeedFraction(0.5))
+    made = pair.translate(program)
+    before, after = (pair.corners(run)[1] for run in (pair.run_old(program), pair.run_new(made)))
+    assert before.passed
+    assert after.passed
+    if "passes the waypoint at" not in messages(made):
+        assert after.cut == pytest.approx(before.cut, rel=0.05)
+    else:  # a UR cuts corners by their speed
+        assert new == "ur"
+
+
+def test_zones_by_orientation_beside_joint_moves_are_cut_alike(between) -> None:
     pair = between("kuka", "abb")
-    made = pair.translate(corner(pair, SpeedFraction(0.5)))
-    assert made.program.moves[1].zone == FINE
-    assert "C_VEL" in messages(made)
+    turned = (0.3, 0.0, 0.0)
+    program = Program((pair.joint(), pair.joint(ASIDE, Angle(0.05), turn=turned), pair.line(AHEAD)))
+    made = pair.translate(program)
+    before = pair.corners(pair.run_old(program))[1]
+    assert before.passed
+    assert pair.corners(pair.run_new(made))[1].cut == pytest.approx(before.cut, rel=0.05)
 
 
 def test_a_straight_corner_keeps_its_reach(between) -> None:
