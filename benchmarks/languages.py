@@ -11,6 +11,9 @@
   back from writing and reading as they were, or are written otherwise the second time.
 - ``own_corpus_run_fraction``: the share of the corpus in ``tests/corpus`` that is emulated to the
   end.
+- ``own_corpus_first_command_fraction``: the share that is emulated to the end by the first command
+  that a user would give, ``flyby emulate FILE --robot NAME``, without answers or other files;
+  programs of which parts are missing count too.
 
 Needs the project's tests beside it: pip install flyby[testing]
 """
@@ -28,6 +31,7 @@ from tempfile import TemporaryDirectory
 from fuzzing import Seeds, failures, told
 from report import Figure, cpu_seconds, main
 
+import flyby
 from flyby.core.errors import FlybyError
 from flyby.core.language import Sources
 from flyby.core.motion.emulator.controller import Controller
@@ -288,6 +292,26 @@ def run_fraction(case: str) -> float:
     return done / len(entries)
 
 
+def first_command_fraction(case: str) -> float:
+    """The share of the corpus that is emulated to the end with nothing but the robot's name."""
+    programs = [
+        (index.parent / entry["file"], entry["robot"])
+        for index in sorted((CORPUS / case).rglob("index.toml"))
+        for entry in tomllib.loads(index.read_text("utf-8"))["program"]
+    ]
+    done = 0
+    for path, robot in programs:
+        try:
+            emulation = flyby.emulate(flyby.read(path, robot=robot), robot=robot)
+        except FlybyError as error:
+            print(f"{path.name}: {error}", file=sys.stderr)
+            continue
+        for fault in emulation.faults:
+            print(f"{path.name}: {fault}", file=sys.stderr)
+        done += emulation.faultless and emulation.duration > 0
+    return done / len(programs)
+
+
 def measure(case: str, inputs: int, workers: int, programs: int) -> Iterator[Figure]:
     """All figures of one language."""
     ours, theirs = reading_times(LANGUAGES[case])
@@ -298,6 +322,7 @@ def measure(case: str, inputs: int, workers: int, programs: int) -> Iterator[Fig
     yield Figure(case, "fuzz_failures", told(failures(seeds, case, inputs, workers), case), "")
     yield Figure(case, "roundtrip_failures", roundtrip_failures(case, programs), "")
     yield Figure(case, "own_corpus_run_fraction", run_fraction(case), "")
+    yield Figure(case, "own_corpus_first_command_fraction", first_command_fraction(case), "")
 
 
 if __name__ == "__main__":
