@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.display import counted
+from ..core.registry import all_listed
 from ..tasks.catalogue import registry, vendor_of
 from .console import print_json, print_rich, print_table
 
 if TYPE_CHECKING:
+    from ..core.robot.arm_list import Listed
     from ..core.robot.model import Robot
     from ..core.vendor import Vendor
 
@@ -32,26 +34,46 @@ def vendors(
 
 def robots(
     name: Annotated[
-        str | None, typer.Argument(help="A vendor, or a robot to show in detail.")
+        str | None,
+        typer.Argument(
+            help="A vendor, a robot to show in detail, or part of a name: 120, IRB 6640."
+        ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI units.")] = False,
 ) -> None:
-    """List robots, or show one with its limits and where its figures come from."""
-    if name is not None and "/" in name:
-        robot = registry().find_robot(name)
-        if json:
-            print_json(_robot_json(robot, vendor_of(name)))
-        else:
-            _print_robot(robot, vendor_of(name))
-        return
-    chosen = sorted(registry().vendors) if name is None else [registry().find_vendor(name).name]
-    owners = [registry().vendors[vendor] for vendor in chosen]
-    found = [(owner, owner.robot(robot)) for owner in owners for robot in sorted(owner.robots)]
+    """List robots, those like a name, or show one with its limits and its figures' origins."""
+    vendors = registry().vendors
+    if name is None or name in vendors:
+        owners = [vendors[vendor] for vendor in (sorted(vendors) if name is None else [name])]
+        found = [arm for owner in owners for arm in all_listed(owner)]
+    else:
+        found = registry().robots_like(name)
+        if len(found) <= 1:
+            _show(registry().find_robot(name), json)
+            return
+    drivable = [arm for arm in found if arm.refused is None]
     if json:
-        print_json([_robot_json(robot, owner) for owner, robot in found])
+        robots = [registry().find_robot(arm.name) for arm in drivable]
+        print_json([_robot_json(robot, vendor_of(robot.name)) for robot in robots])
         return
-    columns = (("robot", "left"), ("axes", "right"), ("payload kg", "right"), ("", "left"))
-    print_table(columns, [_summary(robot, owner) for owner, robot in found])
+    columns = (
+        *(("robot", "left"), ("model", "left"), ("axes", "right"), ("payload kg", "right")),
+        *(("reach m", "right"), ("", "left")),
+    )
+    print_table(columns, list(map(_summary, drivable)))
+    if refused := [arm for arm in found if arm.refused is not None]:
+        print_table(
+            (("known, not driven", "left"), ("because", "left")),
+            [(arm.model, arm.refused or "") for arm in refused],
+        )
+
+
+def _show(robot: Robot, json: bool) -> None:
+    vendor = vendor_of(robot.name)
+    if json:
+        print_json(_robot_json(robot, vendor))
+    else:
+        _print_robot(robot, vendor)
 
 
 def _parts(vendor: Vendor) -> list[str]:
@@ -73,9 +95,15 @@ def _reason(robot: Robot, vendor: Vendor) -> str | None:
     return vendor.emulation_only.get(robot.name.removeprefix(f"{vendor.name}/"))
 
 
-def _summary(robot: Robot, vendor: Vendor) -> tuple[str, ...]:
-    payload = "" if robot.payload is None else f"{robot.payload:g}"
-    return robot.name, str(robot.size), payload, "emulation only" if _reason(robot, vendor) else ""
+def _summary(arm: Listed) -> tuple[str, ...]:
+    vendor, _, model = arm.name.partition("/")
+    numbers = (f"{value:g}" if value is not None else "" for value in (arm.payload, arm.reach))
+    emulated = registry().vendors[vendor].emulation_only
+    shown = "" if arm.model == model else arm.model
+    return (
+        *(arm.name, shown, "" if arm.axes is None else str(arm.axes), *numbers),
+        "emulation only" if model in emulated else "",
+    )
 
 
 def _robot_json(robot: Robot, vendor: Vendor) -> dict[str, Any]:
@@ -100,6 +128,8 @@ def _robot_json(robot: Robot, vendor: Vendor) -> dict[str, Any]:
         ],
         "units": {"revolute": "rad, N m", "prismatic": "m, N", "time": "s"},
         "origins": dict(robot.origins),
+        "spread": dict(robot.spread),
+        "doubts": list(robot.doubts),
         "motion_fitted_to": None if taught is None else range_entries(taught),
     }
 
@@ -115,6 +145,8 @@ def _print_robot(robot: Robot, vendor: Vendor) -> None:
         print_rich(f"Emulation only: {reason}")
     print_table(COLUMNS, [joint.cells() for joint in robot.joints])
     print_table((("figures", "left"), ("origin", "left")), list(robot.origins.items()))
+    for doubt in robot.doubts:
+        print_rich(f"In doubt: {doubt}")
     taught = vendor.motion_of(robot).taught
     if taught is not None:
         print_rich(

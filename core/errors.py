@@ -24,6 +24,10 @@ class OptionError(InputError):
     """An option or an argument that is wrong by itself, whatever the files hold."""
 
 
+_OFFERED = 20
+"""Names that a message lists at most."""
+
+
 class UnknownNameError(InputError):
     """A name that nothing answers to; the message offers the nearest known ones.
 
@@ -41,7 +45,8 @@ class UnknownNameError(InputError):
         if near:
             offer = f"did you mean {' or '.join(repr(n) for n in near)}?"
         elif known:
-            offer = f"known: {', '.join(known)}"
+            more = f" and {len(known) - _OFFERED} more" if len(known) > _OFFERED else ""
+            offer = f"known: {', '.join(known[:_OFFERED])}{more}"
         else:
             offer = "none is known"
         super().__init__(f"unknown {kind} {name!r}: {offer}")

@@ -12,18 +12,22 @@ from functools import cache
 from importlib import metadata
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import pluggy
 
 from . import hookspec
 from .errors import InputError, UnknownNameError
+from .robot.arm_list import Listed
+from .robot.model_names import described, matching
 from .vendor import Vendor
 
 if TYPE_CHECKING:
     from .robot.model import Robot
 
 OWN_DISTRIBUTION = "flyby"
+_OFFERED = 12
+"""Robots that a message offers at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,17 +103,43 @@ class Registry:
         return self.vendors[name]
 
     def find_robot(self, name: str) -> Robot:
-        """The robot of a name like ``abb/irb6640-180-255``.
+        """The robot of a name like ``abb/irb6640-180-255``, or as people and controllers write it.
 
         Raises:
-            UnknownNameError: there is none; says so if its vendor's plugin is broken.
+            UnknownNameError: there is none, or several may be meant; says so if its vendor's
+                plugin is broken.
+            InputError: it cannot be driven, with the reason.
+        """
+        vendor, _, robot = self.robot_called(name).partition("/")
+        return self.vendors[vendor].robot(robot)
+
+    def robot_called(self, name: str) -> str:
+        """The robot's own name, ``vendor/robot``, of a name as people and controllers write it.
+
+        Raises:
+            UnknownNameError, InputError: see `find_robot`.
         """
         vendor, _, robot = name.partition("/")
-        if vendor not in self.vendors or robot not in self.vendors[vendor].robots:
-            models = {robot: robot.partition("/")[2] for robot in self.robot_names}
-            same = [robot for robot, model in models.items() if model == name.casefold()]
-            self._unknown("robot", name, vendor, same or self.robot_names)
-        return self.vendors[vendor].robot(robot)
+        if vendor in self.vendors and robot in self.vendors[vendor].robots:
+            return name
+        found = self.robots_like(name)
+        if len(found) == 1:
+            if found[0].refused is not None:
+                raise InputError(f"{found[0].model} cannot be driven: {found[0].refused}")
+            return found[0].name
+        if found:
+            offered = ", ".join(map(described, found[:_OFFERED]))
+            more = f" and {len(found) - _OFFERED} more" if len(found) > _OFFERED else ""
+            raise InputError(f"robot {name!r}: which? {offered}{more}")
+        self._unknown("robot", name, vendor, self.robot_names)
+
+    def robots_like(self, name: str) -> list[Listed]:
+        """The arms that a name may mean, whether they can be driven or not."""
+        vendor, slash, robot = name.partition("/")
+        owners = [self.vendors[vendor]] if slash and vendor in self.vendors else None
+        asked = robot if owners else name
+        arms = [arm for owner in owners or self.vendors.values() for arm in all_listed(owner)]
+        return matching(asked, arms)
 
     @property
     def robot_names(self) -> tuple[str, ...]:
@@ -144,11 +174,19 @@ class Registry:
                 raise InputError(f"{path}: {vendor.companions[suffix]}")
         raise InputError(f"{path}: no vendor reads {suffix!r} files; known: {known or 'none'}")
 
-    def _unknown(self, kind: str, name: str, vendor: str, known: Iterable[str]) -> None:
+    def _unknown(self, kind: str, name: str, vendor: str, known: Iterable[str]) -> NoReturn:
         error = UnknownNameError(kind, name, known)
         broken = [str(plugin) for plugin in self.broken if plugin.plugin == vendor]
         error.args = ("; ".join((str(error), *broken)),)
         raise error
+
+
+def all_listed(vendor: Vendor) -> list[Listed]:
+    """The arms of a vendor, those included that have a name alone."""
+    listed = dict(vendor.listed())
+    for robot in vendor.robots:
+        listed.setdefault(robot, Listed(f"{vendor.name}/{robot}", robot))
+    return [listed[robot] for robot in sorted(listed)]
 
 
 @cache

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 from .display import counted, in_line
 from .errors import InputError, UnknownNameError
 from .language import Language, Patcher, Reader, Recorder, Sources, Writer
+from .robot.arm_list import ArmList
 
 if TYPE_CHECKING:
     import numpy as np
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from .motion.model.motion_model import MotionModel
     from .program.program import Program
     from .program.target import Configuration, JointTarget
+    from .robot.arm_list import Listed
     from .robot.model import Robot
     from .source.execution.answers import Answers
     from .source.reading import Files, ReadOptions
@@ -55,6 +57,8 @@ class Vendor:
         speaks: what the language can say, for programs that are translated into it; None if it
             says everything that a `Program` holds.
         machine_data: a robot as a file of its own controller describes it; None if none is read.
+        listed: what is said of each arm that the vendor lists, drivable or not, by its name
+            (`core.robot.arm_list`); none if nothing is known but names.
         nearest: whether a target whose configuration data contradict it is driven to in the
             solution nearest to where the robot comes from, instead of being a fault.
 
@@ -76,6 +80,7 @@ class Vendor:
     emulation_only: Mapping[str, str] = field(default_factory=dict)
     speaks: Dialect | None = None
     machine_data: Callable[[Robot, Path], Robot] | None = None
+    listed: Callable[[], Mapping[str, Listed]] = dict
     nearest: bool = False
 
     def __post_init__(self) -> None:
@@ -282,11 +287,12 @@ def vendor_of(package: str, folder: Path, language: Language, **others: Any) -> 
         package: its name; the function ``label`` of its module ``motion.configuration`` is the
             vendor's, and ``with_machine_data`` of a module ``machine_data``, where there is one,
             reads the files of its controllers.
-        folder: where it is; robots and motion files stand in ``data``.
+        folder: where it is; robots, motion files and the list of arms stand in ``data``.
         language: reader, writer, patcher and recorder.
         others: see `Vendor`.
     """
     data = folder / "data"
+    arms = ArmList(data / "arms.jsonl")
 
     def label(robot: Robot, q: NDArray[np.float64]) -> Configuration | None:
         labelling = import_module(".motion.configuration", package)  # takes time
@@ -298,7 +304,8 @@ def vendor_of(package: str, folder: Path, language: Language, **others: Any) -> 
 
     return Vendor(
         name=folder.name,
-        robots=lazy_robots(data.glob("robots/*.toml")),
+        robots={**arms.robots(), **lazy_robots(data.glob("robots/*.toml"))},
+        listed=arms.listed,
         motion=lazy_motion(data / "motion.toml"),
         robot_motion=motion_layers(data.glob("motion/*.toml")),
         label=label,

@@ -64,9 +64,10 @@ def vendor_of(robot: str) -> Vendor:
     Raises:
         UnknownNameError: there is none.
     """
-    vendor, slash, _ = robot.partition("/")
-    if not slash:
-        registry().find_robot(robot)  # offers the robots that may be meant
+    vendor, slash, model = robot.partition("/")
+    found = registry().vendors.get(vendor)
+    if not slash or found is None or model not in found.robots:
+        vendor = registry().robot_called(robot).partition("/")[0]
     return registry().find_vendor(vendor)
 
 

@@ -33,6 +33,11 @@ An origin starts with one of published, identified, measured, computed, assumed,
     [assumed]
     acceleration_time_s = 0.25           # joints without acceleration: top speed in this time
 
+    [spread]                             # optional: by what factor what is assumed may be off,
+    acceleration = 1.9                   # either way; also velocity
+
+    doubts = ["…"]                       # optional: what speaks against single figures
+
     [flange]                             # in the frame behind the last joint
     xyz_mm = [200, 0, 0]
     rpy_deg = [0, 90, 0]
@@ -81,6 +86,8 @@ from .shape import Box, Capsule, Cylinder, LinkShape, Shape, Sphere
 
 TRUST = ("published", "identified", "measured", "computed", "assumed", "unknown")
 """The words that an origin starts with."""
+SPREAD = ("velocity", "acceleration")
+"""Groups of figures that may state by what factor they may be off."""
 UNITS = {JointKind.REVOLUTE: ANGLE, JointKind.PRISMATIC: LENGTH}
 
 
@@ -91,7 +98,15 @@ def load_robot(path: str | Path) -> Robot:
         InputError: the file cannot be read, or a key is missing, unknown or wrong; the message
             names file and key.
     """
-    table = TomlTable.read(path)
+    return robot_of(TomlTable.read(path))
+
+
+def robot_of(table: TomlTable) -> Robot:
+    """The robot of a table with the keys of a catalogue file.
+
+    Raises:
+        InputError: a key is missing, unknown or wrong; the message names file and key.
+    """
     try:
         robot = _robot(table)
     except InputError as error:
@@ -136,7 +151,20 @@ def _robot(table: TomlTable) -> Robot:
         shapes=shapes,
         payload=table.number("payload_kg") if table.has("payload_kg") else None,
         origins=_origins(table.table("origin"), needed),
+        spread=_spread(table.table("spread")),
+        doubts=tuple(table.texts("doubts")) if table.has("doubts") else (),
     )
+
+
+def _spread(table: TomlTable) -> dict[str, float]:
+    found = {}
+    for group in SPREAD:
+        if table.has(group):
+            found[group] = table.number(group)
+            if not found[group] >= 1.0:
+                raise table.error(group, f"is a factor of one or more, not {found[group]:g}")
+    table.finish()
+    return found
 
 
 def _origins(table: TomlTable, needed: list[str]) -> Mapping[str, str]:

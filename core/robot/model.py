@@ -49,6 +49,8 @@ class Robot:
         payload: rated payload, kg; None if not known.
         gravity: m/s², in the world.
         origins: what each group of numbers rests on, e.g. ``"velocity": "published: …"``.
+        spread: by what factor, either way, a group of assumed numbers may be off; one or more.
+        doubts: what speaks against single numbers.
 
     Raises:
         InputError: two axes share a name, the links are not one a joint, a shape belongs to no
@@ -65,9 +67,12 @@ class Robot:
     payload: float | None = None
     gravity: Vector3 = STANDARD_GRAVITY
     origins: Mapping[str, str] = field(default_factory=dict, hash=False)
+    spread: Mapping[str, float] = field(default_factory=dict, hash=False)
+    doubts: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "origins", MappingProxyType(dict(self.origins)))
+        object.__setattr__(self, "spread", MappingProxyType(dict(self.spread)))
         if not self.joints:
             raise InputError(f"robot {self.name} has no joint")
         names = self.axis_names
