@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.display import counted
+from ..core.errors import UnknownNameError
 from ..core.registry import all_listed
 from ..tasks.catalogue import registry, vendor_of
 from .console import print_json, print_rich, print_table
@@ -48,8 +49,10 @@ def robots(
         found = [arm for owner in owners for arm in all_listed(owner)]
     else:
         found = registry().robots_like(name)
-        if len(found) <= 1:
-            _show(registry().find_robot(name), json)
+        if not found:
+            raise UnknownNameError("vendor or robot", name, (*vendors, *registry().robot_names))
+        if len(found) == 1:
+            _show(registry().find_robot(found[0].name), json)
             return
     drivable = [arm for arm in found if arm.refused is None]
     if json:
@@ -60,7 +63,8 @@ def robots(
         *(("robot", "left"), ("model", "left"), ("axes", "right"), ("payload kg", "right")),
         *(("reach m", "right"), ("", "left")),
     )
-    print_table(columns, list(map(_summary, drivable)))
+    if drivable:
+        print_table(columns, list(map(_summary, drivable)))
     if refused := [arm for arm in found if arm.refused is not None]:
         print_table(
             (("known, not driven", "left"), ("because", "left")),

@@ -20,6 +20,7 @@ from .console import complain_of_fault, print_rich, print_table, warn
 if TYPE_CHECKING:
     from ..core.collision.clearance import Approach
 
+_FIGURES = {"velocity": "speeds", "acceleration": "accelerations"}
 MOST_ALIKE = 3
 """Notes that say the same of several places, before the rest of them is only counted."""
 
@@ -37,7 +38,7 @@ def print_report(report: Report, program: Program) -> None:
         faults, parts = counted(report.faults, "fault"), counted(report.parts, "part")
         told = f"{faults}, so no cycle time; {report.driven_time:.3f} s driven in {parts}"
     print_rich(
-        f"{report.program} on {report.robot}: {told}; "
+        f"{report.program} on {report.robot}: {told}{_range(report)}; "
         f"TCP path {1e3 * report.length:.1f} mm, at most {1e3 * report.top_speed:.0f} mm/s"
     )
     for line in clearance_lines(report, program):
@@ -61,6 +62,15 @@ def clearance_lines(report: Report, program: Program) -> list[str]:
 def _named(program: Program, move: int) -> str:
     span = program.moves[move].statement
     return f"move {move + 1}" + ("" if span is None else f", line {span.line}")
+
+
+def _range(report: Report) -> str:
+    """What the robot's assumed figures leave open of the time."""
+    if report.time_range is None:
+        return ""
+    least, most = report.time_range
+    figures = " and ".join(_FIGURES[name] for name in report.assumed)
+    return f" ({least:.3f} to {most:.3f} s, as the robot's {figures} are assumed)"
 
 
 def print_notes(report: Report, questions: Sequence[Question] = ()) -> None:
@@ -119,6 +129,7 @@ def report_json(report: Report) -> dict[str, Any]:
         "robot": report.robot,
         "cycle_time_s": report.cycle_time,
         "driven_time_s": report.driven_time,
+        "driven_time_range_s": report.time_range,
         "first_wait_s": report.first_wait,
         "waiting_s": report.waiting,
         "settling_s": report.settling,

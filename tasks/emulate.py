@@ -45,6 +45,7 @@ def emulate_with(program: Program, options: EmulateOptions) -> Run:
         InputError: nobody says which robot, or a statement both takes a part of the cell and lets
             go of it.
     """
+    from ..core.driving.assumed_figures import duration_range
     from ..core.driving.driven_program import refusal
     from ..core.driving.past_faults import drive
     from ..core.motion.emulator.controller import Controller
@@ -68,7 +69,11 @@ def emulate_with(program: Program, options: EmulateOptions) -> Run:
     options.say("measuring clearances")
     clearances, odd = course.clearances(setup, noted)
     own = replace(program, notes=(*program.notes, *course.notes, *odd))
-    return Run.of(replace(driven, program=own, parts=noted), setup.robot, clearances)
+    ranges = [duration_range(controller, part.run) for part in driven.parts]
+    known = [found for found in ranges if found is not None]
+    between = (sum(least for least, _ in known), sum(most for _, most in known)) if known else None
+    whole = replace(driven, program=own, parts=noted)
+    return Run.of(whole, setup.robot, clearances, between)
 
 
 emulate = by_keywords(emulate_with, EmulateOptions)

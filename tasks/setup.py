@@ -176,7 +176,10 @@ def writable_robot(name: str, option: str | None = None) -> Setup:
         own = robots(name)
         if len(own) != 1:
             raise InputError(
-                f"{option} {name}: which of its robots? {', '.join(own) or 'It has none'}"
+                f"{option} {name}: which of its {len(own)} robots? {called('robots', name)} lists "
+                "them"
+                if own
+                else f"{option} {name}: it has no robot"
             )
         (name,) = own
     made = named_robot(name)

@@ -4,7 +4,8 @@
      "reach_m": 2.5, "aliases": […], "check": {…}, "robot": {…}}
 
 ``robot`` has the keys of a catalogue file (`catalogue`); an arm that has a file of its own is
-listed without it. ``check`` says where the flange is at some joint values, for tests. An arm that cannot be modelled has ``refused``, the reason, in its place.
+listed without it. ``check`` says where the flange is at some joint values, for tests. An arm that
+cannot be modelled has ``refused``, the reason, in its place.
 """
 
 from __future__ import annotations

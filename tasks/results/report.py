@@ -161,6 +161,9 @@ class Report:
         robot: name of the robot.
         driven_time: s, from the start to rest after the last motion, waits included; of all parts
             that can be driven.
+        time_range: s, least and greatest such time by the spread of the robot's assumed figures;
+            None where none has one.
+        assumed: which figures these are.
         first_wait: s of it in which the robot waits before the first move that is driven.
         waiting: s of it spent in programmed waits, the first included.
         settling: s of it that settling takes.
@@ -177,6 +180,8 @@ class Report:
     program: str
     robot: str
     driven_time: float
+    time_range: tuple[float, float] | None
+    assumed: tuple[str, ...]
     first_wait: float
     waiting: float
     settling: float
@@ -210,9 +215,15 @@ class Report:
 
 
 def make_report(
-    driven: DrivenProgram, robot: Robot, clearances: Sequence[MoveClearance] = ()
+    driven: DrivenProgram,
+    robot: Robot,
+    clearances: Sequence[MoveClearance] = (),
+    time_range: tuple[float, float] | None = None,
 ) -> Report:
-    """The report of a driven program, and of how near its moves come."""
+    """The report of a driven program, and of how near its moves come.
+
+    ``time_range`` is that of the `Report`.
+    """
     faults = {fault.move: fault for fault in driven.faults}
     moves = [_empty(i, move, faults.get(i)) for i, move in enumerate(driven.program.moves)]
     waiting = 0.0
@@ -230,6 +241,8 @@ def make_report(
         program=driven.program.name,
         robot=robot.name,
         driven_time=driven.duration,
+        time_range=time_range,
+        assumed=tuple(robot.spread),
         first_wait=sum(float(part.run.path.route.dwell[0]) for part in driven.parts),
         waiting=waiting,
         settling=sum(move.settling for move in moves),

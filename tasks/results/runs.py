@@ -29,18 +29,31 @@ class Run(DrivenProgram):
         robot: that was driven.
         clearances: how near its moves come, as far as they come nearer than those before or than
             the cell allows; empty without a cell.
+        time_range: s, least and greatest time if the robot's assumed speeds and accelerations are
+            off by their spread; None where none has one.
     """
 
     robot: Robot = field(kw_only=True)
     clearances: tuple[MoveClearance, ...] = field(default=(), kw_only=True)
+    time_range: tuple[float, float] | None = field(default=None, kw_only=True)
 
     @classmethod
     def of(
-        cls, driven: DrivenProgram, robot: Robot, clearances: tuple[MoveClearance, ...] = ()
+        cls,
+        driven: DrivenProgram,
+        robot: Robot,
+        clearances: tuple[MoveClearance, ...] = (),
+        time_range: tuple[float, float] | None = None,
     ) -> Run:
         """A driven program with its robot."""
-        parts, faults = driven.parts, driven.faults
-        return cls(driven.program, parts, faults, robot=robot, clearances=clearances)
+        return cls(
+            driven.program,
+            driven.parts,
+            driven.faults,
+            robot=robot,
+            clearances=clearances,
+            time_range=time_range,
+        )
 
     def __repr__(self) -> str:
         return f"{super().__repr__()[:-1]} on {self.robot.name}>"
@@ -72,7 +85,7 @@ class Run(DrivenProgram):
     @cached_property
     def report(self) -> Report:
         """All figures of the run, move by move."""
-        return make_report(self, self.robot, self.clearances)
+        return make_report(self, self.robot, self.clearances, self.time_range)
 
     @property
     def moves(self) -> MoveTable:

@@ -86,7 +86,7 @@ def test_a_broken_plugin_is_a_warning(
     ("words", "message"),
     [
         (("robots", "abb/irb664-180-255"), "did you mean 'abb/irb6640-180-255'"),
-        (("robots", "abbb"), "unknown vendor 'abbb': did you mean 'abb'?"),
+        (("robots", "abbb"), "unknown vendor or robot 'abbb': did you mean 'abb'"),
     ],
 )
 def test_unknown_names_come_with_an_offer(

@@ -18,9 +18,13 @@ SQUARE = Path(__file__).parents[2] / "examples/square.mod"
 Flyby = Callable[..., Result]
 
 
-def test_a_robot_without_its_vendor_is_offered_with_it(flyby: Flyby, small) -> None:
-    result = flyby("emulate", small(), "--robot", "irb6640-180-255")
-    assert f"did you mean '{ROBOT}'?" in result.stderr
+def test_a_robot_is_known_without_its_vendor_and_offered_where_it_is_misspelt(
+    flyby: Flyby,
+) -> None:
+    result = flyby("emulate", SQUARE, "--robot", "IRB 6640-180/2.55")
+    assert f"on {ROBOT}" in result.stdout
+    result = flyby("emulate", SQUARE, "--robot", "irb6640-180-254")
+    assert f"did you mean '{ROBOT}'" in result.stderr
 
 
 def test_a_folder_and_a_name_without_suffix_are_told(flyby: Flyby, tmp_path: Path) -> None:

@@ -222,7 +222,11 @@ def test_code_for_another_vendor_stands_beside(
     ("status", "options", "word"),
     [
         (2, ("--vendor", "kuka/kr30-3"), "name a folder by --out"),
-        (1, ("--vendor", "kuka", "--out", "o"), "--vendor kuka: which of its robots? kuka/iiwa"),
+        (
+            1,
+            ("--vendor", "kuka", "--out", "o"),
+            "--vendor kuka: which of its 165 robots?",
+        ),
         (1, ("--vendor", "fanuc", "--out", "o"), "fanuc"),
         (1, ("--vendor", "kuka/iiwa7-r800", "--out", "o"), "no program can be written"),
         (1, ("--vendor", "kuka/kr3-r540", "--out", "o"), "kuka/kr3-r540 cannot reach"),

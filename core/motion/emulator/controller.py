@@ -89,6 +89,10 @@ class Controller:
         """The same controller, driving otherwise."""
         return Controller(self._vendor, self.robot, model, self.sampling)
 
+    def with_robot(self, robot: Robot) -> Controller:
+        """The same controller of another robot, driven by the same model."""
+        return Controller(self._vendor, robot, self.model, self.sampling)
+
     def run(
         self,
         program: Program,

@@ -324,13 +324,16 @@ def test_a_path_through_a_singular_posture_is_refused_and_one_nearby_noted(abb) 
     home = np.array([0.1, 0.2, 0.3, 0.2, 0.4, 0.1])
     start = JointTarget(tuple(home))
 
-    def target(j5):
+    def target(j5, aside=0.0):
         q = home.copy()
         q[4] = j5
+        q[0] += aside
         return PoseTarget(abb.robot.flange_pose(q))
 
+    # To the side, the wrist would have to turn over at its straight posture.
+    moves = MoveL(target(0.0), SPEED), MoveL(target(0.4, 0.3), SPEED)
     with pytest.raises(MotionError, match="singular"):
-        abb.controller().run(Program((MoveL(target(0.0), SPEED),), start=start))
+        abb.controller().run(Program(moves, start=start))
     near = abb.controller(MotionModel()).run(Program((MoveL(target(5e-4), SPEED),), start=start))
     assert any("near a singular configuration" in note.message for note in near.notes)
 

@@ -1,0 +1,98 @@
+"""The arms that vendors list: each loads, stands where it should, and is found by its names."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import flyby
+from flyby.core.errors import InputError
+from flyby.core.registry import find_robot, installed
+from flyby.core.robot.catalogue import SPREAD, TRUST
+
+VENDORS = Path(flyby.__file__).parent / "vendors"
+ROWS = [
+    json.loads(line)
+    for file in sorted(VENDORS.glob("*/data/arms.jsonl"))
+    for line in file.read_text("utf-8").splitlines()
+]
+DRIVEN = [row for row in ROWS if "robot" in row]
+
+
+def test_there_are_as_many_as_are_promised() -> None:
+    assert len(installed().robot_names) >= 250
+
+
+@pytest.mark.parametrize("vendor", ["abb", "kuka", "ur"])
+def test_each_arm_stands_where_it_should(vendor) -> None:
+    """Check points of an independent forward kinematics; both kinds of inverse come back."""
+    rng = np.random.default_rng(0)
+    for row in DRIVEN:
+        if not row["name"].startswith(f"{vendor}/"):
+            continue
+        robot = find_robot(row["name"])
+        at = robot.flange_pose(np.array(row["check"]["q_rad"])).position
+        np.testing.assert_allclose(1e3 * np.array(at), row["check"]["flange_mm"], atol=0.005)
+        q = rng.uniform(robot.limits.lower, robot.limits.upper)
+        pose = robot.flange_pose(q)
+        found = [solution.q for solution in robot.inverse(pose)]
+        apart = [np.abs(np.remainder(x - q + np.pi, 2 * np.pi) - np.pi).max() for x in found]
+        assert min(apart) < 1e-6, robot.name
+        for x in found:
+            np.testing.assert_allclose(robot.flange_pose(x).matrix(), pose.matrix(), atol=1e-8)
+
+
+def test_what_is_assumed_has_a_spread() -> None:
+    for row in DRIVEN:
+        robot = row["robot"]
+        for group in SPREAD:
+            assumed = robot["origin"][group].startswith("assumed")
+            assert assumed == (group in robot.get("spread", {})), (row["name"], group)
+        for origin in robot["origin"].values():
+            assert origin.split(":")[0] in TRUST
+        assert row["payload_kg"] == robot["payload_kg"]
+
+
+@given(row=st.sampled_from(ROWS))
+def test_each_is_found_by_its_makers_name(row) -> None:
+    found = {arm.name for arm in installed().robots_like(row["model"])}
+    assert row["name"] in found
+    assert row["name"] in {arm.name for arm in installed().robots_like(row["model"].lower())}
+
+
+@given(name=st.text(max_size=40))
+def test_no_name_crashes(name) -> None:
+    for arm in installed().robots_like(name):
+        assert arm.name.partition("/")[0] in installed().vendors
+
+
+CALLED = {
+    "IRB 120": "abb/irb120-3-058",
+    "irb120-3/0.6": "abb/irb120-3-058",
+    "abb/IRB 4600-40/2.55": "abb/irb4600-40-255",
+    "#KR6R900 C4SR FLR": "kuka/kr6-r900-sixx",
+    "KR 120 R2700-2": "kuka/kr120-r2700-2",
+    "UR 5e": "ur/ur5e",
+    "ur5e": "ur/ur5e",
+}
+
+
+@pytest.mark.parametrize("name", CALLED)
+def test_names_that_people_and_controllers_write(name) -> None:
+    assert installed().robot_called(name) == CALLED[name]
+    assert find_robot(name).name == CALLED[name]
+
+
+def test_where_several_may_be_meant_they_are_offered() -> None:
+    with pytest.raises(InputError, match=r"which\? .*kr210-2 \(210 kg, 2\.701 m\)"):
+        find_robot("KR 210")
+
+
+def test_an_arm_that_is_not_modelled_says_why() -> None:
+    with pytest.raises(InputError, match=r"IRB 2400.* cannot be driven: a rod drives"):
+        find_robot("IRB 2400/16 (20/1.55)")
