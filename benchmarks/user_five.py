@@ -2,7 +2,8 @@
 
     FLYBY_LOGS=… python benchmarks/user_five.py [--json] [--case real-1]
 
-The fit begins with the shipped motion model of the IRB 6640, as a user's would. A case is a split
+The fit begins with the shipped motion model of the IRB 6640, as a user's would, and is that of
+`flyby identify` without ``--fit``: figures of the type, or of the robot's servos. A case is a split
 of a source's runs into five to learn from, five to judge by, and the rest, drawn by the case's
 number:
 
@@ -34,7 +35,7 @@ from flyby.core.arrays import FloatArray
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.registry import find_robot, find_vendor
-from flyby.identification.fit import ParameterSet, PreparedRun, fit_held, prepare
+from flyby.identification.fit import ParameterSet, PreparedRun, fit_usual, prepare
 from flyby.identification.fit.minimum import minimise
 from flyby.identification.fit.outcome import predicted
 from flyby.identification.fit.parameters import fitted_before
@@ -108,7 +109,7 @@ def measure(case: str) -> Iterator[Figure]:
     kind, _, number = case.partition("-")
     taught, others = runs_of(kind, int(number))
     begin = time.process_time()
-    held = fit_held(ParameterSet.named(TYPE, fitted_before(TYPE)), taught, 1)
+    held = fit_usual(TYPE, ROBOT, taught)
     spent = time.process_time() - begin
     judgement = held.judgement
     handed_out = judgement is not None and judgement.better

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.display import counted
-from ..core.door import given
-from ..core.errors import InputError
+from ..core.door import given, spelt
+from ..core.errors import InputError, OptionError
 from .catalogue import registry
 from .options.entries import COUNT, Extent, number, value
 from .options.keywords import by_keywords
@@ -20,7 +20,7 @@ from .setup import RobotOptions, setup_of
 if TYPE_CHECKING:
     from ..core.robot.model import Robot
     from ..core.vendor import Vendor
-    from ..identification.fit import Fit, HeldFit, Outcome, ParameterSet, PreparedRun
+    from ..identification.fit import Fit, HeldFit, Outcome, PreparedRun
     from ..identification.fit.selection import Score
     from ..identification.logs import LoggedRun
     from .results.identified import IdentifiedModel
@@ -35,7 +35,7 @@ class IdentifyOptions(RobotOptions):
         (),
         "A figure to fit, as the motion file calls it, maybe with its start: "
         "'blend.tcp.beta[0] = 0', 'time.smoothing_s[*]'. May be given several times; without it, "
-        "what the vendor's figures were fitted by.",
+        "what the vendor's figures were fitted by, or the servos of a real robot.",
         several=True,
     )
     columns: str | Path | None = value(
@@ -70,10 +70,16 @@ def identify_with(
         InputError: no run of the robot is found, or one cannot be read or fitted.
     """
     from ..identification.fit import outcomes
+    from ..identification.fit.parameters import check_text
     from ..identification.logs import load_columns
     from .files.logged_runs import find_runs
     from .results.identified import IdentifiedModel
 
+    for text in options.parameters:
+        try:
+            check_text(text)
+        except InputError as error:
+            raise OptionError(f"{spelt('parameters')}: {error}") from error
     paths = [Path(log) for log in ([logs] if isinstance(logs, str | Path) else logs)]
     setup = setup_of(options)
     owner, arm = setup.vendor, setup.robot
@@ -85,9 +91,7 @@ def identify_with(
     if options.found is not None:
         options.found(found.files)
     prepared = _prepare(found.runs, owner, arm, options)
-    chosen = _parameters(owner, arm, options.parameters)
-    options.say(f"fitting {counted(chosen.size, 'parameter')} to {counted(prepared, 'run')}")
-    held = _fit(chosen, prepared, options)
+    held = _fit(owner, arm, prepared, options)
     fitted = held.fit
     options.say("emulating all runs before and after")
     each = outcomes(fitted)
@@ -112,30 +116,27 @@ def _prepare(
     return made
 
 
-def _parameters(vendor: Vendor, robot: Robot, texts: Sequence[str]) -> ParameterSet:
-    from ..identification.fit import ParameterSet, usual_parameters
-
-    model = vendor.motion_of(robot)
-    return ParameterSet.named(model, list(texts) or usual_parameters(model, robot))
-
-
-def _fit(parameters: ParameterSet, runs: list[PreparedRun], options: IdentifyOptions) -> HeldFit:
+def _fit(
+    vendor: Vendor, robot: Robot, runs: list[PreparedRun], options: IdentifyOptions
+) -> HeldFit:
     from ..core.sqp import Iteration
-    from ..identification.fit import fit_held
+    from ..identification.fit import ParameterSet, fit_held, fit_usual
 
     def watch(iteration: Iteration) -> None:
         options.say(
-            f"fitting {counted(parameters.size, 'parameter')} to {counted(runs, 'run')}: iteration "
-            f"{iteration.number}, loss {iteration.objective:.4g}"
+            f"fitting {what} to {counted(runs, 'run')}: iteration {iteration.number}, loss "
+            f"{iteration.objective:.4g}"
         )
 
-    return fit_held(
-        parameters,
-        runs,
-        options.workers,
-        watch,
-        lambda text: options.say(f"fitting with runs held back: {text}"),
-    )
+    def tell(text: str) -> None:
+        options.say(f"fitting with runs held back: {text}")
+
+    model, what = vendor.motion_of(robot), "figures"
+    if not options.parameters:
+        return fit_usual(model, robot, runs, options.workers, watch, tell)
+    chosen = ParameterSet.named(model, list(options.parameters))
+    what = counted(chosen.size, "parameter")
+    return fit_held(chosen, runs, options.workers, watch, tell)
 
 
 def _select(fitted: Fit, trait: str, options: IdentifyOptions) -> list[Score]:

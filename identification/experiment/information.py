@@ -64,6 +64,9 @@ _STEP = 0.02
 """Of a difference quotient, in standard deviations."""
 
 
+_Base = tuple[Path, Timing, States]
+
+
 @dataclass(frozen=True)
 class StudiedFigure:
     """A figure of the motion model.
@@ -210,9 +213,10 @@ class Informer:
         timing = controller.stamp(program, path)
         t = np.arange(0.0, timing.duration, self.period)
         q, dq, ddq = states = _commanded(controller, program, path, timing, t)
-        rubbed = _rubbed(controller, program, path, timing, t, states)
+        base = path, timing, states
+        rubbed = _rubbed(controller, program, *base, t)
         columns = [
-            (self._shifted(figure, program, path, start, t) - q - rubbed).ravel() / _STEP
+            (self._shifted(figure, program, base, start, t) - q - rubbed).ravel() / _STEP
             if figure.shows_in(program)
             else np.zeros(q.size)
             for figure in self.figures
@@ -225,17 +229,25 @@ class Informer:
         return _information(np.stack(columns, axis=1), clock)
 
     def _shifted(
-        self, figure: StudiedFigure, program: Program, path: Path, start: JointTarget, t: FloatArray
+        self,
+        figure: StudiedFigure,
+        program: Program,
+        base: _Base,
+        start: JointTarget,
+        t: FloatArray,
     ) -> FloatArray:
-        """(T, N), the command where a figure is a step larger."""
+        """(T, N), the joints where a figure is a step larger."""
         value = figure.value + _STEP * figure.spread
         model = with_value(self.model, figure.key, value)
         controller = Controller(self.vendor, self.robot, model)
-        if first_change(self.model, model) is Stage.PATH:
+        path, timing, states = base
+        stage = first_change(self.model, model)
+        if stage is Stage.PATH:
             path = controller.plan(program, start)
-        timing = controller.stamp(program, path)
-        states = _commanded(controller, program, path, timing, t)
-        return states[0] + _rubbed(controller, program, path, timing, t, states)
+        if stage in (Stage.PATH, Stage.TIMING):
+            timing = controller.stamp(program, path)
+            states = _commanded(controller, program, path, timing, t)
+        return states[0] + _rubbed(controller, program, path, timing, states, t)
 
     def precision(self, information: FloatArray) -> tuple[Precision, ...]:
         """What is known of each figure after runs with this information, (K, K)."""
@@ -263,8 +275,8 @@ def _rubbed(
     program: Program,
     path: Path,
     timing: Timing,
-    t: FloatArray,
     states: States,
+    t: FloatArray,
 ) -> FloatArray:
     """(T, N), how far friction sets the joints off."""
     if not controller.model.servo.rubs:

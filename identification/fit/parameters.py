@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -72,20 +73,45 @@ def parameter(model: MotionModel, text: str) -> FittedParameter:
         InputError: there is no such key, what stands there is not fitted, or the model has no
             value there and the text names none.
     """
+    read = _read(text)
+    keys, usual = read.keys, fit_of(read.keys[0])
+    start = _first(model, keys[0]) if read.start is None else read.start
+    for key in keys:
+        with_value(model, key, start)
+    lower, upper = min(usual.lower, start), max(usual.upper, start)
+    scale = usual.scale or _SHARE * abs(start) or _SHARE
+    lower, upper = read.bounds or (lower, upper)
+    return FittedParameter(keys, start, lower, upper, scale, _known(model, keys, scale))
+
+
+class _Read(NamedTuple):
+    """What a text says of a parameter."""
+
+    keys: tuple[str, ...]
+    start: float | None
+    bounds: tuple[float, float] | None
+
+
+def check_text(text: str) -> None:
+    """Whether a text names figures that are fitted, whatever the model.
+
+    Raises:
+        InputError: it does not.
+    """
+    _read(text)
+
+
+def _read(text: str) -> _Read:
     found = _TEXT.fullmatch(text)
     if found is None:
         raise InputError(f"{text!r} names no parameter: 'key', 'key = start in lower .. upper'")
     keys = tuple(key.strip() for key in found["keys"].split("+"))
-    usual = fit_of(keys[0])
-    start = _first(model, keys[0]) if found["start"] is None else _number(found["start"], text)
     for key in keys:
         fit_of(key)
-        with_value(model, key, start)
-    lower, upper = min(usual.lower, start), max(usual.upper, start)
-    scale = usual.scale or _SHARE * abs(start) or _SHARE
-    if found["lower"] is not None:
-        lower, upper = _number(found["lower"], text), _number(found["upper"], text)
-    return FittedParameter(keys, start, lower, upper, scale, _known(model, keys, scale))
+    start = None if found["start"] is None else _number(found["start"], text)
+    if found["lower"] is None:
+        return _Read(keys, start, None)
+    return _Read(keys, start, (_number(found["lower"], text), _number(found["upper"], text)))
 
 
 def _known(model: MotionModel, keys: tuple[str, ...], scale: float) -> float:

@@ -145,12 +145,11 @@ def test_columns_that_are_missing_or_double(
     ("status", "arguments", "message"),
     [
         (1, ("--robot", ROBOT, "--vendor", "kuka"), "is driven by abb"),
-        (
-            1,
-            ("--robot", ROBOT, "--fit", "time.nonsense"),
-            "unknown key of a motion model",
-        ),
-        (1, ("--robot", ROBOT, "--fit", "zone.overlap"), "is not fitted"),
+        (2, ("--robot", ROBOT, "--fit", "time.nonsense"), "--fit: unknown key of a motion model"),
+        (2, ("--robot", ROBOT, "--fit", "zone.overlap"), "is not fitted"),
+        (2, ("--robot", ROBOT, "--fit", "time.settling_s = x"), "'x' is no number"),
+        (2, ("--robot", ROBOT, "--fit", "time.smoothing_s[a]"), "an index is [2]"),
+        (1, ("--robot", ROBOT, "--fit", "torque.carried[7].share_s2_per_m2[0]"), "states nothing"),
         (2, (), "which robot"),
     ],
 )
