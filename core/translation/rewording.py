@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from ..errors import Span
-from ..program.event import Event
+from ..program.event import Event, EventAnchor
 from ..program.move import Move, Opaque, Statement, Wait
 from ..program.program import Program
 from ..program.section import moved
@@ -133,15 +133,25 @@ class Rewording:
     # -------------------------------------------------------------------------- moves
 
     def _move(self, move: Move) -> list[Statement]:
-        events, found = [], list[Statement]()
+        events, found, behind = [], list[Statement](), list[Statement]()
         for event in move.events:
             action = self._action_of(event)
             said = None if action is None else self._on_the_way(action, event.span)
-            if said is None or not self._takes(event, move):
+            if said is None and action is not None and _at_target(event):
+                behind += self._behind(action, event.span)
+            elif said is None or not self._takes(event, move):
                 found += self._event(event)
             else:
                 events.append(replace(event, text=said.text))
-        return [*found, replace(move, events=tuple(events))]
+        return [*found, replace(move, events=tuple(events)), *behind]
+
+    def _behind(self, action: SetSignal, span: Span | None) -> list[Opaque]:
+        """An output of a move's target, in a language that has no words for the way to it."""
+        words = self.target.vendor.speaks
+        assert words is not None and words.signals is not None
+        said = words.signals.said(action)
+        assert said is not None  # it has been asked for
+        return [Opaque(said, words.signals.stops, span)]
 
     def _action_of(self, event: Event) -> SetSignal | None:
         old = self.source.vendor.speaks
@@ -168,3 +178,7 @@ class Rewording:
     def _event(self, event: Event) -> list[Opaque]:
         self.losses.statement(event.span, f"an event on the way becomes a comment: {event.text}")
         return self._commented(event.text, event.span)
+
+
+def _at_target(event: Event) -> bool:
+    return event.anchor is EventAnchor.END and event.distance == 0 and event.time == 0

@@ -259,6 +259,26 @@ ENDMODULE
     assert texts[-1] == "# PulseDO \\PLength:=0.5, doGrip;"
 
 
+@pytest.mark.parametrize("name", NEW)
+def test_outputs_at_a_target_are_set_there(name) -> None:
+    text = (
+        HEAD
+        + """    MoveLDO p1, v500, z20, tGrip, doGrip, 1;
+    MoveL p0, v500, fine, tGrip;
+  ENDPROC
+ENDMODULE
+"""
+    )
+    program = made_of(text, name).program
+    if name.startswith("kuka/"):
+        assert [e.text for e in program.moves[1].events] == ["$OUT[3]=TRUE"]
+    else:
+        assert isinstance(program.moves[1].zone, Radius)
+        behind = program.statements[program.statements.index(program.moves[1]) + 1]
+        assert behind == Opaque("set_standard_digital_out(1, True)")
+    written(made_of(text, name), name, "keep")
+
+
 def test_what_cannot_be_driven_as_written_is_refused_with_the_old_line() -> None:
     made = made_of(PICKS, "kuka/kr30-3", cycles=2)
     name, robot = "kuka/kr30-3", find_robot("kuka/kr30-3")
