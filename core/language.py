@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 if TYPE_CHECKING:
+    from .backup.backup import Backup
     from .program.program import Program
     from .robot.model import Robot
     from .source.reading import Files, ReadOptions
@@ -85,3 +86,33 @@ class Recorder(Protocol):
 
 class Language(Reader, Writer, Patcher, Recorder, Protocol):
     """All four."""
+
+
+@runtime_checkable
+class BackupOpener(Protocol):
+    """Opens backups of the vendor's controllers."""
+
+    def root_in(self, names: Sequence[str]) -> str | None:
+        """Where a backup begins among files, by what marks it.
+
+        Args:
+            names: of all files, below what the user named, with ``/`` between folders.
+
+        Returns:
+            The folder, ``""`` for the outermost one; None if the vendor has no backup there.
+        """
+        ...
+
+    def open(self, source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
+        """The backup in a folder.
+
+        Args:
+            source: what the user named.
+            root: the folder that `root_in` told, on disk.
+            find_robot: an arm by a name as people or controllers write it; raises `InputError`
+                where there is none, or several may be meant.
+
+        Raises:
+            InputError: nothing of it can be read. What single files lack is noted instead.
+        """
+        ...

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from .display import counted, in_line
 from .errors import InputError, UnknownNameError
-from .language import Language, Patcher, Reader, Recorder, Sources, Writer
+from .language import BackupOpener, Language, Patcher, Reader, Recorder, Sources, Writer
 from .robot.arm_list import ArmList
 
 if TYPE_CHECKING:
@@ -59,6 +59,7 @@ class Vendor:
         machine_data: a robot as a file of its own controller describes it; None if none is read.
         listed: what is said of each arm that the vendor lists, drivable or not, by its name
             (`core.robot.arm_list`); none if nothing is known but names.
+        backups: loads what opens backups of the vendor's controllers; None if none are read.
         nearest: whether a target whose configuration data contradict it is driven to in the
             solution nearest to where the robot comes from, instead of being a fault.
 
@@ -81,6 +82,7 @@ class Vendor:
     speaks: Dialect | None = None
     machine_data: Callable[[Robot, Path], Robot] | None = None
     listed: Callable[[], Mapping[str, Listed]] = dict
+    backups: Callable[[], BackupOpener] | None = None
     nearest: bool = False
 
     def __post_init__(self) -> None:
@@ -286,7 +288,8 @@ def vendor_of(package: str, folder: Path, language: Language, **others: Any) -> 
     Args:
         package: its name; the function ``label`` of its module ``motion.configuration`` is the
             vendor's, and ``with_machine_data`` of a module ``machine_data``, where there is one,
-            reads the files of its controllers.
+            reads the files of its controllers; ``OPENER`` of ``backup.opener`` opens their
+            backups.
         folder: where it is; robots, motion files and the list of arms stand in ``data``.
         language: reader, writer, patcher and recorder.
         others: see `Vendor`.
@@ -302,6 +305,10 @@ def vendor_of(package: str, folder: Path, language: Language, **others: Any) -> 
         reading = import_module(".machine_data", package)  # seldom needed
         return cast("Robot", reading.with_machine_data(robot, file))
 
+    def opener() -> BackupOpener:
+        opening = import_module(".backup.opener", package)  # seldom needed
+        return cast("BackupOpener", opening.OPENER)
+
     return Vendor(
         name=folder.name,
         robots={**arms.robots(), **lazy_robots(data.glob("robots/*.toml"))},
@@ -314,6 +321,7 @@ def vendor_of(package: str, folder: Path, language: Language, **others: Any) -> 
         patcher=language,
         recorder=language,
         machine_data=described if (folder / "machine_data.py").is_file() else None,
+        backups=opener if (folder / "backup" / "opener.py").is_file() else None,
         **others,
     )
 

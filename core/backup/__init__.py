@@ -1,0 +1,1 @@
+"""Backups of controllers as they lie on disk: robots, tasks, data, signals."""
