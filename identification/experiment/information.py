@@ -242,8 +242,9 @@ class Informer:
         controller = Controller(self.vendor, self.robot, model)
         path, timing, states = base
         stage = first_change(self.model, model)
-        if stage is Stage.PATH:
-            path = controller.plan(program, start)
+        path = (
+            controller.plan(program, start) if stage is Stage.PATH else replace(path, model=model)
+        )
         if stage in (Stage.PATH, Stage.TIMING):
             timing = controller.stamp(program, path)
             states = _commanded(controller, program, path, timing, t)

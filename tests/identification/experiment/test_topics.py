@@ -201,6 +201,15 @@ def test_topics_take_turns_until_all_pairs_are_covered(random, count) -> None:
     assert len(first) == len(options) and not choice.missing()
 
 
+def test_short_legs_show_the_least_time_of_zones() -> None:
+    plan = replace(SMALL, about=(Topic.SHORT_LEGS,), radii=(0.001,), speeds=(7.0,))
+    made = designed("abb/irb6640-180-255", plan)
+    (run,) = runs_of(made, Kind.SHORT_LEGS)
+    assert {one.what for one in run.purpose.alternatives} >= {"zones take no least time"}
+    (known,) = (one for one in made.precision if one.key == "zone.least_time_s")
+    assert known.after < 0.2 * known.before
+
+
 def test_keys_of_one_list_are_told_together() -> None:
     keys = ("servo.friction_rad[0]", "servo.friction_rad[2]", "zone.pace")
     assert grouped(keys) == "servo.friction_rad[0, 2], zone.pace"
