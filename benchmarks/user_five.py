@@ -52,7 +52,7 @@ TYPE = ABB.motion_of(ROBOT)
 STUDIO, REAL = "abb_irb6640_robotstudio", "abb_irb6640_real"
 OTHER = ("movel2", "close", "lcl", "lll", "smooth", "ori__vmax", "movec_30_ori", "c_30_car__vmax")
 """In the names of RobotStudio's runs that the shipped figures were not fitted to."""
-SPLITS = {"other": 2, "real": 3, "same": 1, "changed": 2}
+SPLITS = {"other": 2, "real": 5, "same": 1, "changed": 2}
 FIVE = 5
 OFF = 0.2
 TINY = 1e-3
