@@ -1,4 +1,4 @@
-"""Inverse dynamics of a tree of joints, by Pinocchio."""
+"""Inverse dynamics of a tree of joints, by Pinocchio; their reverse is our own."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from ..arrays import FloatArray
 from ..spatial.pose import Pose, Vector3
 from .inertia import Inertia
 from .joint import Joint, JointKind
+from .kinematics.chain import Chain
+from .torque_gradient import TreeBodies, pull_torques
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +59,7 @@ class Dynamics:
         # Pinocchio's order of values is that of the nodes.
         self._order = np.array([node.index for node in tree.nodes])
         self._unknown = [node.index for node in tree.nodes if node.body is None]
+        self._bodies, self._gravity = _bodies(tree), np.array(tree.gravity)
 
     @staticmethod
     def of(tree: JointTree) -> Dynamics:
@@ -89,6 +92,15 @@ class Dynamics:
         parts[:, :, self._unknown] = np.nan
         return parts[0], parts[1], parts[2]
 
+    def pull_torques(
+        self, states: tuple[FloatArray, FloatArray, FloatArray], weight: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Gradients (M, N) of Σ_j weight_j τ_j with respect to q, q̇ and q̈, (M, N) each.
+
+        A torque that is not known has no part in it.
+        """
+        return pull_torques(self._bodies, self._gravity, states, weight)
+
 
 @lru_cache(maxsize=64)
 def _cached(tree: JointTree) -> Dynamics:
@@ -111,6 +123,29 @@ def _pinocchio_model(tree: JointTree) -> Any:
         model.appendBodyToJoint(identity, inertia, pin.SE3.Identity())
         ids.append(identity)
     return model
+
+
+def _bodies(tree: JointTree) -> TreeBodies:
+    placed = [node.step.matrix() @ node.joint.placement.matrix() for node in tree.nodes]
+    bodies = [node.body or Inertia(0.0) for node in tree.nodes]
+    axes = np.array([node.joint.axis for node in tree.nodes], dtype=float)
+    joints = Chain(
+        np.array([matrix[:3, :3] for matrix in placed]),
+        np.array([matrix[:3, 3] for matrix in placed]),
+        axes / np.linalg.norm(axes, axis=1, keepdims=True),
+        np.array([node.joint.kind is JointKind.PRISMATIC for node in tree.nodes]),
+        np.array([node.index for node in tree.nodes]),
+        np.ones(len(axes)),
+        np.eye(3),
+        np.zeros(3),
+    )
+    return TreeBodies(
+        joints,
+        np.array([node.parent for node in tree.nodes]),
+        np.array([body.mass for body in bodies], dtype=float),
+        np.array([body.centre for body in bodies], dtype=float),
+        np.array([body.tensor for body in bodies], dtype=float),
+    )
 
 
 def _joint_model(joint: Joint) -> Any:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ from .kinematics.ur_geometry import solve_parallel_axes
 FULL_TURN = 2 * math.pi
 LIMIT_SLACK = 1e-9
 """rad or m by which a solution may miss a limit; it is set onto the limit."""
+_BRANCHES = tuple(product((False, True), repeat=3))
 UNSURE = 1e-6
 """m out of reach that rounding near two singularities may feign: Newton's method decides."""
 SINGULAR = 1e-6
@@ -93,14 +95,42 @@ class UnboundedSolution:
     doubtful: bool
 
 
+class Ranges(NamedTuple):
+    """Where the n joints of an arm may stand.
+
+    Args:
+        lower, upper: (n,) rad or m.
+        revolute: (n,), which of them turn.
+    """
+
+    lower: FloatArray
+    upper: FloatArray
+    revolute: NDArray[np.bool_]
+
+    @staticmethod
+    def of(joints: Sequence[Joint]) -> Ranges:
+        """Those of some joints."""
+        return Ranges(
+            np.array([joint.lower for joint in joints]),
+            np.array([joint.upper for joint in joints]),
+            np.array([joint.kind is JointKind.REVOLUTE for joint in joints]),
+        )
+
+
 def solve(
-    chain: Chain, joints: Sequence[Joint], known: Recognised | None, R: FloatArray, p: FloatArray
+    chain: Chain,
+    joints: Sequence[Joint],
+    ranges: Ranges,
+    known: Recognised | None,
+    R: FloatArray,
+    p: FloatArray,
 ) -> tuple[InverseSolution, ...]:
     """All solutions within limits for a flange pose in the base's frame.
 
     Args:
         chain: from the base to the flange, over the n joints.
         joints: the arm's joints.
+        ranges: theirs.
         known: the closed form that fits the chain; None to search numerically, where not every
             solution need be found, and of an arm with more than six joints only samples can be.
         R, p: (3, 3), (3,) m, the pose.
@@ -109,12 +139,12 @@ def solve(
         UnreachableError: there is none.
     """
     if known is None:
-        candidates, least = _searched(chain, joints, R, p)
+        candidates, least = _searched(chain, ranges, R, p)
     else:
         candidates, least = _closed_form(chain, known, R, p)
     if not candidates:
         raise UnreachableError(_out_of_reach(known, least), least)
-    settled, inside = _settled(joints, np.array([candidate.q for candidate in candidates]))
+    settled, inside = _settled(ranges, np.array([candidate.q for candidate in candidates]))
     solutions: list[InverseSolution] = []
     for candidate, q, fits in zip(candidates, settled, inside, strict=True):
         if not fits or (candidate.doubtful and any(_same(candidate, q, s) for s in solutions)):
@@ -131,26 +161,25 @@ def _closed_form(
     q, measures = np.empty((8, 6)), np.empty((8, 4))
     least = float(SOLVERS[known.family](known.geometry, R, p, q, measures))
     candidates = []
-    for number, bits in enumerate(product((False, True), repeat=3)):
-        *sizes, missing = measures[number]
+    for number, (bits, (*sizes, missing)) in enumerate(
+        zip(_BRANCHES, measures.tolist(), strict=True)
+    ):
         if missing > max(UNSURE, known.error):
             continue
         ideal = known.error <= EXACT and missing <= SLACK
         if not ideal and not track(chain, q[number], R, p, np.arange(6), q[number])[0]:
             continue
         names = zip(("shoulder", "elbow", "wrist"), sizes, strict=True)
-        singular = frozenset(name for name, size in names if abs(size) < SINGULAR)
+        singular = frozenset([name for name, size in names if abs(size) < SINGULAR])
         doubtful = bool(singular) or not ideal
         candidates.append(UnboundedSolution(q[number], Branch(*bits), singular, doubtful))
     return candidates, least
 
 
 def _searched(
-    chain: Chain, joints: Sequence[Joint], R: FloatArray, p: FloatArray
+    chain: Chain, ranges: Ranges, R: FloatArray, p: FloatArray
 ) -> tuple[list[UnboundedSolution], float]:
-    lower = np.array([joint.lower for joint in joints])
-    upper = np.array([joint.upper for joint in joints])
-    found, least = solve_numerically(chain, lower, upper, R, p)
+    found, least = solve_numerically(chain, ranges.lower, ranges.upper, R, p)
     return [UnboundedSolution(q, None, frozenset(), True) for q in found], least
 
 
@@ -174,18 +203,16 @@ def _turns(joint: Joint, value: float) -> list[float]:
     return [min(max(x, joint.lower), joint.upper) for x in inside]
 
 
-def _settled(joints: Sequence[Joint], q: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
+def _settled(ranges: Ranges, q: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
     """Configurations (C, n) turned into the limits, nearest to zero, and which of them fit (C,)."""
-    lower = np.array([joint.lower for joint in joints])
-    upper = np.array([joint.upper for joint in joints])
-    revolute = np.array([joint.kind is JointKind.REVOLUTE for joint in joints])
+    lower, upper, revolute = ranges
     first = np.ceil((lower - LIMIT_SLACK - q) / FULL_TURN)
     last = np.floor((upper + LIMIT_SLACK - q) / FULL_TURN)
-    nearest = np.clip(np.round(-q / FULL_TURN), first, last)
+    nearest = np.minimum(np.maximum(np.round(-q / FULL_TURN), first), last)
     turned = np.where(revolute, q + FULL_TURN * nearest, q)
     inside = (turned >= lower - LIMIT_SLACK) & (turned <= upper + LIMIT_SLACK)
     fits: NDArray[np.bool_] = np.all(inside, axis=1)
-    return np.clip(turned, lower, upper), fits
+    return np.minimum(np.maximum(turned, lower), upper), fits
 
 
 def equivalent_turns(joints: Sequence[Joint], q: FloatArray) -> FloatArray:

@@ -18,7 +18,7 @@ from ..spatial.pose import IDENTITY, Pose, Vector3
 from .assembly import Stage, assemble
 from .dynamics import Dynamics, JointTree, TreeNode
 from .inertia import Inertia
-from .inverse import InverseSolution, equivalent_turns, solve
+from .inverse import InverseSolution, Ranges, equivalent_turns, solve
 from .joint import COLUMNS, ExternalAxis, ExternalRole, Joint, JointLimits
 from .kinematics.arm_geometry import Recognised, recognise
 from .kinematics.chain import Chain
@@ -128,6 +128,10 @@ class Robot:
             *(joint.name for joint in self.joints),
             *(axis.name for axis in self.external_axes),
         )
+
+    @cached_property
+    def _ranges(self) -> Ranges:
+        return Ranges.of(self.joints)
 
     @cached_property
     def limits(self) -> JointLimits:
@@ -271,7 +275,7 @@ class Robot:
         base_R, base_p = poses(self.base_chain, np.array([[0.0] * self.arm_size + list(external)]))
         R = base_R[0].T @ matrix[:3, :3]
         p = base_R[0].T @ (matrix[:3, 3] - base_p[0])
-        return solve(self.arm_chain, self.joints, self.recognised, R, p)
+        return solve(self.arm_chain, self.joints, self._ranges, self.recognised, R, p)
 
     def turns(self, q: ArrayLike) -> FloatArray:
         """Arm configurations (T, n) within limits, whole turns away from q (n,), nearest first."""
@@ -331,6 +335,20 @@ class Robot:
         """
         lead, rows = self._rows(q, dq, ddq)
         return self.dynamics(load).torques(*rows).reshape(*lead, self.size)
+
+    def pull_inverse_dynamics(
+        self, q: ArrayLike, dq: ArrayLike, ddq: ArrayLike, bar: ArrayLike, load: Inertia | None
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Reverse of `inverse_dynamics`: gradients (..., N) with respect to q, q̇ and q̈.
+
+        Args:
+            q, dq, ddq, load: as there.
+            bar: (..., N), gradient with respect to the torques.
+        """
+        lead, (*states, weight) = self._rows(q, dq, ddq, bar)
+        parts = self.dynamics(load).pull_torques((states[0], states[1], states[2]), weight)
+        a, b, c = (part.reshape(*lead, self.size) for part in parts)
+        return a, b, c
 
     def inverse_dynamics_derivatives(
         self, q: ArrayLike, dq: ArrayLike, ddq: ArrayLike, load: Inertia | None = None

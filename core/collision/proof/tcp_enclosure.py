@@ -25,7 +25,14 @@ from ...motion.path.branch_proof import (
     make_tube_work,
     stays_in_tube,
 )
-from ...motion.path.tcp_samples import CONVERGED, SINGULAR, States, make_scratch, state_at
+from ...motion.path.tcp_samples import (
+    CONVERGED,
+    SINGULAR,
+    States,
+    make_scratch,
+    set_places,
+    state_at,
+)
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_bounds import bias
 from ...robot.kinematics.chain_kernels import jacobians
@@ -132,7 +139,9 @@ def _find_middles(
         (M,), the pose error left at each.
     """
     count = samples.sigma.size
-    work, errors = make_scratch(states.q.shape[1], prescribed.size), np.empty(count)
+    errors = np.empty(count)
+    work = make_scratch(states.q.shape[1], prescribed.size, chain.joint.size)
+    set_places(solved, work)
     for m in range(count):
         errors[m], conditioning[m] = state_at(
             chain, solved, prescribed, curves, samples, m, samples.sigma[m], states, m, work

@@ -9,9 +9,9 @@ great as before. It leaves the path alone, unlike a moving average over the join
 where ℓ runs unevenly.)
 
 Between samples dλ/dℓ is linear in ℓ and ℓ a parabola in time, so that λ is a quartic in time: its
-integral over any part of an interval follows from three of its values (Gauss), and with it the
-average, its rate and the place on the path, all without steps in time. Only while time comes up to
-speed (`start_ramp`) λ is of a higher degree, and the integral as good as intervals are short.
+integral is known, and with it the average, its rate and the place on the path, all without steps in
+time. Only while time comes up to speed (`start_ramp`) λ is of a higher degree, and the integral,
+by three of its values (Gauss), as good as intervals are short.
 """
 
 from __future__ import annotations
@@ -22,8 +22,9 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...robot.kinematics.lean import inner, lean
+from ..path.between_states import joint_at
 from ..path.tcp_samples import States
-from ..timing.interval import Intervals, joint_at, progress
+from ..timing.interval import Intervals
 from ..timing.start_ramp import StartRamp, stamped_time
 
 _TURNING, _SWAYING = 0.1, 0.01
@@ -98,16 +99,20 @@ def _at(
 ) -> tuple[float, float]:
     """λ and its integral at a time from interval k on; before the first nothing has happened."""
     covered, area = way.covered[k], way.area[k]
-    since, until = way.since[k], min(t, way.until[k])
+    since, until = way.since[k], way.until[k]
     if t <= since:
         return covered, area + covered * (t - since)
+    stop, risen = min(t, until), starts + length
+    own, integral = _covered(n, way, starts, length, k, stop)
     # Where time has come up to speed its rate has a kink.
-    kink = min(max(starts + length, since), until)
-    area += (until - since) * covered
-    area += _integral(n, way, starts, length, k, since, kink)
-    area += _integral(n, way, starts, length, k, kink, until)
-    if t < way.until[k]:
-        return covered + _covered(n, way, starts, length, k, t), area
+    if stop <= risen:
+        integral = _integral(n, way, starts, length, k, since, stop)
+    elif since < risen:
+        integral -= _covered(n, way, starts, length, k, risen)[1]
+        integral += _integral(n, way, starts, length, k, since, risen)
+    area += (stop - since) * covered + integral
+    if t < until:
+        return covered + own, area
     return way.covered[k + 1], area + (t - until) * way.covered[k + 1]
 
 
@@ -115,25 +120,30 @@ def _at(
 def _integral(
     n: Intervals, way: _Way, starts: float, length: float, k: int, first: float, last: float
 ) -> float:
-    """Of λ covered in interval k, over driven times, by Gauss's three places."""
-    if last <= first:
-        return 0.0
+    """Of λ covered in interval k, over times that come up to speed, by Gauss's three places."""
     middle, reach = 0.5 * (first + last), _GAUSS * (last - first)
-    mean = 5.0 * _covered(n, way, starts, length, k, middle - reach)
-    mean += 8.0 * _covered(n, way, starts, length, k, middle)
-    mean += 5.0 * _covered(n, way, starts, length, k, middle + reach)
+    mean = 5.0 * _covered(n, way, starts, length, k, middle - reach)[0]
+    mean += 8.0 * _covered(n, way, starts, length, k, middle)[0]
+    mean += 5.0 * _covered(n, way, starts, length, k, middle + reach)[0]
     integral: float = (last - first) * mean / 18.0
     return integral
 
 
 @inner
-def _covered(n: Intervals, way: _Way, starts: float, length: float, k: int, t: float) -> float:
-    """λ covered in interval k until a driven time."""
-    stamped = stamped_time(t, starts, length)
-    z, _ = progress(n, k, stamped)
-    first, last = way.slope[n.sample[k]], way.slope[n.sample[k] + 1]
-    covered: float = n.spacing[k] * z * (first + 0.5 * z * (last - first))
-    return covered
+def _covered(
+    n: Intervals, way: _Way, starts: float, length: float, k: int, t: float
+) -> tuple[float, float]:
+    """λ covered in interval k until a driven time, and its integral over stamped time."""
+    since = stamped_time(t, starts, length) - n.begin[k]
+    tau = min(max(since, 0.0), n.end[k] - n.begin[k])
+    speed, change = n.x[k] ** 0.5, (n.x[k + 1] - n.x[k]) / (4.0 * n.spacing[k])
+    first = way.slope[n.sample[k]]
+    bend = 0.5 * (way.slope[n.sample[k] + 1] - first) / n.spacing[k]
+    # ℓ = τ (v + c τ), λ = s ℓ + b ℓ².
+    way_on = tau * (speed + change * tau)
+    square = speed * speed / 3.0 + tau * change * (0.5 * speed + 0.2 * change * tau)
+    integral = first * (0.5 * speed + change * tau / 3.0) + bend * tau * square
+    return way_on * (first + bend * way_on), tau * tau * integral
 
 
 @inner

@@ -12,7 +12,8 @@ motion there,
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -60,12 +61,23 @@ class JointMotion:
         t: (S,) s, increasing.
         q, dq: (S, N), positions and velocities.
         step: s, between knots that are even; zero where they are not.
+        means: of it, by window and step: `averaged` makes each once, whoever asks for commands.
     """
 
     t: FloatArray
     q: FloatArray
     dq: FloatArray
     step: float = 0.0
+    means: dict[tuple[float, float], JointMotion] = field(
+        default_factory=dict, repr=False, compare=False
+    )
+
+    @cached_property
+    def areas(self) -> FloatArray:
+        """(S, N), ∫ (q − q₀) dt from the first knot."""
+        areas = np.zeros(self.q.shape)
+        _fill_areas(self.t, self.q, self.dq, areas)
+        return areas
 
     def at(self, t: FloatArray) -> States:
         """Positions, velocities and accelerations (T, N) at times (T,) that do not decrease."""
@@ -77,7 +89,7 @@ class JointMotion:
     def averaged(self, window: float, t: FloatArray) -> States:
         """The same of the mean over the last ``window`` > 0 seconds."""
         out = _empty(len(t), self.q.shape[1])
-        _average(self.t, self.q, self.dq, _areas(self.t, self.q, self.dq), window, t, *out)
+        _average(self.t, self.q, self.dq, self.areas, window, t, *out)
         return out
 
 
@@ -128,13 +140,19 @@ class Smoothing:
 
 def averaged(motion: JointMotion, window: float, step: float) -> JointMotion:
     """The mean over the last ``window`` seconds of a motion, by knots ``step`` apart."""
+    if (window, step) not in motion.means:
+        motion.means[window, step] = _averaged(motion, window, step)
+    return motion.means[window, step]
+
+
+def _averaged(motion: JointMotion, window: float, step: float) -> JointMotion:
     if motion.step != step:
         t = even_times(motion.t[0], motion.t[-1] + window, step)
         q, dq, _ = motion.averaged(window, t)
         return JointMotion(t, q, dq, step)
     count = len(motion.t) + int(np.ceil(window / step))
     q, dq = np.empty((count, motion.q.shape[1])), np.empty((count, motion.q.shape[1]))
-    _average_evenly(motion.q, motion.dq, _areas(motion.t, motion.q, motion.dq), window, step, q, dq)
+    _average_evenly(motion.q, motion.dq, motion.areas, window, step, q, dq)
     return JointMotion(motion.t[0] + step * np.arange(count), q, dq, step)
 
 
@@ -148,13 +166,6 @@ def even_times(begin: float, end: float, step: float) -> FloatArray:
 
 def _empty(count: int, size: int) -> States:
     return np.empty((count, size)), np.empty((count, size)), np.empty((count, size))
-
-
-def _areas(t: FloatArray, q: FloatArray, dq: FloatArray) -> FloatArray:
-    """(S, N), ∫ (q − q₀) dt from the first knot."""
-    areas = np.zeros(q.shape)
-    _fill_areas(t, q, dq, areas)
-    return areas
 
 
 @lean

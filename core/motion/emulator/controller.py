@@ -32,11 +32,11 @@ from ..timing.energy import Energy, energy, loads_of
 from ..timing.limits import SegmentLimits
 from ..timing.programmed_durations import hold_durations, stamp_ramped
 from ..timing.rests import InPosition
-from ..timing.start_ramp import SUDDEN, StartRamp
+from ..timing.start_ramp import StartRamp
 from ..timing.timing import Settling, Timing, along_path, stamp_path
-from ..timing.torque import shares_taken, torque_shares
+from ..timing.torque import torque_shares
 from ..timing.torque_rows import Shares
-from .limit_violations import excesses, torque_excesses
+from .limit_violations import excesses, torque_excesses, torques_taken
 from .run import Run
 
 _SKIPS = 10_000
@@ -316,12 +316,14 @@ class Controller:
         position, quaternion = np.empty((len(q), 3)), np.empty((len(q), 4))
         chains = [self._routes.world_chain(move.tool, move.work_object) for move in moves]
         index = {id(chain): chain for chain in chains}
-        owner = np.array([id(chain) for chain in chains])[segment]
+        order = {key: n for n, key in enumerate(index)}
+        owner = np.array([order[id(chain)] for chain in chains])[segment]
         for part in stretches(t):
-            for key in np.unique(owner[part]):
-                rows = part.start + np.flatnonzero(owner[part] == key)
-                rotation, position[rows] = poses(index[key], np.ascontiguousarray(q[rows]))
-                quaternion[rows] = quaternion_from_matrix(rotation)
+            for n, chain in enumerate(index.values()):
+                rows = part.start + np.flatnonzero(owner[part] == n)
+                if len(rows):
+                    rotation, position[rows] = poses(chain, np.ascontiguousarray(q[rows]))
+                    quaternion[rows] = quaternion_from_matrix(rotation)
         return position, quaternion
 
     def _check_limits(self, program: Program, path: Path, stated: JointTarget | None) -> None:
@@ -370,23 +372,9 @@ class Controller:
         notes = excesses(timing, limits, names)
         if self.model.torque == WITHOUT_LIMIT:
             return notes
-        return notes + torque_excesses(self._torques_taken(timing, trajectory), names)
-
-    def _torques_taken(self, timing: Timing, trajectory: Trajectory) -> FloatArray:
-        """(M, L), the greatest shares of limits of torque on each move.
-
-        Where servos are off the command, or time comes up to speed, those of the motion as stamped.
-        """
-        servos = any(self.model.elasticity.lag) or not self.model.servo.still
-        stamped = servos or timing.ramp > 0.0 or timing.start != SUDDEN
-        torque = self.model.torque
-        taken = np.zeros((int(trajectory.move.max()) + 1, len(torque.own)))
-        for part in stretches(trajectory.t):
-            states = trajectory.q[part], trajectory.dq[part], trajectory.ddq[part]
-            if stamped:
-                states = timing.states_at(trajectory.t[part])
-            np.maximum.at(taken, trajectory.move[part], shares_taken(torque, self.robot, *states))
-        return taken
+        at = trajectory.t, trajectory.move
+        shares = torques_taken(self.model.torque, self.robot, timing, *at)
+        return notes + torque_excesses(shares, names)
 
     def _jerk_notes(self, program: Program) -> list[Note]:
         if self.model.jerk is not None or self.model.ramp > 0.0:

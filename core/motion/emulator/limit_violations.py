@@ -12,11 +12,14 @@ from ...errors import Note
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import motion
 from ...robot.kinematics.lean import inner, lean
+from ...robot.model import Robot
 from ..geometry.quintic import basis, bends, slopes
+from ..model.torque import Torque
 from ..path.tcp_samples import States
 from ..timing.limits import SegmentLimits
 from ..timing.timed_zones import ROOM
 from ..timing.timing import Timing
+from ..timing.torque import shares_taken
 
 _EXCESS = 1.004
 """Share of a limit from which on it is reported: between the places looked at, 1.005 at most."""
@@ -25,6 +28,8 @@ _CLOSE = 0.8
 _BENT = 0.416
 """How far a quartic is at most from the line between two of five even places, in multiples of the
 greatest second difference there: found by maximising over the place and the three differences."""
+_TOGETHER = 5000
+"""Times at which torques are worked out in one go."""
 _NEAR_SINGULAR = 0.01
 """Conditioning below which a singular configuration is what makes joints turn so unevenly."""
 _FEW, _MANY = np.linspace(0.0, 1.0, 5), np.linspace(0.05, 0.95, 10)
@@ -84,6 +89,40 @@ def excesses(timing: Timing, limits: SegmentLimits, axis_names: Sequence[str]) -
     return notes
 
 
+def torques_taken(
+    torque: Torque, robot: Robot, timing: Timing, t: FloatArray, move: IntArray
+) -> FloatArray:
+    """(M, L), the greatest shares of limits of torque on each move, at times t (T,) on it (T,).
+
+    Those of the motion as stamped, and of intervals where much is taken at an end: where little is
+    at both, it is not much more between.
+    """
+    taken = np.zeros((int(move.max()) + 1, len(torque.own)))
+    close = _torques_at_ends(timing) > _CLOSE
+    enters = np.zeros(len(t) + 1, dtype=np.int64)
+    np.add.at(enters, np.searchsorted(t, timing.begin[close]), 1)
+    np.subtract.at(enters, np.searchsorted(t, timing.end[close], side="right"), 1)
+    inside = np.flatnonzero(np.cumsum(enters[:-1]) > 0)
+    for first in range(0, len(inside), _TOGETHER):
+        rows = inside[first : first + _TOGETHER]
+        found = shares_taken(torque, robot, *timing.states_at(t[rows]))
+        np.maximum.at(taken, move[rows], found)
+    return taken
+
+
+def _torques_at_ends(timing: Timing) -> FloatArray:
+    """(K,), the greatest share of a limit of torque at the ends of each interval."""
+    shares, left = timing.path_limits.shares, timing.path.pieces.interval_samples
+    assert shares is not None
+    x, most = timing.stamp.x[:, None], np.zeros(len(left))
+    change = (x[1:] - x[:-1]) / (2 * timing.along.spacing[:, None])
+    for end, square in enumerate((x[:-1], x[1:])):
+        a, b, held, fade = (part[left + end] for part in shares)
+        taken = np.abs(a * change + b * square + held) + fade * square
+        np.maximum(most, taken.max(axis=1), out=most)
+    return most
+
+
 def torque_excesses(share: FloatArray, axis_names: Sequence[str]) -> list[Note]:
     """Moves on which a torque passes its limit, by the greatest shares on each, (M, L)."""
     notes = []
@@ -130,7 +169,7 @@ def _shares(
     """Write the greatest share of a limit that is taken within each of some intervals, and whose:
     N velocities of joints, of the TCP, of the tool's turn, N accelerations of joints."""
     axes = states.q.shape[1]
-    state, twist = np.empty((3, axes)), np.empty((2, 6))
+    state, twist = np.zeros((3, axes)), np.empty((2, 6))
     few, many = np.zeros((2 * axes + 2, _FEW.size)), np.zeros((2 * axes + 2, _MANY.size))
     limits = velocity, acceleration
     given = chain, states, spacing, x, intervals, left, owner, *limits, most, row
@@ -165,13 +204,16 @@ def _fill_shares(
         s, own = left[k], (spacing[k], x[k], x[k + 1])
         limits = velocity[owner[k]], acceleration[owner[k]]
         for m in range(at_few.size):
-            at = at_few[m], weights_few[m]
-            _look(chain, states, s, *own, *at, *limits, state, twist, few[:, m])
+            z = at_few[m]
+            _look(states, s, *own, z, weights_few[m], *limits, state, few[:, m])
+            _twist_between(states, s, *own, z, twist[0])
+            _look_at_tool(twist[0], limits[0], few[:, m])
         if not _may_pass(few):
             continue
         for m in range(at_many.size):
-            at = at_many[m], weights_many[m]
-            _look(chain, states, s, *own, *at, *limits, state, twist, many[:, m])
+            _look(states, s, *own, at_many[m], weights_many[m], *limits, state, many[:, m])
+            motion(chain, state[0], state[1], state[2], twist[0], twist[1])
+            _look_at_tool(twist[0], limits[0], many[:, m])
         for j in range(2 * axes + 2):
             peak = _peak(many, j)
             if peak > most[k]:
@@ -180,7 +222,6 @@ def _fill_shares(
 
 @inner
 def _look(
-    chain: Chain,
     states: States,
     s: int,
     h: float,
@@ -191,11 +232,10 @@ def _look(
     velocity: FloatArray,
     acceleration: FloatArray,
     state: FloatArray,
-    twist: FloatArray,
     share: FloatArray,
 ) -> None:
-    """Write the shares of limits at a place z in an interval, those of joints with their sign; what
-    weighs the samples' states for it is (3, 6)."""
+    """Write position and rate of joints at a place z in an interval, and their shares of limits,
+    with their sign; what weighs the samples' states for it is (3, 6)."""
     axes = states.q.shape[1]
     square, u = x0 + z * (x1 - x0), (x1 - x0) / (2 * h)
     pace = square**0.5
@@ -211,19 +251,30 @@ def _look(
         state[0, j], state[1, j] = value, slope * pace
         share[j] = slope * pace / velocity[j]
         share[axes + 2 + j] = (slope * u + bend * square) / acceleration[j]
-    share[axes] = share[axes + 1] = 0.0
-    if velocity[axes] == np.inf and velocity[axes + 1] == np.inf:
-        return
-    if z == 0.0 or z == 1.0:
-        for i in range(6):
-            twist[0, i] = pace * states.v[s + int(z), i]
-    else:
-        state[2] = 0.0
-        motion(chain, state[0], state[1], state[2], twist[0], twist[1])
+
+
+@inner
+def _twist_between(
+    states: States, s: int, h: float, x0: float, x1: float, z: float, twist: FloatArray
+) -> None:
+    """Write the TCP's twist (6,) at a place z in an interval, by the cubic that has the samples'
+    derivatives: enough to tell where to look closer."""
+    rest, pace = 1.0 - z, (x0 + z * (x1 - x0)) ** 0.5
+    w0, w1 = pace * rest * rest * (1.0 + 2.0 * z), pace * z * z * (1.0 + 2.0 * rest)
+    c0, c1 = pace * h * z * rest * rest, -pace * h * z * z * rest
+    for i in range(6):
+        value = w0 * states.v[s, i] + w1 * states.v[s + 1, i]
+        twist[i] = value + c0 * states.a[s, i] + c1 * states.a[s + 1, i]
+
+
+@inner
+def _look_at_tool(twist: FloatArray, velocity: FloatArray, share: FloatArray) -> None:
+    """Write the shares of limits that a TCP's twist takes."""
+    axes = velocity.size - 2
     for part in range(2):
         rate = 0.0
         for i in range(3 * part, 3 * part + 3):
-            rate += twist[0, i] * twist[0, i]
+            rate += twist[i] * twist[i]
         share[axes + part] = rate**0.5 / velocity[axes + part]
 
 

@@ -87,6 +87,11 @@ class Samples(NamedTuple):
     turning: IntArray
     prescribed: IntArray
 
+    def rows(self, start: int, stop: int) -> Samples:
+        """A view of some of them."""
+        own = slice(start, stop)
+        return Samples(self.sigma[own], self.position[own], self.turning[own], self.prescribed[own])
+
     def last(self) -> Samples:
         """The last sample alone."""
         return Samples(self.sigma[-1:], self.position[-1:], self.turning[-1:], self.prescribed[-1:])
@@ -118,6 +123,8 @@ def _parameter(window: FloatArray, sigma: float) -> float:
 def parameter_jet(window: FloatArray, sigma: float) -> tuple[float, float, float, float]:
     """s and its first three derivatives with respect to σ."""
     length = window[1]
+    if window[2] == 1.0 and window[3] == 1.0:
+        return (sigma - window[0]) / length, 1 / length, 0.0, 0.0
     s = _parameter(window, sigma)
     _, f1, f2, f3 = _map_jet(s, window[2], window[3])
     s1 = 1 / (f1 * length)
@@ -226,6 +233,12 @@ def evaluate(
         value: (3, D), written.
     """
     s0, s1, s2, _ = parameter_jet(curves.window[piece], sigma)
+    if curves.kind[piece] == LINE:
+        for d in range(value.shape[1]):
+            control = curves.control[piece, 1, d]
+            value[0, d] = curves.control[piece, 0, d] + control * s0
+            value[1, d], value[2, d] = control * s1, control * s2
+        return
     count = _basis(curves, piece, s0, basis)
     value[:, :] = 0.0
     for i in range(count):

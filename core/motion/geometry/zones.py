@@ -59,6 +59,7 @@ class ZonePlanner:
         self._moves = moves
         self._notes: list[Note] = []
         self._kept: dict[int, Reach] = {}
+        self._known_halves: dict[tuple[int, int], Reach | None] = {}
 
     def corners(self, zones: Sequence[Zone]) -> Corners:
         """The corners at the inner waypoints.
@@ -271,9 +272,12 @@ class ZonePlanner:
         return v * v * a.scaled(2.0).inverse()
 
     def _half(self, segment: int, corner: int) -> Reach | None:
-        return way_towards_neighbour(
-            self._segments, self._chains, segment, corner, self._model.neighbour_fraction
-        )
+        key = segment, corner
+        if key not in self._known_halves:
+            self._known_halves[key] = way_towards_neighbour(
+                self._segments, self._chains, segment, corner, self._model.neighbour_fraction
+            )
+        return self._known_halves[key]
 
     def _exit(self, segment: int, corner: int, size: Reach, angle: float) -> Reach:
         """Share of a segment inside the sphere round the waypoint of ``corner``."""

@@ -206,6 +206,7 @@ class Derivatives:
         route = self._path.route
         twist = np.concatenate([bar.ends.position, bar.ends.turn], axis=-1)
         J = self._end_jacobians()
+        back = _inverses(J[:, 1][..., route.solved])
         inherited = np.zeros(joints.shape[1])
         for k in range(len(route.moves) - 1, -1, -1):
             q_bar = bar.ends.q[k, 1] + inherited
@@ -215,7 +216,15 @@ class Derivatives:
                 self._leave(k + 1, bar, twist, J, q_bar, pose_bar, route.chains[k])
             move = self._program.moves[route.moves[k]]
             inherited = self._arrive(
-                move.target, route.moves[k], q_bar, pose_bar, J[k, 1], position, turn, joints
+                move.target,
+                route.moves[k],
+                q_bar,
+                pose_bar,
+                J[k, 1],
+                None if back is None else back[k],
+                position,
+                turn,
+                joints,
             )
         q_bar = bar.ends.q[0, 0] + inherited + J[0, 0].T @ twist[0, 0]
         q_bar[route.prescribed] += bar.ends.prescribed[0, 0]
@@ -246,6 +255,7 @@ class Derivatives:
         q_bar: FloatArray,
         pose_bar: FloatArray,
         J: FloatArray,
+        back: FloatArray | None,
         position: FloatArray,
         turn: FloatArray,
         joints: FloatArray,
@@ -262,7 +272,7 @@ class Derivatives:
             q_bar = q_bar + J.T @ pose_bar
             joints[index, :named] += q_bar[:named]
         else:
-            w = self._solved(index, J[:, route.solved], q_bar[route.solved])
+            w = self._solved(index, back, q_bar[route.solved])
             pose_bar = pose_bar + w
             held = q_bar.copy()
             held[route.prescribed] -= J[:, route.prescribed].T @ w
@@ -275,24 +285,24 @@ class Derivatives:
         passed[named:] = q_bar[named:]
         return passed
 
-    def _solved(self, index: int, J: FloatArray, q_bar: FloatArray) -> FloatArray:
-        """Reverse of inverse kinematics at a move's pose target; J is (6, 6).
+    def _solved(self, index: int, back: FloatArray | None, q_bar: FloatArray) -> FloatArray:
+        """Reverse of inverse kinematics at a move's pose target, by what `_inverses` says of it.
 
         Raises:
             MotionError: the arm is singular there, so that the derivative does not exist.
         """
-        if J.shape[1] != 6:
+        if back is None:
             name, size = self._robot.name, self._robot.arm_size
             problem = (
                 f"derivatives of pose targets need an arm of six or seven joints, {name} has {size}"
             )
-        elif not np.linalg.cond(J) < SINGULAR_TARGET:
+        elif not np.isfinite(back[0, 0]):
             problem = (
                 "the arm is singular at the target, where derivatives do not exist; use a joint "
                 "target, or another pose"
             )
         else:
-            return np.asarray(np.linalg.solve(J.T, q_bar), dtype=np.float64)
+            return q_bar @ back
         raise located(self._program.moves[index], index, problem)
 
     def _end_jacobians(self) -> FloatArray:
@@ -304,6 +314,16 @@ class Derivatives:
             flat = np.ascontiguousarray(q[rows].reshape(-1, q.shape[2]))
             J[rows] = jacobians(route.chains[rows[0]], flat).reshape(len(rows), 2, 6, -1)
         return J
+
+
+def _inverses(J: FloatArray) -> FloatArray | None:
+    """(M, 6, 6), of Jacobians (M, 6, n); NaN of singular ones, None if n is not six."""
+    if J.shape[2] != 6:
+        return None
+    singular = ~(np.linalg.cond(J) < SINGULAR_TARGET)
+    back = np.linalg.inv(np.where(singular[:, None, None], np.eye(6), J))
+    back[singular] = np.nan
+    return np.asarray(back)
 
 
 def _same(chains: Sequence[object]) -> list[list[int]]:

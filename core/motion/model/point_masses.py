@@ -27,7 +27,7 @@ from ...robot.kinematics.chain_kernels import (
     walk_speeds,
 )
 from ...robot.kinematics.lean import inner, lean
-from ...robot.kinematics.vectors import cross, dot, subtract
+from ...robot.kinematics.vectors import Vector, cross, dot, load, scale, subtract
 from ...robot.model import Robot
 
 
@@ -69,7 +69,8 @@ def mass_loads(
     at, weight = _weights(robot, masses, key, q.shape[1])
     if len(at):
         states = (np.ascontiguousarray(array) for array in (q, dq, ddq))
-        walk = np.empty((robot.chain.joint.size + 1, COLUMNS, 3))
+        # No further down the chain than the last mass.
+        walk = np.empty((int(at[-1]) + 1, COLUMNS, 3))
         _load(robot.chain, at, weight, np.array(robot.gravity), *states, *loads, walk)
     return loads
 
@@ -128,10 +129,16 @@ def _load(
         walk_motion(chain, q[m], dq[m], ddq[m], walk)
         for b in range(at.size):
             end = at[b]
-            way = walk[: end + 1]
-            _push(chain, way, walk[end, SPEED], weight[b], along[m])
-            _push(chain, way, walk[end, RISE], weight[b], across[m])
-            _push(chain, way, gravity, weight[b], held[m])
+            speed, rise = recall(walk, end, SPEED), recall(walk, end, RISE)
+            for k in range(end):
+                j = chain.joint[k]
+                share = weight[b, j]
+                if share == 0.0:
+                    continue
+                lever = scale(share, _lever(chain, walk, k, end))
+                along[m, j] += dot(lever, speed)
+                across[m, j] += dot(lever, rise)
+                held[m, j] += dot(lever, load(gravity))
 
 
 @njit(cache=True, error_model="numpy")
@@ -192,13 +199,18 @@ def _push(
 ) -> None:
     """Add Jᵀ of a force at the end of a walk, each joint's share times its weight."""
     last = walk.shape[0] - 1
-    pull = force[0], force[1], force[2]
     for k in range(last):
-        lever = recall(walk, k, AXIS)
-        if not chain.prismatic[k]:
-            lever = cross(lever, subtract(recall(walk, last, ORIGIN), recall(walk, k, ORIGIN)))
         j = chain.joint[k]
-        out[j] += weight[j] * dot(lever, pull)
+        out[j] += weight[j] * dot(_lever(chain, walk, k, last), load(force))
+
+
+@inner
+def _lever(chain: Chain, walk: FloatArray, k: int, end: int) -> Vector:
+    """How the origin in row ``end`` of a walk moves with joint k."""
+    lever: Vector = recall(walk, k, AXIS)
+    if not chain.prismatic[k]:
+        lever = cross(lever, subtract(recall(walk, end, ORIGIN), recall(walk, k, ORIGIN)))
+    return lever
 
 
 def filled(values: tuple[float, ...], size: int) -> FloatArray:

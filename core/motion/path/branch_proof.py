@@ -60,8 +60,6 @@ class TubeWork(NamedTuple):
         first, second, third: (N,), bounds of derivatives.
         y: (6,), right sides and solutions.
         bias: (4,), see `bias`.
-        values: (K,), what the chain's joints stand at.
-        R, p: (3, 3) and (3,), the pose.
         bound: of the columns in the tube.
     """
 
@@ -81,9 +79,6 @@ class TubeWork(NamedTuple):
     third: FloatArray
     y: FloatArray
     bias: FloatArray
-    values: FloatArray
-    R: FloatArray
-    p: FloatArray
     bound: ColumnBounds
 
 
@@ -109,9 +104,6 @@ def make_tube_work(size: int, joints: int) -> TubeWork:
         rows[4],
         np.empty(6),
         np.empty(4),
-        np.empty(joints),
-        np.empty((3, 3)),
-        np.empty(3),
         ColumnBounds(
             columns[0], columns[1], columns[2], columns[3], columns[4], columns[5], columns[6]
         ),
@@ -131,14 +123,14 @@ def invert(chain: Chain, place: IntArray, columns: FloatArray, work: TubeWork) -
         if j >= 0:
             for i in range(6):
                 work.factors[i, j] += columns[i, k]
-    smallest, _ = factor(work.factors, work.order)
+    smallest, _ = factor(work.factors, work.order, 6)
     if not smallest > 0.0:
         return 0
     sign = 1
     for j in range(6):
         if (work.factors[j, j] < 0.0) != (work.order[j] != j):
             sign = -sign
-    invert_factors(work.factors, work.order, work.inverse)
+    invert_factors(work.factors, work.order, work.inverse, 6)
     for i in range(6):
         for part in range(2):
             square = 0.0
@@ -163,10 +155,10 @@ def bounded_solution(work: TubeWork, linear: float, angular: float) -> bool:
         for j in range(6):
             work.factors[i, j] = -work.K[i, j]
         work.factors[i, i] += 1.0
-    smallest, _ = factor(work.factors, work.order)
+    smallest, _ = factor(work.factors, work.order, 6)
     if not smallest > 0.0:
         return False
-    solve(work.factors, work.order, y)
+    solve(work.factors, work.order, y, 6)
     sound = True
     for i in range(6):
         sound = sound and 0.0 < y[i] < np.inf

@@ -5,8 +5,9 @@ It is pulled back in the other direction by `flyby.core.motion.gradients.path_gr
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,8 +57,7 @@ def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
     layout = Layout.of(segments, corners)
     tcp = make_tcp_curves(layout, model.tcp, model.orientation)
     edges = CornerEdges.of_joint_legs(layout)
-    for run in edge_runs(route, layout):
-        states, _ = _follow(route, layout, tcp.curves, run)
+    for run, states, _ in _followed(route, layout, tcp.curves, list(edge_runs(route, layout))):
         for array, part in ((edges.q, states.q), (edges.dq, states.dq), (edges.ddq, states.ddq)):
             array[run.corner, run.side] = part[-1]
     joint = make_joint_curves(layout, model.joint, edges)
@@ -85,19 +85,23 @@ def _sampled(
     sigma = pieces.sigma()
     states = States.zeros(len(sigma), route.ends.q.shape[2])
     conditioning = np.ones(len(sigma))
+    runs: list[TcpRun] = []
+    ends: list[int] = []
     for stretch in stretches(route, layout, pieces):
-        view = states.rows(stretch.start, stretch.stop)
         piece = pieces.sample_pieces[stretch.start : stretch.stop]
         at = sigma[stretch.start : stretch.stop]
         if stretch.joint_space:
+            view = states.rows(stretch.start, stretch.stop)
             sample_joint(stretch.chain, joint, pieces.curve[piece, POSITION], at, view)
             continue
-        run = _tcp_run(route, layout, edges, pieces, stretch, piece, at)
-        found, pivots = _follow(route, layout, curves, run)
-        lead = len(run.samples.sigma) - len(at)
-        for target, source in zip(view, found, strict=True):
-            target[:] = source[lead:]
-        conditioning[stretch.start : stretch.stop] = pivots[lead:]
+        runs.append(_tcp_run(route, layout, edges, pieces, stretch, piece, at))
+        ends.append(stretch.stop)
+    followed = _followed(route, layout, curves, runs)
+    for (run, found, pivots), stop in zip(followed, ends, strict=True):
+        start = stop - len(pivots) + run.lead
+        for target, source in zip(states, found, strict=True):
+            target[start:stop] = source[run.lead :]
+        conditioning[start:stop] = pivots[run.lead :]
     return sigma, states, conditioning
 
 
@@ -107,13 +111,16 @@ def _coarse(pieces: Pieces, sigma: FloatArray, states: States) -> NDArray[np.boo
     Next to a singular configuration axes turn by half a turn within a fraction of a millimetre;
     timing and motion between samples are made of what samples tell.
     """
-    left = np.delete(np.arange(len(sigma)), pieces.first_sample[1:] - 1)
-    h = (sigma[left + 1] - sigma[left])[:, None]
-    told = 0.5 * h * (states.dq[left] + states.dq[left + 1])
-    told += h**2 / 12 * (states.ddq[left] - states.ddq[left + 1])
-    missed = np.abs(states.q[left + 1] - states.q[left] - told).max(axis=1) > _MISSED
+    h = np.diff(sigma)[:, None]
+    told = (h**2 / 12) * (states.ddq[:-1] - states.ddq[1:])
+    told += (0.5 * h) * (states.dq[:-1] + states.dq[1:])
+    told -= states.q[1:]
+    told += states.q[:-1]
+    missed = (told > _MISSED) | (told < -_MISSED)
+    # From one piece to the next is no way.
+    missed[pieces.first_sample[1:-1] - 1] = False
     coarse = np.zeros(len(pieces.segment), dtype=np.bool_)
-    coarse[pieces.sample_pieces[left[missed]]] = True
+    coarse[pieces.sample_pieces[np.flatnonzero(missed.any(axis=1))]] = True
     return coarse & ~pieces.joint_space
 
 
@@ -149,12 +156,22 @@ def _check_fine_enough(
 
 @dataclass(frozen=True)
 class TcpRun:
-    """Samples for inverse kinematics to follow, from a configuration near the first one."""
+    """Samples for inverse kinematics to follow, from a configuration near the first one.
+
+    Args:
+        chain: the kinematics.
+        samples: that follow each other along σ.
+        seed: (N,), the configuration.
+        segment: (S,), whose the samples are.
+        lead: how many of them only lead to the first that is wanted.
+        corner, side: of a run to the edge of a zone.
+    """
 
     chain: Chain
     samples: Samples
     seed: FloatArray
     segment: IntArray
+    lead: int = 0
     corner: int = -1
     side: int = 0
 
@@ -179,7 +196,7 @@ def edge_runs(route: Route, layout: Layout) -> Iterator[TcpRun]:
                 segment,
                 route.ends.q[segment, near],
             )
-            yield TcpRun(run.chain, run.samples, run.seed, run.segment, int(i), side)
+            yield TcpRun(run.chain, run.samples, run.seed, run.segment, _LEAD, int(i), side)
 
 
 @dataclass(frozen=True)
@@ -236,40 +253,52 @@ def _tcp_run(
                 *(np.concatenate([index, channel]) for channel in samples[1:]),
             ]
     arrays = [np.ascontiguousarray(array) for array in samples]
-    owners = np.concatenate([np.full(len(arrays[0]) - len(sigma), segment), pieces.segment[piece]])
-    return TcpRun(stretch.chain, Samples(*arrays), seed, owners)
+    ahead = len(arrays[0]) - len(sigma)
+    owners = np.concatenate([np.full(ahead, segment), pieces.segment[piece]])
+    return TcpRun(stretch.chain, Samples(*arrays), seed, owners, ahead)
+
+
+def _followed(
+    route: Route, layout: Layout, curves: TcpCurves, runs: Sequence[TcpRun]
+) -> Iterator[tuple[TcpRun, States, FloatArray]]:
+    """Inverse kinematics along runs: states and conditioning of each; see `sample_tcp`."""
+    for _, same in groupby(runs, key=lambda run: id(run.chain)):
+        yield from _follow(route, layout, curves, list(same))
 
 
 def _follow(
-    route: Route, layout: Layout, curves: TcpCurves, run: TcpRun
-) -> tuple[States, FloatArray]:
-    """Inverse kinematics along a run: states and conditioning."""
-    count = len(run.samples.sigma)
-    states = States.zeros(count, len(run.seed))
-    pivots = np.ones(count)
+    route: Route, layout: Layout, curves: TcpCurves, runs: Sequence[TcpRun]
+) -> Iterator[tuple[TcpRun, States, FloatArray]]:
+    """`_followed` for runs of one chain."""
     if len(route.solved) != 6:
         raise MotionError(
             f"inverse kinematics needs six axes to solve for, this arm offers {len(route.solved)}; "
             "only joint moves can be driven",
-            route.moves[int(run.segment[0])],
+            route.moves[int(runs[0].segment[0])],
         )
+    first = np.cumsum([0, *(len(run.samples.sigma) for run in runs)])
+    count, seeds = int(first[-1]), np.array([run.seed for run in runs])
+    states, pivots = States.zeros(count, seeds.shape[1]), np.ones(count)
+    samples = Samples(*map(np.concatenate, zip(*(run.samples for run in runs), strict=True)))
     failed, short, reached = sample_tcp(
-        run.chain,
+        runs[0].chain,
         route.solved,
         route.prescribed,
         curves,
-        run.samples,
-        np.ascontiguousarray(run.seed),
+        samples,
+        first,
+        seeds,
         states,
         pivots,
     )
     if failed >= 0:
-        k = int(run.segment[failed])
+        k = int(np.concatenate([run.segment for run in runs])[failed])
         share = (reached - layout.waypoint[k]) / layout.segments.scale[k]
         length = float(layout.segments.length[k])
         message, cause = why_stranded(route.robot, states.q[failed], float(share), length, short)
         raise MotionError(message, route.moves[k], cause=cause)
-    return states, pivots
+    for run, (start, stop) in zip(runs, pairwise(first), strict=True):
+        yield run, states.rows(start, stop), pivots[start:stop]
 
 
 def _check_joined(route: Route, pieces: Pieces, q: FloatArray) -> None:

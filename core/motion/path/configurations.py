@@ -174,7 +174,7 @@ class ConfigurationFinder:
                     FaultCause.REACH,
                 )
         elif target.configuration is None and not all_turns:
-            turned = [self._nearest_turn(solution, before[:arm]) for solution in found]
+            turned = self._nearest_turns(np.array(found), before[:arm])
         else:
             turned = [t for solution in found for t in self._robot.turns(solution)]
         options = np.tile(q, (len(turned), 1))
@@ -205,14 +205,18 @@ class ConfigurationFinder:
                 kept += [t for t in turns if abs(t[_REDUNDANT] - q[_REDUNDANT]) < _SAME]
         return kept
 
-    def _nearest_turn(self, q: FloatArray, before: FloatArray) -> FloatArray:
-        """Of the arm's configurations whole turns away from q, the one nearest to ``before``."""
+    def _nearest_turns(self, q: FloatArray, before: FloatArray) -> list[FloatArray]:
+        """Of the arm's configurations whole turns away from each of q (K, n), the one nearest to
+        ``before``."""
         limits = self._robot.limits
+        size = q.shape[1]
         turned = q + self._full_turn * np.round((before - q) / (2 * np.pi))
-        if (turned < limits.lower[: len(q)]).any() or (turned > limits.upper[: len(q)]).any():
-            options = self._robot.turns(q)
-            turned = options[np.argmin(np.abs(options - before).sum(axis=1))]
-        return np.asarray(turned)
+        beyond = (turned < limits.lower[:size]) | (turned > limits.upper[:size])
+        found = list(turned)
+        for k in np.flatnonzero(beyond.any(axis=1)):
+            options = self._robot.turns(q[k])
+            found[k] = options[np.argmin(np.abs(options - before).sum(axis=1))]
+        return found
 
     def _pick(
         self,

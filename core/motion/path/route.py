@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import FloatArray
+from ...arrays import FloatArray, IntArray
 from ...errors import FaultCause, InputError, MotionError, Note, Span
 from ...program.entry_point import listed
 from ...program.move import Move, MoveC, MoveJ, Opaque, Wait
@@ -120,6 +120,7 @@ class RouteFinder:
         self._arc_turn = arc_turn
         self._targets = ConfigurationFinder(robot, label, nearest)
         self._chains: dict[tuple[Tool, WorkObject], Chain] = {}
+        self._last: tuple[Tool, WorkObject, Chain] | None = None
 
     def find(
         self, program: Program, start: JointTarget | None, skipped: Collection[int] = ()
@@ -139,11 +140,13 @@ class RouteFinder:
         moves = program.moves
         if not moves:
             raise _no_move(program)
+        before: Move | None = None
         for i, move in enumerate(moves):
             if move.open:
                 raise located(move, i, move.open, FaultCause.OPEN)
             if i not in skipped:
-                check_near(move, i)
+                check_near(move, i, before)
+                before = move
         notes: list[Note] = []
         self._targets.departures.clear()
         q = self._start(program, start, notes)
@@ -206,9 +209,12 @@ class RouteFinder:
 
     def chain(self, tool: Tool, work_object: WorkObject) -> Chain:
         """The chain of a tool and a work object, one object for equal ones."""
+        if self._last is not None and self._last[0] is tool and self._last[1] is work_object:
+            return self._last[2]  # of most moves; a key takes longer to make than a move to drive
         key = tool, work_object
         if key not in self._chains:
             self._chains[key] = work_chain(self._robot, tool, work_object)
+        self._last = tool, work_object, self._chains[key]
         return self._chains[key]
 
     def world_chain(self, tool: Tool, work_object: WorkObject) -> Chain:
@@ -240,19 +246,24 @@ class RouteFinder:
         ends = self._ends(moves, stage, q, legs)
         curves: TcpCurves | None = None
         segments: Segments | None = None
-        for k, i in enumerate(stage.moves):
-            move = moves[i]
-            ends.q[k, 0] = q
+        k, count = 0, len(stage.moves)
+        while k < count:
             if ends.kind[k] == JOINT_SEGMENT:
-                q = self._joint_end(move, i, q)
-            else:
-                if curves is None or segments is None:
-                    segments = make_segments(ends)
-                    curves = _nominal(segments)
-                q = self._walk(move, i, k, stage.chain, segments, curves, q)
-            ends.q[k, 1] = q
+                i = stage.moves[k]
+                ends.q[k, 0] = q
+                q = ends.q[k, 1] = self._joint_end(moves[i], i, q)
+                k += 1
+                continue
+            if curves is None or segments is None:
+                segments = make_segments(ends)
+                curves = _nominal(segments)
+            after = k + 1
+            while after < count and ends.kind[after] != JOINT_SEGMENT:
+                after += 1
+            q = self._walk(moves, stage, range(k, after), segments, curves, q)
+            k = after
         legs.ends.append(ends)
-        legs.chains += [stage.chain] * len(stage.moves)
+        legs.chains += [stage.chain] * count
         legs.moves += stage.moves
         return q
 
@@ -311,49 +322,54 @@ class RouteFinder:
 
     def _walk(
         self,
-        move: Move,
-        i: int,
-        k: int,
-        chain: Chain,
+        moves: Sequence[Move],
+        stage: MoveGroup,
+        which: range,
         segments: Segments,
         curves: TcpCurves,
         q: FloatArray,
     ) -> FloatArray:
-        """Where the arm arrives that follows the nominal path of segment k from q."""
+        """Where the arm arrives that follows the nominal paths of segments in a row from q.
+
+        Writes the configurations at the ends of each.
+        """
         if len(self._targets.solved) != 6:
+            i = stage.moves[which[0]]
             raise located(
-                move,
+                moves[i],
                 i,
                 f"{self._robot.name} has {self._robot.arm_size} joints; only arms with six or "
                 "seven can follow a path of the TCP",
             )
-        turn = np.linalg.norm(segments.turn_a[k]) + np.linalg.norm(segments.turn_b[k])
-        steps = 1 + int(max(segments.length[k] / 0.1, float(turn) / 0.2, segments.angle[k] / 0.2))
-        sigma = k + np.linspace(0.0, 1.0, steps + 1)
-        index = np.full(steps + 1, k, dtype=np.int64)
-        states = States.zeros(steps + 1, self._robot.size)
-        pivots = np.ones(steps + 1)
+        samples, last = _steps(segments, which)
+        states = States.zeros(len(samples.sigma), self._robot.size)
         failed, short, reached = sample_tcp(
-            chain,
+            stage.chain,
             self._targets.solved,
             self._targets.prescribed,
             curves,
-            Samples(sigma, index, index, index),
-            q,
+            samples,
+            np.array([0, len(samples.sigma)]),
+            q[None],
             states,
-            pivots,
+            np.ones(len(samples.sigma)),
         )
-        if failed >= 0:
-            reason = self._targets.why_unreachable(move, q) if short > CONVERGED else None
-            if reason is not None:
-                raise located(move, i, f"target cannot be reached: {reason}", reason.cause)
-            share, length = reached - k, float(segments.length[k])
-            raise located(
-                move, i, *why_stranded(self._robot, states.q[failed], share, length, short)
-            )
-        arrived: FloatArray = states.q[-1].copy()
-        self._targets.check_arrival(move, i, arrived)
-        return arrived
+        for k, end in zip(which, last, strict=True):
+            i = stage.moves[k]
+            segments.ends.q[k, 0] = q
+            if 0 <= failed <= end:
+                near = states.q[failed]
+                length = float(segments.length[k])
+                reason = self._targets.why_unreachable(moves[i], q) if short > CONVERGED else None
+                if reason is not None:
+                    why = f"target cannot be reached: {reason}"
+                    raise located(moves[i], i, why, reason.cause)
+                raise located(
+                    moves[i], i, *why_stranded(self._robot, near, reached - k, length, short)
+                )
+            q = segments.ends.q[k, 1] = states.q[end].copy()
+            self._targets.check_arrival(moves[i], i, q)
+        return q
 
     def _route(
         self,
@@ -446,6 +462,20 @@ def _nominal(segments: Segments) -> TcpCurves:
     corners = Corners(np.zeros(count - 1, dtype=np.int64), np.zeros((count - 1, 3, 2)), [])
     unit = replace(segments, scale=np.ones(count))
     return make_tcp_curves(Layout.of(unit, corners), PARABOLA, PARABOLA).curves
+
+
+def _steps(segments: Segments, which: range) -> tuple[Samples, IntArray]:
+    """Samples on the nominal paths of segments in a row, and the last of each."""
+    rows = slice(which.start, which.stop)
+    turns = np.linalg.norm([segments.turn_a[rows], segments.turn_b[rows]], axis=2).sum(axis=0)
+    finest = np.maximum(segments.length[rows] / 0.1, segments.angle[rows] / 0.2)
+    steps = 1 + np.maximum(finest, turns / 0.2).astype(np.int64)
+    counts = steps + 1
+    behind = np.cumsum(counts)
+    owner = np.repeat(np.arange(which.start, which.stop), counts)
+    own = np.arange(behind[-1]) - np.repeat(behind - counts, counts)
+    sigma = owner + own / np.repeat(steps, counts)
+    return Samples(sigma, owner, owner, owner), behind - 1
 
 
 def _no_move(program: Program) -> MotionError:

@@ -29,9 +29,19 @@ _ROUNDING = 1e-6
 """rad by which an arc may be longer than controllers drive it: programs round their points."""
 
 
-def check_near(move: Move, i: int) -> None:
-    """Refuse what no robot reaches, before lengths are computed that no number holds."""
-    places = {"tool": move.tool.tcp.position, "work object": move.work_object.pose.position}
+def check_near(move: Move, i: int, before: Move | None) -> None:
+    """Refuse what no robot reaches, before lengths are computed that no number holds.
+
+    Args:
+        move: the move.
+        i: its index.
+        before: another that has been checked, of which the same tool and work object are known.
+    """
+    places = {}
+    if before is None or move.tool is not before.tool:
+        places["tool"] = move.tool.tcp.position
+    if before is None or move.work_object is not before.work_object:
+        places["work object"] = move.work_object.pose.position
     if not isinstance(move.target, JointTarget):
         places["target"] = move.target.pose.position
     if isinstance(move, MoveC):

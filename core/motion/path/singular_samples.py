@@ -15,7 +15,16 @@ from ...arrays import FloatArray, IntArray
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.tracking import track
 from ..geometry.curves import Samples, TcpCurves
-from .tcp_samples import CONVERGED, SINGULAR, Scratch, States, aim, make_scratch, state_at
+from .tcp_samples import (
+    CONVERGED,
+    SINGULAR,
+    Scratch,
+    States,
+    aim,
+    make_scratch,
+    set_places,
+    state_at,
+)
 
 EVEN = 0.01
 """Share of the joints' way past a singular configuration that they may deviate from an even run."""
@@ -57,8 +66,9 @@ def settle(
         least = reached - at
     near, work = (
         States.zeros(4, states.q.shape[1]),
-        make_scratch(states.q.shape[1], len(prescribed)),
+        make_scratch(states.q.shape[1], len(prescribed), len(chain.joint)),
     )
+    set_places(solved, work)
     return any(
         _settle(
             chain,

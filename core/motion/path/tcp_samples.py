@@ -23,18 +23,20 @@ from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import (
     acceleration_gradient,
     jacobian,
-    motion,
     velocity_gradient,
 )
 from ...robot.kinematics.lean import inner
 from ...robot.kinematics.linear import factor, solve, solve_transposed
 from ...robot.kinematics.tracking import pose_error
+from ...robot.kinematics.vectors import ZERO, add, cross, scale
 from ..geometry.curves import Samples, TcpCurves, evaluate, pull
 from ..geometry.orientation_curves import orientation, pull_orientation
 
 _ITERATIONS = 30
 CONVERGED = 1e-9
 """m and rad of pose error below which Newton's method has converged."""
+_AT_ONCE = 1e-11
+"""m and rad below which a guess is as good: rates follow from the Jacobian there."""
 _LONGEST_STEP = 0.3
 SINGULAR = 1e-8
 """Ratio of pivots of the Jacobian below which a sample counts as singular."""
@@ -67,7 +69,17 @@ class States(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Arrays that the kernels reuse from sample to sample."""
+    """Arrays that the kernels reuse from sample to sample.
+
+    Args:
+        basis, value, turns, carried, turning: of the curves.
+        goal_R, R, p, error: the pose wanted, that where the joints are, and the twist between.
+        values: (K,), what the chain's joints stand at.
+        columns: (6, K), the Jacobian by the chain's joints, whichever axis they belong to.
+        joints: (K,), 0, 1, 2 …
+        place: (N,), where a solved axis stands among them, -1 for the others.
+        square, order, rhs: of the square system.
+    """
 
     basis: FloatArray
     value: FloatArray
@@ -78,18 +90,18 @@ class Scratch(NamedTuple):
     R: FloatArray
     p: FloatArray
     error: FloatArray
-    J: FloatArray
+    values: FloatArray
+    columns: FloatArray
+    joints: IntArray
+    place: IntArray
     square: FloatArray
     order: IntArray
-    bias_v: FloatArray
-    bias_a: FloatArray
     rhs: FloatArray
-    zero: FloatArray
 
 
 @register_jitable
-def make_scratch(size: int, prescribed: int) -> Scratch:
-    """Scratch for N = ``size`` axes, some of them prescribed."""
+def make_scratch(size: int, prescribed: int, joints: int) -> Scratch:
+    """Scratch for N = ``size`` axes, some of them prescribed, and K = ``joints`` of a chain."""
     return Scratch(
         np.empty((6, 4)),
         np.empty((3, 3)),
@@ -100,14 +112,40 @@ def make_scratch(size: int, prescribed: int) -> Scratch:
         np.empty((3, 3)),
         np.empty(3),
         np.empty(6),
-        np.empty((6, size)),
+        np.empty(joints),
+        np.empty((6, joints)),
+        np.arange(joints),
+        np.empty(size, dtype=np.int64),
         np.empty((6, 6)),
         np.empty(6, dtype=np.int64),
         np.empty(6),
-        np.empty(6),
-        np.empty(6),
-        np.zeros(size),
     )
+
+
+@inner
+def set_places(solved: IntArray, work: Scratch) -> None:
+    """Say which axes (6,) are solved for."""
+    work.place[:] = -1
+    for j in range(6):
+        work.place[solved[j]] = j
+
+
+@inner
+def columns_at(chain: Chain, q: FloatArray, work: Scratch) -> None:
+    """Write pose and columns at q (N,)."""
+    single = Chain(
+        chain.rotation,
+        chain.translation,
+        chain.axis,
+        chain.prismatic,
+        work.joints,
+        chain.sign,
+        chain.end_rotation,
+        chain.end_translation,
+    )
+    for k in range(chain.joint.size):
+        work.values[k] = q[chain.joint[k]]
+    jacobian(single, work.values, work.R, work.p, work.columns)
 
 
 @inner
@@ -125,26 +163,29 @@ def approach(
         The last error (m and rad) before the final correction, and the conditioning (smallest
         over largest pivot) of the Jacobian, whose factors stand in ``work``.
     """
-    J, square, order, error = work.J, work.square, work.order, work.error
+    columns, square, order, error = work.columns, work.square, work.order, work.error
     best = np.inf
-    for _ in range(_ITERATIONS):
-        jacobian(chain, q, work.R, work.p, J)
+    for i in range(_ITERATIONS):
+        columns_at(chain, q, work)
         best = pose_error(goal_R, goal_p, work.R, work.p, error)
-        for i in range(6):
-            for j in range(6):
-                square[i, j] = J[i, solved[j]]
-        smallest, largest = factor(square, order)
+        square[:, :] = 0.0
+        for k in range(chain.joint.size):
+            j = work.place[chain.joint[k]]
+            if j >= 0:
+                for row in range(6):
+                    square[row, j] += columns[row, k]
+        smallest, largest = factor(square, order, 6)
         conditioning = smallest / largest
         if conditioning < SINGULAR:
             return best, conditioning
-        solve(square, order, error)
+        solve(square, order, error, 6)
         longest = 0.0
         for j in range(6):
             longest = max(longest, abs(error[j]))
         scale = min(1.0, _LONGEST_STEP / longest) if longest > 0.0 else 1.0
         for j in range(6):
             q[solved[j]] += scale * error[j]
-        if best < CONVERGED:
+        if best < _AT_ONCE or (i > 0 and best < CONVERGED):
             return best, conditioning
     return best, conditioning
 
@@ -191,6 +232,8 @@ def state_at(
 ) -> tuple[float, float]:
     """Write the state at ``sigma`` on the curves of sample k into ``row``, whose q is a guess.
 
+    What is solved for has been said by `set_places`.
+
     Returns:
         What Newton's method says (see `approach`).
     """
@@ -200,47 +243,58 @@ def state_at(
     if not (error < CONVERGED and pivots >= SINGULAR):
         return error, pivots
     v, a = states.v[row], states.a[row]
-    _rates(work.J, work.square, work.order, solved, prescribed, work.carried[1], v, dq, work.rhs)
-    motion(chain, q, dq, work.zero, work.bias_v, work.bias_a)
-    for i in range(6):
-        work.bias_a[i] = a[i] - work.bias_a[i]
-    _rates(
-        work.J,
-        work.square,
-        work.order,
-        solved,
-        prescribed,
-        work.carried[2],
-        work.bias_a,
-        ddq,
-        work.rhs,
-    )
+    _rates(chain, solved, prescribed, work.carried[1], v, dq, work)
+    _take_bias(chain, dq, a, work)
+    _rates(chain, solved, prescribed, work.carried[2], work.error, ddq, work)
     return error, pivots
 
 
 @inner
+def _take_bias(chain: Chain, dq: FloatArray, a: FloatArray, work: Scratch) -> None:
+    """Write a − J̇ q' (6,) into ``work.error``.
+
+    With the columns (v_k, s_k), how they change with the joints (`turn_columns`) gives
+
+        J̇ q' = (Σ_k q_k' (2 ω_k + q_k' s_k) × v_k,  Σ_k q_k' ω_k × s_k),   ω_k = Σ_{m<k} q_m' s_m.
+    """
+    linear = angular = omega = ZERO
+    for k in range(chain.joint.size):
+        rate = dq[chain.joint[k]]
+        axis = (work.columns[3, k], work.columns[4, k], work.columns[5, k])
+        spin = scale(rate, axis)
+        lever = (work.columns[0, k], work.columns[1, k], work.columns[2, k])
+        twice = add(scale(2.0, omega), spin)
+        linear = add(linear, cross(twice, scale(rate, lever)))
+        angular = add(angular, cross(omega, spin))
+        omega = add(omega, spin)
+    for i in range(3):
+        work.error[i], work.error[3 + i] = a[i] - linear[i], a[3 + i] - angular[i]
+
+
+@inner
 def _rates(
-    J: FloatArray,
-    square: FloatArray,
-    order: IntArray,
+    chain: Chain,
     solved: IntArray,
     prescribed: IntArray,
     given: FloatArray,
     twist: FloatArray,
     rates: FloatArray,
-    rhs: FloatArray,
+    work: Scratch,
 ) -> None:
     """Write the rates (N,) with J rates = twist and the prescribed ones given."""
     rates[:] = 0.0
     for j in range(prescribed.size):
         rates[prescribed[j]] = given[j]
     for i in range(6):
-        rhs[i] = twist[i]
-        for j in range(prescribed.size):
-            rhs[i] -= J[i, prescribed[j]] * given[j]
-    solve(square, order, rhs)
+        work.rhs[i] = twist[i]
+    if prescribed.size > 0:
+        for k in range(chain.joint.size):
+            if work.place[chain.joint[k]] < 0:
+                for i in range(6):
+                    work.rhs[i] -= work.columns[i, k] * rates[chain.joint[k]]
+    solve(work.square, work.order, work.rhs, 6)
     for j in range(6):
-        rates[solved[j]] = rhs[j]
+        rates[solved[j]] = work.rhs[j]
 
 
 @inner
@@ -257,7 +311,7 @@ def _push(
     """Reverse of `_rates`: w = J⁻ᵀ of the solved part, and the prescribed rates' gradient."""
     for j in range(6):
         w[j] = bar[solved[j]]
-    solve_transposed(square, order, w)
+    solve_transposed(square, order, w, 6)
     for j in range(prescribed.size):
         given_bar[j] = bar[prescribed[j]]
         for i in range(6):
@@ -300,7 +354,7 @@ def pull_tcp(
         for i in range(6):
             for j in range(6):
                 square[i, j] = J[i, solved[j]]
-        factor(square, order)
+        factor(square, order, 6)
         _push(J, square, order, solved, prescribed, ddq_bar, w[2], carried_bar[2])
         acceleration_gradient(chain, q, dq, ddq, -w[2], q_bar, dq_bar)
         _push(J, square, order, solved, prescribed, dq_bar, w[1], carried_bar[1])

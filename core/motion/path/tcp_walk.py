@@ -17,14 +17,24 @@ from numba import njit
 
 from ...arrays import FloatArray, IntArray
 from ...robot.kinematics.chain import Chain
-from ...robot.kinematics.chain_kernels import jacobian
+from ...robot.kinematics.chain_kernels import pose
 from ...robot.kinematics.lean import inner, lean
 from ...robot.kinematics.tracking import pose_error, track
 from ..geometry.curve_bounds import bound_jerk
 from ..geometry.curves import Samples, TcpCurves
-from .branch_proof import LEAST, TubeWork, invert, make_tube_work, stays_in_tube
-from .singular_samples import EVEN, FIRST, ROUNDED, settle
-from .tcp_samples import CONVERGED, SINGULAR, Scratch, States, make_scratch, state_at
+from .between_states import joint_at
+from .branch_proof import LEAST, TubeWork, make_tube_work
+from .singular_samples import FIRST, settle
+from .tcp_samples import (
+    CONVERGED,
+    SINGULAR,
+    Scratch,
+    States,
+    make_scratch,
+    set_places,
+    state_at,
+)
+from .walk_steps import CAME, HERE, NEXT, copy_row, hop_over, keeps_branch, stand
 
 JOINED = 1e-5
 """rad or m by which configurations of one place may differ: what Newton's method leaves of a pose
@@ -38,21 +48,22 @@ _FINEST = 1e-7
 """Share of the way between two samples below which steps are not halved any more."""
 
 
+_FORESIGHT = 2.0
+"""In multiples of the last step, how far both states at its ends tell best where joints will be."""
+
+
 class _Work(NamedTuple):
     """Arrays that a walk reuses: for `state_at`, for the tube, and its own.
 
-    Row 0 of ``walk`` is where it stands, row 1 its next step.
+    Rows of ``walk`` are where it stands, where it came from, and its next step.
     """
 
     pose: Scratch
     tube: TubeWork
     walk: States
-    J: FloatArray
     jerk: FloatArray
     by_t: FloatArray
     taylor: FloatArray
-    place: IntArray
-    joints: IntArray
     centre: FloatArray
     slope: FloatArray
 
@@ -61,15 +72,12 @@ class _Work(NamedTuple):
 def _work(thread: int, size: int, prescribed: int, joints: int, width: int) -> _Work:
     """For N = ``size`` axes, some of them prescribed, K = ``joints`` and curves of ``width``."""
     return _Work(
-        make_scratch(size, prescribed),
+        make_scratch(size, prescribed, joints),
         make_tube_work(size, joints),
-        States.zeros(2, size),
-        np.empty((6, joints)),
+        States.zeros(3, size),
         np.empty(2 + prescribed),
         np.empty((3, max(size, 2 + prescribed))),
         np.empty((width, 3)),
-        np.empty(size, dtype=np.int64),
-        np.arange(joints),
         np.empty(size),
         np.empty(size),
     )
@@ -82,26 +90,21 @@ def _copy(source: FloatArray, target: FloatArray) -> None:
 
 
 @inner
-def _copy_row(source: States, i: int, target: States, j: int) -> None:
-    for n in range(source.q.shape[1]):
-        target.q[j, n] = source.q[i, n]
-        target.dq[j, n], target.ddq[j, n] = source.dq[i, n], source.ddq[i, n]
-    for n in range(6):
-        target.v[j, n], target.a[j, n] = source.v[i, n], source.a[i, n]
+def _expect(walk: States, came: float, at: float, aim: float) -> None:
+    """Write what the last states let expect of the joints at ``aim`` as the next step.
 
-
-@inner
-def _stand(
-    chain: Chain, single: Chain, place: IntArray, q: FloatArray, J: FloatArray, work: TubeWork
-) -> int:
-    """Write the chain's columns J (6, K) at q (N,), and their inverse into ``work``.
-
-    ``single`` is the chain with a value for each of its joints, whichever axis they belong to.
+    Args:
+        walk: stands at ``at``, and came from ``came`` if that is another place.
+        came, at, aim: σ, on the same curves.
     """
-    for k in range(chain.joint.size):
-        work.values[k] = q[chain.joint[k]]
-    jacobian(single, work.values, work.R, work.p, J)
-    return int(invert(chain, place, J, work))
+    step, last = aim - at, at - came
+    known = last != 0.0 and abs(step) <= _FORESIGHT * abs(last)
+    for j in range(walk.q.shape[1]):
+        if known:
+            walk.q[NEXT, j], _, _ = joint_at(walk, HERE, j, -last, -step / last)
+        else:
+            rate = walk.dq[HERE, j] + 0.5 * step * walk.ddq[HERE, j]
+            walk.q[NEXT, j] = walk.q[HERE, j] + step * rate
 
 
 @inner
@@ -124,120 +127,13 @@ def _border(samples: Samples, k: int) -> float:
     return border
 
 
-@inner
-def _keeps_branch(
-    chain: Chain,
-    solved: IntArray,
-    prescribed: IntArray,
-    place: IntArray,
-    J: FloatArray,
-    walk: States,
-    step: float,
-    jerk: FloatArray,
-    by_t: FloatArray,
-    work: TubeWork,
-) -> bool:
-    """Whether the joints stay in a tube, ``work.radius``, for ``step`` on from row 0 of the walk.
-
-    Args:
-        chain, solved, prescribed, place, J, walk, work: as elsewhere.
-        step: σ.
-        jerk: (2 + m,), bounds of third derivatives by σ; see `bound_jerk`.
-        by_t: (3, at least N and 2 + m), scratch.
-    """
-    rate, bend, third = by_t[0], by_t[1], by_t[2]
-    for j in range(walk.q.shape[1]):
-        rate[j], bend[j] = step * walk.dq[0, j], step * step * walk.ddq[0, j]
-    for j in range(jerk.size):
-        third[j] = abs(step) ** 3 * jerk[j]
-    return bool(stays_in_tube(chain, solved, prescribed, place, J, rate, bend, third, work))
-
-
-@inner
-def _hop(
-    chain: Chain,
-    single: Chain,
-    solved: IntArray,
-    prescribed: IntArray,
-    place: IntArray,
-    curves: TcpCurves,
-    samples: Samples,
-    k: int,
-    at: float,
-    side: int,
-    least: float,
-    most: float,
-    walk: States,
-    J: FloatArray,
-    jerk: FloatArray,
-    taylor: FloatArray,
-    by_t: FloatArray,
-    work: Scratch,
-    tube: TubeWork,
-) -> float:
-    """Pass a singular configuration that the joints run through evenly.
-
-    Where a path lies in the plane of an arm whose wrist passes its straight posture, say, joints
-    and their rates are what they would be without a singularity there, also where the points of
-    the path are written with rounding. Nothing can be proven on the place itself; what stands on
-    both sides of it has to agree.
-
-    Args:
-        at: σ where the walk stands, in row 0.
-        side: sign of the Jacobian's determinant there; beyond the singularity it is the other. 0
-            on a singular configuration, beyond which it may be either.
-        least: how far to hop at first, with the sign of the way.
-        most: and at most.
-        chain, single, solved, prescribed, place, curves, samples, k, walk, J, jerk, by_t, work,
-            tube: as in `sample_tcp`.
-
-    Returns:
-        How far it hopped, row 0 then being there; 0 where joints do not run evenly.
-    """
-    hop, jump = least, (ROUNDED if side == 0 else 0.0)
-    while abs(hop) <= most:
-        way = turn = 0.0
-        for j in range(walk.q.shape[1]):
-            way = max(way, abs(hop * walk.dq[0, j]))
-            turn = max(turn, abs(hop * hop * walk.ddq[0, j]))
-            walk.q[1, j] = walk.q[0, j] + hop * (walk.dq[0, j] + 0.5 * hop * walk.ddq[0, j])
-        if turn > way:
-            break
-        for j in range(walk.q.shape[1]):
-            by_t[0, j] = walk.q[1, j]
-        error, met = np.inf, 0.0
-        for _ in range(2 if side == 0 else 1):
-            # The first finds axes that hardly move the tool, the second their rates.
-            error, met = state_at(
-                chain, solved, prescribed, curves, samples, k, at + hop, walk, 1, work
-            )
-        even = error < CONVERGED and met >= SINGULAR
-        for j in range(walk.q.shape[1]):
-            even = even and abs(walk.q[1, j] - by_t[0, j]) <= EVEN * way + jump
-            bend = walk.dq[1, j] - walk.dq[0, j] - hop * walk.ddq[0, j]
-            even = even and abs(hop * bend) <= EVEN * way
-        if even:
-            beyond = States(walk.q[1:], walk.dq[1:], walk.ddq[1:], walk.v[1:], walk.a[1:])
-            beyond_side = _stand(chain, single, place, walk.q[1], J, tube)
-            even = beyond_side == -side or (side == 0 and beyond_side != 0)
-            onward = hop / (64 if side == 0 else 8)
-            bound_jerk(curves, samples, k, at + hop + 0.5 * onward, 0.5 * abs(onward), taylor, jerk)
-            if even and _keeps_branch(
-                chain, solved, prescribed, place, J, beyond, onward, jerk, by_t, tube
-            ):
-                _copy_row(walk, 1, walk, 0)
-                return hop
-        hop *= 2
-    return 0.0
-
-
 @njit(cache=True, error_model="numpy")
 def _shortfall(chain: Chain, solved: IntArray, q: FloatArray, work: Scratch) -> float:
     """How far (m, rad) the TCP stays from the pose last evaluated, as near as the arm gets."""
     near, R, p, error = np.empty(q.size), np.empty((3, 3)), np.empty(3), np.empty(6)
     if track(chain, q, work.goal_R, work.value[0], solved, near)[0]:
         return 0.0
-    jacobian(chain, near, R, p, work.J)
+    pose(chain, near, R, p)
     return float(pose_error(work.goal_R, work.value[0], R, p, error))
 
 
@@ -247,18 +143,20 @@ def sample_tcp(
     prescribed: IntArray,
     curves: TcpCurves,
     samples: Samples,
-    seed: FloatArray,
+    first: IntArray,
+    seeds: FloatArray,
     states: States,
     conditioning: FloatArray,
 ) -> tuple[int, float, float]:
-    """Write the states of samples that follow each other along σ, on one branch.
+    """Write the states along R runs of samples that follow each other along σ, each on one branch.
 
     Args:
         chain: the kinematics.
         solved, prescribed: indices of the axes (6,) and (m,).
         curves: the geometry.
         samples: where; on both sides of a place where curves change there is one.
-        seed: (N,), the configuration at the first sample.
+        first: (R + 1,), the first sample of each run, and where the last one ends.
+        seeds: (R, N), the configuration at the first sample of each.
         states: written.
         conditioning: (S,), written: smallest over largest pivot of the Jacobian, the least met
             since the sample before; 0 if a singular configuration was passed on the way.
@@ -270,15 +168,30 @@ def sample_tcp(
     """
     each = (curves.position, curves.turning, curves.prescribed)
     width = max(curve.coefficients.shape[1] for curve in each)
-    work = _work(get_ident(), seed.size, prescribed.size, chain.joint.size, width)
+    work = _work(get_ident(), seeds.shape[1], prescribed.size, chain.joint.size, width)
     given = -1
     while True:
-        failed, short, reached = _walk(
-            chain, solved, prescribed, curves, samples, seed, given, states, conditioning, work
+        failed, short, reached = _walk_all(
+            chain,
+            solved,
+            prescribed,
+            curves,
+            samples,
+            first,
+            seeds,
+            given,
+            states,
+            conditioning,
+            work,
         )
         if failed <= given or short > 0.0:
             break
-        if not settle(chain, solved, prescribed, curves, samples, failed, reached, states):
+        run = int(np.searchsorted(first, failed, side="right")) - 1
+        a, b = map(int, first[run : run + 2])
+        own = samples.rows(a, b)
+        if not settle(
+            chain, solved, prescribed, curves, own, failed - a, reached, states.rows(a, b)
+        ):
             break
         conditioning[failed] = 0.0
         given = failed
@@ -288,6 +201,52 @@ def sample_tcp(
 
 
 @lean
+def _walk_all(
+    chain: Chain,
+    solved: IntArray,
+    prescribed: IntArray,
+    curves: TcpCurves,
+    samples: Samples,
+    first: IntArray,
+    seeds: FloatArray,
+    given: int,
+    states: States,
+    conditioning: FloatArray,
+    scratch: _Work,
+) -> tuple[int, float, float]:
+    """`sample_tcp`, with a negative length for how far the TCP stays short, where it is asked.
+
+    Args:
+        given: the sample whose state stands already and from which the walk goes on; -1 at first.
+    """
+    reached = 0.0
+    for r in range(seeds.shape[0]):
+        a, b = first[r], first[r + 1]
+        if given >= b:
+            continue
+        failed, short, reached = _walk(
+            chain,
+            solved,
+            prescribed,
+            curves,
+            Samples(
+                samples.sigma[a:b],
+                samples.position[a:b],
+                samples.turning[a:b],
+                samples.prescribed[a:b],
+            ),
+            seeds[r],
+            max(given - a, -1),
+            States(states.q[a:b], states.dq[a:b], states.ddq[a:b], states.v[a:b], states.a[a:b]),
+            conditioning[a:b],
+            scratch,
+        )
+        if failed >= 0:
+            return a + failed, short, reached
+    return -1, 0.0, reached
+
+
+@inner
 def _walk(
     chain: Chain,
     solved: IntArray,
@@ -300,32 +259,21 @@ def _walk(
     conditioning: FloatArray,
     scratch: _Work,
 ) -> tuple[int, float, float]:
-    """`sample_tcp`, with a negative length for how far the TCP stays short, where it is asked.
+    """One run; see `_walk_all`.
 
     Args:
         given: the sample whose state stands already and from which the walk goes on; -1 at first.
     """
     size = seed.size
-    work, tube, walk, J = scratch.pose, scratch.tube, scratch.walk, scratch.J
-    jerk, by_t, taylor, place = scratch.jerk, scratch.by_t, scratch.taylor, scratch.place
-    single = Chain(
-        chain.rotation,
-        chain.translation,
-        chain.axis,
-        chain.prismatic,
-        scratch.joints,
-        chain.sign,
-        chain.end_rotation,
-        chain.end_translation,
-    )
-    place[:] = -1
-    for j in range(6):
-        place[solved[j]] = j
+    work, tube, walk = scratch.pose, scratch.tube, scratch.walk
+    jerk, by_t, taylor = scratch.jerk, scratch.by_t, scratch.taylor
+    set_places(solved, work)
+    # On these curves the walk stood at ``came`` before.
     # From q = centre at ``origin`` on the tube is proven up to ``sure``; curves stay the same up to
     # ``border``.
     centre, slope, reach = scratch.centre, scratch.slope, np.inf
     slope[:] = 0.0
-    origin = sure = border = samples.sigma[max(given, 0)]
+    origin = sure = border = came = samples.sigma[max(given, 0)]
     if given >= 0:
         border = _border(samples, given)
     for k in range(given + 1, samples.sigma.size):
@@ -343,20 +291,20 @@ def _walk(
             if not (error < CONVERGED and pivots >= SINGULAR and apart <= JOINED):
                 _copy(centre, states.q[k])
                 return k, (0.0 if pivots < SINGULAR else max(error, apart)), goal
-            sure, border = goal, _border(samples, k)
+            sure, border, came = goal, _border(samples, k), goal
             continue
         whole = goal - at
-        _copy_row(states, k - 1, walk, 0)
+        copy_row(states, k - 1, walk, HERE)
         pivots = np.inf
         least, hop_at = _FINEST * abs(whole), _HOP * abs(whole)
         while at != goal:
             aim = goal
             if (sure - goal) * whole < 0.0:
                 # A tube from where the walk stands, as far as it can be proven.
-                _copy(walk.q[0], centre)
-                _copy(walk.dq[0], slope)
+                _copy(walk.q[HERE], centre)
+                _copy(walk.dq[HERE], slope)
                 origin = at
-                side = _stand(chain, single, place, centre, J, tube)
+                side = stand(chain, centre, work, tube)
                 if k == given + 1 and at == samples.sigma[given]:
                     side = 0
                 left = border - at
@@ -367,19 +315,17 @@ def _walk(
                     step = 0.25 * np.copysign(min(abs(whole), FIRST * abs(border - at)), whole)
                 while side != 0 and not proven and (abs(step) > least or step == left):
                     bound_jerk(curves, samples, k, at + 0.5 * step, 0.5 * abs(step), taylor, jerk)
-                    proven = _keeps_branch(
-                        chain, solved, prescribed, place, J, walk, step, jerk, by_t, tube
+                    proven = keeps_branch(
+                        chain, solved, prescribed, walk, step, jerk, by_t, work, tube
                     )
                     if not proven:
                         step, at_once = _SHORTER * step, False
                 if not proven or (abs(step) < hop_at and min(pivots, conditioning[k - 1]) < _NEAR):
                     hop_at = 0.25 * abs(step)
-                    hop = _hop(
+                    hop = hop_over(
                         chain,
-                        single,
                         solved,
                         prescribed,
-                        place,
                         curves,
                         samples,
                         k,
@@ -388,7 +334,6 @@ def _walk(
                         4 * step,
                         abs(goal - at) if side == 0 else min(256 * abs(step), abs(goal - at)),
                         walk,
-                        J,
                         jerk,
                         taylor,
                         by_t,
@@ -396,13 +341,15 @@ def _walk(
                         tube,
                     )
                     if hop != 0.0:
-                        at = goal if hop == goal - at else at + hop
+                        came = at = goal if hop == goal - at else at + hop
                         pivots, hop_at = 0.0, _HOP * abs(whole)
                     elif not proven:
                         conditioning[k] = min(pivots, conditioning[k - 1])
                         _copy(centre, states.q[k])
-                        _copy(centre, walk.q[1])
-                        state_at(chain, solved, prescribed, curves, samples, k, goal, walk, 1, work)
+                        _copy(centre, walk.q[NEXT])
+                        state_at(
+                            chain, solved, prescribed, curves, samples, k, goal, walk, NEXT, work
+                        )
                         return k, -1.0, at
                     sure = at
                     continue
@@ -411,20 +358,21 @@ def _walk(
                     reach = (_LONGER if at_once else 1.0) * abs(step)
                 if (sure - goal) * whole < 0.0:
                     aim = sure
-            for j in range(size):
-                rate = walk.dq[0, j] + 0.5 * (aim - at) * walk.ddq[0, j]
-                walk.q[1, j] = walk.q[0, j] + (aim - at) * rate
-            error, met = state_at(chain, solved, prescribed, curves, samples, k, aim, walk, 1, work)
+            _expect(walk, came, at, aim)
+            error, met = state_at(
+                chain, solved, prescribed, curves, samples, k, aim, walk, NEXT, work
+            )
             sound = error < CONVERGED and met >= SINGULAR
             for j in range(size):
-                away = abs(walk.q[1, j] - centre[j] - (aim - origin) * slope[j])
+                away = abs(walk.q[NEXT, j] - centre[j] - (aim - origin) * slope[j])
                 sound = sound and away <= tube.radius[j] + LEAST
             if sound:
-                pivots, at = min(pivots, met), aim
-                _copy_row(walk, 1, walk, 0)
+                came, pivots, at = at, min(pivots, met), aim
+                copy_row(walk, HERE, walk, CAME)
+                copy_row(walk, NEXT, walk, HERE)
             else:
                 # Newton's method went off: begin again, with a shorter way.
                 sure, reach = at, max(0.5 * abs(aim - at), 0.5 * least)
         conditioning[k] = pivots
-        _copy_row(walk, 0, states, k)
+        copy_row(walk, HERE, states, k)
     return -1, 0.0, samples.sigma[-1]

@@ -151,9 +151,9 @@ def pull_energy(
     bars = tuple(np.empty_like(made.torque) for _ in range(3))
     for load, rows in by_load(made.loads, timing.interval_segments):
         q, dq, ddq = (part[rows] for part in made.motion)
-        parts = robot.inverse_dynamics_derivatives(q, dq, ddq, load)
+        parts = robot.pull_inverse_dynamics(q, dq, ddq, torque_bar[rows], load)
         for bar, part in zip(bars, parts, strict=True):
-            bar[rows] = np.einsum("keij,kei->kej", part, torque_bar[rows])
+            bar[rows] = part
     q_bar, rate_bar, rise_bar = bars
     rate_bar += halves * by_rate
     x = np.stack([stamp.x[:-1], stamp.x[1:]], -1)[..., None]

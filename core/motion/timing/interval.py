@@ -8,8 +8,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ...arrays import FloatArray, IntArray
-from ...robot.kinematics.lean import inner, lean
-from ..path.tcp_samples import States
+from ...robot.kinematics.lean import inner
 
 
 class Intervals(NamedTuple):
@@ -54,25 +53,6 @@ def progress(intervals: Intervals, k: int, t: float) -> tuple[float, float]:
     arrival = x1**0.5
     step = spacing - left * (arrival - 0.5 * change * left)
     return min(max(step / spacing, 0.0), 1.0), x0**0.5 + change * tau
-
-
-@lean
-def joint_at(states: States, s: int, j: int, length: float, z: float) -> tuple[float, float, float]:
-    """q of joint j and two derivatives with respect to ℓ, at a share z behind sample s.
-
-    The quintic in ℓ that meets both samples' derivatives, ``length`` of ℓ apart.
-    """
-    p0, v0, a0 = states.q[s, j], length * states.dq[s, j], length**2 * states.ddq[s, j]
-    p1, v1 = states.q[s + 1, j], length * states.dq[s + 1, j]
-    a1 = length**2 * states.ddq[s + 1, j]
-    d = p1 - p0
-    c3 = 10 * d - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1
-    c4 = -15 * d + 8 * v0 + 7 * v1 + 1.5 * a0 - a1
-    c5 = 6 * d - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1
-    q = p0 + z * (v0 + z * (0.5 * a0 + z * (c3 + z * (c4 + z * c5))))
-    slope = v0 + z * (a0 + z * (3 * c3 + z * (4 * c4 + z * 5 * c5)))
-    bend = a0 + z * (6 * c3 + z * (12 * c4 + z * 20 * c5))
-    return q, slope / length, bend / length**2
 
 
 @inner

@@ -11,10 +11,11 @@ from ...display import counted, in_line
 from ...errors import MotionError
 from ...robot.kinematics.lean import lean
 from ..model.rules import Pace
+from ..path.between_states import joint_at
 from ..path.path import Path
 from ..path.tcp_samples import States
 from .arc_length import ArcLength
-from .interval import Intervals, joint_at, progress, sigma_at
+from .interval import Intervals, progress, sigma_at
 from .least_zone_times import ZoneStretches
 from .limits import PathLimits, SegmentLimits, path_limits
 from .rests import InPosition, Rests

@@ -193,11 +193,12 @@ def walk_motion(
 ) -> None:
     """Write the motion before each joint, (K + 1, 6, 3); row K belongs to the TCP.
 
-    The first k + 1 rows are the walk of the chain that ends at the origin of joint k.
+    The first k + 1 rows are the walk of the chain that ends at the origin of joint k; no more are
+    written than there are.
     """
     turned, at = UNTURNED, ZERO
     omega, alpha, speed, rise = ZERO, ZERO, ZERO, ZERO
-    for k in range(chain.joint.size):
+    for k in range(min(chain.joint.size, walk.shape[0])):
         j = chain.joint[k]
         turned, step, axis = place(chain, k, turned)
         velocity, acceleration = carry(omega, alpha, step)
@@ -208,6 +209,8 @@ def walk_motion(
         _store(walk, k, ALPHA, alpha)
         _store(walk, k, SPEED, speed)
         _store(walk, k, RISE, rise)
+        if k + 1 == walk.shape[0]:
+            return
         rate = scale(dq[j], axis)
         if chain.prismatic[k]:
             slide = scale(q[j], axis)

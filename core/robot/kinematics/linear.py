@@ -10,56 +10,58 @@ from .lean import inner
 
 
 @inner
-def factor(matrix: FloatArray, order: IntArray) -> tuple[float, float]:
+def factor(matrix: FloatArray, order: IntArray, n: int) -> tuple[float, float]:
     """Replace a matrix (n, n) by its LU factors, rows exchanged for the largest pivot.
 
     Args:
         matrix: (n, n), overwritten by L (unit diagonal) below and U on and above the diagonal.
         order: (n,), written: the row taken for each pivot.
+        n: how many rows there are; loops over as many as are written out become straight code.
 
     Returns:
         The smallest and the largest pivot; the smallest is 0 for a singular matrix.
     """
-    n = matrix.shape[0]
     smallest, largest = np.inf, 0.0
     for k in range(n):
-        best = k
+        best, pivot = k, abs(matrix[k, k])
         for i in range(k + 1, n):
-            if abs(matrix[i, k]) > abs(matrix[best, k]):
-                best = i
+            if abs(matrix[i, k]) > pivot:
+                best, pivot = i, abs(matrix[i, k])
         order[k] = best
         if best != k:
             for j in range(n):
                 matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
-        pivot = abs(matrix[k, k])
         smallest, largest = min(smallest, pivot), max(largest, pivot)
         if pivot == 0.0:
             return 0.0, largest
+        inverse = 1.0 / matrix[k, k]
         for i in range(k + 1, n):
-            matrix[i, k] /= matrix[k, k]
+            share = matrix[i, k] * inverse
+            matrix[i, k] = share
             for j in range(k + 1, n):
-                matrix[i, j] -= matrix[i, k] * matrix[k, j]
+                matrix[i, j] -= share * matrix[k, j]
     return smallest, largest
 
 
 @inner
-def solve(factors: FloatArray, order: IntArray, x: FloatArray) -> None:
-    """Solve A y = x for the factored A; y replaces x (n,)."""
-    n = factors.shape[0]
+def solve(factors: FloatArray, order: IntArray, x: FloatArray, n: int) -> None:
+    """Solve A y = x for the factored A (n, n); y replaces x (n,)."""
     for k in range(n):
-        x[k], x[order[k]] = x[order[k]], x[k]
+        value = x[order[k]]
+        x[order[k]] = x[k]
         for j in range(k):
-            x[k] -= factors[k, j] * x[j]
+            value -= factors[k, j] * x[j]
+        x[k] = value
     for k in range(n - 1, -1, -1):
+        value = x[k]
         for j in range(k + 1, n):
-            x[k] -= factors[k, j] * x[j]
-        x[k] /= factors[k, k]
+            value -= factors[k, j] * x[j]
+        x[k] = value / factors[k, k]
 
 
 @inner
-def invert_factors(factors: FloatArray, order: IntArray, inverse: FloatArray) -> None:
+def invert_factors(factors: FloatArray, order: IntArray, inverse: FloatArray, n: int) -> None:
     """Write A⁻¹ (n, n) for the factored A."""
-    n = factors.shape[0]
     for i in range(n):
         for c in range(n):
             inverse[i, c] = 1.0 if i == c else 0.0
@@ -75,21 +77,24 @@ def invert_factors(factors: FloatArray, order: IntArray, inverse: FloatArray) ->
         for j in range(k + 1, n):
             for c in range(n):
                 inverse[k, c] -= factors[k, j] * inverse[j, c]
+        share = 1.0 / factors[k, k]
         for c in range(n):
-            inverse[k, c] /= factors[k, k]
+            inverse[k, c] *= share
 
 
 @inner
-def solve_transposed(factors: FloatArray, order: IntArray, x: FloatArray) -> None:
-    """Solve Aᵀ y = x for the factored A; y replaces x (n,)."""
-    n = factors.shape[0]
+def solve_transposed(factors: FloatArray, order: IntArray, x: FloatArray, n: int) -> None:
+    """Solve Aᵀ y = x for the factored A (n, n); y replaces x (n,)."""
     for k in range(n):
+        value = x[k]
         for j in range(k):
-            x[k] -= factors[j, k] * x[j]
-        x[k] /= factors[k, k]
+            value -= factors[j, k] * x[j]
+        x[k] = value / factors[k, k]
     for k in range(n - 1, -1, -1):
+        value = x[k]
         for j in range(k + 1, n):
-            x[k] -= factors[j, k] * x[j]
+            value -= factors[j, k] * x[j]
+        x[k] = value
     for k in range(n - 1, -1, -1):
         x[k], x[order[k]] = x[order[k]], x[k]
 
@@ -102,7 +107,7 @@ def solve_in_place(matrix: FloatArray, x: FloatArray) -> float:
         The smallest pivot; x is meaningless if it is 0.
     """
     order = np.empty(x.size, dtype=np.int64)
-    pivots: tuple[float, float] = factor(matrix, order)
+    pivots: tuple[float, float] = factor(matrix, order, x.size)
     if pivots[0] > 0.0:
-        solve(matrix, order, x)
+        solve(matrix, order, x, x.size)
     return pivots[0]

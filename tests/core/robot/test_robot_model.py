@@ -97,6 +97,22 @@ def test_torque_derivatives_are_slopes_also_on_a_track(arms) -> None:
             np.testing.assert_allclose(part[known, k], slope[known], rtol=1e-5, atol=1e-4)
 
 
+@pytest.mark.parametrize("name", ["IRB 6640", "UR5e", "iiwa 7"])
+@SETTINGS
+@given(seed=SEEDS, external=st.booleans())
+def test_the_reverse_of_torques_weighs_their_derivatives(arms, name, seed, external) -> None:
+    robot = arms[name].with_base(TURNED)
+    if external:
+        robot = on_track(robot, Inertia(200.0, (0.1, 0.2, 0.3)))
+    point = states(robot, seed, 3)
+    weight = np.random.default_rng(seed + 1).normal(size=point[0].shape)
+    weight[:, [name in ("TILT", "TURN") for name in robot.axis_names]] = 0.0
+    found = robot.pull_inverse_dynamics(*point, weight, LOAD)
+    for made, part in zip(found, robot.inverse_dynamics_derivatives(*point, LOAD), strict=True):
+        expected = np.einsum("mij,mi->mj", np.nan_to_num(part), weight)
+        np.testing.assert_allclose(made, expected, rtol=1e-8, atol=1e-7)
+
+
 def test_axes_of_unknown_inertia_have_unknown_torques_only_themselves(arms) -> None:
     robot = on_track(arms["UR5e"])
     torques = robot.inverse_dynamics(*states(robot, 1))

@@ -8,8 +8,8 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from flyby.core.motion.emulator.limit_violations import _shares
+from flyby.core.motion.path.between_states import joint_at
 from flyby.core.motion.path.tcp_samples import States
-from flyby.core.motion.timing.interval import joint_at
 from flyby.core.registry import find_robot
 
 CHAIN = find_robot("ur/ur10e").chain
@@ -30,7 +30,7 @@ def accelerations(states: States, x0: float, x1: float) -> np.ndarray:
     """Of the first joint at many places of an interval of length one."""
     made = []
     for z in np.linspace(0.0, 1.0, 1001):
-        _, slope, bend = joint_at.py_func(states, 0, 0, 1.0, z)
+        _, slope, bend = joint_at(states, 0, 0, 1.0, z)
         made.append(0.5 * (x1 - x0) * slope + (x0 + z * (x1 - x0)) * bend)
     return np.array(made)
 
