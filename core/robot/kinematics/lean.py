@@ -19,8 +19,15 @@ from numba.extending import register_jitable
 
 from ...numba_version import LINKED
 
-lean = njit(cache=True, error_model="numpy", _nrt=False, no_cfunc_wrapper=True)
-"""Compiles a function that makes no array: where it would, numba refuses to compile it."""
+
+def lean(function: Any) -> Any:
+    """Compiles a function that makes no array: where it would, numba refuses to compile it."""
+    plain = {"cache": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
+    if numba.version_info.short != LINKED:
+        return njit(**plain)(function)
+    from .linked import LeanCompiler
+
+    return njit(**plain, pipeline_class=LeanCompiler)(function)
 
 
 def inner(function: Any) -> Any:

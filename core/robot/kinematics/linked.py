@@ -29,6 +29,35 @@ class _Intermediate(JITCodeLibrary):  # type: ignore[misc]
         self._finalized = True
 
 
+class _Once(JITCodeLibrary):  # type: ignore[misc]
+    """Code that is optimised once.
+
+    numba does so twice, to prune counts of references in between, of which there are none here.
+    """
+
+    def _optimize_final_module(self) -> None:
+        passes, builder = self._codegen._module_pass_manager()
+        passes.run(self._final_module, builder)
+
+
+class LeanCompiler(Compiler):  # type: ignore[misc]
+    """Compiles kernels that Python calls and that count no references."""
+
+    def __init__(
+        self,
+        typingctx: Any,
+        targetctx: Any,
+        library: Any,
+        args: Any,
+        return_type: Any,
+        flags: Any,
+        locals: Any,
+    ) -> None:
+        library = _Once(targetctx.codegen(), "lean")
+        library.enable_object_caching()
+        super().__init__(typingctx, targetctx, library, args, return_type, flags, locals)
+
+
 @register_pass(mutates_CFG=False, analysis_only=False)
 class _Linkable(LoweringPass):  # type: ignore[misc]
     """Lets other kernels call what was lowered; it has no address, and Python never calls it."""
