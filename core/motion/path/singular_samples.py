@@ -68,7 +68,6 @@ def settle(
         States.zeros(4, states.q.shape[1]),
         make_scratch(states.q.shape[1], len(prescribed), len(chain.joint)),
     )
-    set_places(solved, work)
     return any(
         _settle(
             chain,
@@ -126,6 +125,7 @@ def _settle(
             is found there.
         chain, solved, prescribed, curves, samples, k, states, work: as elsewhere.
     """
+    set_places(solved, work)
     at, size = samples.sigma[k], states.q.shape[1]
     off = least
     near.q[0] = states.q[k]
