@@ -318,6 +318,27 @@ def test_an_interrupt_keeps_what_was_found_so_far():
     assert told[0] == "looking at the program as it is"
 
 
+BY_SPEED = """DEF corners()
+$VEL.CP=0.5
+$APO.CDIS=10
+$APO.CVEL=50
+PTP {A1 0,A2 -90,A3 90,A4 0,A5 30,A6 0}
+LIN {X 1240,Y 0,Z 1710,A 0,B 90,C 0} C_VEL
+LIN {X 1240,Y 0,Z 1610,A 0,B 90,C 0} C_DIS
+LIN {X 1340,Y 0,Z 1610,A 0,B 90,C 0}
+END
+"""
+
+
+def test_a_zone_by_speed_stays_as_it_is_beside_others_that_may_grow():
+    vendor, robot = find_vendor("kuka"), find_robot("kuka/kr30-3")
+    program = vendor.read(BY_SPEED, "corners.src", robot=robot)
+    points = find_points(Controller(vendor, robot), program, None, {}, (), False)
+    assert [points.move[corner] for corner in points.growths] == [2]
+    (note,) = (note for note in points.notes if note.move == 1)
+    assert "given by speed" in note.message
+
+
 # Ways back
 
 
