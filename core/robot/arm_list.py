@@ -17,12 +17,15 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..files.reading import read_text
 from ..files.tables import TomlTable
 
 if TYPE_CHECKING:
     from .model import Robot
 
 
+_LARGEST = 1 << 24
+"""Bytes."""
 _ROBOT = '"robot": {'
 
 
@@ -58,7 +61,7 @@ class ArmList:
 
     def __init__(self, file: Path) -> None:
         self._file = file
-        lines = file.read_text("utf-8").splitlines() if file.is_file() else []
+        lines = read_text(file, _LARGEST).splitlines() if file.is_file() else []
         self._lines = {line.split('"', 4)[3].partition("/")[2]: line for line in lines}
 
     def listed(self) -> dict[str, Listed]:

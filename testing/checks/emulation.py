@@ -164,6 +164,7 @@ class EmulationChecks(Subject):
         for own in ("tcp_acceleration", "reorientation_acceleration"):
             if (limit := getattr(model, own)) is not None:
                 model = replace(model, **{own: limit * factor**2})
+        model = replace(model, zone_time=model.zone_time / factor)
         slower = self.controller(robot, model)
         timing = slower.run(at_speed(run.program, factor), period=PERIOD).timing
         assert np.isclose(

@@ -27,7 +27,8 @@ def test_what_is_beyond_the_plane_collides_and_nothing_else(name: str) -> None:
     assert floor
     nearest = scene.distances(rows).distance[:, floor].min(axis=1)
     below = np.array(heights) < -2e-3
-    assert below.any() and (nearest[below] < 0.0).all()
+    # Some arms cannot come below the plane that they stand on at all.
+    assert (nearest[below] < 0.0).all()
     assert (nearest > 0.0).any()
 
 
