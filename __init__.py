@@ -15,6 +15,7 @@ from flyby.core import numba_import
 
 if TYPE_CHECKING:
     from flyby.tasks.ask import ask
+    from flyby.tasks.backup.opening import open_backup
     from flyby.tasks.catalogue import cell, robot, robots, vendors
     from flyby.tasks.check import check
     from flyby.tasks.compare import compare
@@ -41,6 +42,7 @@ __all__ = [
     "experiment",
     "free_motion",
     "identify",
+    "open_backup",
     "optimize",
     "paint",
     "pareto",
@@ -56,7 +58,13 @@ __all__ = [
     "zones",
 ]
 
-_ELSEWHERE = {"cell": "catalogue", "robot": "catalogue", "robots": "catalogue", "patch": "write"}
+_ELSEWHERE = {
+    "cell": "catalogue",
+    "open_backup": "backup.opening",
+    "patch": "write",
+    "robot": "catalogue",
+    "robots": "catalogue",
+}
 """Files of `flyby.tasks` that are not called as what they hold."""
 
 numba_import.install()

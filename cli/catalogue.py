@@ -10,7 +10,7 @@ from ..core.display import counted
 from ..core.errors import UnknownNameError
 from ..core.registry import all_listed
 from ..tasks.catalogue import registry, vendor_of
-from .console import print_json, print_rich, print_table
+from .output.console import print_json, print_rich, print_table
 
 if TYPE_CHECKING:
     from ..core.robot.arm_list import Listed

@@ -12,7 +12,7 @@ from ..tasks.check import CheckOptions, check_with, unread
 from ..tasks.files.source_places import place_json
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import setup_of
-from .console import print_json, print_rich, print_table, progress
+from .output.console import print_json, print_rich, print_table, progress
 from .parameters import AsJson, ProgramFile, with_options
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ import typer
 from ..core.display import counted
 from ..tasks.compare import CompareOptions, compare_with
 from ..tasks.files.outputs import check_outputs, picture_kind, write_all
-from .console import print_json, print_rich, print_table, progress, warn
+from .output.console import print_json, print_rich, print_table, progress, warn
 from .parameters import AsJson, Force, with_options
 
 if TYPE_CHECKING:

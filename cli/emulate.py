@@ -16,7 +16,7 @@ from ..tasks.ask import ask_with
 from ..tasks.emulate import EmulateOptions, emulate_with
 from ..tasks.files.outputs import check_outputs, picture_kind, write_all
 from ..tasks.read import SourceOptions, read_with
-from .console import fail, print_json, print_rich, progress
+from .output.console import fail, print_json, print_rich, progress
 from .parameters import AsJson, Force, ProgramFile, with_options
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ def emulate(
         try:
             run = emulate_with(read, replace(options, report=say))
         except FlybyError:
-            from .report_text import print_questions
+            from .output.report_text import print_questions
 
             print_questions(read.questions)
             raise
@@ -168,7 +168,7 @@ def _sources(path: Path, run: Run, opaque: OpaqueStyle | None) -> dict[Path, byt
 
 
 def _tell(run: Run, *, as_json: bool) -> None:
-    from .report_text import asked_json, print_notes, print_report, report_json
+    from .output.report_text import asked_json, print_notes, print_report, report_json
 
     if not as_json:
         print_report(run.report, run.program)
@@ -194,7 +194,7 @@ def ask(
     if out is not None:
         write_all("--out", {out: questions.toml.encode()})
     if json:
-        from .report_text import question_json
+        from .output.report_text import question_json
 
         print_json({"questions": [question_json(question) for question in questions]})
     elif out is None:

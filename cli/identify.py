@@ -12,7 +12,7 @@ from ..core.display import counted
 from ..core.errors import InputError
 from ..tasks.files.outputs import check_outputs, write_all
 from ..tasks.identify import IdentifyOptions, identify_with
-from .console import print_json, print_rich, print_table, progress, warn
+from .output.console import print_json, print_rich, print_table, progress, warn
 from .parameters import AsJson, Force, with_options
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ import typer
 from ..tasks.catalogue import registry, vendor_of
 from ..tasks.options import texts
 from ..tasks.options.texts import fixed
-from .console import print_json, print_rich, print_table, warn
+from .output.console import print_json, print_rich, print_table, warn
 
 if TYPE_CHECKING:
     from ..core.program.target import Configuration

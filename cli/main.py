@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterator, Mapping
 from importlib import import_module
+from keyword import iskeyword
 from typing import Annotated, Any, cast
 
 import typer
@@ -14,7 +15,7 @@ from typer.main import get_command
 from ..core.door import command_line
 from ..core.errors import FlybyError, OptionError
 from ..tasks.options.shell import SHELL
-from .console import fail, warn
+from .output.console import fail, warn
 
 COMMANDS = {
     "emulate": "emulate",
@@ -29,6 +30,7 @@ COMMANDS = {
     "free": "free",
     "tune": "free",
     "paint": "paint",
+    "import": "backup",
     "robots": "catalogue",
     "vendors": "catalogue",
     "fk": "kinematics",
@@ -64,7 +66,8 @@ class _Imported(Mapping[str, TyperCommand]):
             module = import_module(f".{COMMANDS[name]}", __package__)
             alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
             settings = {"ignore_unknown_options": name in NUMBERS_MAY_BE_NEGATIVE}
-            alone.command(name, cls=Command, context_settings=settings)(getattr(module, name))
+            command = getattr(module, f"{name}_" if iskeyword(name) else name)
+            alone.command(name, cls=Command, context_settings=settings)(command)
             self._made[name] = cast(TyperCommand, get_command(alone))
         return self._made[name]
 

@@ -14,7 +14,7 @@ from ..tasks.files.outputs import check_folder, check_outputs, write_in
 from ..tasks.files.source_places import note_json
 from ..tasks.paint import paint_with
 from ..tasks.painting.options import PaintOptions
-from .console import print_json, print_rich, print_table, progress, warn
+from .output.console import print_json, print_rich, print_table, progress, warn
 from .parameters import AsJson, Force, with_options
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from ..tasks.files.source_places import note_json
 from ..tasks.pareto import ParetoOptions, pareto_with
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import setup_of_program
-from .console import print_json, print_rich, print_table, progress, warn
+from .output.console import print_json, print_rich, print_table, progress, warn
 from .parameters import AsJson, Force, Out, ProgramFile, with_options
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import typer
 from ..tasks.files.outputs import check_folder, write_in
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.record import RecordOptions, record_with
-from .console import print_rich, progress
+from .output.console import print_rich, progress
 from .parameters import Force, ProgramFile, with_options
 
 

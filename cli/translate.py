@@ -20,7 +20,7 @@ from ..tasks.read import SourceOptions, TextOptions, read_with
 from ..tasks.setup import setup_of_program
 from ..tasks.translate import TranslateOptions, target_of, translate_with
 from ..tasks.translate import written as written_of
-from .console import fail, print_json, print_rich, print_table, progress
+from .output.console import fail, print_json, print_rich, print_table, progress
 from .parameters import AsJson, Force, Out, ProgramFile, with_options
 
 if TYPE_CHECKING:

@@ -15,10 +15,10 @@ from ..tasks.files.source_places import place_json, short_place
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import setup_of_program
 from ..tasks.zones import ZoneOptions, zones_with
-from .console import print_json, print_table, progress
-from .delivery import deliver
+from .output.console import print_json, print_table, progress
+from .output.delivery import deliver
+from .output.solution_report import solution_json, tell_solution
 from .parameters import AsJson, Force, InPlace, Out, ProgramFile, with_options
-from .solution_report import solution_json, tell_solution
 
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell

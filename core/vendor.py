@@ -57,6 +57,8 @@ class Vendor:
         speaks: what the language can say, for programs that are translated into it; None if it
             says everything that a `Program` holds.
         machine_data: a robot as a file of its own controller describes it; None if none is read.
+        described: a robot as a file of its own controller alone describes it; None if no such file
+            is read.
         listed: what is said of each arm that the vendor lists, drivable or not, by its name
             (`core.robot.arm_list`); none if nothing is known but names.
         backups: loads what opens backups of the vendor's controllers; None if none are read.
@@ -81,6 +83,7 @@ class Vendor:
     emulation_only: Mapping[str, str] = field(default_factory=dict)
     speaks: Dialect | None = None
     machine_data: Callable[[Robot, Path], Robot] | None = None
+    described: Callable[[Path], Robot] | None = None
     listed: Callable[[], Mapping[str, Listed]] = dict
     backups: Callable[[], BackupOpener] | None = None
     nearest: bool = False
@@ -126,6 +129,30 @@ class Vendor:
         own = robot.name.removeprefix(f"{self.name}/")
         return replace(self, robot_motion={**self.robot_motion, own: lambda _: model})
 
+    def with_stated(self, robot: Robot, stated: Mapping[str, tuple[Any, str]]) -> Vendor:
+        """The same vendor with figures that the robot's own controller states.
+
+        Args:
+            robot: that it drives so; one that the vendor does not list is added.
+            stated: value and source by key, see `core.motion.model.motion_file.with_stated`.
+
+        Raises:
+            InputError: a figure is unknown, or its value makes no sense.
+        """
+        from .motion.model.motion_file import with_stated
+
+        own = robot.name.removeprefix(f"{self.name}/")
+        known = self if own in self.robots else self.with_robot(robot)
+        if not stated:
+            return known
+        model = with_stated(known.motion_of(robot), stated)
+        return replace(known, robot_motion={**self.robot_motion, own: lambda _: model})
+
+    def with_robot(self, robot: Robot) -> Vendor:
+        """The same vendor with a robot of its name more."""
+        own = robot.name.removeprefix(f"{self.name}/")
+        return replace(self, robots={**self.robots, own: lambda: robot})
+
     def as_described(self, robot: Robot, file: Path) -> Robot:
         """A robot as a file of its own controller describes it.
 
@@ -161,6 +188,7 @@ class Vendor:
         answers: Answers | None = None,
         others: Iterable[str | Path] = (),
         start: JointTarget | None = None,
+        beside: Iterable[str | Path] | None = None,
     ) -> Program:
         """The program in a source file; see `Reader.read_file` and `ReadOptions`.
 
@@ -173,7 +201,10 @@ class Vendor:
         others = tuple(others)
         for file in (path, *others):  # before anything looks for what else there is
             settle(file)
-        return reader.read_file(Path(path), _read_options(entry, robot, answers, others, start))
+        options = _read_options(entry, robot, answers, others, start)
+        if beside is not None:
+            options = replace(options, beside=tuple(map(Path, beside)))
+        return reader.read_file(Path(path), options)
 
     def write(
         self, program: Program, robot: Robot, options: Mapping[str, str] | None = None

@@ -9,12 +9,16 @@ from typing import TYPE_CHECKING
 
 from ..core.door import spelt
 from ..core.errors import FlybyError, InputError, OptionError, ParseError
+from .backup.finding import find_backup
+from .backup.opening import read_task, setup_in, task_of
+from .catalogue import registry
 from .options.entries import TaskOptions, count, value
 from .options.keywords import by_keywords
 from .options.texts import joint_target
 from .setup import RobotOptions, Setup, check_language, configurations, setup_of
 
 if TYPE_CHECKING:
+    from ..core.backup.backup import Backup
     from ..core.program.program import Program
     from ..core.program.target import JointTarget
     from ..core.source.execution.answers import Answers
@@ -46,6 +50,7 @@ class TextOptions(TaskOptions):
         numbers="rad and m",
     )
     configuration: str | None = configurations()
+    task: str | None = value(None, "Task of a backup, where several move a robot.")
 
     def for_robot(self, robot: str | None, cell: Path | None) -> SourceOptions:
         """The same for a robot."""
@@ -58,6 +63,7 @@ class TextOptions(TaskOptions):
             others=self.others,
             start=self.start,
             configuration=self.configuration,
+            task=self.task,
             report=self.report,
         )
 
@@ -68,10 +74,11 @@ class SourceOptions(RobotOptions, TextOptions):
 
 
 def read_with(source: str | Path, options: SourceOptions) -> Program:
-    """The program of a file, of a folder or of a text, for a robot.
+    """The program of a file, of a folder, of a backup or of a text, for a robot.
 
     Args:
-        source: a file, a folder that holds one program, or a text of several lines.
+        source: a file, a folder that holds one program, a backup of a station (folder, archive or
+            file), or a text of several lines.
 
     Returns:
         The program; it knows which robot it is for.
@@ -81,12 +88,17 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
         SourceError: the text cannot be read; file, line and column are named.
         MotionError: a move that no robot can drive.
     """
+    backup = _backup_in(source, options)
+    if backup is not None:
+        return _read_backup(backup, options)
+    if options.task is not None:
+        raise OptionError(f"{spelt('task')} {options.task}: {source} is no backup with tasks")
     setup = setup_of(options)
     vendor, robot = setup.vendor, setup.robot
     start = joint_target(options.start, spelt("start"), robot)
     if isinstance(source, str) and "\n" in source:
         name = f"program{vendor.suffixes[0] if vendor.suffixes else ''}"
-        program = vendor.read(source, name, options.entry, robot, _answers(options), start)
+        program = vendor.read(source, name, options.entry, robot, answers_of(options), start)
     else:
         if not str(source):
             raise OptionError("source is empty: name a file or a folder, or give a program's text")
@@ -95,15 +107,53 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
             file = _program_in(file, setup, options)
         check_language(vendor, file)
         program = vendor.read_file(
-            file, options.entry, robot, _answers(options), options.others, start
+            file, options.entry, robot, answers_of(options), options.others, start
         )
     return replace(program, setup=setup)
+
+
+def _backup_in(source: str | Path, options: SourceOptions) -> Backup | None:
+    """The backup that a source is; None if it is a program.
+
+    A program file or a folder with programs in it is one of a robot that is named; if none is, the
+    backup may say which.
+    """
+    if isinstance(source, str) and ("\n" in source or not source):
+        return None
+    path = Path(source)
+    if not path.exists():
+        return None
+    named = options.robot is not None or options.cell is not None
+    if named and options.task is None and _holds_program(path):
+        return None
+    return find_backup(path, registry())
+
+
+def _holds_program(path: Path) -> bool:
+    """Whether a path is a program file, or a folder with one in it."""
+    files = path.iterdir() if path.is_dir() else [path]
+    suffixes = {suffix for vendor in registry().vendors.values() for suffix in vendor.suffixes}
+    return any(file.suffix.lower() in suffixes and file.is_file() for file in files)
+
+
+def _read_backup(backup: Backup, options: SourceOptions) -> Program:
+    task = task_of(backup, options.task)
+    setup = setup_in(backup, task, options)
+    start = joint_target(options.start, spelt("start"), setup.robot)
+    answers = answers_of(options)
+    program = read_task(backup, task, setup, options.entry, answers, options.others, start)
+    return replace(program, setup=setup, notes=(*backup.notes, *program.notes))
 
 
 read = by_keywords(read_with, SourceOptions)
 
 
-def _answers(options: SourceOptions) -> Answers:
+def answers_of(options: SourceOptions) -> Answers:
+    """The answers that options give, or none.
+
+    Raises:
+        InputError: their file cannot be used.
+    """
     from ..core.source.execution.answers import Answers, load_answers
 
     given = options.answers
@@ -149,7 +199,7 @@ def _error(
 ) -> FlybyError | None:
     """Why a file does not run by itself; None if it does."""
     try:
-        setup.vendor.read_file(file, entry, setup.robot, _answers(options), options.others)
+        setup.vendor.read_file(file, entry, setup.robot, answers_of(options), options.others)
     except FlybyError as error:
         return error
     return None

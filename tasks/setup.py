@@ -115,11 +115,15 @@ def setup_of(options: RobotOptions) -> Setup:
     Raises:
         InputError: none is named, robot and cell contradict each other, or a file is unusable.
     """
-    return _laid_on(_stated(options), options)
+    return laid_on(_stated(options), options)
 
 
-def _laid_on(made: Setup, options: RobotOptions) -> Setup:
-    """A setup with the user's files of this one robot on top."""
+def laid_on(made: Setup, options: RobotOptions) -> Setup:
+    """A setup with the user's files of this one robot on top.
+
+    Raises:
+        InputError: a file cannot be read, or is another robot's.
+    """
     if options.machine_data is not None:
         robot = made.vendor.as_described(made.robot, Path(options.machine_data))
         cell = None if made.cell is None else replace(made.cell, robot=robot)
@@ -242,7 +246,7 @@ def with_setup(program: Program, options: RobotOptions) -> tuple[Program, Setup]
         if own is None:
             setup_of(options)  # asks for the robot
         assert own is not None
-        made = _laid_on(own, options)
+        made = laid_on(own, options)
         if made is own:
             return program, own
         if made.robot is not own.robot:

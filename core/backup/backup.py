@@ -68,11 +68,15 @@ class BackupEntry:
         name: as ``--entry`` takes it.
         file: that holds it, below the backup's root.
         comment: what the controller says of it (a program number, say).
+        parameters: names of those that must be given.
+        moves: statements in it, and in what it calls, that move the robot; None if nobody counted.
     """
 
     name: str
     file: str
     comment: str = ""
+    parameters: tuple[str, ...] = ()
+    moves: int | None = None
 
 
 @dataclass(frozen=True)
@@ -82,7 +86,8 @@ class Task:
     Args:
         name: the controller's.
         robot: index of the robot that it moves; None for a task without motion.
-        files: its source files below the backup's root, in the order in which they are loaded.
+        files: its source files below the backup's root, in the order in which they are loaded; no
+            other file is looked at when a routine of it is read.
         main: the file to read first; None if nothing can be run.
         entry: the routine that the controller would start; None if the operator chooses.
         entries: routines that can be run.

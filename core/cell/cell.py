@@ -107,12 +107,14 @@ class Cell:
         return np.asarray(thing.geometry.corners @ R[0].T + p[0])
 
     def find_vendor(self, registry: Registry) -> Vendor:
-        """The robot's vendor, who drives it as the cell says.
+        """The robot's vendor, who knows the robot and drives it as the cell says.
 
         Raises:
             InputError: the motion file cannot be read, or is another robot's.
         """
         vendor = registry.find_vendor(self.vendor)
+        if self.robot.name.removeprefix(f"{vendor.name}/") not in vendor.robots:
+            vendor = vendor.with_robot(self.robot)
         return vendor if self.motion is None else vendor.driven_by(self.motion, self.robot)
 
     def tool(self, name: str) -> Tool:

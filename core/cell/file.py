@@ -12,6 +12,7 @@ from ..program.tool import FLANGE, WORLD, Tool, WorkObject
 from ..robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from ..robot.model import Robot
 from ..robot.pose_table import pose_at
+from ..robot_files import load_robot_file, names_file
 from .arm import read_arm
 from .cell import Cell, Obstacle
 from .geometry import Geometry
@@ -52,7 +53,7 @@ def load_cell(path: str | Path, registry: Registry) -> Cell:
     known = {*tools, *things, "base", *robot.axis_names}
     return Cell(
         robot=robot,
-        vendor=file.text("robot").partition("/")[0],
+        vendor=robot.name.partition("/")[0],
         clearance=clearance,
         tools=tools,
         frames=frames,
@@ -66,9 +67,13 @@ def load_cell(path: str | Path, registry: Registry) -> Cell:
 
 
 def _robot(file: TomlTable, registry: Registry, axes: tuple[ExternalAxis, ...]) -> Robot:
+    named = file.text("robot")
     try:
-        robot = registry.find_robot(file.text("robot"))
-    except UnknownNameError as error:
+        if names_file(named):
+            robot = load_robot_file(file.file.parent / named, registry)
+        else:
+            robot = registry.find_robot(named)
+    except InputError as error:
         raise file.error("robot", str(error)) from None
     base = pose_at(file, "base")
     try:

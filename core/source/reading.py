@@ -36,6 +36,8 @@ class ReadOptions:
         others: further files of the program: modules, subprograms, data lists, configuration.
             Files that stand beside the program and belong to it by their vendor's rules are found
             without being named.
+        beside: the files that may stand beside the program, where a backup says so; None to look
+            for them on the disk.
         executed: called with every statement that is executed.
         start: where the robot stands before the first move; None if nobody knows. What the program
             asks of its own position begins there.
@@ -46,6 +48,7 @@ class ReadOptions:
     answers: Answers = field(default_factory=Answers)
     limits: ExecutionLimits = field(default_factory=ExecutionLimits)
     others: tuple[Path, ...] = ()
+    beside: tuple[Path, ...] | None = None
     executed: Executed | None = field(default=None, repr=False, compare=False)
     start: JointTarget | None = None
 

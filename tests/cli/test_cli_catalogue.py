@@ -121,7 +121,7 @@ def test_help_imports_nothing_heavy() -> None:
 def test_emulating_imports_matplotlib_only_for_plots() -> None:
     code = (
         "import sys\n"
-        "import flyby.cli.emulate, flyby.tasks.results.runs, flyby.cli.report_text\n"
+        "import flyby.cli.emulate, flyby.tasks.results.runs, flyby.cli.output.report_text\n"
         "import flyby.core.motion.emulator.controller\n"
         "print(sorted({'matplotlib', 'trimesh', 'yourdfpy'} & set(sys.modules)))"
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import Result
 
-from flyby.cli import console
+from flyby.cli.output import console
 from flyby.vendors.abb.motion.configuration import AbbConfiguration
 from flyby.vendors.kuka.motion.configuration import KukaConfiguration
 from flyby.vendors.ur.motion.configuration import UrConfiguration

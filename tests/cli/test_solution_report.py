@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from flyby.cli.solution_report import percent
+from flyby.cli.output.solution_report import percent
 from flyby.problems.improve.solution import FigureRow
 
 

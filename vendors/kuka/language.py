@@ -32,7 +32,8 @@ class Krl:
         from .run.files import collect
         from .run.reader import read_sources
 
-        return read_with(collect(path, options.others), str(path), options, read_sources)
+        files = collect(path, options.others, options.beside)
+        return read_with(files, str(path), options, read_sources)
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `flyby.core.language.Writer.write`."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,7 @@ from ...files.reading import read_toml
 from ...files.toml_text import key_text, value_text
 from .figures import Figure, with_figures
 from .motion_model import FIGURES, MotionModel
-from .provenance import read_provenance
+from .provenance import Provenance, read_provenance
 
 _LARGEST = 1e12
 _BESIDE = ("robot", "fits", "provenance")
@@ -44,6 +44,25 @@ def load_motion_model(
         return _model(data, MotionModel() if base is None else base)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
+
+
+def with_stated(base: MotionModel, stated: Mapping[str, tuple[Any, str]]) -> MotionModel:
+    """A motion model with figures that a controller's own files state.
+
+    Args:
+        base: what holds where they state nothing.
+        stated: value, as files have it, and source of each figure by its key (``time.period_s``).
+
+    Raises:
+        InputError: a key is unknown, or a value has the wrong type or range; it is named.
+    """
+    values = {}
+    for key, (entry, _) in stated.items():
+        if key not in FIGURES:
+            raise UnknownNameError("key of a motion model", key, FIGURES)
+        values[FIGURES[key]] = FIGURES[key].kind.read(key, entry)
+    origins = {key: Provenance("published", source) for key, (_, source) in stated.items()}
+    return replace(with_figures(base, values), provenance={**base.provenance, **origins})
 
 
 def _model(data: dict[str, Any], base: MotionModel) -> MotionModel:

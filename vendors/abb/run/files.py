@@ -38,7 +38,8 @@ def collect(path: Path, options: ReadOptions) -> dict[str, SourceFile]:
         for name in listed(files[str(listing)]):
             _add_listed(listing, name, files, named)
     known = {_resolved(p) for p in named}
-    for beside in _beside(path):
+    around = _beside(path) if options.beside is None else options.beside
+    for beside in around:
         if _resolved(beside) not in known:
             try:
                 files[str(beside)] = read_source(beside)

@@ -33,12 +33,15 @@ _WORD = re.compile(r"[A-Za-z_$][\w$]*")
 _GLOBAL = re.compile(r"(?im)^[ \t]*(?:decl[ \t]+)?(?:const[ \t]+)?global[ \t]+(?!interrupt)")
 
 
-def collect(path: Path, others: Iterable[Path]) -> dict[str, SourceFile]:
+def collect(
+    path: Path, others: Iterable[Path], beside: Iterable[Path] | None = None
+) -> dict[str, SourceFile]:
     """The source files of a program, the main one first.
 
     Args:
         path: of the ``.src``.
         others: files, or folders of files, that the user names.
+        beside: those around it; None to look for them.
 
     Raises:
         InputError: a named file cannot be read.
@@ -47,7 +50,7 @@ def collect(path: Path, others: Iterable[Path]) -> dict[str, SourceFile]:
     for other in others:
         for named in _named(other):
             files.setdefault(str(named), read_source(named))
-    near = _near(path)
+    near = _near(path) if beside is None else _by_stem(path, beside)
     seen = _words(files.values())
     for stem in (path.stem.lower(), CONFIG):
         _take(files, near.pop(stem, []), seen)
@@ -67,16 +70,17 @@ def _named(other: Path) -> list[Path]:
 
 def _near(path: Path) -> dict[str, list[Path]]:
     """Files around the program by lower-case stem, nearest folder first."""
+    around = (entry for folder in _folders(path) for entry in _entries(folder))
+    return _by_stem(path, islice(around, _MOST_FILES))
+
+
+def _by_stem(path: Path, around: Iterable[Path]) -> dict[str, list[Path]]:
+    """Those of files that are a program's, by lower-case stem."""
     near: dict[str, list[Path]] = {}
     own = path.resolve()
-    count = 0
-    for folder in _folders(path):
-        for entry in _entries(folder):
-            count += 1
-            if count > _MOST_FILES:
-                return near
-            if entry.suffix.lower() in SUFFIXES and entry.resolve() != own:
-                near.setdefault(entry.stem.lower(), []).append(entry)
+    for entry in around:
+        if entry.suffix.lower() in SUFFIXES and entry.resolve() != own:
+            near.setdefault(entry.stem.lower(), []).append(entry)
     return near
 
 

@@ -6,19 +6,19 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..tasks.files.source_places import note_json
+from ...tasks.files.source_places import note_json
 from .console import print_rich, print_table, warn
 
 if TYPE_CHECKING:
-    from ..core.cell.cell import Cell
-    from ..problems.improve.solution import FigureRow, Solution
+    from ...core.cell.cell import Cell
+    from ...problems.improve.solution import FigureRow, Solution
 
 _FIGURES = (("", "left"), ("unit", "left"), ("before", "right"), ("after", "right"), ("%", "right"))
 
 
 def tell_solution(program: Path, made: Solution, cell: Cell, written: Sequence[Path]) -> None:
     """Print figures before and after, notes, the proof and what was written."""
-    from ..problems.improve.solution import figure_shown
+    from ...problems.improve.solution import figure_shown
 
     rows = [
         (row.what, row.unit, figure_shown(row.before), figure_shown(row.after), percent(row))
@@ -61,7 +61,7 @@ def _allowed(cell: Cell) -> Sequence[tuple[str, str]]:
 
 def percent(row: FigureRow) -> str:
     """The change in percent; empty where there is none, or the value before is shown as zero."""
-    from ..problems.improve.solution import figure_shown
+    from ...problems.improve.solution import figure_shown
 
     if row.before is None or row.change is None or float(figure_shown(row.before)) == 0.0:
         return ""

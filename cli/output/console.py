@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 from unicodedata import combining, east_asian_width
 
-from ..core.display import shown
+from ...core.display import shown
 
 WIDE = 180
 """Columns of a table that goes into a file or a pipe."""

@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from ..core.door import called
-from ..core.errors import FlybyError, Note
-from ..tasks.files.not_executed import not_executed_notes, refuse_not_executed
-from ..tasks.files.outputs import check_outputs, write_in
-from ..tasks.files.places import FilePlaces
-from ..tasks.setup import Setup
-from ..tasks.translate import carried
+from ...core.door import called
+from ...core.errors import FlybyError, Note
+from ...tasks.files.not_executed import not_executed_notes, refuse_not_executed
+from ...tasks.files.outputs import check_outputs, write_in
+from ...tasks.files.places import FilePlaces
+from ...tasks.setup import Setup
+from ...tasks.translate import carried
 from .console import print_rich
 
 if TYPE_CHECKING:
-    from ..core.language import Sources
-    from ..core.program.program import Program
-    from ..core.vendor import Vendor
-    from ..problems.improve.solution import Solution
+    from ...core.language import Sources
+    from ...core.program.program import Program
+    from ...core.vendor import Vendor
+    from ...problems.improve.solution import Solution
 
 
 @dataclass(frozen=True)

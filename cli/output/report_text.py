@@ -6,19 +6,19 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..core.display import counted
-from ..core.driving.driven_program import Fault
-from ..core.errors import Note
-from ..core.program.program import Program
-from ..core.program.question import Question
-from ..core.source.execution.answers_text import grouped
-from ..tasks.files.source_places import fault_json, note_json, place_json
-from ..tasks.results.report import COLUMNS, MoveReport, Report, move_row, seconds
-from ..tasks.results.shares import shares
+from ...core.display import counted
+from ...core.driving.driven_program import Fault
+from ...core.errors import Note
+from ...core.program.program import Program
+from ...core.program.question import Question
+from ...core.source.execution.answers_text import grouped
+from ...tasks.files.source_places import fault_json, note_json, place_json
+from ...tasks.results.report import COLUMNS, MoveReport, Report, move_row, seconds
+from ...tasks.results.shares import shares
 from .console import complain_of_fault, print_rich, print_table, warn
 
 if TYPE_CHECKING:
-    from ..core.collision.clearance import Approach
+    from ...core.collision.clearance import Approach
 
 _FIGURES = {"velocity": "speeds", "acceleration": "accelerations"}
 MOST_ALIKE = 3

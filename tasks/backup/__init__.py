@@ -1,0 +1,1 @@
+"""Backups of stations: opened, read, and as files of this software."""

@@ -1,0 +1,130 @@
+"""A backup by its path: unpacked if it is an archive, found by what marks it, opened by its vendor.
+
+The files in it show which controller wrote it, never its own name: a backup may stand
+further down, beside others, a README and pictures.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
+
+from ...core.errors import InputError, Note
+from ...core.files.archive import is_archive, unpack
+
+if TYPE_CHECKING:
+    from ...core.backup.backup import Backup
+    from ...core.language import BackupOpener
+    from ...core.registry import Registry
+
+MOST_FILES = 100_000
+"""Below one folder. A station has some thousands; what has more is a disk."""
+_NOT_ENTERED = frozenset({".git", ".svn", ".hg", "__pycache__", "node_modules", ".venv"})
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Where a backup begins, and who opens it."""
+
+    vendor: str
+    opener: BackupOpener
+    root: str
+
+    @property
+    def depth(self) -> int:
+        return len(PurePosixPath(self.root).parts)
+
+
+def find_backup(path: str | Path, registry: Registry) -> Backup | None:
+    """The backup in a folder, an archive or a file; None if there is none.
+
+    Args:
+        path: what a controller or its tools have written, or a folder with that in it somewhere.
+        registry: whose vendors may have written it, and where its robots are looked up.
+
+    Raises:
+        InputError: the path does not exist, there are several backups, or nothing can be read.
+    """
+    source = Path(path)
+    if not os.path.lexists(source):
+        raise InputError(f"{source}: there is no such file or folder")
+    notes: tuple[Note, ...] = ()
+    folder = source
+    if source.is_dir():
+        names = _names(source)
+    elif is_archive(source):
+        folder, notes = unpack(source)
+        names = _names(folder)
+    else:
+        folder, names = source.parent, [source.name]
+    found = _nearest(source, _found(names, registry))
+    if found is None:
+        return None
+    backup = found.opener.open(source, folder / found.root, registry.find_robot)
+    return replace(backup, notes=(*notes, *backup.notes))
+
+
+def no_backup(path: str | Path, registry: Registry) -> InputError:
+    """That there is none, to be raised."""
+    kinds = ", ".join(sorted(v.name for v in registry.vendors.values() if v.backups))
+    what = "folder" if Path(path).is_dir() else "file"
+    return InputError(
+        f"{path}: no backup is in this {what}: nothing in it marks one of a controller of "
+        f"{kinds}; name the folder or archive that the controller has written"
+    )
+
+
+def _found(names: Sequence[str], registry: Registry) -> Iterator[_Found]:
+    """Every backup among files."""
+    for vendor in registry.vendors.values():
+        if vendor.backups is None:
+            continue
+        opener, left = vendor.backups(), list(names)
+        while left and (root := opener.root_in(left)) is not None:
+            yield _Found(vendor.name, opener, root)
+            inside = f"{root}/" if root else ""
+            left = [name for name in left if not name.startswith(inside)]
+
+
+def _nearest(source: Path, found: Iterator[_Found]) -> _Found | None:
+    """The one that begins furthest out.
+
+    Raises:
+        InputError: several do.
+    """
+    all_found = list(found)
+    least = min((one.depth for one in all_found), default=0)
+    nearest = [one for one in all_found if one.depth == least]
+    if len(nearest) > 1:
+        told = ", ".join(f"{one.root or source.name} ({one.vendor})" for one in nearest[:12])
+        more = f" and {len(nearest) - 12} more" if len(nearest) > 12 else ""
+        raise InputError(f"{source}: holds several backups; name one of them: {told}{more}")
+    return nearest[0] if nearest else None
+
+
+def _names(folder: Path) -> list[str]:
+    """The files below a folder, links passed over.
+
+    Raises:
+        InputError: there are more than any station has.
+    """
+    names = list(islice(_walked(folder), MOST_FILES + 1))
+    if len(names) > MOST_FILES:
+        raise InputError(
+            f"{folder}: more than {MOST_FILES:,} files are below it: name the backup's own folder"
+        )
+    return names
+
+
+def _walked(folder: Path) -> Iterator[str]:
+    for above, folders, files in os.walk(folder):
+        folders[:] = sorted(one for one in folders if one not in _NOT_ENTERED)
+        inside = Path(above).relative_to(folder)
+        for name in sorted(files):
+            place = inside / name
+            if not (folder / place).is_symlink():
+                yield place.as_posix()

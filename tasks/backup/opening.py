@@ -1,0 +1,156 @@
+"""Backups of stations: opened, and the programs in them read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...core.door import spelt
+from ...core.errors import InputError, OptionError, UnknownNameError
+from ...core.program.entry_point import ALL, EntryPoint, entry_call, listed
+from ..catalogue import registry
+from ..options.kinds import refuse_others
+from ..setup import Setup, laid_on, setup_of
+from .finding import find_backup, no_backup
+
+if TYPE_CHECKING:
+    from ...core.backup.backup import Backup, BackupEntry, Task
+    from ...core.program.program import Program
+    from ...core.program.target import JointTarget
+    from ...core.source.execution.answers import Answers
+    from ..setup import RobotOptions
+
+
+def open_backup(path: str | Path) -> Backup:
+    """What a backup of a station holds: robots, programs, tools, frames, signals.
+
+    Args:
+        path: a folder, a zip or a file that a controller or its tools have written.
+
+    Raises:
+        InputError: there is none, there are several, or nothing of it can be read. What single
+            files lack is among its notes.
+    """
+    refuse_others("path", path, "str | Path")
+    found = find_backup(path, registry())
+    if found is None:
+        raise no_backup(path, registry())
+    return found
+
+
+def task_of(backup: Backup, name: str | None) -> Task:
+    """The task of a name, or the only one that moves a robot.
+
+    Raises:
+        OptionError: none or several move one.
+        UnknownNameError: there is no such task.
+    """
+    if name is not None:
+        for task in backup.tasks:
+            if task.name.casefold() == name.casefold():
+                return task
+        raise UnknownNameError(f"task of {backup.source}", name, [t.name for t in backup.tasks])
+    moving = [task for task in backup.tasks if task.robot is not None]
+    if len(moving) == 1:
+        return moving[0]
+    if not moving:
+        raise InputError(f"{backup.source}: no task of it moves a robot{_noted(backup)}")
+    names = ", ".join(task.name for task in moving)
+    raise OptionError(
+        f"{backup.source}: which task? Several move a robot: {names}; choose with {spelt('task')}"
+    )
+
+
+def setup_in(backup: Backup, task: Task, options: RobotOptions) -> Setup:
+    """The robot that a task moves, as its backup has it; or the one that options name.
+
+    Raises:
+        InputError: the backup does not say which robot it is, or flyby does not know it.
+    """
+    if options.robot is not None or options.cell is not None:
+        return setup_of(options)
+    index = 0 if task.robot is None else task.robot
+    if not 0 <= index < len(backup.robots):
+        raise OptionError(
+            f"{backup.source}: it does not say which robot it is of; give {spelt('robot')}"
+            f"{_noted(backup)}"
+        )
+    known = backup.robots[index]
+    if known.robot is None:
+        why = "; ".join(known.lacks) or "it is not known"
+        raise OptionError(
+            f"{backup.source}: its robot is {known.written or 'not named'}: {why}; or give "
+            f"{spelt('robot')}"
+        )
+    vendor = registry().find_vendor(backup.vendor).with_stated(known.robot, backup.motion)
+    return laid_on(Setup(vendor, known.robot), options)
+
+
+def read_task(
+    backup: Backup,
+    task: Task,
+    setup: Setup,
+    entry: str | None,
+    answers: Answers,
+    others: Iterable[str | Path],
+    start: JointTarget | None,
+) -> Program:
+    """The program that a routine of a task drives.
+
+    Args:
+        backup, task: where it stands.
+        setup: its robot.
+        entry: the routine, with arguments; None for the one that the controller would start; or
+            all, for none but the list of them.
+        answers, others, start: see `core.source.reading.ReadOptions`.
+
+    Raises:
+        OptionError: nobody says which routine.
+        FlybyError: it cannot be read.
+    """
+    from ...core.program.program import Program
+
+    if entry == ALL:
+        return Program((), task.name, entries=_entry_points(task))
+    chosen = _chosen(backup, task, entry)
+    file = task.main if chosen is None else chosen.file
+    if file is None:
+        raise InputError(
+            f"{backup.source}: nothing in {task.name} can be run{_noted(backup)}"
+            if not task.entries
+            else f"{backup.source}: which routine? Choose with {spelt('entry')}: "
+            f"{listed(_entry_points(task))}"
+        )
+    if entry is None:
+        entry = task.entry if chosen is None else chosen.name
+    beside = [backup.root / name for name in task.files if name != file]
+    return setup.vendor.read_file(
+        backup.root / file, entry, setup.robot, answers, others, start, beside
+    )
+
+
+def _chosen(backup: Backup, task: Task, entry: str | None) -> BackupEntry | None:
+    """What the backup says of an entry, or of the only one where none is asked for."""
+    name, _ = entry_call(entry)
+    if name is None:
+        wanted = task.entry if task.main is not None else None
+        if wanted is None:
+            return task.entries[0] if task.main is None and len(task.entries) == 1 else None
+        name = wanted
+    for known in task.entries:
+        if known.name.casefold() == name.casefold():
+            return known
+    return None
+
+
+def _entry_points(task: Task) -> tuple[EntryPoint, ...]:
+    return tuple(
+        EntryPoint(one.name, one.parameters, 1 if one.moves is None else one.moves)
+        for one in task.entries
+    )
+
+
+def _noted(backup: Backup) -> str:
+    """Why something may be missing, as far as the backup's notes say."""
+    return "".join(f"; {note}" for note in backup.notes[:3])
