@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..core.display import counted
-from ..core.errors import UnknownNameError
+from ..core.errors import OptionError, UnknownNameError
+from ..core.own_robots import keep_robot
 from ..core.registry import all_listed
-from ..tasks.catalogue import registry, vendor_of
+from ..core.robot_files import load_robot_file, names_file
+from ..tasks.catalogue import driver_of, registry, robot, vendor_of
 from .output.console import print_json, print_rich, print_table
 
 if TYPE_CHECKING:
     from ..core.robot.arm_list import Listed
     from ..core.robot.model import Robot
     from ..core.vendor import Vendor
+
+ADD = "add"
+"""The word in the place of a name that keeps a file's robot."""
 
 
 def vendors(
@@ -37,13 +43,30 @@ def robots(
     name: Annotated[
         str | None,
         typer.Argument(
-            help="A vendor, a robot to show in detail, or part of a name: 120, IRB 6640."
+            help="A vendor, a robot or a file of one to show in detail, or part of a name: 120, "
+            "IRB 6640; or add, to keep a file's robot among your own."
         ),
     ] = None,
+    file: Annotated[
+        Path | None, typer.Argument(help="With add: catalogue file, URDF or $machine.dat.")
+    ] = None,
+    vendor: Annotated[
+        str | None,
+        typer.Option(help="Whose controller drives a file's robot, where it does not say."),
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="With add: replace one that is kept already.")
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print JSON, in SI units.")] = False,
 ) -> None:
     """List robots, those like a name, or show one with its limits and its figures' origins."""
+    if name == ADD or file is not None:
+        _add(name, file, vendor, force)
+        return
     vendors = registry().vendors
+    if name is not None and names_file(name):
+        _show(robot(name, vendor), json)
+        return
     if name is None or name in vendors:
         owners = [vendors[vendor] for vendor in (sorted(vendors) if name is None else [name])]
         found = [arm for owner in owners for arm in all_listed(owner)]
@@ -56,8 +79,8 @@ def robots(
             return
     drivable = [arm for arm in found if arm.refused is None]
     if json:
-        robots = [registry().find_robot(arm.name) for arm in drivable]
-        print_json([_robot_json(robot, vendor_of(robot.name)) for robot in robots])
+        arms = [registry().find_robot(arm.name) for arm in drivable]
+        print_json([_robot_json(arm, vendor_of(arm.name)) for arm in arms])
         return
     columns = (
         *(("robot", "left"), ("model", "left"), ("axes", "right"), ("payload kg", "right")),
@@ -72,8 +95,19 @@ def robots(
         )
 
 
+def _add(name: str | None, file: Path | None, vendor: str | None, force: bool) -> None:
+    """Keep the robot of a file among the user's own."""
+    if name != ADD or file is None:
+        raise OptionError(
+            f"flyby robots {ADD} FILE keeps a file's robot; {ADD} and FILE go together"
+        )
+    added = load_robot_file(file, registry(), vendor)
+    kept = keep_robot(added, registry().find_vendor(added.name.partition("/")[0]), force)
+    print_rich(f"{added.name} is kept as {kept}")
+
+
 def _show(robot: Robot, json: bool) -> None:
-    vendor = vendor_of(robot.name)
+    vendor = driver_of(robot)
     if json:
         print_json(_robot_json(robot, vendor))
     else:

@@ -45,7 +45,7 @@ def optimize(
     other: Annotated[
         str | None,
         typer.Option(
-            "--vendor",
+            "--also",
             metavar="NAME",
             help="With --out: code for another vendor's robot as well, such as kuka/kr30-3, as "
             "'flyby translate' writes it.",
@@ -75,7 +75,7 @@ def optimize(
         cell = setup.surroundings(read, no_floor=options.no_floor)
         beside = None
         if other is not None and out is not None:
-            beside = OtherVendor(setup, writable_robot(other, "--vendor"), out, places)
+            beside = OtherVendor(setup, writable_robot(other, "--also"), out, places)
             beside.check(read)
         made = optimize_with(read, replace(options, report=say))
         delivery = deliver(made, setup.vendor, places, unproven=False)
@@ -100,7 +100,7 @@ def _check_places(out: Path | None, in_place: bool, vias: str, other: str | None
         )
     if other is not None and out is None:
         raise OptionError(
-            f"--vendor {other}: its code goes beside the program's own: name a folder by --out"
+            f"--also {other}: its code goes beside the program's own: name a folder by --out"
         )
 
 

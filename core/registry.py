@@ -7,7 +7,7 @@ its distribution and its exception, and hides no other.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib import metadata
 from pathlib import Path
@@ -191,8 +191,11 @@ def all_listed(vendor: Vendor) -> list[Listed]:
 
 @cache
 def installed() -> Registry:
-    """The registry of all installed plugins, built at the first call."""
-    return Registry.discover()
+    """The registry of all installed plugins and the user's own robots, built at the first call."""
+    from .own_robots import with_own_robots
+
+    found = Registry.discover()
+    return replace(found, vendors=MappingProxyType(with_own_robots(found.vendors)))
 
 
 def vendors() -> tuple[Vendor, ...]:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .door import spelt
 from .errors import InputError
 
 if TYPE_CHECKING:
@@ -75,8 +76,6 @@ def _of_urdf(path: Path, registry: Registry, vendor: str | None) -> Robot:
     from .robot.urdf import load_urdf
 
     if vendor is None:
-        from .door import spelt
-
         known = ", ".join(sorted(registry.vendors))
         raise InputError(
             f"{path}: a URDF does not say whose controller drives the robot: say so with "

@@ -29,14 +29,35 @@ def registry() -> Registry:
     return found
 
 
-def robot(name: str) -> Robot:
-    """The robot called ``vendor/robot``.
+def robot(name: str, vendor: str | None = None) -> Robot:
+    """The robot called ``vendor/robot``, or as people and controllers write it, or of a file.
+
+    Args:
+        name: a name of the catalogue, or a catalogue file (``.toml``), a URDF, or machine data of
+            the robot's own controller (a KUKA's ``$machine.dat``).
+        vendor: whose controller drives it, where its file does not say.
 
     Raises:
         UnknownNameError: there is none.
+        InputError: the file cannot be used.
     """
+    from ..core.robot_files import load_robot_file, names_file
+
     refuse_others("name", name, "str")
+    if names_file(name):
+        return load_robot_file(name, registry(), vendor)
     return registry().find_robot(name)
+
+
+def driver_of(robot: Robot) -> Vendor:
+    """The vendor whose controller drives a robot; it knows the robot if no catalogue does.
+
+    Raises:
+        UnknownNameError: no vendor is called as the robot's name begins.
+    """
+    vendor = registry().find_vendor(robot.name.partition("/")[0])
+    known = robot.name.removeprefix(f"{vendor.name}/") in vendor.robots
+    return vendor if known else vendor.with_robot(robot)
 
 
 def robots(vendor: str | None = None) -> tuple[str, ...]:

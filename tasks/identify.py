@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.display import counted
-from ..core.door import given, spelt
+from ..core.door import spelt
 from ..core.errors import InputError, OptionError
 from .catalogue import registry
 from .options.entries import COUNT, Extent, number, value
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 class IdentifyOptions(RobotOptions):
     """What is fitted to which logs."""
 
-    vendor: str | None = value(None, "Whose controller drove; the robot's by itself.")
     parameters: Sequence[str] = value(
         (),
         "A figure to fit, as the motion file calls it, maybe with its start: "
@@ -83,8 +82,6 @@ def identify_with(
     paths = [Path(log) for log in ([logs] if isinstance(logs, str | Path) else logs)]
     setup = setup_of(options)
     owner, arm = setup.vendor, setup.robot
-    if options.vendor is not None and options.vendor != owner.name:
-        raise InputError(f"{given('vendor', options.vendor)}: {arm.name} is driven by {owner.name}")
     columns = None if options.columns is None else load_columns(Path(options.columns))
     options.say("reading logs")
     found = find_runs(paths, owner, arm, columns)

@@ -11,7 +11,8 @@ from ..core.display import in_line
 from ..core.door import called, given, spelt, switched
 from ..core.errors import InputError, OptionError
 from .catalogue import cell as load
-from .catalogue import registry, robots, vendor_of
+from .catalogue import driver_of, registry, robots
+from .catalogue import robot as robot_called
 from .options.entries import TaskOptions, choice, switch, value
 
 if TYPE_CHECKING:
@@ -40,7 +41,14 @@ def configurations() -> Any:
 class RobotOptions(TaskOptions):
     """The robot, its cell, how it is driven; of a program that was read, its own if unset."""
 
-    robot: str | Robot | None = value(None, "Robot, such as abb/irb6640-180-255 (`robots`).")
+    robot: str | Robot | None = value(
+        None,
+        "Robot, such as abb/irb6640-180-255 (`robots`), or its file: a catalogue file (.toml), a "
+        "URDF, a KUKA's $machine.dat.",
+    )
+    vendor: str | None = value(
+        None, "Whose controller drives the robot, where its file does not say."
+    )
     cell: str | Path | Cell | None = value(
         None,
         "Cell file: robot, base, external axes, tools, obstacles, parts, clearance.",
@@ -115,7 +123,13 @@ def setup_of(options: RobotOptions) -> Setup:
     Raises:
         InputError: none is named, robot and cell contradict each other, or a file is unusable.
     """
-    return laid_on(_stated(options), options)
+    made = _stated(options)
+    if options.vendor not in (None, made.vendor.name):
+        raise InputError(
+            f"{given('vendor', str(options.vendor))}: {made.robot.name} is driven by "
+            f"{made.vendor.name}"
+        )
+    return laid_on(made, options)
 
 
 def laid_on(made: Setup, options: RobotOptions) -> Setup:
@@ -138,16 +152,17 @@ def laid_on(made: Setup, options: RobotOptions) -> Setup:
 
 def _stated(options: RobotOptions) -> Setup:
     robot, cell = options.robot, options.cell
-    name = robot if robot is None or isinstance(robot, str) else robot.name
     if cell is None:
-        if robot is None or name is None:
+        if robot is None:
             raise OptionError(
                 f"which robot? Give {spelt('robot')} ({called('robots')} lists them) or "
                 f"{spelt('cell')}"
             )
-        vendor = vendor_of(name)
-        return Setup(vendor, registry().find_robot(name) if isinstance(robot, str) else robot)
+        return _driven(robot_called(robot, options.vendor) if isinstance(robot, str) else robot)
     loaded = load(cell) if isinstance(cell, str | Path) else cell
+    if isinstance(robot, str):
+        robot = robot if robot == loaded.robot.name else robot_called(robot, options.vendor)
+    name = robot if robot is None or isinstance(robot, str) else robot.name
     if name is not None and name != loaded.robot.name:
         where = "" if loaded.file is None else f" {loaded.file}"
         raise InputError(
@@ -157,13 +172,18 @@ def _stated(options: RobotOptions) -> Setup:
     return Setup(loaded.find_vendor(registry()), loaded.robot, loaded)
 
 
+def _driven(robot: Robot) -> Setup:
+    """A robot with the vendor who drives it, and knows it though it comes of a file."""
+    return Setup(driver_of(robot), robot)
+
+
 def named_robot(name: str) -> Setup:
-    """The robot called ``vendor/robot``, as its vendor drives it.
+    """The robot called ``vendor/robot``, or of a file, as its vendor drives it.
 
     Raises:
         UnknownNameError: there is none.
     """
-    return Setup(vendor_of(name), registry().find_robot(name))
+    return _driven(robot_called(name))
 
 
 def writable_robot(name: str, option: str | None = None) -> Setup:

@@ -107,7 +107,7 @@ class OtherVendor:
         """
         sources, _ = self._carried(program)
         if self.folder.is_dir():
-            paths = {"--vendor": [self.folder / name for name in sources]}
+            paths = {"--also": [self.folder / name for name in sources]}
             check_outputs(paths, self.places.inputs, self.places.replace_existing)
 
     def written(self, delivery: Delivery) -> Delivery:
@@ -123,7 +123,7 @@ class OtherVendor:
         else:
             given = self.places.inputs, self.places.replace_existing
             files = {Path(name): text.encode() for name, text in sources.items()}
-            paths = write_in("--vendor", self.folder, files, *given)
+            paths = write_in("--also", self.folder, files, *given)
             notes = [replace(note, message=f"for {robot}: {note.message}") for note in losses]
             notes.append(
                 Note(

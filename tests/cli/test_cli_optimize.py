@@ -196,7 +196,7 @@ def test_code_for_another_vendor_stands_beside(
     flyby: Flyby, cell: Path, program: Path, tmp_path: Path
 ) -> None:
     out = tmp_path / "out"
-    words = (*QUICK, "--zones-only", "--vendor", "kuka/kr30-3", "--out", out, "--json")
+    words = (*QUICK, "--zones-only", "--also", "kuka/kr30-3", "--out", out, "--json")
     result = flyby("optimize", program, "--cell", cell, *words)
     assert result.exit_code == 0, result.output
     told = json.loads(result.stdout)
@@ -221,15 +221,15 @@ def test_code_for_another_vendor_stands_beside(
 @pytest.mark.parametrize(
     ("status", "options", "word"),
     [
-        (2, ("--vendor", "kuka/kr30-3"), "name a folder by --out"),
+        (2, ("--also", "kuka/kr30-3"), "name a folder by --out"),
         (
             1,
-            ("--vendor", "kuka", "--out", "o"),
-            "--vendor kuka: which of its 165 robots?",
+            ("--also", "kuka", "--out", "o"),
+            "--also kuka: which of its 165 robots?",
         ),
-        (1, ("--vendor", "fanuc", "--out", "o"), "fanuc"),
-        (1, ("--vendor", "kuka/iiwa7-r800", "--out", "o"), "no program can be written"),
-        (1, ("--vendor", "kuka/kr3-r540", "--out", "o"), "kuka/kr3-r540 cannot reach"),
+        (1, ("--also", "fanuc", "--out", "o"), "fanuc"),
+        (1, ("--also", "kuka/iiwa7-r800", "--out", "o"), "no program can be written"),
+        (1, ("--also", "kuka/kr3-r540", "--out", "o"), "kuka/kr3-r540 cannot reach"),
     ],
 )
 def test_what_another_vendor_cannot_have_is_refused_before_work_begins(

@@ -74,8 +74,10 @@ def test_limits_are_read_and_accelerations_assumed_aloud(load) -> None:
     np.testing.assert_allclose(limits.upper, 1.5)
     np.testing.assert_allclose(limits.velocity, 3)
     np.testing.assert_allclose(limits.effort, 40)
-    np.testing.assert_allclose(limits.acceleration, 12)
-    assert load(robot(*ARM)).origins["acceleration"] == "assumed: maximum speed in 0.25 s"
+    np.testing.assert_allclose(limits.acceleration, 3 / 0.65)
+    found = load(robot(*ARM))
+    assert found.origins["acceleration"].startswith("assumed: maximum speed in 0.65 s of the first")
+    assert found.spread == {"acceleration": 2.6}
 
 
 def test_a_continuous_joint_without_limits_is_assumed_aloud(load) -> None:
@@ -91,6 +93,28 @@ def test_without_inertials_only_kinematics_is_left(load) -> None:
     found.forward(np.zeros(2))
     with pytest.raises(InputError, match=r"need the inertias .*links without <inertial> \(a, b\)"):
         found.inverse_dynamics(np.zeros(2), np.zeros(2), np.zeros(2))
+
+
+ROS = robot(
+    *(joint("base_link-base", "base_link", "base", "fixed", ""),),
+    *(joint("j1", "base_link", "a"), joint("j2", "a", "b")),
+    *(joint("b-flange", "b", "flange", "fixed", ""), joint("t", "flange", "tool0", "fixed", "")),
+    *(joint("camera", "b", "camera", "fixed", ""), joint("dress", "a", "dress", "fixed", "")),
+    links="base_link base a b flange tool0 camera dress",
+)
+
+
+def test_base_and_flange_are_the_controllers_own_where_the_file_has_them(load) -> None:
+    found = load(ROS)
+    model = pin.buildModelFromXML(ROS)
+    data = model.createData()
+    q = np.array([0.3, -0.7])
+    pin.framesForwardKinematics(model, data, q)
+    base, tool = (data.oMf[model.getFrameId(name)] for name in ("base", "tool0"))
+    R, p = found.forward(q)
+    np.testing.assert_allclose(p, (base.inverse() * tool).translation, atol=1e-12)
+    np.testing.assert_allclose(R, (base.inverse() * tool).rotation, atol=1e-12)
+    assert load(ROS, base="base_link").joints[0].placement != found.joints[0].placement
 
 
 def test_base_and_tip_cut_the_arm(load) -> None:
