@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar, cast
@@ -313,16 +314,22 @@ def _read_options(
     )
 
 
-def vendor_of(package: str, folder: Path, language: Language, **others: Any) -> Vendor:
+def vendor_of(
+    package: str,
+    folder: Path,
+    language: Language,
+    describes_robots: bool = False,
+    **others: Any,
+) -> Vendor:
     """The vendor that a package is, called as the package's folder.
 
     Args:
         package: its name; the function ``label`` of its module ``motion.configuration`` is the
-            vendor's, and ``with_machine_data`` of a module ``machine_data``, where there is one,
-            reads the files of its controllers; ``OPENER`` of ``backup.opener`` opens their
-            backups.
+            vendor's, and ``with_machine_data`` of ``machine_data``, where there is one, reads the
+            files of its controllers; ``OPENER`` of ``backup.opener`` opens their backups.
         folder: where it is; robots, motion files and the list of arms stand in ``data``.
         language: reader, writer, patcher and recorder.
+        describes_robots: ``robot_of`` of ``machine_data`` makes a robot of such a file alone.
         others: see `Vendor`.
     """
     data = folder / "data"
@@ -332,9 +339,13 @@ def vendor_of(package: str, folder: Path, language: Language, **others: Any) -> 
         labelling = import_module(".motion.configuration", package)  # takes time
         return cast("Configuration | None", labelling.label(robot, q))
 
-    def described(robot: Robot, file: Path) -> Robot:
+    def laid_on(robot: Robot, file: Path) -> Robot:
         reading = import_module(".machine_data", package)  # seldom needed
         return cast("Robot", reading.with_machine_data(robot, file))
+
+    def described(file: Path) -> Robot:
+        reading = import_module(".machine_data", package)  # seldom needed
+        return cast("Robot", reading.robot_of(file))
 
     def opener() -> BackupOpener:
         opening = import_module(".backup.opener", package)  # seldom needed
@@ -351,7 +362,8 @@ def vendor_of(package: str, folder: Path, language: Language, **others: Any) -> 
         writer=language,
         patcher=language,
         recorder=language,
-        machine_data=described if (folder / "machine_data.py").is_file() else None,
+        machine_data=laid_on if find_spec(f"{package}.machine_data") else None,
+        described=described if describes_robots else None,
         backups=opener if (folder / "backup" / "opener.py").is_file() else None,
         **others,
     )

@@ -73,7 +73,6 @@ from pathlib import Path
 
 import numpy as np
 
-from ..arrays import FloatArray
 from ..errors import InputError
 from ..files.tables import ANGLE, LENGTH, TomlTable
 from ..spatial.pose import IDENTITY, Pose
@@ -82,7 +81,7 @@ from .inertia import Inertia
 from .joint import Joint, JointKind
 from .model import Robot
 from .pose_table import pose_at, read_pose
-from .shape import Box, Capsule, Cylinder, LinkShape, Shape, Sphere
+from .shape import Box, Capsule, Cylinder, LinkShape, Shape, Sphere, pose_along
 
 TRUST = ("published", "identified", "measured", "computed", "assumed", "unknown")
 """The words that an origin starts with."""
@@ -289,15 +288,4 @@ def _shape(row: TomlTable) -> tuple[Shape, Pose]:
     end = np.array(row.quantities("to", LENGTH, 3))
     length = float(np.linalg.norm(end - start))
     solid = Capsule(radius, length) if kind == "capsule" else Cylinder(radius, length)
-    return solid, _along(start, end)
-
-
-def _along(start: FloatArray, end: FloatArray) -> Pose:
-    """The frame midway between two points with z from the first to the second."""
-    z = (end - start) / np.linalg.norm(end - start)
-    x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
-    x /= np.linalg.norm(x)
-    matrix = np.eye(4)
-    matrix[:3, :3] = np.stack([x, np.cross(z, x), z], axis=1)
-    matrix[:3, 3] = 0.5 * (start + end)
-    return Pose.from_matrix(matrix)
+    return solid, pose_along(start, end)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from ..arrays import FloatArray
 from ..errors import InputError
 from ..spatial.pose import IDENTITY, Pose, Vector3
 
@@ -81,6 +84,17 @@ class LinkShape:
     link: int
     shape: Shape
     placement: Pose = IDENTITY
+
+
+def pose_along(start: FloatArray, end: FloatArray) -> Pose:
+    """The frame midway between two points with z from the first to the second."""
+    z = (end - start) / np.linalg.norm(end - start)
+    x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
+    x /= np.linalg.norm(x)
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.stack([x, np.cross(z, x), z], axis=1)
+    matrix[:3, 3] = 0.5 * (start + end)
+    return Pose.from_matrix(matrix)
 
 
 def _require_positive(kind: str, *lengths: float) -> None:

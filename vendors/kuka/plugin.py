@@ -21,6 +21,7 @@ def flyby_register_vendors(register: VendorRegister) -> None:
             __package__,
             Path(__file__).parent,
             Krl(),
+            describes_robots=True,
             suffixes=PROGRAMS,
             speaks=KRL,
             companions=COMPANIONS,

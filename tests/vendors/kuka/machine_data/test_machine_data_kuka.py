@@ -1,0 +1,125 @@
+"""A KUKA's $machine.dat laid on a robot of the catalogue, and the lists that it is one of."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flyby.core.errors import InputError
+from flyby.core.registry import find_robot
+from flyby.core.source.text.files import SourceFile
+from flyby.vendors.kuka.data_list import DataList
+from flyby.vendors.kuka.machine_data import with_machine_data
+
+from .data_lists import FILTER_MS, machine_data, write
+
+KR3 = find_robot("kuka/kr3-r540")
+KR3_DATA = machine_data(KR3, "#KR3R540 C4SR")
+
+
+def listed(text: str) -> DataList:
+    return DataList.of(SourceFile("$machine.dat", text))
+
+
+def test_ranges_speeds_and_accelerations(tmp_path) -> None:
+    text = KR3_DATA
+    for i in range(1, 7):
+        text += f"$SOFTN_END[{i}]=-{100 + i}\n$SOFTP_END[{i}]={100 + i}\n"
+        text += f"$VEL_AXIS_MA[{i}]={4000 + i}\n$RAT_MOT_AX[{i}]={{N -{500 + i},D 10}}\n"
+        text += f"$AXIS_JERK[{i}]={50_000 + i}.0\n"
+    robot = with_machine_data(KR3, write(tmp_path, "$machine.dat", text))
+    for i, (joint, nominal) in enumerate(zip(robot.joints, KR3.joints, strict=True), start=1):
+        assert np.degrees([joint.lower, joint.upper]) == pytest.approx([-100 - i, 100 + i])
+        assert np.degrees(joint.velocity) == pytest.approx(6 * (4000 + i) * 10 / (500 + i))
+        assert np.degrees(joint.acceleration) == pytest.approx((50_000 + i) * 1e-3 * FILTER_MS / 20)
+        assert joint.placement == nominal.placement
+    assert "$machine.dat" in robot.origins["velocity"]
+    assert robot.origins["geometry"] == KR3.origins["geometry"]
+    assert not robot.spread
+
+
+def test_a_published_speed(tmp_path) -> None:
+    """KR 210 R2700-2, axis 1: 5000 rpm through 1798:7 are 116.80 degrees/s."""
+    text = KR3_DATA + "$VEL_AXIS_MA[1]=5000.0\n$RAT_MOT_AX[1]={N -1798,D 7}\n"
+    robot = with_machine_data(KR3, write(tmp_path, "$machine.dat", text))
+    assert np.degrees(robot.joints[0].velocity) == pytest.approx(116.80, abs=0.005)
+
+
+def test_kr_c2_states_the_time_to_full_speed(tmp_path) -> None:
+    text = machine_data(KR3, "#KR3", raise_time=True) + "$RAISE_TIME[1]=400.0\n"
+    robot = with_machine_data(KR3, write(tmp_path, "$machine.dat", text))
+    assert robot.joints[0].acceleration == pytest.approx(robot.joints[0].velocity / 0.4)
+    assert "$RAISE_TIME" in robot.origins["acceleration"]
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("$LENGTH_B=260", "$LENGTH_B=455.0"), "name the robot"),
+        (("$SOFTN_END[3]=", "$SOFTN_OTHER[3]="), r"\$SOFTN_END\[3\] is missing"),
+        (("$VEL_AXIS_MA[2]=", "$VEL_AXIS_MA[2]=TRUE;"), r"dat:\d+: .* is not a number"),
+        (("$RAT_MOT_AX[2]={N -180,D 1}", "$RAT_MOT_AX[2]=17"), "is not a struct"),
+        (("$VEL_AXIS_MA[4]=", "$VEL_AXIS_MA[4]=0;"), "A4 makes no sense: 0 degrees/s"),
+        (("$AXIS_DIR[4]=-1", "$AXIS_DIR[4]=0"), "AXIS_DIR is 1 or -1"),
+        (("$DEF_A4FIX=FALSE", "$DEF_A4FIX=TRUE"), "holds A4 at 0"),
+        (("$AXIS_TYPE[2]=3", "$AXIS_TYPE[2]=1"), "A2 is linear"),
+        (("$NUM_AX=6", "$NUM_AX=4"), "has 4 axes"),
+    ],
+)
+def test_files_that_do_not_fit_are_refused(tmp_path, change, said: str) -> None:
+    assert change[0] in KR3_DATA
+    with pytest.raises(InputError, match=said):
+        with_machine_data(KR3, write(tmp_path, "$machine.dat", KR3_DATA.replace(*change)))
+
+
+def test_an_empty_file_and_an_arm_of_seven_joints(tmp_path) -> None:
+    with pytest.raises(InputError, match="assigns nothing"):
+        with_machine_data(KR3, write(tmp_path, "$machine.dat", "no data\n"))
+    with pytest.raises(InputError, match="six axes"):
+        with_machine_data(find_robot("kuka/iiwa7-r800"), write(tmp_path, "$machine.dat", KR3_DATA))
+
+
+def test_data_are_read_by_name_and_index() -> None:
+    data = listed(
+        "$RAT_MOT_AX[1]={N -501,D 10}\nINT $DEF_FLT_CP=96 ;ms\n"
+        'TOOL_NAME[2,]="gripper; left"\n'
+        "LOAD_DATA[1]={M 5.5,CM {X 1,Y 2,Z 3,A 0,B 0,C 0},J {X 0.1}}\n"
+        'DECL MACHINE_DEF[1]={NAME[] "KR 16",ROOT {FRAME: X 1.5},MECH_TYPE #ROBOT}\n'
+        "$machine_on=true\n$X='B0101' ; five\n$Y='HFf'\n"
+    )
+    assert data.struct("$RAT_MOT_AX", 1) == {"N": -501.0, "D": 10.0}
+    assert data.number("$DEF_FLT_CP") == 96.0 and not data.has("$EX_AX_NUM")
+    assert data.text("TOOL_NAME", 2) == "gripper; left"
+    assert data.struct("LOAD_DATA", 1)["CM"]["Z"] == 3.0
+    robot = data.struct("MACHINE_DEF", 1)
+    assert (robot["NAME"], robot["ROOT"], robot["MECH_TYPE"]) == ("KR 16", {"X": 1.5}, "#ROBOT")
+    assert data.flag("$MACHINE_ON")
+    assert (data.number("$X"), data.number("$Y")) == (5.0, 255.0)
+    assert data.data["TOOL_NAME", 2].line == 3
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "$A={X 1,Y",
+        "$A={" * 30,
+        "$A=1e999",
+        "$A==1",
+        "$A=1 2",
+        "$A[99999999999999999999999]=1",
+        '$A="open',
+        "$A='B2'",
+        "IF A=B THEN",
+    ],
+)
+def test_lines_that_make_no_sense_are_passed_over(line: str) -> None:
+    data = listed(f"{line}\n$B=2\n")
+    assert not data.has("$A") and data.number("$B") == 2.0
+
+
+@given(text=st.text(alphabet=st.sampled_from("$A[]{}=,;:\"' 1.-eETB\n#x"), max_size=80))
+def test_no_text_crashes(text: str) -> None:
+    for one in listed(text).data.values():
+        assert one.line >= 1
