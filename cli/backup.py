@@ -71,7 +71,9 @@ def _print(backup: Backup) -> None:
             print_rich(f"{robot.unit}: {lack}")
     _rows("tasks", _TASKS, [_task_cells(backup, task) for task in backup.tasks])
     entries = [(task, entry) for task in backup.tasks for entry in task.entries]
-    _rows("entries", _ENTRIES, [_entry_cells(task, entry) for task, entry in entries])
+    several = len({task.name for task, _ in entries}) > 1
+    cells = [_entry_cells(entry, task.name if several else None) for task, entry in entries]
+    _rows("entries", _ENTRIES[0 if several else 1 :], cells)
     _rows("tools", _TOOLS, [_tool_cells(name, tool) for name, tool in backup.tools.items()])
     _rows("frames", _FRAMES, [_frame_cells(name, one) for name, one in backup.frames.items()])
     if backup.homes:
@@ -96,7 +98,7 @@ def _rows(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> 
 
 _ROBOTS = ("unit", "type", "robot", "payload kg", "base x, y, z mm", "external axes")
 _TASKS = ("task", "moves", "files", "begins in", "with")
-_ENTRIES = ("entry", "moves", "file", "")
+_ENTRIES = ("task", "entry", "moves", "file", "")
 _TOOLS = ("tool", "x, y, z mm", "quaternion w, x, y, z", "mass kg", "")
 _FRAMES = ("frame", "x, y, z mm", "quaternion w, x, y, z", "")
 
@@ -115,10 +117,10 @@ def _task_cells(backup: Backup, task: Task) -> tuple[str, ...]:
     return (task.name, moves, str(len(task.files)), task.main or "", task.entry or "")
 
 
-def _entry_cells(task: Task, entry: BackupEntry) -> tuple[str, ...]:
+def _entry_cells(entry: BackupEntry, task: str | None) -> tuple[str, ...]:
     name = f"{entry.name}({', '.join(entry.parameters)})" if entry.parameters else entry.name
     moves = "" if entry.moves is None else str(entry.moves)
-    return (name, moves, entry.file, entry.comment)
+    return (*([] if task is None else [task]), name, moves, entry.file, entry.comment)
 
 
 def _tool_cells(name: str, tool: Tool) -> tuple[str, ...]:

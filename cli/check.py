@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from ..core.errors import FlybyError
+from ..core.errors import FlybyError, OptionError
 from ..tasks.check import CheckOptions, check_with, unread
 from ..tasks.files.source_places import place_json
 from ..tasks.read import SourceOptions, read_with
-from ..tasks.setup import setup_of
+from ..tasks.setup import setup_of, setup_of_program
 from .output.console import print_json, print_rich, print_table, progress
 from .parameters import AsJson, ProgramFile, with_options
 
@@ -29,22 +29,28 @@ def check(
     The exit status is 1 if there is an error among the findings.
     """
     with progress("checking the program"):
-        robot = setup_of(source).robot
-        found = _findings(program, source, options)
+        robot, found = _findings(program, source, options)
     if json:
-        print_json({"robot": robot.name, "findings": [_json(finding) for finding in found]})
+        print_json({"robot": robot, "findings": [_json(finding) for finding in found]})
     else:
         _tell(program, found)
     if found.errors:
         raise typer.Exit(1)
 
 
-def _findings(program: Path, source: SourceOptions, options: CheckOptions) -> Findings:
+def _findings(
+    program: Path, source: SourceOptions, options: CheckOptions
+) -> tuple[str | None, Findings]:
+    """The robot's name, None of a backup that cannot be read, and what is found."""
+    named = source.robot is not None or source.cell is not None
+    robot = setup_of(source).robot.name if named else None
     try:
         read = read_with(program, source)
+    except OptionError:
+        raise
     except FlybyError as error:
-        return unread(error)
-    return check_with(read, options)
+        return robot, unread(error)
+    return setup_of_program(read).robot.name, check_with(read, options)
 
 
 def _tell(program: Path, found: Findings) -> None:

@@ -142,6 +142,7 @@ def _read_backup(backup: Backup, options: SourceOptions) -> Program:
     start = joint_target(options.start, spelt("start"), setup.robot)
     answers = answers_of(options)
     program = read_task(backup, task, setup, options.entry, answers, options.others, start)
+    setup = replace(setup, backup=backup)
     return replace(program, setup=setup, notes=(*backup.notes, *program.notes))
 
 

@@ -16,6 +16,7 @@ from .catalogue import robot as robot_called
 from .options.entries import TaskOptions, choice, switch, value
 
 if TYPE_CHECKING:
+    from ..core.backup.backup import Backup
     from ..core.cell.cell import Cell
     from ..core.motion.emulator.controller import Controller
     from ..core.program.program import Program
@@ -81,11 +82,13 @@ class Setup:
         vendor: as it drives the robot, by the user's motion file where there is one.
         robot: where it stands, with its external axes.
         cell: None where no cell file says what stands around.
+        backup: that the program was read of; None if it was read of files.
     """
 
     vendor: Vendor
     robot: Robot
     cell: Cell | None = None
+    backup: Backup | None = None
 
     def __repr__(self) -> str:
         file = None if self.cell is None else self.cell.file

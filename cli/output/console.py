@@ -13,6 +13,7 @@ from typing import Any
 from unicodedata import combining, east_asian_width
 
 from ...core.display import shown
+from ...core.files.archive import named_as_packed
 
 WIDE = 180
 """Columns of a table that goes into a file or a pipe."""
@@ -24,13 +25,18 @@ _DRAWN_ANYWAY = ("FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
 
 def print_json(value: object) -> None:
     """Print a value as JSON, keys in their order."""
-    print(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False))
+    print(named_as_packed(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False)))
 
 
 def print_rich(*texts: str) -> None:
     """Print texts, each from the beginning of a line."""
     for text in texts:
-        _print(shown(text))
+        _print(_shown(text))
+
+
+def _shown(text: str) -> str:
+    """A text on one line, with files of archives called by the archives' names."""
+    return shown(named_as_packed(text))
 
 
 def _print(text: str, style: str = "", *, whole: bool = False) -> None:
@@ -63,14 +69,14 @@ def print_table(
     """
     room = WIDE if _plain(sys.stdout) else shutil.get_terminal_size().columns
     made = [
-        _Column(heading, justify == "right", [shown(row[k]) for row in rows])
+        _Column(heading, justify == "right", [_shown(row[k]) for row in rows])
         for k, (heading, justify) in enumerate(columns)
     ]
     named = (k for k in range(1, len(columns)) if all(any(row[:k]) for row in rows))
     parts = _parts(made, next(named, 1), room)
     for part in parts:
         if title is not None:
-            _print(shown(title), "italic")
+            _print(_shown(title), "italic")
         for line, style in _lines(part, len(rows), room):
             _print(line, style, whole=True)
     if len(parts) > 1:
@@ -215,12 +221,12 @@ def fail(message: str) -> None:
 
 def _complain(label: str, style: str, message: str) -> None:
     if _plain(sys.stderr):
-        print(f"{label}: {shown(message)}", file=sys.stderr)
+        print(f"{label}: {_shown(message)}", file=sys.stderr)
         return
     from rich.console import Console
     from rich.text import Text
 
-    text = Text.assemble((f"{label}: ", style), shown(message))
+    text = Text.assemble((f"{label}: ", style), _shown(message))
     Console(stderr=True, highlight=False).print(text, soft_wrap=True)
 
 

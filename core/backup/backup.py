@@ -119,6 +119,7 @@ class Backup:
         motion: figures of the motion model that the backup states, by their names in motion files
             (``"time.period_s"``), each with its value and its origin.
         notes: what is left out, missing or doubtful, with its file.
+        unpacked: the folder that an archive was unpacked to; None of what is no archive.
     """
 
     source: Path
@@ -134,6 +135,7 @@ class Backup:
     signals: tuple[Signal, ...] = ()
     motion: Mapping[str, tuple[Any, str]] = field(default_factory=dict)
     notes: tuple[Note, ...] = ()
+    unpacked: Path | None = None
 
     def __post_init__(self) -> None:
         for name in ("tools", "frames", "homes", "motion"):

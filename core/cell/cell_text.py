@@ -60,7 +60,8 @@ def _table(heading: str, entries: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _tool(tool: Tool) -> dict[str, Any]:
-    entries: dict[str, Any] = {"tcp": pose_entries(tool.tcp)}
+    entries: dict[str, Any] = {}
+    entries |= {"tcp": pose_entries(tool.tcp)} if tool.tcp != IDENTITY else {}
     entries |= {} if tool.robot_held else {"robot_held": False}
     return entries | ({} if tool.load is None else _load(tool.load))
 
@@ -76,7 +77,8 @@ def _load(load: Load) -> dict[str, Any]:
 
 
 def _frame(frame: WorkObject, tables: set[str]) -> dict[str, Any]:
-    entries: dict[str, Any] = {"pose": pose_entries(frame.user)}
+    entries: dict[str, Any] = {}
+    entries |= {"pose": pose_entries(frame.user)} if frame.user != IDENTITY else {}
     entries |= {"object": pose_entries(frame.frame)} if frame.frame != IDENTITY else {}
     entries |= {"robot_held": True} if frame.robot_held else {}
     return entries | ({"moved_by": frame.moved_by} if frame.moved_by in tables else {})
@@ -97,6 +99,6 @@ def _axis(axis: ExternalAxis) -> dict[str, Any]:
         f"range_{unit}": [joint.lower, joint.upper],
         f"speed_{unit}_s": joint.velocity,
         f"acceleration_{unit}_s2": joint.acceleration,
-        "pose": pose_entries(joint.placement),
     }
+    entries |= {"pose": pose_entries(joint.placement)} if joint.placement != IDENTITY else {}
     return entries if axis.carried_by is None else {**entries, "carried_by": axis.carried_by}

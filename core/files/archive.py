@@ -38,6 +38,16 @@ def is_archive(path: Path) -> bool:
         return file.read(len(_BEGINS)) == _BEGINS
 
 
+_unpacked_here: dict[Path, Path] = {}
+
+
+def named_as_packed(text: str) -> str:
+    """A text with the archives' own names for what this process has unpacked."""
+    for folder, path in _unpacked_here.items():
+        text = text.replace(str(folder), str(path))
+    return text
+
+
 def unpack(path: Path) -> tuple[Path, tuple[Note, ...]]:
     """Unpack an archive into a folder that is removed when the process ends.
 
@@ -57,6 +67,7 @@ def unpack(path: Path) -> tuple[Path, tuple[Note, ...]]:
             atexit.register(shutil.rmtree, above, ignore_errors=True)
             folder = above / (path.stem or "archive")
             folder.mkdir()
+            _unpacked_here[folder] = path
             return folder, tuple(_unpacked(path, archive, files, folder))
     except (zipfile.BadZipFile, ValueError) as error:
         raise InputError(

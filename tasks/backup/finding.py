@@ -53,11 +53,12 @@ def find_backup(path: str | Path, registry: Registry) -> Backup | None:
     if not os.path.lexists(source):
         raise InputError(f"{source}: there is no such file or folder")
     notes: tuple[Note, ...] = ()
-    folder = source
+    folder, unpacked = source, None
     if source.is_dir():
         names = _names(source)
     elif is_archive(source):
-        folder, notes = unpack(source)
+        unpacked, notes = unpack(source)
+        folder = unpacked
         names = _names(folder)
     else:
         folder, names = source.parent, [source.name]
@@ -65,7 +66,7 @@ def find_backup(path: str | Path, registry: Registry) -> Backup | None:
     if found is None:
         return None
     backup = found.opener.open(source, folder / found.root, registry.find_robot)
-    return replace(backup, notes=(*notes, *backup.notes))
+    return replace(backup, notes=(*notes, *backup.notes), unpacked=unpacked)
 
 
 def no_backup(path: str | Path, registry: Registry) -> InputError:

@@ -12,6 +12,7 @@ from ...core.errors import InputError, OptionError
 from .outputs import check_folder, check_outputs, write_all
 
 if TYPE_CHECKING:
+    from ...core.backup.backup import Backup
     from ...core.program.program import Program
     from ...core.source.reading import Files
 
@@ -43,7 +44,10 @@ class FilePlaces:
         Raises:
             InputError: both places are asked for, or the folder cannot take the program's file.
         """
-        check_folder(spelt("out"), self.out)
+        if self.out is not None and self.out.suffix.lower() == ".zip":
+            check_outputs({spelt("out"): self.out}, self.inputs, self.replace_existing)
+        else:
+            check_folder(spelt("out"), self.out)
         if self.out is None:
             return
         if self.in_place:
@@ -72,18 +76,48 @@ class FilePlaces:
             return self._replace(files, original) if self.in_place else []
         from ...core.source.patch.runnable import runnable_files
 
+        backup = _backup_of(files, original)
+        if backup is not None:
+            return self._copy(backup, files)
         paths = {self.out / name: data for name, data in runnable_files(original, files).items()}
         check_outputs({spelt("out"): paths}, self.inputs, self.replace_existing, self.out)
         write_all(spelt("out"), paths, self.out)
         return list(paths)
 
+    def _copy(self, backup: Backup, files: Files) -> list[Path]:
+        """Write a copy of a backup with changed files; returns where these went."""
+        from ..backup.copy import ARCHIVE, copy_of
+
+        assert self.out is not None
+        changed = {Path(file.name): file.data for file in files.values()}
+        copy = copy_of(backup, changed, self.out)
+        folder = None if self.out.suffix.lower() == ARCHIVE else self.out
+        check_outputs({spelt("out"): copy.files}, self.inputs, self.replace_existing, folder)
+        write_all(spelt("out"), copy.files, folder)
+        return list(copy.changed)
+
     def _replace(self, files: Files, original: Program) -> list[Path]:
         from ...core.source.patch.edits import reading_of
 
+        backup = _backup_of(files, original)
+        if backup is not None and backup.unpacked is not None:
+            raise InputError(
+                f"{switched('in_place')}: {backup.source} is an archive, of which a copy "
+                f"alone is written: name it, or a folder, by {spelt('out')}"
+            )
         paths = {Path(file.name): file.data for file in files.values()}
         _check_unchanged(paths, reading_of(original).files)
         write_all(switched("in_place"), paths)
         return list(paths)
+
+
+def _backup_of(files: Files, original: Program) -> Backup | None:
+    """The backup that a program was read of, if all its changed files are of it."""
+    backup = getattr(original.setup, "backup", None)
+    if backup is None or not files:
+        return None
+    own = all(Path(file.name).is_relative_to(backup.root) for file in files.values())
+    return backup if own else None
 
 
 def _check_unchanged(paths: Iterable[Path], read: Files) -> None:

@@ -181,7 +181,7 @@ def test_an_edit_saved_meanwhile_is_not_lost(tmp_path: Path) -> None:
     path = tmp_path / "a.mod"
     read = {str(path): SourceFile(str(path), "old")}
     new = {str(path): SourceFile(str(path), "new")}
-    original = SimpleNamespace(name="a", reading=Reading(read, str(path), None, None))
+    original = SimpleNamespace(name="a", setup=None, reading=Reading(read, str(path), None, None))
     path.write_bytes(b"edited")
     with pytest.raises(InputError, match="has changed since it was read"):
         IN_PLACE.write(new, original)
@@ -198,7 +198,9 @@ def test_files_that_cannot_be_encoded_leave_the_others_alone(tmp_path: Path) -> 
         Path(name).write_bytes(b"old")
     new = {names[0]: SourceFile(names[0], "new"), names[1]: SourceFile(names[1], "ne中", "cp1252")}
     with pytest.raises(InputError, match="cannot be written"):
-        IN_PLACE.write(new, read)
+        IN_PLACE.write(
+            new, SimpleNamespace(setup=None, reading=Reading(read, names[0], None, None))
+        )
     assert [Path(name).read_bytes() for name in names] == [b"old", b"old"]
 
 

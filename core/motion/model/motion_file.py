@@ -51,7 +51,8 @@ def with_stated(base: MotionModel, stated: Mapping[str, tuple[Any, str]]) -> Mot
 
     Args:
         base: what holds where they state nothing.
-        stated: value, as files have it, and source of each figure by its key (``time.period_s``).
+        stated: value, as files have it, and origin of each figure by its key (``time.period_s``):
+            "published: …" or "assumed: …".
 
     Raises:
         InputError: a key is unknown, or a value has the wrong type or range; it is named.
@@ -61,8 +62,16 @@ def with_stated(base: MotionModel, stated: Mapping[str, tuple[Any, str]]) -> Mot
         if key not in FIGURES:
             raise UnknownNameError("key of a motion model", key, FIGURES)
         values[FIGURES[key]] = FIGURES[key].kind.read(key, entry)
-    origins = {key: Provenance("published", source) for key, (_, source) in stated.items()}
+    origins = {key: _stated(source) for key, (_, source) in stated.items()}
     return replace(with_figures(base, values), provenance={**base.provenance, **origins})
+
+
+def _stated(origin: str) -> Provenance:
+    """The provenance of an origin as robots' have it."""
+    status, _, source = origin.partition(": ")
+    if status == "assumed":
+        return Provenance("assumed", source)
+    return Provenance("published", source if status == "published" else origin)
 
 
 def _model(data: dict[str, Any], base: MotionModel) -> MotionModel:

@@ -55,10 +55,19 @@ def read_source(path: Path) -> SourceFile:
         InputError: the file cannot be read, or is too large for a program.
         SourceError: its bytes are no text.
     """
-    data = read_bytes(path, LARGEST_FILE)
+    return source_of(read_bytes(path, LARGEST_FILE), str(path))
+
+
+def source_of(data: bytes, name: str) -> SourceFile:
+    """A source file of its bytes; see `decode`.
+
+    Raises:
+        InputError: it has too many lines for a program.
+        SourceError: its bytes are no text.
+    """
     if max(data.count(b"\n"), data.count(b"\r")) > MOST_LINES:
-        raise InputError(f"{path}: has more than {MOST_LINES:,} lines: no robot program")
-    return SourceFile(str(path), *decode(data, str(path)))
+        raise InputError(f"{name}: has more than {MOST_LINES:,} lines: no robot program")
+    return SourceFile(name, *decode(data, name))
 
 
 def decode(source: str | bytes, file: str) -> tuple[str, str]:

@@ -129,7 +129,7 @@ def _program(
     parsed = {name: parse(SourceText(files[name].text, name)) for name in names}
     data = Globals(
         [module for modules in parsed.values() for module in modules],
-        Library(beside(files, main, names)),
+        Library(beside(files, main, names), loaded=options.beside is not None),
     )
     own: list[Module] = [m for n in names if n == main or main not in parsed for m in parsed[n]]
     name, given = entry_call(options.entry)

@@ -116,7 +116,7 @@ class Globals:
             self._missed.add(name)
             return False
         modules, note = found
-        self.notes.append(note)
+        self.notes += [] if note is None else [note]
         self._load(modules)
         return True
 

@@ -43,17 +43,24 @@ class _Shelved:
 
 
 class Library:
-    """Files that are parsed only if they may declare a name that is missed."""
+    """Files that are parsed only if they may declare a name that is missed.
 
-    def __init__(self, files: Mapping[str, SourceFile]) -> None:
+    Args:
+        files: by name.
+        loaded: whether the controller has all of them loaded, as a backup says: taking one in is
+            then nothing to speak of.
+    """
+
+    def __init__(self, files: Mapping[str, SourceFile], *, loaded: bool = False) -> None:
+        self._loaded = loaded
         self._shelf = {name: _Shelved(file) for name, file in files.items()}
         self._index: dict[str, list[str]] | None = None
         self._reasons: dict[str, str] = {}
 
     def take(
         self, name: str, span: Span, modules: set[str], taken: set[str]
-    ) -> tuple[tuple[Module, ...], Note] | None:
-        """The modules of the only file that declares a name, and what to say about it.
+    ) -> tuple[tuple[Module, ...], Note | None] | None:
+        """The modules of the only file that declares a name, and what to say about it, if anything.
 
         Args:
             name: lower case.
@@ -83,7 +90,7 @@ class Library:
         shelved = self._shelf.pop(fitting[0])
         names = ", ".join(module.text for module in shelved.parsed())
         message = f"module {names} of {fitting[0]} is taken in: it declares '{name}'"
-        return shelved.parsed(), Note(message, span=span)
+        return shelved.parsed(), None if self._loaded else Note(message, span=span)
 
     def hint(self, name: str) -> str | None:
         """Why a file that declares a name was not taken in."""

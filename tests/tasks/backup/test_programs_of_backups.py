@@ -1,0 +1,161 @@
+"""Programs are read of backups and written back into copies of them."""
+
+from __future__ import annotations
+
+import shutil
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import flyby
+from flyby.core.errors import InputError, OptionError, SourceError
+from flyby.tasks.files.places import FilePlaces
+
+from ...vendors.abb.backup.station import Station, multimove, one_robot
+
+
+@pytest.fixture
+def station(tmp_path: Path) -> Path:
+    """A backup with a README beside its folder."""
+    folder = tmp_path / "station"
+    Station(moc=one_robot("-base_frame_pos_z 0.5")).write(folder / "Backup_1")
+    (folder / "README.md").write_bytes(b"our cell\r\n")
+    return folder
+
+
+def packed(folder: Path) -> Path:
+    """The same as an archive."""
+    return Path(shutil.make_archive(str(folder), "zip", folder))
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """Files below a folder, or of an archive."""
+    if folder.is_dir():
+        files = [path for path in folder.rglob("*") if path.is_file()]
+        return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+    with zipfile.ZipFile(folder) as archive:
+        infos = [info for info in archive.infolist() if not info.is_dir()]
+        return {info.filename: archive.read(info) for info in infos}
+
+
+@pytest.mark.parametrize("archive", [False, True])
+def test_robot_and_main_routine_come_from_the_backup(station: Path, archive: bool) -> None:
+    program = flyby.read(packed(station) if archive else station)
+    setup = program.setup
+    assert setup.robot.name == "abb/irb4600-40-255"
+    assert setup.robot.base.position == (0.0, 0.0, 0.5)
+    assert setup.vendor.motion_of(setup.robot).period == pytest.approx(0.004032)
+    run = flyby.emulate(program)
+    assert run.faults == ()
+    assert len(run.program.moves) == 3
+
+
+def test_any_entry_with_arguments_or_of_another_module(station: Path) -> None:
+    assert len(flyby.read(station, entry="pick").moves) == 2
+    assert len(flyby.read(station, entry="Service").moves) == 2
+    assert len(flyby.read(station, entry="At(p10)").moves) == 1
+    named = {entry.name for entry in flyby.read(station, entry="all").entries}
+    assert named == {"Main", "Pick", "At", "Service"}
+    with pytest.raises(SourceError, match="Nowhere"):
+        flyby.read(station, entry="Nowhere")
+
+
+def test_what_the_user_names_takes_precedence(station: Path) -> None:
+    program = flyby.read(station, robot="abb/irb4600-20-250")
+    assert program.setup.robot.name == "abb/irb4600-20-250"
+
+
+def test_of_several_tasks_one_has_to_be_named(tmp_path: Path) -> None:
+    folder = multimove().write(tmp_path)
+    with pytest.raises(OptionError, match=r"which task.*T_ROB1, T_ROB2; choose with task"):
+        flyby.read(folder)
+    assert flyby.read(folder, task="t_rob2").setup.robot.name == "abb/irb120-3-058"
+    with pytest.raises(InputError, match=r"unknown task of .*'T_ROB3'"):
+        flyby.read(folder, task="T_ROB3")
+    with pytest.raises(InputError, match="nothing in T_WATCH can be run"):
+        flyby.read(folder, task="T_WATCH")
+
+
+def test_a_task_is_of_backups_alone(tmp_path: Path) -> None:
+    path = tmp_path / "a.mod"
+    path.write_text("MODULE a\nENDMODULE\n", "ascii")
+    with pytest.raises(OptionError, match=r"task T_ROB1: .* is no backup with tasks"):
+        flyby.read(path, robot="abb/irb120", task="T_ROB1")
+
+
+def changed(source: Path, out: Path) -> list[Path]:
+    """What is written where the zones of a program's moves have become stops."""
+    program = flyby.read(source)
+    return list(flyby.patch(flyby.zones(program, no_floor=True), out=out))
+
+
+def test_a_copy_differs_in_the_changed_file_alone(station: Path, tmp_path: Path) -> None:
+    out = tmp_path / "copy"
+    (written,) = changed(station, out)
+    before, after = contents(station), contents(out)
+    assert before.keys() == after.keys()
+    module = "Backup_1/RAPID/TASK1/PROGMOD/MainModule.mod"
+    assert written == out / module
+    assert {name for name in before if before[name] != after[name]} == {module}
+    again = flyby.read(out)
+    assert again.moves[1].zone != flyby.read(station).moves[1].zone
+
+
+def test_a_copy_of_an_archive_is_a_folder_or_an_archive(station: Path, tmp_path: Path) -> None:
+    archive = packed(station)
+    (as_folder,) = changed(archive, tmp_path / "folder")
+    (as_archive,) = changed(archive, tmp_path / "copy.zip")
+    assert as_archive == tmp_path / "copy.zip"
+    assert as_folder.name == "MainModule.mod"
+    assert contents(tmp_path / "folder") == contents(tmp_path / "copy.zip")
+    assert contents(archive).keys() == contents(as_archive).keys()
+    assert flyby.read(as_archive).moves == flyby.read(tmp_path / "folder").moves
+
+
+def test_copies_do_not_go_where_they_must_not(station: Path, tmp_path: Path) -> None:
+    program = flyby.read(station)
+    made = flyby.zones(program, no_floor=True)
+    with pytest.raises(InputError, match="lies in the backup"):
+        flyby.patch(made, out=station / "inside")
+    with pytest.raises(InputError, match="is no archive: name a folder"):
+        flyby.patch(made, out=tmp_path / "copy.zip")
+    assert not (tmp_path / "copy.zip").exists()
+    (tmp_path / "full").mkdir()
+    flyby.patch(made, out=tmp_path / "full")
+    with pytest.raises(InputError, match="exists already"):
+        flyby.patch(made, out=tmp_path / "full")
+
+
+ALONE = """MODULE MainModule
+  CONST robtarget p10:=[[1400,0,1100],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+  PROC Main()
+    MoveJ p10, v1000, fine, tool0;
+    MoveL Offs(p10,0,200,0), v500, z1, tool0;
+    MoveL Offs(p10,0,200,300), v500, fine, tool0;
+  ENDPROC
+ENDMODULE
+"""
+
+
+def test_in_place_changes_folders_and_no_archives(tmp_path: Path) -> None:
+    tasks = {"TASK1": ("T_ROB1", {"PROGMOD/MainModule.mod": ALONE})}
+    station = tmp_path / "station"
+    Station(tasks=tasks).write(station / "Backup_1")
+    archive = packed(station)
+    before = contents(station)
+    program = flyby.read(archive)
+    with pytest.raises(InputError, match="is an archive, of which a copy alone is written"):
+        flyby.patch(flyby.zones(program, no_floor=True), in_place=True)
+    program = flyby.read(station)
+    flyby.patch(flyby.zones(program, no_floor=True), in_place=True)
+    after = contents(station)
+    assert [name for name in before if before[name] != after[name]] == [
+        "Backup_1/RAPID/TASK1/PROGMOD/MainModule.mod"
+    ]
+
+
+def test_places_ask_for_one_of_both() -> None:
+    places = FilePlaces(Path("a.zip"), True, [], False)
+    with pytest.raises(OptionError, match="one place or the other"):
+        places.check()

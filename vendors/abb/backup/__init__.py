@@ -1,0 +1,1 @@
+"""Backups of ABB controllers (S4C+, IRC5, OmniCore), opened."""

@@ -1,0 +1,126 @@
+"""Which arm a controller means by what it writes: ``ROB1_4600_2.55_40``, ``IRB 4600-40/2.55``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from ....core.door import given
+from ....core.errors import InputError, UnknownNameError
+from ....core.robot.model import Robot
+from .contents import listed
+
+FindRobot = Callable[[str], Robot]
+
+OWN = "abb/"
+_TYPE = re.compile(
+    r"ROB(?:\d+|_?[A-Z])?_(?P<model>\d+[A-Z]*)(?:_(?P<before>[A-Z]\w*?))?_(?P<reach>\d+(?:\.\d+)?)"
+    r"_(?P<payload>\d+(?:\.\d+)?)(?:_(?P<after>\w+))?",
+    re.IGNORECASE,
+)
+_NUMBER = re.compile(r"\d+(?:\.\d+)?")
+_REVISION = re.compile(r"Type_?[A-Z]\d?", re.IGNORECASE)
+"""A variant of the mechanics with the lengths of its type."""
+_NEAR = 0.06
+"""m by which a product's name may round the reach."""
+_MAKES = ("IRB", "CRB")
+
+
+@dataclass(frozen=True)
+class FoundArm:
+    """What was found of a type.
+
+    Args:
+        robot: None if the arm is not known.
+        lack: why not, and what helps; ``""`` if it is.
+    """
+
+    robot: Robot | None
+    lack: str = ""
+
+
+def find_arm(written: str, options: Sequence[str], find_robot: FindRobot) -> FoundArm:
+    """The arm of a type.
+
+    Args:
+        written: as ``use_robot_type`` has it; ``""`` if nothing says.
+        options: arms among the controller's products.
+        find_robot: see `BackupOpener.open`.
+    """
+    refused = ""
+    for name in _names(written, options):
+        try:
+            robot = find_robot(name)
+        except UnknownNameError:
+            continue
+        except InputError as error:  # it is known and cannot be driven, or several are meant
+            refused = refused or str(error)
+            continue
+        if robot.name.startswith(OWN):
+            return FoundArm(robot)
+    said = written or listed(options)
+    if not said:
+        return FoundArm(
+            None, f"the backup does not say which arm it is: name one, {given('robot', 'NAME')}"
+        )
+    if refused:
+        return FoundArm(None, f"{said}: {refused}")
+    near = _near(said, find_robot)
+    return FoundArm(
+        None,
+        f"no arm {said} is known{near and f'; near it are {near}'}: "
+        f"name one that will do, {given('robot', 'NAME')}",
+    )
+
+
+def _near(said: str, find_robot: FindRobot) -> str:
+    """Arms of the same model, with what tells them apart."""
+    found = _TYPE.fullmatch(said)
+    model = _NUMBER.search(found["model"] if found is not None else said)
+    if model is None:
+        return ""
+    for make in _MAKES:
+        try:
+            return find_robot(f"{make} {model[0]}").name
+        except UnknownNameError:
+            continue
+        except InputError as error:
+            return str(error).partition("which? ")[2]
+    return ""
+
+
+def agreeing(written: str, options: Iterable[str]) -> list[str]:
+    """The products that are of the same model, reach and payload as a type."""
+    found = _TYPE.fullmatch(written)
+    if found is None:
+        return []
+    model = _NUMBER.match(found["model"])
+    assert model is not None
+    wanted = [float(found["reach"]), float(found["payload"])]
+    return [option for option in options if _agrees(option, model[0], wanted)]
+
+
+def _agrees(option: str, model: str, wanted: Sequence[float]) -> bool:
+    first, *others = [*_NUMBER.findall(option), ""]
+    rest = [float(number) for number in others if number]
+    return first == model and all(
+        any(abs(number - one) < _NEAR for number in rest) for one in wanted
+    )
+
+
+def _names(written: str, options: Sequence[str]) -> list[str]:
+    """Under which names to look, the surest first."""
+    found = _TYPE.fullmatch(written)
+    if found is None:
+        return list(dict.fromkeys([*([written] if written else []), *options]))
+    fitting = agreeing(written, options)
+    said = [option[:3].upper() for option in fitting]
+    names = []
+    variant = " ".join(filter(None, (found["before"], found["after"])))
+    plain = f"{found['model']}-{found['payload']}/{found['reach']}"
+    for make in sorted(_MAKES, key=lambda make: make not in said):
+        names.append(f"{make} {plain} {variant}".rstrip())
+        if variant and _REVISION.fullmatch(variant):
+            names.append(f"{make} {plain}")
+    return list(dict.fromkeys([written, names[0], *fitting, *names[1:]]))

@@ -1,0 +1,47 @@
+"""Where an ABB backup begins among files: by what marks it, never by its name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+
+CONFIGURATIONS = ("sys", "moc", "eio", "proc", "mmc", "sio")
+"""Topics of system parameters, each a file of its own: ``SYSPAR/MOC.cfg``."""
+
+_BACKINFO = re.compile(r"(?:(.*)/)?backinfo/backinfo\.txt", re.IGNORECASE | re.DOTALL)
+_TASK = re.compile(r"(?:(.*?)/)?rapid/task\d+/(?:progmod|sysmod)/[^/]+", re.IGNORECASE | re.DOTALL)
+_CONFIGURATION = re.compile(
+    rf"(?:(.*)/)?({'|'.join(CONFIGURATIONS)})\.cfg", re.IGNORECASE | re.DOTALL
+)
+_SYSPAR = re.compile(r"(?:(.*)/)?syspar", re.IGNORECASE | re.DOTALL)
+
+
+def root_in(names: Sequence[str]) -> str | None:
+    """The folder in which a backup begins; see `BackupOpener.root_in`.
+
+    The marks, the surest first: ``BACKINFO/backinfo.txt``; ``RAPID/TASKn`` with modules;
+    a folder of system parameters (``MOC.cfg``, or several topics). Of several backups the outermost
+    is taken, as a controller's own disk may hold older ones, and of those beside each other the
+    first by name.
+    """
+    for found in (_found(_BACKINFO, names), _found(_TASK, names), _of_parameters(names)):
+        if found:
+            return min(found, key=lambda root: (root.count("/") + bool(root), root.casefold()))
+    return None
+
+
+def _found(mark: re.Pattern[str], names: Iterable[str]) -> list[str]:
+    return [found[1] or "" for found in map(mark.fullmatch, names) if found is not None]
+
+
+def _of_parameters(names: Iterable[str]) -> list[str]:
+    """Folders that hold system parameters; those of folders called SYSPAR that lie below them."""
+    topics: dict[str, set[str]] = {}
+    for found in filter(None, map(_CONFIGURATION.fullmatch, names)):
+        topics.setdefault(found[1] or "", set()).add(found[2].lower())
+    roots = []
+    for folder, held in topics.items():
+        if "moc" in held or len(held) > 1:
+            named = _SYSPAR.fullmatch(folder)
+            roots.append(folder if named is None else named[1] or "")
+    return roots

@@ -1,0 +1,356 @@
+"""The arms of MOC.cfg: the type of each, with this arm's ranges, base, gravity and external axes.
+
+A ROBOT names its type (`arms`), and stands in the world, or on the unit that carries it, by its
+base frame; JOINT and ARM records, ``rob1_1`` to ``rob1_6`` of ``ROB_1``, have the ranges. Lengths,
+speeds and accelerations of arms are in no backup.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ....core.arrays import FloatArray
+from ....core.backup.backup import BackupRobot
+from ....core.door import called
+from ....core.errors import InputError
+from ....core.robot.joint import ExternalAxis, Joint
+from ....core.robot.model import STANDARD_GRAVITY, Robot
+from ....core.spatial.pose import IDENTITY, Pose
+from ....core.spatial.rotation import matrix_from_quaternion, matrix_from_rotation_vector
+from .arms import FindRobot, agreeing, find_arm
+from .cfg import Parameters, Record
+from .contents import Notes, listed
+from .external_axes import Unit, base_frame, conveyors, units_of
+
+_SAME = 1e-3
+"""rad, m/s² by which numbers may differ that are rounded in a file."""
+_LONGEST = 1e3
+"""rad or m: a range beyond it is none."""
+
+
+@dataclass(frozen=True)
+class Mechanics:
+    """The arms of a controller and the units that none of them moves.
+
+    Args:
+        robots: in the file's order.
+        alone: names of the units that belong to no arm.
+    """
+
+    robots: tuple[BackupRobot, ...]
+    alone: tuple[str, ...] = ()
+
+
+def mechanics_of(
+    moc: Parameters,
+    products: Sequence[str],
+    groups: Mapping[str, Sequence[str]],
+    find_robot: FindRobot,
+    notes: Notes,
+) -> Mechanics:
+    """The arms.
+
+    Args:
+        moc: MOC.cfg, empty if there is none.
+        products: arms among the controller's products.
+        groups: in lower case, the names of the units that belong to each robot of a MultiMove.
+        find_robot: see `BackupOpener.open`.
+        notes: where is said what the file should not hold.
+    """
+    arms = [record for record in moc.section("ROBOT") if _is_arm(record)]
+    if not arms:
+        return Mechanics(_of_products(products, find_robot))
+    for record in moc.section("ROBOT"):
+        if record not in arms:
+            notes.add(
+                f"unit {record.name} ({record.text('use_robot_type')}) is no arm but a positioner "
+                "of several axes, which is left out",
+                record.file,
+                record.line,
+            )
+    if conveyors(moc):
+        notes.add(
+            f"conveyors are not driven: {listed(conveyors(moc))}; what lies on one is taken to "
+            "stand still"
+        )
+    carrying = {(arm.text("base_frame_coordinated") or "").casefold() for arm in arms} - {""}
+    units = units_of(moc, carrying)
+    owned = {arm.name: _own(arm, units, groups, len(arms) == 1) for arm in arms}
+    robots = tuple(_robot(moc, arm, products, owned[arm.name], find_robot, notes) for arm in arms)
+    taken = {unit.name for own in owned.values() for unit in own}
+    return Mechanics(robots, tuple(unit.name for unit in units if unit.name not in taken))
+
+
+def _is_arm(record: Record) -> bool:
+    """Positioners of two axes and more are ROBOT records too, of other types."""
+    kind = record.text("use_robot_type") or ""
+    return kind.upper().startswith("ROB") or not kind
+
+
+def _of_products(products: Sequence[str], find_robot: FindRobot) -> tuple[BackupRobot, ...]:
+    """Arms by the controller's products alone."""
+    robots = []
+    for number, product in enumerate(products or [""], 1):
+        found = find_arm("", [product] if product else [], find_robot)
+        lacks = [found.lack] if found.lack else []
+        lacks.append(
+            "MOC.cfg, which has ranges, base and external axes, cannot be read: those of the type "
+            "are taken, in the world's origin"
+        )
+        robots.append(BackupRobot(f"ROB_{number}", product, found.robot, tuple(lacks)))
+    return tuple(robots)
+
+
+def _own(
+    arm: Record, units: Iterable[Unit], groups: Mapping[str, Sequence[str]], single: bool
+) -> list[Unit]:
+    """The units that a robot moves: those of its group, and what it stands on; of one robot all."""
+    if single:
+        return list(units)
+    members = {*groups.get(arm.name.casefold(), ()), arm.text("base_frame_coordinated") or ""}
+    names = {name.casefold() for name in members}
+    return [unit for unit in units if {unit.name.casefold(), unit.single.name.casefold()} & names]
+
+
+def _robot(
+    moc: Parameters,
+    arm: Record,
+    products: Sequence[str],
+    units: Sequence[Unit],
+    find_robot: FindRobot,
+    notes: Notes,
+) -> BackupRobot:
+    written = arm.text("use_robot_type") or ""
+    found = find_arm(written, agreeing(written, products) or products, find_robot)
+    if found.robot is None:
+        return BackupRobot(arm.name, written, None, (found.lack,))
+    robot, lacks = found.robot, list(_assumed(found.robot))
+    robot, said = _with_ranges(robot, moc, arm, notes)
+    lacks += said
+    robot, said = _with_units(robot, units)
+    lacks += said
+    robot = _placed(robot, arm, units, notes)
+    lacks += _arm_loads(moc, arm)
+    return BackupRobot(arm.name, written, _calibrated(robot, arm), tuple(lacks))
+
+
+def _assumed(robot: Robot) -> list[str]:
+    """What no backup states and the type's description assumes."""
+    factors = [f"{group} within a factor {robot.spread[group]:g}" for group in robot.spread]
+    if not factors:
+        return []
+    figures = ", ".join(factors)
+    return [
+        f"no backup states how fast the arm is; assumed are {figures}: logged runs make them known "
+        f"({called('identify')})"
+    ]
+
+
+# ranges
+
+
+def _with_ranges(
+    robot: Robot, moc: Parameters, arm: Record, notes: Notes
+) -> tuple[Robot, list[str]]:
+    """The robot with the ranges of its ARM records."""
+    joints, coupled, records = [], [], []
+    for index, joint in enumerate(robot.joints):
+        record = _arm_record(moc, arm, index)
+        if record is not None:
+            ranged = _ranged(joint, record, notes)
+            records += [record] if ranged is not joint else []
+            if record.text("upper_joint_coupl_bound") or record.text("lower_joint_coupl_bound"):
+                coupled.append(joint.name)
+            joint = ranged
+        joints.append(joint)
+    if not records:
+        return robot, ["MOC.cfg states no ranges of this arm: those of its type are taken"]
+    origins = {**robot.origins, "range": _origin(records)}
+    doubts = robot.doubts
+    if coupled:
+        said = "the range of a joint depends on its neighbour's (coupl_bound), which is not checked"
+        doubts = (*doubts, f"{', '.join(coupled)}: {said}")
+    lacks = [] if len(records) == robot.arm_size else [_partly(robot, len(records))]
+    return replace(robot, joints=tuple(joints), origins=origins, doubts=doubts), lacks
+
+
+def _partly(robot: Robot, stated: int) -> str:
+    return (
+        f"MOC.cfg states the ranges of {stated} of {robot.arm_size} joints: of the others those of "
+        "the type are taken"
+    )
+
+
+def _arm_record(moc: Parameters, arm: Record, index: int) -> Record | None:
+    """The ARM of a joint, counted from zero: by the robot's joints, or by its name."""
+    used = arm.numbered("use_joint_")
+    by_name = f"{_folded(arm.name)}{index + 1}"
+    name = used[index] if index < len(used) else None
+    joint = moc.named("JOINT", name) or _alike(moc, "JOINT", by_name)
+    found = None
+    if joint is not None:
+        found = moc.named("ARM", joint.text("use_arm"), joint.name)
+    return found or moc.named("ARM", name) or _alike(moc, "ARM", by_name)
+
+
+def _alike(moc: Parameters, section: str, folded: str) -> Record | None:
+    return next((one for one in moc.section(section) if _folded(one.name) == folded), None)
+
+
+def _folded(name: str) -> str:
+    """``ROB_1`` and ``rob1`` are one robot; its first joint is ``rob1_1``."""
+    return name.casefold().replace("_", "")
+
+
+def _ranged(joint: Joint, record: Record, notes: Notes) -> Joint:
+    """A joint with the range of its record; of its type where the record has none."""
+    try:
+        lower, upper = (record.number(f"{end}_joint_bound") for end in ("lower", "upper"))
+        ends = [joint.lower if lower is None else lower, joint.upper if upper is None else upper]
+        if not -_LONGEST < ends[0] < ends[1] < _LONGEST:
+            message = f"the range of {record.name} makes no sense, so that of its type is taken"
+            raise InputError(f"{message}: {ends[0]:g} to {ends[1]:g} rad")
+    except InputError as error:
+        notes.add(str(error), record.file, record.line)
+        return joint
+    if lower is None and upper is None:
+        return joint
+    return replace(joint, lower=ends[0], upper=ends[1])
+
+
+# base, gravity, external axes
+
+
+def _with_units(robot: Robot, units: Sequence[Unit]) -> tuple[Robot, list[str]]:
+    """The robot with its external axes in the order of robtargets."""
+    lacks = [lack for unit in units for lack in unit.lacks]
+    made = sorted((unit for unit in units if unit.axis is not None), key=lambda unit: unit.number)
+    axes: list[ExternalAxis] = []
+    for unit in made:
+        if unit.number != len(axes):
+            lacks.append(
+                f"unit {unit.name} is eax_{'abcdef'[unit.number]} of robtargets, and it is not "
+                "known what stands before it: it is left out"
+            )
+            continue
+        assert unit.axis is not None
+        axes.append(unit.axis)
+    if not axes:
+        return robot, lacks
+    singles = [unit.single for unit in made if unit.axis in axes]
+    assumed = "; ".join(lack for unit in made for lack in unit.lacks)
+    origin = f"{_origin(singles)}{assumed and f'; {assumed}'}"
+    origins = {**robot.origins, "external axes": origin}
+    try:
+        return replace(robot, external_axes=tuple(axes), origins=origins), lacks
+    except InputError as error:
+        return robot, [*lacks, f"external axes are left out: {error}"]
+
+
+def _placed(robot: Robot, arm: Record, units: Sequence[Unit], notes: Notes) -> Robot:
+    """The robot where it stands, and hanging as it does."""
+    try:
+        base = base_frame(arm)
+    except InputError as error:
+        notes.add(f"the base frame of {arm.name} is not taken: {error}")
+        return robot
+    on = (arm.text("base_frame_coordinated") or "").casefold()
+    carrier = next(
+        (u for u in units if on and on in (u.name.casefold(), u.single.name.casefold())), None
+    )
+    frame = base
+    if carrier is not None and carrier.axis is not None:
+        frame = carrier.axis.joint.placement @ base
+        if base != IDENTITY and carrier.axis.joint.placement != IDENTITY:
+            notes.add(
+                f"{arm.name} stands on {carrier.name}, and both have a base frame: that of "
+                f"{arm.name} is taken to be in the frame of {carrier.name}",
+                arm.file,
+                arm.line,
+            )
+    elif on:
+        notes.add(
+            f"{arm.name} stands on {arm.text('base_frame_coordinated')}, which is not known: it "
+            "is taken to stand still",
+            arm.file,
+            arm.line,
+        )
+    gravity = _gravity(robot, arm, frame, notes)
+    origins = {**robot.origins, "base": _origin([arm])}
+    return replace(robot, base=base, gravity=gravity, origins=origins)
+
+
+def _gravity(robot: Robot, arm: Record, frame: Pose, notes: Notes) -> tuple[float, float, float]:
+    """m/s² in the world.
+
+    The controller has it by ``gravity_alpha`` and ``gravity_beta``, the turns about x and y by
+    which the base is off a level floor, whatever the base frame says ("Technical reference manual,
+    System parameters", Gravity Beta: positive about y, π suspended).
+    """
+    try:
+        alpha, beta = (arm.number(f"gravity_{turn}") or 0.0 for turn in ("alpha", "beta"))
+    except InputError as error:
+        notes.add(f"gravity is taken as on a level floor: {error}")
+        return robot.gravity
+    turned = _about(0, alpha) @ _about(1, beta)
+    in_base = turned.T @ np.array(STANDARD_GRAVITY)
+    world = matrix_from_quaternion(np.array(frame.quaternion)) @ in_base
+    if float(np.abs(world - np.array(STANDARD_GRAVITY)).max()) < 10 * _SAME:
+        return STANDARD_GRAVITY
+    tilt = math.degrees(math.acos(float(np.clip(turned[2, 2], -1.0, 1.0))))
+    notes.add(
+        f"gravity_alpha and gravity_beta of {arm.name} say {tilt:.0f}° off a level floor, and its "
+        "base frame says otherwise: gravity is taken from the former, the place from the latter",
+        arm.file,
+        arm.line,
+    )
+    x, y, z = (round(float(part), 12) for part in world)
+    return (x, y, z)
+
+
+def _about(axis: int, angle: float) -> FloatArray:
+    return np.asarray(matrix_from_rotation_vector(angle * np.eye(3)[axis]))
+
+
+# what else is said of an arm
+
+
+def _arm_loads(moc: Parameters, arm: Record) -> list[str]:
+    """Loads that the arm carries besides its tool: accelerations do not know of them."""
+    said = []
+    number = "".join(filter(str.isdigit, arm.name))
+    for record in moc.section("ARM_LOAD"):
+        try:
+            mass = record.number("mass") or 0.0
+        except InputError:
+            continue
+        if mass > 0.0 and record.name.casefold().startswith(f"r{number}_"):
+            said.append(f"{record.name} {mass:g} kg")
+    if not said:
+        return []
+    return [
+        f"the arm carries {', '.join(said)} (MOC.cfg ARM_LOAD), of which its accelerations do "
+        "not know"
+    ]
+
+
+def _calibrated(robot: Robot, arm: Record) -> Robot:
+    """A doubt where the controller makes up for the errors of this arm's own geometry."""
+    names = [
+        value for key, value in arm.values.items() if key.startswith("use_") and "calib" in key
+    ]
+    if not any(name.lower().endswith("_calib") for name in names):
+        return robot
+    said = "calibrated (absolute accuracy): its joints are off the nominal ones by some hundredths"
+    return replace(robot, doubts=(*robot.doubts, f"{said} to tenths of a degree"))
+
+
+def _origin(records: Sequence[Record]) -> str:
+    """What figures rest on that records of one section state."""
+    names = [record.name for record in records]
+    said = names[0] if len(names) == 1 else f"{names[0]} to {names[-1]}"
+    return f"published: {records[0].section} {said} of the controller's own MOC.cfg"

@@ -1,0 +1,65 @@
+"""Figures of the motion model that MOC.cfg states.
+
+Of how a controller drives, a backup states next to nothing that has a name in the motion model:
+its period follows from the queue times of MOTION_PLANNER. The cap of the TCP's speed
+(``linear_max_speed``) is beyond what arms reach on lines; it is noted where it is low.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ....core.errors import InputError
+from .cfg import Parameters, Record
+from .contents import Notes
+
+_PERIODS = (0.004032, 0.004)
+"""s: the one that queue times of all backups seen are whole multiples of, and the catalogue's."""
+_LOW = 4.0
+"""m/s; backups as delivered state 6.2 to 8.4."""
+
+
+def motion_figures(moc: Parameters, notes: Notes) -> dict[str, tuple[Any, str]]:
+    """Figures by their names in motion files, each with its value and its origin."""
+    planners = moc.section("MOTION_PLANNER")
+    for planner in planners:
+        _note_cap(planner, notes)
+    times = [time for planner in planners for time in _queue_times(planner)]
+    for period in _PERIODS:
+        if times and all(_multiple(time, period) for time in times):
+            what = ", ".join(f"{time:g}" for time in sorted(set(times), reverse=True))
+            origin = f"{planners[0].place}: queue times {what} s are whole multiples of it"
+            return {"period_s": (period, f"assumed: {origin}")}
+    return {}
+
+
+def _queue_times(planner: Record) -> list[float]:
+    found = []
+    for key in planner.values:
+        if "queue_time" in key:
+            try:
+                time = planner.number(key)
+            except InputError:
+                continue
+            if time:
+                found.append(time)
+    return found
+
+
+def _multiple(time: float, period: float) -> bool:
+    count = round(time / period)
+    return count > 0 and abs(time - count * period) < 1e-4 * period
+
+
+def _note_cap(planner: Record, notes: Notes) -> None:
+    try:
+        speed = planner.number("linear_max_speed")
+    except InputError:
+        return
+    if speed is not None and speed < _LOW:
+        notes.add(
+            f"the controller drives the TCP at {speed:g} m/s at most (linear_max_speed), which is "
+            "not held here: program no faster",
+            planner.file,
+            planner.line,
+        )
