@@ -9,8 +9,8 @@ Single and Single Type).
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
 
 from ....core.errors import InputError
 from ....core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
@@ -58,11 +58,25 @@ def units_of(moc: Parameters, carrying: Collection[str]) -> list[Unit]:
         moc: MOC.cfg.
         carrying: names of units or singles, in lower case, that an arm stands on.
     """
-    found: list[Unit] = []
-    for name, single in _singles(moc):
-        if not name.casefold().startswith(_CONVEYOR):
-            found.append(_unit(moc, name, single, carrying))
-    return found
+    singles = [pair for pair in _singles(moc) if not pair[0].casefold().startswith(_CONVEYOR)]
+    called: dict[str, str] = {}
+    for name, single in singles:
+        called |= {single.name.casefold(): name, name.casefold(): name}
+    below = {
+        one: on.casefold()
+        for name, single in singles
+        if (on := _below(single))
+        for one in (name.casefold(), single.name.casefold())
+    }
+    tracks = set(carrying)
+    while more := {below[one] for one in tracks if one in below} - tracks:
+        tracks |= more
+    return [_unit(moc, name, single, tracks, called) for name, single in singles]
+
+
+def _below(single: Record) -> str:
+    """The unit or single that one stands on; ``""`` for the floor."""
+    return single.text("base_frame_coordinated") or ""
 
 
 def conveyors(moc: Parameters) -> list[str]:
@@ -84,7 +98,13 @@ def _singles(moc: Parameters) -> list[tuple[str, Record]]:
     return list(found.values())
 
 
-def _unit(moc: Parameters, name: str, single: Record, carrying: Collection[str]) -> Unit:
+def _unit(
+    moc: Parameters,
+    name: str,
+    single: Record,
+    carrying: Collection[str],
+    called: Mapping[str, str],
+) -> Unit:
     joint = moc.named("JOINT", single.text("use_joint"), single.name)
     try:
         number = -1 if joint is None else int(joint.number("logical_axis") or 0) - _FIRST_AXIS
@@ -92,7 +112,14 @@ def _unit(moc: Parameters, name: str, single: Record, carrying: Collection[str])
             lack = f"the axis of unit {name} is not known (MOC.cfg JOINT): it is left out"
             return Unit(name, None, number, single, (lack,))
         carries = {name.casefold(), single.name.casefold()} & set(carrying)
-        return _axis(moc, name, single, joint, number, bool(carries))
+        unit = _axis(moc, name, single, joint, number, bool(carries))
+        on = _below(single)
+        if unit.axis is None or not on:
+            return unit
+        if called.get(on.casefold(), name) == name:
+            lack = f"unit {name} stands on {on}, which is not known: it is taken to stand still"
+            return replace(unit, lacks=(*unit.lacks, lack))
+        return replace(unit, axis=replace(unit.axis, carried_by=called[on.casefold()]))
     except InputError as error:
         return Unit(name, None, -1, single, (f"unit {name} is left out: {error}",))
 

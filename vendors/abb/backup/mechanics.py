@@ -239,9 +239,14 @@ def _with_units(robot: Robot, units: Sequence[Unit]) -> tuple[Robot, list[str]]:
             continue
         assert unit.axis is not None
         axes.append(unit.axis)
+    names = {axis.name for axis in axes}
+    for place, axis in enumerate(axes):
+        if axis.carried_by is not None and axis.carried_by not in names:
+            lacks.append(f"unit {axis.name} stands on {axis.carried_by}, which is taken to stand")
+            axes[place] = replace(axis, carried_by=None)
     if not axes:
         return robot, lacks
-    singles = [unit.single for unit in made if unit.axis in axes]
+    singles = [unit.single for unit in made if unit.name in names]
     assumed = "; ".join(lack for unit in made for lack in unit.lacks)
     origin = f"{_origin(singles)}{assumed and f'; {assumed}'}"
     origins = {**robot.origins, "external axes": origin}
@@ -258,13 +263,14 @@ def _placed(robot: Robot, arm: Record, units: Sequence[Unit], notes: Notes) -> R
     except InputError as error:
         notes.add(f"the base frame of {arm.name} is not taken: {error}")
         return robot
-    on = (arm.text("base_frame_coordinated") or "").casefold()
+    on = arm.text("base_frame_coordinated") or ""
     carrier = next(
-        (u for u in units if on and on in (u.name.casefold(), u.single.name.casefold())), None
+        (u for u in units if on and on.casefold() in (u.name.casefold(), u.single.name.casefold())),
+        None,
     )
     frame = base
     if carrier is not None and carrier.axis is not None:
-        frame = carrier.axis.joint.placement @ base
+        frame = _standing(robot, carrier.name) @ base
         if base != IDENTITY and carrier.axis.joint.placement != IDENTITY:
             notes.add(
                 f"{arm.name} stands on {carrier.name}, and both have a base frame: that of "
@@ -273,15 +279,20 @@ def _placed(robot: Robot, arm: Record, units: Sequence[Unit], notes: Notes) -> R
                 arm.line,
             )
     elif on:
-        notes.add(
-            f"{arm.name} stands on {arm.text('base_frame_coordinated')}, which is not known: it "
-            "is taken to stand still",
-            arm.file,
-            arm.line,
-        )
+        message = f"{arm.name} stands on {on}, which is not known: it is taken to stand still"
+        notes.add(message, arm.file, arm.line)
     gravity = _gravity(robot, arm, frame, notes)
     origins = {**robot.origins, "base": _origin([arm])}
     return replace(robot, base=base, gravity=gravity, origins=origins)
+
+
+def _standing(robot: Robot, unit: str) -> Pose:
+    """The frame of a unit in the world, all axes at zero."""
+    axes = {axis.name: axis for axis in robot.external_axes}
+    frame, axis = IDENTITY, axes.get(unit)
+    while axis is not None:
+        frame, axis = axis.joint.placement @ frame, axes.get(axis.carried_by or "")
+    return frame
 
 
 def _gravity(robot: Robot, arm: Record, frame: Pose, notes: Notes) -> tuple[float, float, float]:

@@ -155,12 +155,16 @@ def doubled(file: ModuleFile, taken: dict[str, str]) -> tuple[str, str] | None:
     """
     own: dict[str, str] = {}
     for module in file.modules:
+        inner: set[str] = set()
         for item in (module, *module.routines, *module.declarations, *module.types):
-            if item is not module and getattr(item, "local", False):
-                continue
             key = f"module {module.name}" if item is module else item.name
-            if key in taken:
-                return getattr(item, "text", item.name), taken[key]
+            if item is not module and getattr(item, "local", False):
+                if key in inner:
+                    return getattr(item, "text", item.name), file.name
+                inner.add(key)
+                continue
+            if key in taken or key in own:
+                return getattr(item, "text", item.name), taken.get(key, file.name)
             own[key] = file.name
     taken.update(own)
     return None

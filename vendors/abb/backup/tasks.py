@@ -8,13 +8,15 @@ group of units, ``MECHANICAL_UNIT_GROUP``.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ....core.backup.backup import BackupEntry, Task
 from ....core.display import counted
-from ..run.analysis import count_moves
+from ....core.errors import SourceError
+from ..run.analysis import move_counts
 from ..run.files import MODULES
+from ..syntax.tree import Routine
 from ..values.data import Globals
 from ..values.library import Library
 from .backinfo import BackInfo, ListedTask
@@ -158,7 +160,8 @@ def _fitting(files: Sequence[ModuleFile], notes: Notes) -> list[ModuleFile]:
             fitting.append(file)
         else:
             name, first = double
-            notes.add(f"{file.name} is left out: it declares {name} anew, which {first} has")
+            anew = "twice" if first == file.name else f"anew, which {first} has"
+            notes.add(f"{file.name} is left out: it declares {name} {anew}")
     return fitting
 
 
@@ -238,6 +241,18 @@ def _called(name: str, robots: Sequence[str]) -> int | None:
     return folded.index(key) if key in folded else None
 
 
+def _counts(task: LoadedTask, notes: Notes) -> Callable[[Routine], int]:
+    """How many statements of a routine, and of those that it calls, move the robot."""
+    try:
+        modules = [module for file in task.files for module in file.modules]
+        return move_counts(Globals(modules, Library({})))
+    except SourceError as error:
+        line = 1 if error.span is None else error.span.line
+        notes.add(error.message, error.span and error.span.file, line)
+        moving = task.moving
+        return lambda routine: int(id(routine) in moving)
+
+
 def task_of(task: LoadedTask, robot: int | None, hooks: Mapping[str, str], notes: Notes) -> Task:
     """What is handed out of a task.
 
@@ -251,7 +266,7 @@ def task_of(task: LoadedTask, robot: int | None, hooks: Mapping[str, str], notes
     stated = (task.record.text("entry") if task.record is not None else None) or _MAIN
     if robot is None:
         return Task(task.name, None, files, None, stated if task.record is not None else None)
-    data = Globals([module for file in task.files for module in file.modules], Library({}))
+    count = _counts(task, notes)
     entries: list[BackupEntry] = []
     first: BackupEntry | None = None
     for file in task.files:
@@ -263,7 +278,7 @@ def task_of(task: LoadedTask, robot: int | None, hooks: Mapping[str, str], notes
                 file.name,
                 hooks.get(routine.name, ""),
                 tuple(p.name for p in routine.parameters if not p.optional),
-                count_moves(data, routine),
+                count(routine),
             )
             if routine.name == stated.casefold():
                 first = entry

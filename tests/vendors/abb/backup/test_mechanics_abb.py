@@ -275,3 +275,41 @@ def test_names_and_paths(tmp_path: Path) -> None:
     (task,) = info.tasks
     assert (task.folder, task.name, task.program) == ("TASK12", "T_ROB1", "")
     assert [module.file for module in task.modules] == ["PROGMOD/My Part.v2.mod", "SYSMOD/a.sys"]
+
+
+def test_a_gantry_and_a_table_that_tilts() -> None:
+    sections = {key: list(value) for key, value in on_track().items()}
+    sections["JOINT"] += ['-name "gan_1" -logical_axis 9', '-name "turn" -logical_axis 10']
+    bounds = "-lower_joint_bound -2 -upper_joint_bound 2"
+    sections["ARM"] += [f'-name "gan_1" {bounds}', f'-name "turn" {bounds}']
+    sections["ROBOT"] = [robot_record(1, more='-base_frame_coordinated "GAN"')]
+    sections["SINGLE"] += [
+        '-name "GAN" -use_single_type "TRK" -use_joint "gan_1" -base_frame_coordinated "track_1" '
+        "-base_frame_orient_u0 0.7071068 -base_frame_orient_u3 0.7071068",
+        '-name "STN_2" -use_single_type "ROT" -use_joint "turn" -base_frame_coordinated "STN_1"',
+    ]
+    sections["MECHANICAL_UNIT"] = [
+        '-name "TRACK_1" -use_single_0 "TRACK_1"',
+        '-name "GAN" -use_single_0 "GAN"',
+        '-name "POS" -use_single_0 "STN_1" -use_single_1 "STN_2"',
+    ]
+    robot = robot_of(sections)
+    carried = {axis.name: (axis.role, axis.carried_by) for axis in robot.external_axes}
+    assert carried == {
+        "TRACK_1": ("track", None),
+        "STN_1": ("table", None),
+        "GAN": ("track", "TRACK_1"),
+        "POS": ("table", "STN_1"),
+    }
+    here = robot.flange_pose([0.0] * 10).position
+    there = robot.flange_pose([0.0] * 6 + [1.0, 0.4, 0.5, 0.4]).position
+    assert np.allclose(np.subtract(there, here), (1.0, 0.5, 0.0), atol=1e-6)
+
+
+@pytest.mark.parametrize("on", ["NOWHERE", "GAN", "TRACK_1"])
+def test_units_that_stand_on_nothing_known(on: str) -> None:
+    sections = {key: list(value) for key, value in on_track().items()}
+    sections["SINGLE"][0] += f' -base_frame_coordinated "{on}"'
+    (found,) = made(sections).robots
+    assert found.robot is not None and len(found.robot.external_axes) == 2
+    assert f"unit TRACK_1 stands on {on}, which is not known" in " / ".join(found.lacks)

@@ -326,3 +326,29 @@ def test_texts_with_robots_that_no_controller_has(tmp_path: Path) -> None:
     backup = opened(Station(moc=moc).write(tmp_path))
     (note,) = texts(backup)
     assert "the base frame of ROB_1 is not taken" in note and "is no number" in note
+
+
+@pytest.mark.parametrize(
+    ("inside", "name"),
+    [
+        ("PROC a()\nENDPROC\nPROC a()\nENDPROC", "a"),
+        ("LOCAL PROC b()\nENDPROC\nLOCAL PROC B()\nENDPROC", "B"),
+        ("PERS num c:=1;\nPERS num c:=2;", "c"),
+        ("RECORD r\nnum x;\nENDRECORD\nRECORD r\nnum y;\nENDRECORD", "r"),
+    ],
+)
+def test_modules_that_contradict_themselves(inside: str, name: str, tmp_path: Path) -> None:
+    twice = f"MODULE twice\n{inside}\nENDMODULE\n"
+    modules = {"PROGMOD/MainModule.mod": MAIN, "PROGMOD/twice.mod": twice}
+    backup = opened(Station(tasks={"TASK1": ("T_ROB1", modules)}).write(tmp_path))
+    assert texts(backup) == [f"{TASK}/PROGMOD/twice.mod is left out: it declares {name} twice"]
+    assert backup.tasks[0].entry == "Main"
+
+
+def test_types_that_make_no_sense(tmp_path: Path) -> None:
+    wrong = "MODULE wrong\nRECORD r\nnum x;\nnum x;\nENDRECORD\nENDMODULE\n"
+    modules = {"PROGMOD/MainModule.mod": MAIN, "PROGMOD/wrong.mod": wrong}
+    backup = opened(Station(tasks={"TASK1": ("T_ROB1", modules)}).write(tmp_path))
+    (note,) = texts(backup)
+    assert "wrong.mod:2:1: component x is declared twice" in note
+    assert [entry.name for entry in backup.tasks[0].entries] == ["Main", "Pick", "At"]
