@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from flyby.tasks.catalogue import cell, robot, robots, vendors
     from flyby.tasks.check import check
     from flyby.tasks.compare import compare
+    from flyby.tasks.diff.diff import diff
     from flyby.tasks.emulate import emulate
     from flyby.tasks.experiment import experiment
     from flyby.tasks.free_motion import free_motion
@@ -38,6 +39,7 @@ __all__ = [
     "cell",
     "check",
     "compare",
+    "diff",
     "emulate",
     "experiment",
     "free_motion",
@@ -60,6 +62,7 @@ __all__ = [
 
 _ELSEWHERE = {
     "cell": "catalogue",
+    "diff": "diff.diff",
     "open_backup": "backup.opening",
     "patch": "write",
     "robot": "catalogue",

@@ -31,6 +31,7 @@ COMMANDS = {
     "tune": "free",
     "paint": "paint",
     "import": "backup",
+    "diff": "diff",
     "robots": "catalogue",
     "vendors": "catalogue",
     "fk": "kinematics",

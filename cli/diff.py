@@ -1,0 +1,219 @@
+"""``flyby diff``: two states of a program or a station side by side."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..core.errors import FlybyError, OptionError
+from ..tasks.diff.diff import diff_with
+from ..tasks.files.source_places import place_json
+from ..tasks.read import SourceOptions, read_with
+from .output.console import fail, print_json, print_rich, print_table, progress
+from .parameters import AsJson, with_options
+
+if TYPE_CHECKING:
+    from ..core.difference.differences import Difference
+    from ..core.difference.texts import FileDifference
+    from ..tasks.diff.diff import RoutineDifference, StateDifference
+
+_OF_GIT = 7
+"""Arguments that git gives to an external diff: name, then file, hash and mode of both sides."""
+_NOTHING = "/dev/null"
+"""What git names in the place of a file that is not there."""
+
+Table = tuple[str, Sequence[str], list[tuple[str, ...]]]
+"""Title, heads and rows."""
+
+
+@with_options
+def diff(
+    paths: Annotated[
+        list[str],
+        typer.Argument(
+            help="Two programs, folders or backups; one, to list its moves a line each (git's "
+            "textconv); or the seven arguments of git's external diff."
+        ),
+    ],
+    source: SourceOptions,
+    markdown: Annotated[
+        bool, typer.Option("--markdown", help="Print tables in Markdown, for a merge request.")
+    ] = False,
+    json: AsJson = False,
+) -> None:
+    """Compare two states: points, tools, zones, speeds, moves, code; cycle times, paths, faults.
+
+    The exit status is 1 if they differ, 2 for an error; as git's external diff it is always 0.
+    """
+    if len(paths) == 1:
+        _list_moves(Path(paths[0]), source)
+        return
+    if len(paths) == _OF_GIT:
+        _for_git(paths, source)
+        return
+    if len(paths) != 2:
+        raise OptionError(f"{len(paths)} paths: name the two states that are compared")
+    try:
+        with progress("reading both"):
+            found = diff_with(paths[0], paths[1], source)
+    except FlybyError as error:
+        fail(str(error))
+        raise typer.Exit(2) from None
+    if json:
+        print_json(_json(found))
+    else:
+        _tell(found, markdown=markdown)
+    if found.differs:
+        raise typer.Exit(1)
+
+
+def _for_git(paths: Sequence[str], source: SourceOptions) -> None:
+    """Both states of a file as git hands them over; git takes any other status for a failure."""
+    name, old, new = paths[0], paths[1], paths[4]
+    print_rich(f"diff of {name}")
+    if _NOTHING in (old, new):
+        print_rich("added" if old == _NOTHING else "removed")
+        return
+    try:
+        _tell(diff_with(old, new, source), markdown=False)
+    except FlybyError as error:
+        print_rich(f"not compared: {error}")
+
+
+def _list_moves(path: Path, source: SourceOptions) -> None:
+    """The moves of a program, a line each, without places in the text."""
+    from ..core.difference.moves import move_text
+
+    for move in read_with(path, source).moves:
+        print_rich(move_text(move))
+
+
+# tables
+
+
+def _tell(found: StateDifference, *, markdown: bool) -> None:
+    if not found.differs:
+        print_rich(f"{found.before} and {found.after} do not differ")
+        return
+    for title, heads, rows in _tables(found):
+        if not rows:
+            continue
+        if markdown:
+            _print_markdown(title, heads, rows)
+        else:
+            numbers = {"before s", "after s", "%", "mm apart", "Δ mm", "Δ °", "lines +", "lines -"}
+            sided = [(head, "right" if head in numbers else "left") for head in heads]
+            print_table(sided, rows, title)
+    for routine in found.routines:
+        for said, faults in (("new fault", routine.faults), ("mended", routine.mended)):
+            for fault in faults:
+                print_rich(f"{'- ' * markdown}{said}, {routine.name}: {fault}")
+
+
+def _print_markdown(title: str, heads: Sequence[str], rows: list[tuple[str, ...]]) -> None:
+    lines = [f"\n### {title}\n", "| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
+    lines += ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows]
+    for line in lines:
+        print_rich(line)
+    print_rich("")
+
+
+def _tables(found: StateDifference) -> list[Table]:
+    near = any(value is not None for one in found.routines for value in one.clearances)
+    heads = ["routine", "before s", "after s", "%", "mm apart"]
+    heads += ["clearance before mm", "after mm"] if near else []
+    return [
+        ("routines", heads, [_routine_cells(one, near=near) for one in found.routines]),
+        (
+            "differences",
+            ("what", "name", "before", "after", "Δ mm", "Δ °", "line"),
+            [_cells(one) for one in found.differences],
+        ),
+        (
+            "files",
+            ("file", "", "lines +", "lines -", "moved"),
+            [_file_cells(one) for one in found.files],
+        ),
+    ]
+
+
+def _routine_cells(one: RoutineDifference, *, near: bool) -> tuple[str, ...]:
+    before, after = one.times
+    share = ""
+    if before and after is not None:
+        share = f"{100 * (after / before - 1):+.1f}"
+    apart = "" if one.distance is None else f"{1e3 * one.distance:.2f}"
+    cells = (one.name, _seconds(before), _seconds(after), share, apart)
+    return (*cells, *(_millimetres(value) for value in one.clearances)) if near else cells
+
+
+def _seconds(time: float | None) -> str:
+    return "not driven" if time is None else f"{time:.3f}"
+
+
+def _millimetres(length: float | None) -> str:
+    return "" if length is None else f"{1e3 * length:.1f}"
+
+
+def _cells(one: Difference) -> tuple[str, ...]:
+    distance = "" if one.distance is None else f"{1e3 * one.distance:.3f}"
+    angle = "" if one.angle is None else f"{math.degrees(one.angle):.3f}"
+    line = "" if one.span is None else f"{Path(one.span.file).name}:{one.span.line}"
+    return (one.subject.value, one.name, one.before, one.after, distance, angle, line)
+
+
+def _file_cells(one: FileDifference) -> tuple[str, ...]:
+    return (one.name, one.kind, str(one.added), str(one.removed), str(one.moved or ""))
+
+
+# JSON
+
+
+def _json(found: StateDifference) -> dict[str, Any]:
+    return {
+        "before": str(found.before),
+        "after": str(found.after),
+        "differs": found.differs,
+        "routines": [_routine_json(one) for one in found.routines],
+        "differences": [_difference_json(one) for one in found.differences],
+        "files": [
+            {
+                "file": one.name,
+                "kind": one.kind,
+                "lines_added": one.added,
+                "lines_removed": one.removed,
+                "lines_moved": one.moved,
+            }
+            for one in found.files
+        ],
+    }
+
+
+def _routine_json(one: RoutineDifference) -> dict[str, Any]:
+    return {
+        "routine": one.name,
+        "cycle_time_before_s": one.times[0],
+        "cycle_time_after_s": one.times[1],
+        "greatest_path_distance_m": one.distance,
+        "clearance_before_m": one.clearances[0],
+        "clearance_after_m": one.clearances[1],
+        "new_faults": list(one.faults),
+        "mended_faults": list(one.mended),
+    }
+
+
+def _difference_json(one: Difference) -> dict[str, Any]:
+    return {
+        "subject": one.subject.value,
+        "kind": one.kind,
+        "name": one.name,
+        "before": one.before or None,
+        "after": one.after or None,
+        "distance_m": one.distance,
+        "angle_rad": one.angle,
+        **place_json(one.span),
+    }

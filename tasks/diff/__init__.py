@@ -1,0 +1,1 @@
+"""Two states of a program or a station side by side."""

@@ -1,0 +1,86 @@
+"""``flyby diff`` at the command line and under git."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import Result
+
+Flyby = Callable[..., Result]
+ROBOT = ("--robot", "abb/irb6640-180-255")
+
+
+@pytest.fixture
+def both(small: Callable[..., Path], tmp_path: Path) -> tuple[Path, Path]:
+    """A program before and after a change of a zone and of a speed."""
+    path = small("MoveL Offs(p1,0,100,0),v500,z10,tool0", "MoveL Offs(p1,0,0,200),v500,fine,tool0")
+    old = tmp_path / "old.mod"
+    shutil.copy(path, old)
+    path.write_text(path.read_text().replace("z10", "z50").replace("v500,fine", "v200,fine"))
+    return old, path
+
+
+def test_tables_and_status(flyby: Flyby, both: tuple[Path, Path]) -> None:
+    result = flyby("diff", *both, *ROBOT)
+    assert result.exit_code == 1
+    for part in ("z10 (10 mm)", "z50 (50 mm)", "v500 (500 mm/s)", "small.mod:6", "main", "changed"):
+        assert part in result.output
+    result = flyby("diff", both[0], both[0], *ROBOT)
+    assert result.exit_code == 0
+    assert "do not differ" in result.output
+
+
+def test_json_and_markdown(flyby: Flyby, both: tuple[Path, Path]) -> None:
+    told = json.loads(flyby("diff", *both, *ROBOT, "--json").stdout)
+    assert told["differs"] is True
+    assert {one["subject"] for one in told["differences"]} == {"zone", "speed"}
+    (routine,) = told["routines"]
+    assert routine["cycle_time_after_s"] > routine["cycle_time_before_s"]
+    assert 0.0 < routine["greatest_path_distance_m"] < 0.05
+    result = flyby("diff", *both, *ROBOT, "--markdown")
+    assert "### differences" in result.output
+    assert "| zone | main, move 2 | z10 (10 mm) | z50 (50 mm) |" in result.output
+
+
+def test_errors_have_a_status_of_their_own(flyby: Flyby, both: tuple[Path, Path]) -> None:
+    for words in (("a.mod", "b.mod", *ROBOT), (*both,), ("a", "b", "c")):
+        result = flyby("diff", *words)
+        assert result.exit_code == 2, result.output
+        assert "error:" in result.output
+
+
+def test_one_path_is_listed_a_move_a_line(flyby: Flyby, both: tuple[Path, Path]) -> None:
+    lines = flyby("diff", both[0], *ROBOT).stdout.splitlines()
+    assert lines[0] == "MoveJ p1, v1000, fine, tool0, wobj0"
+    assert len(lines) == 3
+
+
+@pytest.mark.skipif(shutil.which("git") is None, reason="git is not installed")
+def test_git_calls_it(both: tuple[Path, Path], tmp_path: Path) -> None:
+    folder = tmp_path / "repository"
+    folder.mkdir()
+
+    def git(*words: str) -> str:
+        own = ("-c", "user.name=a", "-c", "user.email=a@b")
+        done = subprocess.run(
+            ["git", *own, *words], cwd=folder, capture_output=True, text=True, check=True
+        )
+        return done.stdout
+
+    git("init", "-q")
+    (folder / ".gitattributes").write_text("*.mod diff=rapid\n")
+    shutil.copy(both[0], folder / "job.mod")
+    git("add", "-A")
+    git("commit", "-qm", "before")
+    shutil.copy(both[1], folder / "job.mod")
+    command = f"{Path(sys.executable).parent / 'flyby'} diff {' '.join(ROBOT)}"
+    assert "z50 (50 mm)" in git("-c", f"diff.rapid.command={command}", "diff")
+    shown = git("-c", f"diff.rapid.textconv={command}", "diff")
+    assert "-MoveL 1300.00, 200.00, 900.00" in shown
+    assert ", z50, tool0" in shown

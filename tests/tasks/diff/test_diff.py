@@ -1,0 +1,87 @@
+"""Two states of a station, driven and laid side by side."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import flyby
+from flyby.core.difference.differences import Subject
+from flyby.core.errors import InputError
+
+from ...vendors.abb.backup.station import MAIN, USER, Station, multimove, one_robot
+
+ROBOT = "abb/irb6640-180-255"
+
+
+def station(folder: Path, main: str = MAIN, **more: object) -> Path:
+    tasks = {"TASK1": ("T_ROB1", {"PROGMOD/MainModule.mod": main, "SYSMOD/user.sys": USER})}
+    Station(tasks=tasks, **more).write(folder)
+    return folder
+
+
+def test_a_state_does_not_differ_from_itself(tmp_path: Path) -> None:
+    one, other = station(tmp_path / "a"), station(tmp_path / "b")
+    found = flyby.diff(one, other)
+    assert not found.differs
+    assert found.differences == () and found.files == ()
+    assert {routine.name for routine in found.routines} == {"Main", "Pick", "Service"}
+
+
+def test_what_changed_in_the_text_and_what_it_does(tmp_path: Path) -> None:
+    new = MAIN.replace("[[100,0,300]", "[[104,0,303]").replace("v500, fine", "v200, fine")
+    new = new.replace("[12.5,0,180]", "[12.5,0,190]").replace(", z10, ", ", z50, ")
+    found = flyby.diff(station(tmp_path / "a"), station(tmp_path / "b", new))
+    shown = {(d.subject, d.name): d for d in found.differences}
+    assert shown[Subject.POINT, "p10"].distance == pytest.approx(0.005)
+    assert shown[Subject.TOOL, "tGripper"].distance == pytest.approx(0.010)
+    # The second move's target is reckoned from the first one's.
+    assert {subject for subject, _ in shown} == {
+        *(Subject.POINT, Subject.TOOL, Subject.SPEED, Subject.ZONE, Subject.TARGET)
+    }
+    pick = next(routine for routine in found.routines if routine.name == "Pick")
+    assert pick.times[1] > pick.times[0] + 0.1
+    assert 0.003 < pick.distance < 0.03
+    (file,) = found.files
+    assert file.kind == "changed"
+
+
+def test_a_fault_that_appeared_is_named_and_one_that_is_mended(tmp_path: Path) -> None:
+    far = MAIN.replace("[[100,0,300]", "[[9100,0,300]")
+    found = flyby.diff(station(tmp_path / "a"), station(tmp_path / "b", far))
+    pick = next(routine for routine in found.routines if routine.name == "Pick")
+    assert any("cannot be reached" in fault for fault in pick.faults)
+    assert pick.mended == () and pick.times[1] is None and pick.distance is None
+    back = flyby.diff(tmp_path / "b", tmp_path / "a")
+    pick = next(routine for routine in back.routines if routine.name == "Pick")
+    assert any("cannot be reached" in fault for fault in pick.mended)
+
+
+def test_stations_differ_in_ranges_bases_and_signals(tmp_path: Path) -> None:
+    one = station(tmp_path / "a")
+    other = station(tmp_path / "b", moc=one_robot("-base_frame_pos_z 0.2"))
+    found = flyby.diff(one, other)
+    assert [d.subject for d in found.differences] == [Subject.BASE]
+    apart = [routine.distance for routine in found.routines if routine.distance is not None]
+    assert max(apart) == pytest.approx(0.2, abs=1e-3)
+
+
+def test_of_several_tasks_routines_are_called_with_them(tmp_path: Path) -> None:
+    found = flyby.diff(multimove().write(tmp_path / "a"), station(tmp_path / "b"))
+    assert "T_ROB2/Pick" in {routine.name for routine in found.routines}
+    assert Subject.ROBOT in {d.subject for d in found.differences}
+
+
+def test_programs_of_a_named_robot(tmp_path: Path) -> None:
+    old, new = tmp_path / "old.mod", tmp_path / "new.mod"
+    old.write_text(MAIN, "ascii")
+    new.write_text(MAIN.replace("MoveL Offs(p10,0,200,0)", "MoveJ Offs(p10,0,200,0)"), "ascii")
+    found = flyby.diff(old, new, robot=ROBOT)
+    moves = {(d.kind, d.before[:5], d.after[:5]) for d in found.differences}
+    assert moves == {("removed", "MoveL", ""), ("added", "", "MoveJ")}
+
+
+def test_what_cannot_be_read_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="there is no such file"):
+        flyby.diff(tmp_path / "a.mod", tmp_path / "b.mod", robot=ROBOT)
