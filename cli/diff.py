@@ -19,7 +19,7 @@ from .parameters import AsJson, with_options
 if TYPE_CHECKING:
     from ..core.difference.differences import Difference
     from ..core.difference.texts import FileDifference
-    from ..tasks.diff.diff import RoutineDifference, StateDifference
+    from ..tasks.diff.comparing import RoutineDifference, StateDifference
 
 _OF_GIT = 7
 """Arguments that git gives to an external diff: name, then file, hash and mode of both sides."""

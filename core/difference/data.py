@@ -13,7 +13,7 @@ from ..program.program import Program
 from ..program.target import JointTarget, PoseTarget, Target
 from ..program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from ..spatial.pose import Pose
-from .differences import Difference, Subject
+from .differences import Difference, Differing
 
 Datum = TypeVar("Datum")
 SAME_PLACE = 1e-9
@@ -56,13 +56,13 @@ def point_differences(
     for name, one, other in paired(before, after):
         span = (other or one or (None, None))[1]
         old, new = (None if side is None else side[0] for side in (one, other))
-        found = target_difference(Subject.POINT, name, old, new, span)
+        found = target_difference(Differing.POINT, name, old, new, span)
         if found is not None:
             yield found
 
 
 def target_difference(
-    subject: Subject, name: str, old: Target | None, new: Target | None, span: Span | None
+    subject: Differing, name: str, old: Target | None, new: Target | None, span: Span | None
 ) -> Difference | None:
     """How two targets differ; None if they are the same but for their names."""
     before = "" if old is None else target_text(old)
@@ -96,7 +96,7 @@ def tool_differences(before: Mapping[str, Tool], after: Mapping[str, Tool]) -> I
         if one != other:
             shown = _both(one, other, _tool_text)
             old, new = (None if side is None else side.tcp for side in (one, other))
-            yield from _placed(Subject.TOOL, name, (old, new), shown)
+            yield from _placed(Differing.TOOL, name, (old, new), shown)
 
 
 def frame_differences(
@@ -107,7 +107,7 @@ def frame_differences(
         if one != other:
             shown = _both(one, other, _frame_text)
             old, new = (None if side is None else side.pose for side in (one, other))
-            yield from _placed(Subject.FRAME, name, (old, new), shown)
+            yield from _placed(Differing.FRAME, name, (old, new), shown)
 
 
 def _both(one: Datum | None, other: Datum | None, shown: Callable[[Datum], str]) -> tuple[str, str]:
@@ -116,7 +116,7 @@ def _both(one: Datum | None, other: Datum | None, shown: Callable[[Datum], str])
 
 
 def _placed(
-    subject: Subject, name: str, places: tuple[Pose | None, Pose | None], shown: tuple[str, str]
+    subject: Differing, name: str, places: tuple[Pose | None, Pose | None], shown: tuple[str, str]
 ) -> Iterator[Difference]:
     old, new = places
     if old is None or new is None:
@@ -131,11 +131,11 @@ def load_differences(before: Mapping[str, Load], after: Mapping[str, Load]) -> I
     """Payloads of another mass, centre or inertia."""
     for name, one, other in paired(before, after):
         if one != other:
-            yield Difference(Subject.LOAD, name, *_both(one, other, _load_text))
+            yield Difference(Differing.LOAD, name, *_both(one, other, _load_text))
 
 
 def value_differences(
-    subject: Subject,
+    subject: Differing,
     before: Mapping[str, Datum],
     after: Mapping[str, Datum],
     shown: Callable[[Datum], str],

@@ -8,7 +8,7 @@ from enum import StrEnum
 from ..errors import Span
 
 
-class Subject(StrEnum):
+class Differing(StrEnum):
     """What differs, in the order in which differences are listed."""
 
     ROBOT = "robot"
@@ -42,7 +42,7 @@ class Difference:
         span: where it stands after the change, else before.
     """
 
-    subject: Subject
+    subject: Differing
     name: str
     before: str
     after: str

@@ -11,7 +11,7 @@ from ..program.speed import Speed, speed_shown
 from ..program.target import JointTarget
 from ..program.zone import Radius, Zone, zone_shown
 from .data import target_difference, target_text
-from .differences import Difference, Subject
+from .differences import Difference, Differing
 
 _DIGITS = 6
 """Of m and rad: numbers that agree so far are one place."""
@@ -45,10 +45,10 @@ def move_differences(
             continue
         for k, old in enumerate(olds, a + 1):
             text = move_text(old)
-            yield Difference(Subject.MOVE, _called(routine, k), text, "", span=old.statement)
+            yield Difference(Differing.MOVE, _called(routine, k), text, "", span=old.statement)
         for k, new in enumerate(news, c + 1):
             text = move_text(new)
-            yield Difference(Subject.MOVE, _called(routine, k), "", text, span=new.statement)
+            yield Difference(Differing.MOVE, _called(routine, k), "", text, span=new.statement)
 
 
 def _once(moves: Sequence[Move]) -> list[Move]:
@@ -63,20 +63,20 @@ def _changed(name: str, old: Move, new: Move) -> Iterator[Difference]:
     span = new.statement
     if old.target.name is None or old.target.name != new.target.name:
         # Of points that keep their names the data are compared.
-        found = target_difference(Subject.TARGET, name, old.target, new.target, span)
+        found = target_difference(Differing.TARGET, name, old.target, new.target, span)
         if found is not None:
             yield found
     if _unnamed_zone(old.zone) != _unnamed_zone(new.zone):
         one, other = _zone_text(old.zone), _zone_text(new.zone)
         more = ", of other figures" if one == other else ""
-        yield Difference(Subject.ZONE, name, one, f"{other}{more}", span=span)
+        yield Difference(Differing.ZONE, name, one, f"{other}{more}", span=span)
     if replace(old.speed, name=None) != replace(new.speed, name=None):
         shown = _speed_text(old.speed), _speed_text(new.speed)
-        yield Difference(Subject.SPEED, name, *shown, span=span)
+        yield Difference(Differing.SPEED, name, *shown, span=span)
     for subject, one, other in (
-        (Subject.MOVE_TOOL, old.tool.name, new.tool.name),
-        (Subject.MOVE_FRAME, old.work_object.name, new.work_object.name),
-        (Subject.MOVE_LOAD, _load(old), _load(new)),
+        (Differing.MOVE_TOOL, old.tool.name, new.tool.name),
+        (Differing.MOVE_FRAME, old.work_object.name, new.work_object.name),
+        (Differing.MOVE_LOAD, _load(old), _load(new)),
     ):
         if one.casefold() != other.casefold():
             yield Difference(subject, name, one, other, span=span)

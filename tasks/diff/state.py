@@ -42,7 +42,7 @@ class Routine:
 
 
 @dataclass(frozen=True)
-class State:
+class StationState:
     """A state of a program or a station.
 
     Args:
@@ -64,7 +64,7 @@ class State:
         return {name: program for name, program in found.items() if program is not None}
 
 
-def state_of(path: Path, options: SourceOptions) -> State:
+def state_of(path: Path, options: SourceOptions) -> StationState:
     """Read and drive a state.
 
     Every routine that needs no arguments and moves the robot is driven by itself, unless one is
@@ -80,7 +80,7 @@ def state_of(path: Path, options: SourceOptions) -> State:
     return _of_backup(path, backup, options)
 
 
-def _of_program(path: Path, options: SourceOptions) -> State:
+def _of_program(path: Path, options: SourceOptions) -> StationState:
     if not path.exists():
         raise InputError(f"{path}: there is no such file or folder")
     setup_of(options)  # asks for the robot
@@ -92,7 +92,7 @@ def _of_program(path: Path, options: SourceOptions) -> State:
     texts: dict[str, str] = {}
     for routine in routines.values():
         texts |= _texts(routine.program, path.parent if path.is_file() else path)
-    return State(path, routines, texts=texts)
+    return StationState(path, routines, texts=texts)
 
 
 def _entries(path: Path, options: SourceOptions) -> list[str]:
@@ -104,7 +104,7 @@ def _entries(path: Path, options: SourceOptions) -> list[str]:
     return [e.name for e in found if e.moves and not e.parameters] or [MAIN]
 
 
-def _of_backup(path: Path, backup: Backup, options: SourceOptions) -> State:
+def _of_backup(path: Path, backup: Backup, options: SourceOptions) -> StationState:
     routines: dict[str, Routine] = {}
     texts: dict[str, str] = {}
     moving = [task for task in backup.tasks if task.robot is not None]
@@ -117,7 +117,7 @@ def _of_backup(path: Path, backup: Backup, options: SourceOptions) -> State:
             routines[f"{task.name}/{name}"] = routine
         for file in task.files:
             texts[file] = _text(backup.root / file)
-    return State(path, routines, backup, texts)
+    return StationState(path, routines, backup, texts)
 
 
 def _read(backup: Backup, task: Task, options: SourceOptions, name: str) -> Program:

@@ -18,7 +18,7 @@ from flyby.core.difference.data import (
     points_of,
     tool_differences,
 )
-from flyby.core.difference.differences import Subject
+from flyby.core.difference.differences import Differing
 from flyby.core.difference.moves import move_differences
 from flyby.core.difference.paths import greatest_distance
 from flyby.core.difference.texts import file_differences
@@ -45,7 +45,7 @@ def line(x: float, name: str | None = None, speed: Speed = FAST) -> MoveL:
 MOVES = [line(0.1, "p1"), line(0.2, "p2"), line(0.3), line(0.4, "p4")]
 
 
-def found(before: list[MoveL], after: list[MoveL]) -> list[tuple[Subject, str, str]]:
+def found(before: list[MoveL], after: list[MoveL]) -> list[tuple[Differing, str, str]]:
     return [(d.subject, d.name, d.kind) for d in move_differences("main", before, after)]
 
 
@@ -68,9 +68,11 @@ def test_a_move_that_is_put_in_is_added_and_taken_out_is_removed(
     moves: list[MoveL], place: int
 ) -> None:
     more = [*moves[:place], line(0.9, "new"), *moves[place:]]
-    assert [(subject, kind) for subject, _, kind in found(moves, more)] == [(Subject.MOVE, "added")]
+    assert [(subject, kind) for subject, _, kind in found(moves, more)] == [
+        (Differing.MOVE, "added")
+    ]
     assert [(subject, kind) for subject, _, kind in found(more, moves)] == [
-        (Subject.MOVE, "removed")
+        (Differing.MOVE, "removed")
     ]
 
 
@@ -86,10 +88,10 @@ def test_what_changes_of_a_move_is_named() -> None:
     differences = list(move_differences("main", [old], [new]))
     shown = {d.subject: (d.before, d.after) for d in differences}
     assert shown == {
-        Subject.SPEED: ("v1000 (1000 mm/s)", "v500 (500 mm/s)"),
-        Subject.ZONE: ("fine", "z10 (10 mm)"),
-        Subject.MOVE_TOOL: ("tool0", "gun"),
-        Subject.MOVE_LOAD: ("none", "part"),
+        Differing.SPEED: ("v1000 (1000 mm/s)", "v500 (500 mm/s)"),
+        Differing.ZONE: ("fine", "z10 (10 mm)"),
+        Differing.MOVE_TOOL: ("tool0", "gun"),
+        Differing.MOVE_LOAD: ("none", "part"),
     }
     assert {d.name for d in differences} == {"main, move 1"}
 
@@ -102,7 +104,7 @@ def test_names_of_speeds_and_zones_alone_are_no_difference() -> None:
 
 def test_a_target_without_a_name_says_how_far_it_went() -> None:
     (difference,) = move_differences("main", [line(0.1)], [line(0.103)])
-    assert difference.subject is Subject.TARGET
+    assert difference.subject is Differing.TARGET
     assert difference.distance == pytest.approx(0.003)
 
 

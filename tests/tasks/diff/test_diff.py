@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import flyby
-from flyby.core.difference.differences import Subject
+from flyby.core.difference.differences import Differing
 from flyby.core.errors import InputError
 
 from ...vendors.abb.backup.station import MAIN, USER, Station, multimove, one_robot
@@ -34,11 +34,11 @@ def test_what_changed_in_the_text_and_what_it_does(tmp_path: Path) -> None:
     new = new.replace("[12.5,0,180]", "[12.5,0,190]").replace(", z10, ", ", z50, ")
     found = flyby.diff(station(tmp_path / "a"), station(tmp_path / "b", new))
     shown = {(d.subject, d.name): d for d in found.differences}
-    assert shown[Subject.POINT, "p10"].distance == pytest.approx(0.005)
-    assert shown[Subject.TOOL, "tGripper"].distance == pytest.approx(0.010)
+    assert shown[Differing.POINT, "p10"].distance == pytest.approx(0.005)
+    assert shown[Differing.TOOL, "tGripper"].distance == pytest.approx(0.010)
     # The second move's target is reckoned from the first one's.
     assert {subject for subject, _ in shown} == {
-        *(Subject.POINT, Subject.TOOL, Subject.SPEED, Subject.ZONE, Subject.TARGET)
+        *(Differing.POINT, Differing.TOOL, Differing.SPEED, Differing.ZONE, Differing.TARGET)
     }
     pick = next(routine for routine in found.routines if routine.name == "Pick")
     assert pick.times[1] > pick.times[0] + 0.1
@@ -62,7 +62,7 @@ def test_stations_differ_in_ranges_bases_and_signals(tmp_path: Path) -> None:
     one = station(tmp_path / "a")
     other = station(tmp_path / "b", moc=one_robot("-base_frame_pos_z 0.2"))
     found = flyby.diff(one, other)
-    assert [d.subject for d in found.differences] == [Subject.BASE]
+    assert [d.subject for d in found.differences] == [Differing.BASE]
     apart = [routine.distance for routine in found.routines if routine.distance is not None]
     assert max(apart) == pytest.approx(0.2, abs=1e-3)
 
@@ -70,7 +70,7 @@ def test_stations_differ_in_ranges_bases_and_signals(tmp_path: Path) -> None:
 def test_of_several_tasks_routines_are_called_with_them(tmp_path: Path) -> None:
     found = flyby.diff(multimove().write(tmp_path / "a"), station(tmp_path / "b"))
     assert "T_ROB2/Pick" in {routine.name for routine in found.routines}
-    assert Subject.ROBOT in {d.subject for d in found.differences}
+    assert Differing.ROBOT in {d.subject for d in found.differences}
 
 
 def test_programs_of_a_named_robot(tmp_path: Path) -> None:

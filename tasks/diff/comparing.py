@@ -1,0 +1,251 @@
+"""Two states of a program or a station: data, moves, texts, and how they are driven."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+from ...core.difference.data import (
+    frame_differences,
+    frames_of,
+    load_differences,
+    loads_of,
+    paired,
+    point_differences,
+    points_of,
+    pose_text,
+    tool_differences,
+    tools_of,
+    value_differences,
+)
+from ...core.difference.differences import Difference, Differing
+from ...core.difference.moves import move_differences
+from ...core.difference.texts import FileDifference, file_differences
+from .state import Routine, StationState, state_of
+
+if TYPE_CHECKING:
+    from ...core.backup.backup import Backup
+    from ...core.program.tool import Tool, WorkObject
+    from ...core.robot.joint import Joint
+    from ...core.spatial.pose import Pose
+    from ..read import SourceOptions
+
+SAME_TIME = 5e-4
+"""s, and m of distance between paths: what no user would call a difference."""
+_PLACE = re.compile(r"\S+:\d+:\d+: |, line \d+")
+Kind = TypeVar("Kind")
+
+
+@dataclass(frozen=True, slots=True)
+class RoutineDifference:
+    """How a routine is driven on both sides.
+
+    Args:
+        name: of the routine.
+        times: s that it takes before and after; None where it cannot be driven, or is not there.
+        distance: m, the greatest distance of either path of the TCP from the other one; None where
+            one of them is not known.
+        clearances: m to the cell before and after; None without a cell.
+        faults: what cannot be driven after, and could before, or is otherwise.
+        mended: what could not be driven before, and can now.
+    """
+
+    name: str
+    times: tuple[float | None, float | None]
+    distance: float | None
+    clearances: tuple[float | None, float | None]
+    faults: tuple[str, ...]
+    mended: tuple[str, ...]
+
+    @property
+    def differs(self) -> bool:
+        """Whether anything does."""
+        one, other = self.times
+        times = one != other if None in self.times else not _near(one, other)
+        return bool(times or (self.distance or 0.0) > SAME_TIME or self.faults or self.mended)
+
+
+@dataclass(frozen=True)
+class StateDifference:
+    """What differs between two states.
+
+    Args:
+        before, after: the paths.
+        differences: of data and moves.
+        files: of source texts.
+        routines: how each is driven, whether it differs or not.
+    """
+
+    before: Path
+    after: Path
+    differences: tuple[Difference, ...]
+    files: tuple[FileDifference, ...]
+    routines: tuple[RoutineDifference, ...]
+
+    @property
+    def differs(self) -> bool:
+        """Whether the states are not the same to the robot or in their texts."""
+        return bool(self.differences or self.files or any(r.differs for r in self.routines))
+
+
+def compared(old: Path, new: Path, options: SourceOptions) -> StateDifference:
+    """What differs between two states; see `diff.diff_with`."""
+    options.say(f"driving {old}")
+    one = state_of(old, options)
+    options.say(f"driving {new}")
+    other = state_of(new, options)
+    options.say("comparing")
+    found = _once([*_of_stations(one, other), *_of_programs(one, other)])
+    order = list(Differing)
+    found.sort(key=lambda difference: order.index(difference.subject))
+    return StateDifference(
+        old,
+        new,
+        tuple(found),
+        file_differences(_called_as(other, one), other.texts),
+        tuple(
+            _driven(name, a, b)
+            for name, a, b in paired(*_called_alike(one.routines, other.routines))
+        ),
+    )
+
+
+def _called_as(other: StationState, one: StationState) -> Mapping[str, str]:
+    """The texts of one side; a program's own file is called as that of the other side."""
+    names = {one.path.name: other.path.name} if one.backup is None and one.path.is_file() else {}
+    return {names.get(name, name): text for name, text in one.texts.items()}
+
+
+def _once(found: list[Difference]) -> list[Difference]:
+    """Differences, those of one line in several routines once."""
+    seen: dict[object, Difference] = {}
+    for k, one in enumerate(found):
+        place = k if one.span is None else one.span
+        seen.setdefault((one.subject, place, one.before, one.after), one)
+    return list(seen.values())
+
+
+def _of_programs(one: StationState, other: StationState) -> Iterator[Difference]:
+    """Data that moves use, and the moves of the routines that both have."""
+    old, new = one.programs, other.programs
+    yield from tool_differences(_tools(one), _tools(other))
+    yield from frame_differences(_frames(one), _frames(other))
+    yield from load_differences(loads_of(old), loads_of(new))
+    yield from point_differences(points_of(old), points_of(new))
+    for name, a, b in paired(*_called_alike(old, new)):
+        if a is not None and b is not None:
+            yield from move_differences(name, a.moves, b.moves)
+
+
+def _called_alike(
+    before: Mapping[str, Kind], after: Mapping[str, Kind]
+) -> tuple[Mapping[str, Kind], Mapping[str, Kind]]:
+    """Routines by their names alone where neither side has several tasks."""
+    tasks = [{name.rpartition("/")[0] for name in side} for side in (before, after)]
+    if max(map(len, tasks)) > 1:
+        return before, after
+    old, new = ({n.rpartition("/")[2]: v for n, v in side.items()} for side in (before, after))
+    return old, new
+
+
+def _tools(state: StationState) -> dict[str, Tool]:
+    declared = {} if state.backup is None else dict(state.backup.tools)
+    return {**tools_of(state.programs), **declared}
+
+
+def _frames(state: StationState) -> dict[str, WorkObject]:
+    declared = {} if state.backup is None else dict(state.backup.frames)
+    return {**frames_of(state.programs), **declared}
+
+
+def _of_stations(one: StationState, other: StationState) -> Iterator[Difference]:
+    """Robots, signals and entries of backups."""
+    if one.backup is None or other.backup is None:
+        return
+    old, new = one.backup, other.backup
+    yield from value_differences(Differing.ROBOT, _types(old), _types(new), str)
+    yield from value_differences(Differing.BASE, _bases(old), _bases(new), pose_text)
+    yield from value_differences(Differing.RANGE, _joints(old), _joints(new), _range_text)
+    yield from value_differences(Differing.SIGNAL, _signals(old), _signals(new), str)
+    yield from value_differences(Differing.ENTRY, _files(old), _files(new), str)
+
+
+def _types(backup: Backup) -> dict[str, str]:
+    return {known.unit: known.written or "not named" for known in backup.robots}
+
+
+def _bases(backup: Backup) -> dict[str, Pose]:
+    return {known.unit: known.robot.base for known in backup.robots if known.robot is not None}
+
+
+def _joints(backup: Backup) -> dict[str, Joint]:
+    return {
+        f"{known.unit} {joint.name}": joint
+        for known in backup.robots
+        if known.robot is not None
+        for joint in (*known.robot.joints, *(axis.joint for axis in known.robot.external_axes))
+    }
+
+
+def _range_text(joint: Joint) -> str:
+    return f"{joint.shown(joint.lower)} to {joint.shown(joint.upper)}"
+
+
+def _signals(backup: Backup) -> dict[str, str]:
+    return {s.name: f"{s.kind.value} {s.address or ''}".strip() for s in backup.signals}
+
+
+def _files(backup: Backup) -> dict[str, str]:
+    return {entry.name: entry.file for task in backup.tasks for entry in task.entries}
+
+
+def _driven(name: str, one: Routine | None, other: Routine | None) -> RoutineDifference:
+    before, after = _faults(one), _faults(other)
+    mended = () if other is None else tuple(fault for fault in before if fault not in after)
+    return RoutineDifference(
+        name,
+        (_time(one), _time(other)),
+        _distance(one, other),
+        (_clearance(one), _clearance(other)),
+        tuple(fault for fault in after if fault not in before),
+        mended,
+    )
+
+
+def _time(side: Routine | None) -> float | None:
+    return None if side is None or side.run is None else side.run.report.cycle_time
+
+
+def _clearance(side: Routine | None) -> float | None:
+    nearest = None if side is None or side.run is None else side.run.report.to_cell
+    return None if nearest is None else nearest.distance
+
+
+def _faults(side: Routine | None) -> tuple[str, ...]:
+    """What cannot be driven, without the places, which move with every line put in."""
+    if side is None:
+        return ()
+    if side.run is None:
+        return (_PLACE.sub("", side.error),)
+    moves = side.run.program.moves
+    found = (
+        f"{moves[fault.move].target.name or f'move {fault.move + 1}'}: {fault.message}"
+        for fault in side.run.faults
+    )
+    return tuple(dict.fromkeys(found))
+
+
+def _distance(one: Routine | None, other: Routine | None) -> float | None:
+    if one is None or other is None or one.run is None or other.run is None:
+        return None
+    from ...core.difference.paths import greatest_distance
+
+    return greatest_distance(one.run.trajectory.position, other.run.trajectory.position)
+
+
+def _near(one: float | None, other: float | None) -> bool:
+    return one is not None and other is not None and math.isclose(one, other, abs_tol=SAME_TIME)
