@@ -29,18 +29,19 @@ the closing bracket.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ....core.errors import InputError, SourceError
-from ....core.files.reading import read_bytes
+from ....core.errors import Note, SourceError
 from ....core.program.entry_point import entry_call
 from ....core.source.collection import collection_paused
 from ....core.source.reading import Files, ReadOptions, read_with
-from ....core.source.text.files import LARGEST_FILE, SourceFile, read_source
+from ....core.source.text.files import SourceFile
 from ..syntax.statements import parse
 from ..syntax.texts import Texts
+from ..urp.source import named_error, named_nodes, source_of, source_of_text
 from .analysis import ScriptTree
 from .entry import run_program
 from .interpreter import Interpreter
@@ -48,11 +49,9 @@ from .interpreter import Interpreter
 if TYPE_CHECKING:
     from ....core.program.program import Program
 
-_GZIP = b"\x1f\x8b"
-
 
 def read(text: str, file: str, options: ReadOptions | None = None) -> Program:
-    """The program in a text.
+    """The program in a text: a script, or the tree of a ``.urp`` as XML.
 
     Args:
         text: of one file.
@@ -62,23 +61,38 @@ def read(text: str, file: str, options: ReadOptions | None = None) -> Program:
     Raises:
         SourceError: with line and column: the text is no URScript, or its motion cannot be known.
     """
-    return read_with({file: SourceFile(file, text)}, file, options or ReadOptions(), read_sources)
+    source, notes = source_of_text(text, file)
+    return _read_files({file: source}, file, options or ReadOptions(), notes)
 
 
 def read_file(path: str | Path, options: ReadOptions | None = None) -> Program:
     """The program of a file; `ReadOptions.others` are executed before it.
 
+    A program's tree (``.urp``) is read as the script that PolyScope would make of it; spans count
+    the lines of that script, and messages name the node.
+
     Raises:
-        InputError: a file cannot be read, or is compressed.
+        InputError: a file cannot be read, or is damaged.
         SourceError: see `read`.
     """
     options = options or ReadOptions()
     files: dict[str, SourceFile] = {}
+    notes: list[Note] = []
     for one in (*options.others, Path(path)):
-        _check_kind(one)
-        source = read_source(one)
+        source, told = source_of(one, options.beside)
         files[source.name] = source
-    return read_with(files, str(path), options, read_sources)
+        notes += told
+    return _read_files(files, str(path), options, notes)
+
+
+def _read_files(
+    files: dict[str, SourceFile], main: str, options: ReadOptions, notes: Iterable[Note]
+) -> Program:
+    try:
+        program = named_nodes(read_with(files, main, options, read_sources), files)
+    except SourceError as error:
+        raise named_error(error, files) from None
+    return replace(program, notes=(*notes, *program.notes))
 
 
 def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
@@ -106,11 +120,3 @@ def _read(texts: Texts, main: str, options: ReadOptions, given: bool) -> Program
     call = blocks.pop(0) if given else ()
     run = Interpreter(texts, ScriptTree(blocks), options)
     return run_program(run, blocks, main, options.entry, call)
-
-
-def _check_kind(path: Path) -> None:
-    if read_bytes(path, LARGEST_FILE).startswith(_GZIP) or path.suffix.casefold() == ".urp":
-        raise InputError(
-            f"{path} is PolyScope's own compressed form of a program: PolyScope saves the same "
-            "program as .script beside it; read that"
-        )

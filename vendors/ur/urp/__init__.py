@@ -1,0 +1,1 @@
+"""PolyScope's own files: programs (``.urp``), installations, and what they say of the arm."""

@@ -1,0 +1,161 @@
+"""A script as it grows: lines, the nodes that they come from, and what is to be said of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+from ....core.source.text.files import lines_of
+from .expressions import expression_text, identifier
+from .installation import Installation, Payload
+from .xml_file import Element
+
+GENERATED = "# Generated from the program tree of PolyScope; the tree itself is not changed.\n"
+"""The first line of every generated script."""
+MARKER = "$"
+"""Begins the line that names a node, as in PolyScope's own scripts."""
+_SEPARATOR = " > "
+
+
+def pose_text(pose: Sequence[float]) -> str:
+    """``p[…]`` of a pose, in m and rad."""
+    return f"p[{', '.join(repr(float(value)) for value in pose)}]"
+
+
+def list_text(values: Sequence[float]) -> str:
+    """``[…]`` of numbers."""
+    return f"[{', '.join(repr(float(value)) for value in values)}]"
+
+
+def quoted(text: str) -> str:
+    """A text as a literal; scripts have no way to write a quote in one."""
+    return '"' + " ".join(text.replace('"', "'").split()) + '"'
+
+
+def payload_text(payload: Payload) -> str:
+    """The call that sets a payload."""
+    return f"set_payload({payload.mass!r}, {list_text(payload.centre)})"
+
+
+@dataclass
+class Emission:
+    """A script that is being written.
+
+    Args:
+        installation: the one of the program; an empty one if there is none.
+        with_installation: whether there is one.
+
+    Attributes:
+        lines: of the program's body.
+        preamble: what stands before it: waypoints, functions, subprograms.
+        told: notes by their text, each with the node that it is first about.
+        waypoints: joint values by name, of those that were declared.
+        path: of the node that is being written.
+    """
+
+    installation: Installation
+    with_installation: bool
+    lines: list[str] = field(default_factory=list)
+    preamble: list[str] = field(default_factory=list)
+    told: dict[str, str] = field(default_factory=dict)
+    waypoints: dict[str, object] = field(default_factory=dict)
+    path: tuple[str, ...] = ()
+    _depth: int = 1
+    _nodes: int = 0
+
+    @property
+    def named_signals(self) -> dict[str, str]:
+        """The controller's names of signals by the operator's."""
+        return dict(self.installation.signals)
+
+    @property
+    def number(self) -> int:
+        """Of the node that is being written, from 1."""
+        return self._nodes
+
+    def write(self, text: str) -> None:
+        """Lines at the present depth."""
+        indent = "  " * self._depth
+        self.lines += [f"{indent}{line}".rstrip() for line in lines_of(text)]
+
+    def expression(self, element: Element | None) -> str:
+        """An expression's text."""
+        return expression_text(element, self.named_signals)
+
+    def note(self, message: str) -> None:
+        """A note on the present node, unless the same was said of another one."""
+        self.told.setdefault(message, _SEPARATOR.join(self.path))
+
+    @contextmanager
+    def node(self, label: str) -> Iterator[None]:
+        """What is written inside comes from a node of this name in the tree."""
+        before = self.path
+        self.path = (*before, " ".join(label.replace('"', "'").split()))
+        self._nodes += 1
+        self.write(f'{MARKER} {self._nodes} "{_SEPARATOR.join(self.path)}"')
+        try:
+            yield
+        finally:
+            self.path = before
+
+    @contextmanager
+    def block(self, head: str) -> Iterator[None]:
+        """A block of a head, to its ``end``."""
+        self.write(head)
+        self._depth += 1
+        yield
+        self._depth -= 1
+        self.write("end")
+
+    @contextmanager
+    def part(self, head: str) -> Iterator[None]:
+        """A block that others follow before the ``end``."""
+        self.write(head)
+        self._depth += 1
+        yield
+        self._depth -= 1
+
+    @contextmanager
+    def apart(self) -> Iterator[None]:
+        """What is written inside goes into the preamble."""
+        lines, depth = self.lines, self._depth
+        self.lines, self._depth = [], 1
+        try:
+            yield
+        finally:
+            self.preamble += self.lines
+            self.lines, self._depth = lines, depth
+
+    def declared(self, name: str, value: Mapping[str, str]) -> str:
+        """A name for data of a waypoint, which stand in the preamble: one for each that differs.
+
+        Args:
+            name: of the waypoint.
+            value: of each of its variables, by what their names end with.
+        """
+        stem = identifier(name) or "Waypoint"
+        tried, count = stem, 1
+        while self.waypoints.setdefault(tried, dict(value)) != dict(value):
+            count += 1
+            tried = f"{stem}_{count}"
+        new = [f"  global {tried}{end}={text}" for end, text in value.items()]
+        if new and new[0] not in self.preamble:
+            self.preamble += new
+        return tried
+
+
+def node_at(text: str, line: int) -> str | None:
+    """The node that a line of a generated script comes from; None if that is not known.
+
+    Args:
+        text: of the script.
+        line: counted from 1.
+    """
+    if not text.startswith(GENERATED):
+        return None
+    for one in reversed(lines_of(text)[:line]):
+        marked = one.strip()
+        if marked.startswith(f"{MARKER} ") and marked.endswith('"'):
+            return marked.partition('"')[2][:-1]
+    return None
