@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import FlybyError, InputError, SourceError
+from flyby.core.program.target import JointTarget
 from flyby.core.registry import find_vendor
 from flyby.core.source.reading import Reading, ReadOptions
 from flyby.core.source.text.files import SourceFile
@@ -83,12 +84,17 @@ def test_other_files_are_executed_before(tmp_path: Path) -> None:
     assert move.origin.target.numbers[0].line == 1
 
 
-def test_compressed_programs_say_what_to_read(tmp_path: Path) -> None:
-    for name in ("prog.urp", "prog.script"):
+def test_what_a_file_holds_shows_not_its_suffix(tmp_path: Path) -> None:
+    text = "def prog():\n  movej([0, -1, 1, 0, 1, 0])\nend\n"
+    for name, data in (
+        ("plain.urp", text.encode()),
+        ("packed.script", gzip.compress(text.encode())),
+        ("packed.urp", gzip.compress(text.encode())),
+    ):
         path = tmp_path / name
-        path.write_bytes(gzip.compress(b"<URProgram/>"))
-        with pytest.raises(InputError, match=r"read that"):
-            read_file(path)
+        path.write_bytes(data)
+        (move,) = read_file(path).moves
+        assert move.target == JointTarget((0, -1, 1, 0, 1, 0))
     with pytest.raises(InputError, match="cannot be read"):
         read_file(tmp_path / "none.script")
 

@@ -22,6 +22,7 @@ from ....core.source.patch.plan import PatchPlan, patch_program
 from ....core.source.patch.uses import Use
 from ....core.source.reading import Files
 from ....core.source.write.options import PatcherOptions
+from ..urp.emission import GENERATED
 from .inplace import Argument, ScriptLiterals, arguments
 from .places import PUT_IN, MoveCall, MoveCalls
 
@@ -31,8 +32,17 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
 
     Args:
         options: ``shared`` and ``derived``, each ``refuse`` or ``own``; see `PatcherOptions`.
+
+    Raises:
+        InputError: a file is a program tree of PolyScope.
     """
     chosen = PatcherOptions.of(options, "URScript patcher")
+    for file in reading_of(program).files.values():
+        if file.text.startswith(GENERATED):
+            raise InputError(
+                f"{file.name}: nothing is written into program trees of PolyScope: read the "
+                ".script that PolyScope saves beside it, and that is changed in its place"
+            )
     calls = MoveCalls(reading_of(program).files)
     literals = ScriptLiterals(calls)
     return patch_program(

@@ -59,6 +59,7 @@ def read(text: str, file: str, options: ReadOptions | None = None) -> Program:
         options: entry, robot, answers, limits.
 
     Raises:
+        InputError: the tree is damaged.
         SourceError: with line and column: the text is no URScript, or its motion cannot be known.
     """
     source, notes = source_of_text(text, file)

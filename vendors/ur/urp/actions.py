@@ -5,6 +5,7 @@ from __future__ import annotations
 from .emission import Emission, payload_text, quoted
 from .expressions import variable_name
 from .frames import set_tcp
+from .installation import TOOL_FEATURE
 from .signals import read_signal, set_signal
 from .xml_file import Element, child, number, resolved
 
@@ -68,9 +69,8 @@ def _set_value(out: Emission, node: Element) -> str | None:
 
 def _text(node: Element, tag: str) -> str | None:
     found = child(node, tag)
-    if found is None:
-        return node.get(tag)
-    return found.get("value") or found.text or None
+    stated = node.get(tag) if found is None else found.get("value") or found.text
+    return str(stated) if stated else None
 
 
 def wait(out: Emission, node: Element) -> None:
@@ -143,10 +143,10 @@ def assignment(out: Emission, node: Element) -> None:
 def script(out: Emission, node: Element) -> None:
     """``Script``: a line, or a file, whose text PolyScope keeps in the program."""
     if node.get("type") != "File" and child(node, "cachedContents") is None:
-        text = out.expression(child(node, "expression"))
+        line = out.expression(child(node, "expression"))
         with out.node("Script"):
-            if text:
-                out.write(text)
+            if line:
+                out.write(line)
         return
     file, cached = child(node, "file"), child(node, "cachedContents")
     name = str((file.text if file is not None else "") or "").strip().replace("\\", "/")
@@ -172,7 +172,7 @@ def force(out: Emission, node: Element) -> None:
     """What begins a ``Force``; the path of the robot is driven as if nothing yielded."""
     feature = child(node, "feature")
     name = "" if feature is None else feature.get("referencedName", "")
-    frame = "tool_pose()" if name == "Joint_6_name" else "p[0, 0, 0, 0, 0, 0]"
+    frame = "get_target_tcp_pose()" if name == TOOL_FEATURE else "p[0, 0, 0, 0, 0, 0]"
     lists = [_list(node, tag) for tag in ("selection", "wrench", "limitsMotion")]
     out.write(f"force_mode({frame}, {lists[0]}, {lists[1]}, 2, {lists[2]})")
 

@@ -35,7 +35,10 @@ def quoted(text: str) -> str:
 
 def payload_text(payload: Payload) -> str:
     """The call that sets a payload."""
-    return f"set_payload({payload.mass!r}, {list_text(payload.centre)})"
+    stated = f"{payload.mass!r}, {list_text(payload.centre)}"
+    if payload.inertia is None:
+        return f"set_payload({stated})"
+    return f"set_target_payload({stated}, {list_text(payload.inertia)})"
 
 
 @dataclass
@@ -93,11 +96,15 @@ class Emission:
         before = self.path
         self.path = (*before, " ".join(label.replace('"', "'").split()))
         self._nodes += 1
-        self.write(f'{MARKER} {self._nodes} "{_SEPARATOR.join(self.path)}"')
+        self.mark()
         try:
             yield
         finally:
             self.path = before
+
+    def mark(self) -> None:
+        """Name the present node: what is written behind comes from it, not from one below it."""
+        self.write(f'{MARKER} {self._nodes} "{_SEPARATOR.join(self.path)}"')
 
     @contextmanager
     def block(self, head: str) -> Iterator[None]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 
+from ..syntax.names import RESERVED
 from .signals import read_signal
 from .xml_file import Element, resolved
 
@@ -23,6 +24,12 @@ def identifier(name: str) -> str:
     made = _NAME.sub("_", name) or "_"
     ascii_only = "".join(sign if sign.isascii() else f"u{ord(sign):x}" for sign in made)
     return f"_{ascii_only}" if ascii_only[0].isdigit() else ascii_only
+
+
+def function_name(name: str) -> str:
+    """The same for a function, which no word of the language is called."""
+    made = identifier(name)
+    return f"{made}_" if made in RESERVED else made
 
 
 def expression_text(element: Element | None, named_signals: dict[str, str]) -> str:

@@ -83,4 +83,4 @@ def _value(element: Element, name: str) -> str | None:
     if found is None:
         return None
     value = found.get("value")
-    return found.text if value is None else value
+    return str(found.text if value is None else value)

@@ -87,7 +87,7 @@ def _arguments(acceleration: float | None, speed: float | None) -> str:
 
 def _speed(node: Element, own: Element | None, kind: str) -> str:
     """The speed of a move: the waypoint's own, or the node's."""
-    if own is not None:
+    if own is not None and kind != "MoveP":  # movep and movec take no time
         time = number(own.get("nextMotionTime"))
         if time:
             return f"t={time!r}"

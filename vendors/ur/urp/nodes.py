@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from . import actions
 from .emission import Emission
-from .expressions import identifier, variable_name
+from .expressions import function_name, variable_name
 from .kinematics import DhTable
 from .moves import move, safe_home
 from .xml_file import Element, child, number, resolved
@@ -112,6 +112,7 @@ class Tree:
         out.write(f"global {name}=0")
         with out.block(f"while ({name} < {count or 1}):"):
             self.below(out, node)
+            out.mark()
             out.write(f"{name}={name}+1")
 
     def _branches(self, out: Emission, steps: list[Element], index: int) -> int:
@@ -172,6 +173,7 @@ class Tree:
         with out.node("Force"):
             actions.force(out, node)
             self.below(out, node)
+            out.mark()
             out.write("end_force_mode()")
 
     def _contributed(self, out: Emission, node: Element) -> None:
@@ -187,17 +189,17 @@ class Tree:
                     "the subprogram that is called is not in the program: the call is left out"
                 )
                 return
-            out.write(f"{identifier(name)}()")
+            out.write(f"{function_name(name)}()")
 
     def _subprogram(self, out: Emission, node: Element) -> None:
         with out.apart(), out.node(node.get("name") or "SubProgram"):
-            with out.block(f"def {identifier(node.get('name') or 'SubProgram')}():"):
+            with out.block(f"def {function_name(node.get('name') or 'SubProgram')}():"):
                 self.below(out, node)
             if child(node, "children") is None:
                 out.note("the subprogram's nodes are not in the program, but in a file of its own")
 
     def _thread(self, out: Emission, node: Element) -> None:
-        name = identifier(node.get("name") or f"Thread_{out.number}")
+        name = function_name(node.get("name") or f"Thread_{out.number}")
         with out.apart(), out.node(node.get("name") or "Thread"):
             with out.block(f"thread {name}():"):
                 loops = node.get("runForever", node.get("loopForever", "true")) != "false"

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from ....core.errors import InputError, Note
 from .actions import initial_values
 from .emission import GENERATED, Emission, payload_text, pose_text
-from .expressions import identifier
+from .expressions import function_name, identifier
 from .installation import Installation
 from .kinematics import DhTable, table_of
 from .nodes import Tree
@@ -110,7 +110,7 @@ def script_of(
     for node in nodes:
         if node.tag not in known:
             tree.node(out, node)
-    lines = [f"def {identifier(name)}():", *settings, *out.preamble, *out.lines, "end", ""]
+    lines = [f"def {function_name(name)}():", *settings, *out.preamble, *out.lines, "end", ""]
     told = [Note(f"{node}: {text}" if node else text) for text, node in out.told.items()]
     return GENERATED + "\n".join(lines), tuple(told)
 

@@ -6,6 +6,7 @@ a script may be packed.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -15,13 +16,13 @@ from ....core.files.reading import read_bytes
 from ....core.program.program import Program
 from ....core.source.text.files import LARGEST_FILE, MOST_LINES, SourceFile, decode
 from .emission import node_at
-from .expressions import identifier
 from .installation import Installation, read_installation
-from .program import UrProgram, script_of, urp_of
+from .program import ROOT, UrProgram, script_of, urp_of
 from .xml_file import is_xml, parsed, unpacked
 
-SUFFIX = ".urp"
 INSTALLATION = ".installation"
+_TREE = re.compile(rf"\ufeff?\s*(<\?xml[^>]*>)?\s*<{ROOT}\b")
+"""How the text of a tree begins."""
 
 
 def source_of(path: Path, beside: Sequence[Path] | None) -> tuple[SourceFile, tuple[Note, ...]]:
@@ -51,9 +52,9 @@ def source_of_text(text: str, file: str) -> tuple[SourceFile, tuple[Note, ...]]:
     """A text as a script; no other file is looked at.
 
     Raises:
-        InputError: it is XML, and no program.
+        InputError: it is a tree that is damaged.
     """
-    if not is_xml(text[:200].encode()):
+    if _TREE.match(text) is None:
         return SourceFile(file, text), ()
     program = urp_of(parsed(text.encode(), file), file)
     return _script(program, None, file, ())
@@ -62,7 +63,7 @@ def source_of_text(text: str, file: str) -> tuple[SourceFile, tuple[Note, ...]]:
 def _script(
     program: UrProgram, installation: Installation | None, file: str, notes: tuple[Note, ...]
 ) -> tuple[SourceFile, tuple[Note, ...]]:
-    text, told = script_of(program, installation, identifier(Path(file).stem))
+    text, told = script_of(program, installation, Path(file).stem)
     return SourceFile(file, text), tuple(
         replace(note, message=f"{file}: {note.message}") for note in (*notes, *told)
     )

@@ -72,7 +72,7 @@ def parsed(plain: bytes, name: str) -> Element:
             # Tools that unpack files save them in the code page of their system.
             root = etree.fromstring(decode(plain, name)[0].encode(), parser)
     except (etree.XMLSyntaxError, ValueError, LookupError) as error:
-        reason = str(error).splitlines()[0] if str(error) else "it is empty"
+        reason = getattr(error, "msg", None) or str(error) or "it is empty"
         raise InputError(
             f"{name}: its XML is damaged ({reason}); copy it from the controller again"
         ) from None

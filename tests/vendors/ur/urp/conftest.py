@@ -18,7 +18,7 @@ UR5E = (
     (0.0, 0.0, 0.0997, -1.570796327),
     (0.0, 0.0, 0.0996, 0.0),
 )
-"""δθ, a, d, α of the nominal UR5e ("DH parameters for calculations of kinematics", maker's site)."""
+"""δθ, a, d, α of the nominal UR5e ("DH parameters", maker's site)."""
 TCP = (0.0, 0.0, 0.12, 0.0, 0.0, 0.0)
 HOME = (0.1, -1.4, 1.6, -1.8, -1.5, 0.2)
 
@@ -35,7 +35,10 @@ class Build:
     home = HOME
 
     def kinematics(
-        self, rows: Sequence[Sequence[float]] = UR5E, tag: str = "kinematics", status: str = "LINEARIZED"
+        self,
+        rows: Sequence[Sequence[float]] = UR5E,
+        tag: str = "kinematics",
+        status: str = "LINEARIZED",
     ) -> str:
         columns = zip(*rows, strict=True)
         inside = "".join(
@@ -110,7 +113,9 @@ class Build:
         installation: str = "default",
         saved_in: str = "5.12.0",
     ) -> str:
-        first = f'<SpecialSequence type="BeforeStart"><children>{before}</children></SpecialSequence>'
+        first = (
+            f'<SpecialSequence type="BeforeStart"><children>{before}</children></SpecialSequence>'
+        )
         return (
             f'<URProgram name="job" installation="{installation}" '
             f'installationRelativePath="{installation}" directory="/programs" '
