@@ -99,6 +99,21 @@ def external_axes(data: DataList, roots: Mapping[str, Pose]) -> External:
     return External(tuple(made[number] for number in sorted(made)), base, tuple(doubts))
 
 
+def tables_of(data: DataList) -> dict[str, str]:
+    """The axis whose frame is the flange of each table, by the table's type (``#EASYS``).
+
+    Raises:
+        InputError: as `external_axes`.
+    """
+    count = data.number("$EX_AX_NUM") if data.has("$EX_AX_NUM") else 0.0
+    chains = _chains(data, int(count) if 0.0 <= count <= MOST else 0)
+    return {
+        chain.kind: axis_name(AXES + chain.axes[-1])
+        for chain in chains
+        if chain.kind != _CARRIES_ROBOT
+    }
+
+
 def _chains(data: DataList, count: int) -> list[_Chain]:
     """The chains that carry something."""
     kinds = data.struct("$EX_KIN") if data.has("$EX_KIN") else {}

@@ -63,9 +63,10 @@ def listed_arm(
         fitting = [one for one, (far, _) in zip(loaded, off, strict=True) if far <= APART]
         if fitting:
             alike = [one for one in fitting if one[0].payload == payload] or fitting
-            others = ", ".join(arm.name for arm, _ in alike[1:])
+            chosen = alike[0][1]
+            others = ", ".join(arm.name for arm, one in alike[1:] if one.links != chosen.links)
             doubt = (f"its name and its lengths are those of {others} as well",) if others else ()
-            return alike[0][1], doubt
+            return chosen, doubt
         nearest = nearest or min(off, default=None)
     if nearest is None:
         return None, ()

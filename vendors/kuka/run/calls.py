@@ -94,8 +94,11 @@ class Calls:
         self._keeping.keep(statement.span, call.text, why, device=True)
 
     def _keep_call(self, statement: Invoke, why: Kept, scope: Scope) -> None:
+        call = statement.call
         if why.writes:
-            self._forget(statement.call, scope)
+            self._forget(call, scope)
+        for name in why.brings:
+            self._forget_datum(Name(call.span, name, name.upper()), call, scope)
         if why.outputs:
             self._writes.pulsed(statement.call, scope)
         self._keeping.keep(statement.span, statement.call.text, why.why, why.stops)
@@ -103,28 +106,31 @@ class Calls:
     def _forget(self, call: Call, scope: Scope) -> None:
         """Data that a kept call may have written have no known value any more."""
         for argument in call.arguments:
-            if not isinstance(argument, Name):
-                continue
-            cell = self._data.find(argument.name, scope)
-            if cell is None or cell.constant or cell.signal is not None:
-                continue
-            if any(isinstance(step, str) for step in argument.path):
-                continue
-            about = About(argument.span, brought_by(call.name), *EXPECTED.get(cell.type, ("",)))
-            answer = self._course.value(argument.text, about)
-            if answer is not None:
-                value = self._evaluator.names.answered(answer)
-                self._evaluator.assign(argument, value, scope, call.span)
-                continue
-            unknown = Unknown(f"what {call.text} gave {argument.text}", call.span)
-            before = self._evaluator.names.settled(cell)
-            if before is not None and not argument.path:
-                unknown = replace(unknown, held=supposed(before))
-            if not isinstance(cell.value, Array | Struct):
-                cell.value = unknown
-            elif argument.path:
-                with suppress(SourceError):
-                    self._evaluator.assign(argument, unknown, scope, call.span)
+            if isinstance(argument, Name):
+                self._forget_datum(argument, call, scope)
+
+    def _forget_datum(self, datum: Name, call: Call, scope: Scope) -> None:
+        """One of them."""
+        cell = self._data.find(datum.name, scope)
+        if cell is None or cell.constant or cell.signal is not None:
+            return
+        if any(isinstance(step, str) for step in datum.path):
+            return
+        about = About(datum.span, brought_by(call.name), *EXPECTED.get(cell.type, ("",)))
+        answer = self._course.value(datum.text, about)
+        if answer is not None:
+            value = self._evaluator.names.answered(answer)
+            self._evaluator.assign(datum, value, scope, call.span)
+            return
+        unknown = Unknown(f"what {call.text} gave {datum.text}", call.span)
+        before = self._evaluator.names.settled(cell)
+        if before is not None and not datum.path:
+            unknown = replace(unknown, held=supposed(before))
+        if not isinstance(cell.value, Array | Struct):
+            cell.value = unknown
+        elif datum.path:
+            with suppress(SourceError):
+                self._evaluator.assign(datum, unknown, scope, call.span)
 
     def _step_over(self, statement: Invoke, scope: Scope) -> None:
         """A routine whose text is not at hand: taken as one that moves nothing."""

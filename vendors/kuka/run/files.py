@@ -54,9 +54,9 @@ def collect(
     seen = _words(files.values())
     for stem in (path.stem.lower(), CONFIG):
         _take(files, near.pop(stem, []), seen)
-    for stem in list(near)[:_LARGEST_SCAN]:
-        _take_global(files, near, stem, seen)
-    while found := [stem for stem in near if stem in seen]:
+    scanned = list(near) if beside is not None else list(near)[:_LARGEST_SCAN]
+    shared = {stem: _shared_names(near[stem]) for stem in scanned}
+    while found := [s for s in near if s in seen or not seen.isdisjoint(shared.get(s, ()))]:
         for stem in found:
             _take(files, near.pop(stem), seen)
     return files
@@ -140,18 +140,15 @@ def _take(files: dict[str, SourceFile], paths: list[Path], seen: set[str]) -> No
         seen |= _words([file])
 
 
-def _take_global(
-    files: dict[str, SourceFile], near: dict[str, list[Path]], stem: str, seen: set[str]
-) -> None:
-    """Take a module that declares something for everybody, if the program has the word."""
-    for path in near[stem]:
+def _shared_names(paths: list[Path]) -> set[str]:
+    """What a module declares for everybody."""
+    found: set[str] = set()
+    for path in paths:
         try:
-            text = read_source(path).text
+            found |= _names(read_source(path).text) - _TYPES
         except FlybyError:
             continue
-        if _names(text) - _TYPES & seen:
-            _take(files, near.pop(stem), seen)
-            return
+    return found
 
 
 def _names(text: str) -> set[str]:

@@ -17,12 +17,14 @@ class Kept:
         stops: the robot comes to rest before it, or waits in it.
         writes: data that it names get values that only the running controller has.
         outputs: it may write outputs.
+        brings: lower-case names of further data that get such values.
     """
 
     why: str
     stops: bool = False
     writes: bool = False
     outputs: bool = False
+    brings: tuple[str, ...] = ()
 
 
 _SETUP = Kept("it prepares a technology package and does not move the robot")
@@ -52,7 +54,8 @@ _TABLE: tuple[tuple[str, Kept], ...] = (
     (r"sync_?cmd|mbx_rec|chk_home|err_(clear|raise)", _MESSAGE),
     (r"rsi_(?!movecorr)\w+|ts_(corroff|setcorrdata|bc6dcalc)", _SENSOR),
     (r"st_(on1?|off|reset|ethernet|\w+corr|(new|del)link|[gs]etparam|(new|del)obj)", _SENSOR),
-    (r"p00|lock|unlock", _CLOCK),
+    (r"p00", Kept("the program number comes from outside", stops=True, brings=("pgno",))),
+    (r"lock|unlock", _CLOCK),
     (
         r"rsi_movecorr|st_movesens|st_skipsens",
         Kept(

@@ -1,0 +1,1 @@
+"""Archives of KUKA controllers as they lie on disk."""

@@ -1,0 +1,114 @@
+"""Where a KUKA archive begins among files, and where its parts are: by what marks them.
+
+    am.ini                    name, serial number, version
+    KRC/R1/Program, TP        programs
+    KRC/R1/System             $config.dat, routines of the controller
+    KRC/R1/Mada               $machine.dat, $robcor.dat: the robot
+    KRC/STEU/Mada             $machine.dat: the rest
+    C/                        files of the operating system, templates: no programs
+
+Often only ``R1`` and ``STEU`` are there, or ``R1``, or a part of that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+MACHINE, MODEL, CONFIG = "$machine.dat", "$robcor.dat", "$config.dat"
+_ROBOT, _CONTROLLER, _ABOVE = "r1", "steu", "krc"
+_ROOMS = frozenset({"program", "system", "mada", "tp"})
+_SOURCES = (".src", ".sub", ".dat")
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Where the parts of an archive are, below its root.
+
+    Args:
+        robot: the folder R1, or what stands for it; ``""`` for the root itself.
+        controller: the folder STEU; None if there is none.
+        copies: other folders R1, which are left out.
+    """
+
+    robot: str
+    controller: str | None
+    copies: tuple[str, ...] = ()
+
+
+def root_in(names: Sequence[str]) -> str | None:
+    """The folder in which an archive begins; see `core.language.BackupOpener.root_in`."""
+    return min((root for name in names for root in _roots(name)), key=_order, default=None)
+
+
+def layout_of(names: Sequence[str]) -> Layout:
+    """Where the parts of an archive are."""
+    robots = sorted({one for name in names for one in _folders(name, _ROBOT)}, key=_beginning)
+    steu = sorted({one for name in names for one in _folders(name, _CONTROLLER)}, key=_beginning)
+    robot = robots[0] if robots else _lone(names)
+    copies = [one for one in robots[1:] if not _inside(one, robot)]
+    beside = [one for one in steu if _above(one) == _above(robot)]
+    return Layout(robot, next(iter((*beside, *steu)), None), tuple(copies))
+
+
+def _roots(name: str) -> Iterator[str]:
+    """Where an archive would begin that a file belongs to."""
+    for marked in (_ROBOT, _CONTROLLER):
+        for folder in _folders(name, marked):
+            yield _outside(folder)
+    parts = name.split("/")
+    low = [part.casefold() for part in parts]
+    if low[-1] == MACHINE:
+        inside = len(low) > 1 and low[-2] == "mada"
+        yield "/".join(parts[: -2 if inside else -1])
+    if low[-2:] == ["system", CONFIG]:
+        yield "/".join(parts[:-2])
+
+
+def _folders(name: str, marked: str) -> Iterator[str]:
+    """Folders R1, or STEU, that a file lies in and makes one of an archive."""
+    parts = name.split("/")
+    low = [part.casefold() for part in parts]
+    if not low[-1].endswith(_SOURCES):
+        return
+    for k, part in enumerate(low[:-1]):
+        if part == marked and (low[k + 1] in _ROOMS or low[k + 1].startswith(("cell.", "$"))):
+            yield "/".join(parts[: k + 1])
+
+
+def _lone(names: Sequence[str]) -> str:
+    """The folder that stands for R1 where none is called so: the one that holds Mada or System."""
+    found = {
+        "/".join(name.split("/")[:-2])
+        for name in names
+        if name.casefold().rpartition("/")[0].rpartition("/")[2] in ("mada", "system")
+        and name.casefold().endswith(_SOURCES)
+    }
+    outside = [one for one in found if _last(one) != _CONTROLLER]
+    return min(outside, key=_order, default="")
+
+
+def _outside(folder: str) -> str:
+    """Where the archive of a folder R1 or STEU begins."""
+    above = _above(folder)
+    return _above(above) if _last(above) == _ABOVE else above
+
+
+def _beginning(folder: str) -> tuple[int, str]:
+    return _order(_outside(folder))
+
+
+def _order(folder: str) -> tuple[int, str]:
+    return folder.count("/") + bool(folder), folder.casefold()
+
+
+def _above(folder: str) -> str:
+    return folder.rpartition("/")[0]
+
+
+def _last(folder: str) -> str:
+    return folder.rpartition("/")[2].casefold()
+
+
+def _inside(folder: str, other: str) -> bool:
+    return not other or folder.startswith(f"{other}/")

@@ -1,0 +1,182 @@
+"""What a controller runs: programs that the operator, or a PLC by its number, chooses; submits."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import PurePosixPath
+
+from ....core.backup.backup import BackupEntry, Task
+from ....core.source.text.files import SourceFile
+from .contents import Contents, listed
+from .marks import CONFIG, Layout
+from .routines import Routine, Routines, routines_in
+
+PROGRAM, SUBMIT, DATA = ".src", ".sub", ".dat"
+_ROOMS = ("system", "program", "tp")
+"""Folders of R1 in the order in which doubles count, before others."""
+_NO_PROGRAMS = frozenset({"mada"})
+_CONTROLLERS_OWN = frozenset({"system", "tp"})
+"""Folders whose routines the operator does not choose."""
+_CELL = "cell"
+_COPY = re.compile(r"copy|copia|kopie|backup|\bold\b|_old|\balt\b|_alt|bak\b|\(\d\)", re.IGNORECASE)
+_SWITCH = re.compile(r"^[ \t]*SWITCH[ \t]*\(?[ \t]*PGNO\b", re.IGNORECASE | re.MULTILINE)
+_END = re.compile(r"^[ \t]*(?:DEFAULT|ENDSWITCH)\b", re.IGNORECASE | re.MULTILINE)
+_CASE = re.compile(r"^[ \t]*CASE[ \t]+([^\r\n;]+)", re.IGNORECASE | re.MULTILINE)
+_CALL = re.compile(r"^[ \t]*([A-Z_][\w$]*)[ \t]*\(", re.IGNORECASE | re.MULTILINE)
+_NUMBER = re.compile(r"\d{1,6}")
+_COMMENT = re.compile(r";[^\r\n]*")
+
+
+def source_files(contents: Contents) -> tuple[str, ...]:
+    """The files of an archive's programs, each name once, in the order in which they count.
+
+    Names are global over an archive: of a module that several folders hold the first is taken, of
+    the system, then of the programs, folders that look like copies last.
+    """
+    layout = contents.layout
+    found: dict[tuple[str, str], str] = {}
+    twice: dict[tuple[str, str], list[str]] = {}
+    config_beside = contents.find(layout.controller, CONFIG)
+    inside = [name for name in contents.names if _is_source(name, layout)]
+    for name in sorted(inside, key=lambda name: _rank(name, layout)):
+        place = PurePosixPath(name)
+        key = place.stem.casefold(), place.suffix.casefold()
+        if key in found:
+            pair = str(place.parent), str(PurePosixPath(found[key]).parent)
+            twice.setdefault(pair, []).append(place.name)
+        else:
+            found[key] = name
+    if config_beside is not None:
+        found.setdefault(("$config", DATA), config_beside)
+    for (left, taken), files in twice.items():
+        count = f"{len(files)} files" if len(files) > 1 else "a file"
+        contents.notes.add(
+            f"{count} of {left} stand in {taken} as well, where names are global: those in {taken} "
+            f"are read, left out: {listed(sorted(files))}"
+        )
+    return tuple(found.values())
+
+
+def tasks_of(contents: Contents, files: Sequence[str]) -> tuple[Task, ...]:
+    """The tasks of an archive.
+
+    Args:
+        files: see `source_files`.
+    """
+    sources = {name: source for name in files if (source := contents.source(name)) is not None}
+    programs = {name: one for name, one in sources.items() if _suffix(name) == PROGRAM}
+    made = []
+    if programs:
+        made.append(_main_task(contents, sources, programs))
+    for name, source in sources.items():
+        if _suffix(name) == SUBMIT:
+            made.append(_submit(name, source, sources))
+    return tuple(made)
+
+
+def _main_task(
+    contents: Contents,
+    sources: Mapping[str, SourceFile],
+    programs: Mapping[str, SourceFile],
+) -> Task:
+    """The programs that move the robot."""
+    routines = Routines(one for source in programs.values() for one in routines_in(source))
+    cell = _cell(routines)
+    numbers = _numbers(programs[cell.file], routines) if cell is not None else {}
+    chosen = bool(numbers) and cell is not None
+    entries = _entries(contents.layout, routines, numbers, cell if chosen else None)
+    if not entries:
+        contents.notes.add("no routine of the programs moves the robot")
+    return Task(
+        name="R1",
+        robot=0,
+        files=tuple(sources),
+        main=cell.file if chosen and cell is not None else None,
+        entry=cell.name if chosen and cell is not None else None,
+        entries=entries,
+    )
+
+
+def _entries(
+    layout: Layout, routines: Routines, numbers: Mapping[str, str], cell: Routine | None
+) -> tuple[BackupEntry, ...]:
+    """Routines that move the robot, and that an operator or a PLC can choose."""
+    found: dict[str, BackupEntry] = {}
+    for routine in sorted(routines.all, key=lambda one: not one.shared):  # a module's own first
+        name = routine.name.lower()
+        stock = _room(routine.file, layout) in _CONTROLLERS_OWN and name not in numbers
+        if routine.gives or (stock and routine is not cell) or name in found:
+            continue
+        if not routines.moves_robot(routine) or (name == _CELL and cell is None):
+            continue
+        said = "chooses by program number" if routine is cell else numbers.get(name, "")
+        found[name] = BackupEntry(
+            routine.name, routine.file, said, routine.parameters, routines.moves(routine)
+        )
+    return tuple(sorted(found.values(), key=_standing))
+
+
+def _standing(entry: BackupEntry) -> tuple[bool, int, bool, str]:
+    """The cell's own first, then by program number, those that need arguments last."""
+    number = _NUMBER.search(entry.comment)
+    place = int(number[0]) if number else 0
+    return not entry.comment, place, bool(entry.parameters), entry.name.casefold()
+
+
+def _cell(routines: Routines) -> Routine | None:
+    """The routine by which a PLC chooses programs."""
+    return routines.named(_CELL)
+
+
+def _numbers(source: SourceFile, routines: Routines) -> dict[str, str]:
+    """Which program numbers ``cell.src`` runs a routine for, of those that are at hand."""
+    text = _COMMENT.sub("", source.text)
+    found: dict[str, list[str]] = {}
+    for switch in _SWITCH.finditer(text):
+        end = _END.search(text, switch.end())
+        part = text[switch.end() : end.start() if end else len(text)]
+        cases = list(_CASE.finditer(part))
+        ends = [*(case.start() for case in cases[1:]), len(part)]
+        for case, stop in zip(cases, ends, strict=False):
+            number = " ".join(case[1].split())
+            for name in _CALL.findall(part[case.end() : stop]):
+                routine = routines.named(name)
+                if routine is not None and routines.moves_robot(routine):
+                    found.setdefault(name.lower(), []).append(number)
+    return {name: f"program number {', '.join(given)}" for name, given in found.items()}
+
+
+def _submit(name: str, source: SourceFile, sources: Mapping[str, SourceFile]) -> Task:
+    """A program that runs beside those that move the robot."""
+    routines = routines_in(source)
+    entry = next((one.name for one in routines if one.shared), None)
+    return Task(PurePosixPath(name).stem, None, tuple(sources), name, entry)
+
+
+def _is_source(name: str, layout: Layout) -> bool:
+    """Whether a file is one of the programs."""
+    head = f"{layout.robot}/" if layout.robot else ""
+    if _suffix(name) not in (PROGRAM, SUBMIT, DATA) or not name.startswith(head):
+        return False
+    folders = [part.casefold() for part in name[len(head) :].split("/")[:-1]]
+    outside = not layout.robot and folders[:1] in (["c"], ["d"], ["steu"], ["krc"])
+    machine = name.casefold().rpartition("/")[2] in ("$machine.dat", "$robcor.dat", "$custom.dat")
+    return not outside and not machine and not _NO_PROGRAMS & set(folders)
+
+
+def _rank(name: str, layout: Layout) -> tuple[bool, int, int, str]:
+    room = _room(name, layout)
+    order = _ROOMS.index(room) if room in _ROOMS else len(_ROOMS)
+    folder = name.rpartition("/")[0]
+    return bool(_COPY.search(folder)), order, name.count("/"), name.casefold()
+
+
+def _room(name: str, layout: Layout) -> str:
+    """The folder of R1 that a file is in, lower case; empty for R1 itself."""
+    inside = name[len(layout.robot) + 1 if layout.robot else 0 :]
+    return inside.partition("/")[0].casefold() if "/" in inside else ""
+
+
+def _suffix(name: str) -> str:
+    return PurePosixPath(name).suffix.casefold()
