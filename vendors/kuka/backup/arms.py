@@ -38,7 +38,7 @@ def lists_of(contents: Contents) -> Lists:
         contents.find(layout.controller, "Mada", MACHINE),
     ]
     if not any(names):
-        names = [*_outside_copies(contents, MACHINE)][:1]
+        names = [next(iter(_outside_copies(contents, MACHINE)), None)]
     machine: DataList | None = None
     for name in names:
         found = contents.data(name)
