@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from ....core.errors import FlybyError, SourceError
-from ....core.source.collection import collection_paused
 from ....core.source.text.files import SourceText
 from ..run.instructions import MOVING
 from ..syntax import tree
@@ -15,6 +15,8 @@ from ..syntax.traversal import calls_in, expressions_of
 from .contents import Contents, EncodedError
 
 _BY_NAME = "callbyvar"
+_MOST_STEPS = 2_000_000
+"""From routine to routine, beyond which moves of routines called are not counted any more."""
 
 
 @dataclass(frozen=True)
@@ -50,8 +52,7 @@ class ModuleFiles:
 
     def read(self, names: Iterable[str]) -> list[ModuleFile]:
         """The files of these names."""
-        with collection_paused():
-            return [self._read(name) for name in names]
+        return [self._read(name) for name in names]
 
     def _read(self, name: str) -> ModuleFile:
         if name not in self._files:
@@ -78,18 +79,22 @@ class _Calls:
     """What a routine calls.
 
     Args:
-        names: of what it calls, instructions included, in lower case.
+        names: in lower case, instructions included, with how often each is called.
         late: beginnings of the names that it calls by text, in lower case.
     """
 
-    names: set[str] = field(default_factory=set)
+    names: Counter[str] = field(default_factory=Counter)
     late: set[str] = field(default_factory=set)
 
 
-def moving_routines(files: Sequence[ModuleFile]) -> set[int]:
-    """Identities of the routines that move the robot, or call one that does.
+def moving_routines(files: Sequence[ModuleFile]) -> dict[int, int]:
+    """How many statements move the robot, of the routines that do or that call one that does.
 
-    What is called by a text (``%"part" + n%``) may be any routine whose name begins so.
+    Those of a routine and of all that it calls are counted, each once. What is called by a text
+    (``%"part" + n%``) may be any routine whose name begins so.
+
+    Returns:
+        Counts by the identity of the routine.
     """
     shared: dict[str, tree.Routine] = {}
     routines: list[tuple[tree.Routine, dict[str, tree.Routine]]] = []
@@ -100,26 +105,48 @@ def moving_routines(files: Sequence[ModuleFile]) -> set[int]:
                 if not routine.local:
                     shared.setdefault(routine.name, routine)
                 routines.append((routine, own))
-    callers: dict[int, list[int]] = {}
-    moving: list[int] = []
+    called: dict[int, list[int]] = {}
+    direct: dict[int, int] = {}
     for routine, own in routines:
         calls = _calls_of(routine)
-        called = [found for name in calls.names if (found := own.get(name) or shared.get(name))]
+        found = [one for name in calls.names if (one := own.get(name) or shared.get(name))]
         if calls.late:
             begins = tuple(calls.late)
-            called += [one for name, one in shared.items() if name.startswith(begins)]
-        for one in called:
-            callers.setdefault(id(one), []).append(id(routine))
-        foreign = calls.names - own.keys() - shared.keys()
-        if foreign & MOVING:
-            moving.append(id(routine))
-    all_moving = set(moving)
-    while moving:
-        for caller in callers.get(moving.pop(), ()):
-            if caller not in all_moving:
-                all_moving.add(caller)
-                moving.append(caller)
-    return all_moving
+            found += [one for name, one in shared.items() if name.startswith(begins)]
+        called[id(routine)] = [id(one) for one in found]
+        foreign = MOVING & calls.names.keys() - own.keys() - shared.keys()
+        direct[id(routine)] = sum(calls.names[name] for name in foreign)
+    return _reached(called, direct)
+
+
+def _reached(called: dict[int, list[int]], direct: dict[int, int]) -> dict[int, int]:
+    """The moves of each routine with those of all that it calls, where there are any."""
+    callers: dict[int, list[int]] = {}
+    for caller, others in called.items():
+        for one in others:
+            callers.setdefault(one, []).append(caller)
+    moving = _from([one for one, count in direct.items() if count], callers)
+    left = _MOST_STEPS
+    counts: dict[int, int] = {}
+    for one in moving:
+        if left > 0:
+            reached = _from([one], called)
+            left -= len(reached)
+            counts[one] = sum(direct[other] for other in reached)
+        else:
+            counts[one] = max(1, direct[one])
+    return counts
+
+
+def _from(begin: Sequence[int], ways: dict[int, list[int]]) -> list[int]:
+    """All that can be reached, what it begins with included."""
+    found, todo = dict.fromkeys(begin), list(begin)
+    while todo:
+        for one in ways.get(todo.pop(), ()):
+            if one not in found:
+                found[one] = None
+                todo.append(one)
+    return list(found)
 
 
 def _calls_of(routine: tree.Routine) -> _Calls:
@@ -130,7 +157,7 @@ def _calls_of(routine: tree.Routine) -> _Calls:
             for expression in expressions_of(statement):
                 calls.names.update(call.name for call in calls_in(expression))
             if isinstance(statement, tree.Invoke):
-                calls.names.add(statement.name)
+                calls.names[statement.name] += 1
                 if statement.name == _BY_NAME and statement.arguments:
                     calls.late.add(_beginning(statement.arguments[0].value))
             elif isinstance(statement, tree.LateInvoke):
@@ -155,6 +182,10 @@ def doubled(file: ModuleFile, taken: dict[str, str]) -> tuple[str, str] | None:
     """
     own: dict[str, str] = {}
     for module in file.modules:
+        for record in module.types:
+            parts = Counter(name for _, name in getattr(record, "components", ()))
+            if parts and max(parts.values()) > 1:
+                return f"{record.name}.{parts.most_common(1)[0][0]}", file.name
         inner: set[str] = set()
         for item in (module, *module.routines, *module.declarations, *module.types):
             key = f"module {module.name}" if item is module else item.name

@@ -9,6 +9,7 @@ from pathlib import Path
 from ....core.backup.backup import Backup, BackupRobot
 from ....core.errors import InputError
 from ....core.robot.model import Robot
+from ....core.source.collection import collection_paused
 from .backinfo import BackInfo, arms_in, parse_backinfo
 from .cfg import Parameters, parse_parameters
 from .contents import Contents, Notes, listed
@@ -36,25 +37,30 @@ class Opener:
 
     def open(self, source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
         """The backup in a folder; see `BackupOpener.open`."""
-        notes = Notes()
-        contents = Contents(root, notes)
-        if root_in(contents.names) is None:
-            raise InputError(
-                f"{source}: no backup of an ABB controller: neither BACKINFO/backinfo.txt nor "
-                "RAPID/TASKn nor SYSPAR/MOC.cfg is in it"
-            )
-        text = contents.text("BACKINFO/backinfo.txt")
-        info = parse_backinfo(text or "")
-        sys, moc, eio = (_parameters(contents, name, notes) for name in ("SYS", "MOC", "EIO"))
-        tasks = loaded_tasks(contents, info, sys, ModuleFiles(contents), notes)
-        if not (tasks or sys or moc or eio):
-            raise InputError(
-                f"{source}: nothing of this backup can be read: {_first(notes) or 'it is empty'}"
-            )
-        return _backup(source, root, contents, info, (sys, moc, eio), tasks, find_robot, notes)
+        with collection_paused():
+            return _opened(source, root, find_robot)
 
 
 OPENER = Opener()
+
+
+def _opened(source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
+    notes = Notes()
+    contents = Contents(root, notes)
+    if root_in(contents.names) is None:
+        raise InputError(
+            f"{source}: no backup of an ABB controller: neither BACKINFO/backinfo.txt nor "
+            "RAPID/TASKn nor SYSPAR/MOC.cfg is in it"
+        )
+    text = contents.text("BACKINFO/backinfo.txt")
+    info = parse_backinfo(text or "")
+    sys, moc, eio = (_parameters(contents, name, notes) for name in ("SYS", "MOC", "EIO"))
+    tasks = loaded_tasks(contents, info, sys, ModuleFiles(contents), notes)
+    if not (tasks or sys or moc or eio):
+        raise InputError(
+            f"{source}: nothing of this backup can be read: {_first(notes) or 'it is empty'}"
+        )
+    return _backup(source, root, contents, info, (sys, moc, eio), tasks, find_robot, notes)
 
 
 def _backup(

@@ -8,17 +8,12 @@ group of units, ``MECHANICAL_UNIT_GROUP``.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ....core.backup.backup import BackupEntry, Task
 from ....core.display import counted
-from ....core.errors import SourceError
-from ..run.analysis import move_counts
 from ..run.files import MODULES
-from ..syntax.tree import Routine
-from ..values.data import Globals
-from ..values.library import Library
 from .backinfo import BackInfo, ListedTask
 from .cfg import Parameters, Record
 from .contents import Contents, Notes, listed
@@ -40,13 +35,14 @@ class LoadedTask:
         listed: as the list has it.
         files: of its modules, in the order in which they are loaded, shared ones last.
         record: of SYS.cfg; None if there is none.
-        moving: identities of its routines that move an arm.
+        moving: of its routines that move an arm, by identity, how many statements do; see
+            `moving_routines`.
     """
 
     listed: ListedTask
     files: tuple[ModuleFile, ...]
     record: Record | None
-    moving: frozenset[int]
+    moving: Mapping[int, int]
 
     @property
     def name(self) -> str:
@@ -77,7 +73,7 @@ def loaded_tasks(
             continue
         own = _files(contents, task, modules, notes)
         files = tuple(_fitting([*own, *common], notes))
-        moving = frozenset(moving_routines(files))
+        moving = moving_routines(files)
         found.append(LoadedTask(task, files, _record(task, sys), moving))
     if stated:
         _note_unlisted(contents, stated, notes)
@@ -241,18 +237,6 @@ def _called(name: str, robots: Sequence[str]) -> int | None:
     return folded.index(key) if key in folded else None
 
 
-def _counts(task: LoadedTask, notes: Notes) -> Callable[[Routine], int]:
-    """How many statements of a routine, and of those that it calls, move the robot."""
-    try:
-        modules = [module for file in task.files for module in file.modules]
-        return move_counts(Globals(modules, Library({})))
-    except SourceError as error:
-        line = 1 if error.span is None else error.span.line
-        notes.add(error.message, error.span and error.span.file, line)
-        moving = task.moving
-        return lambda routine: int(id(routine) in moving)
-
-
 def task_of(task: LoadedTask, robot: int | None, hooks: Mapping[str, str], notes: Notes) -> Task:
     """What is handed out of a task.
 
@@ -266,7 +250,6 @@ def task_of(task: LoadedTask, robot: int | None, hooks: Mapping[str, str], notes
     stated = (task.record.text("entry") if task.record is not None else None) or _MAIN
     if robot is None:
         return Task(task.name, None, files, None, stated if task.record is not None else None)
-    count = _counts(task, notes)
     entries: list[BackupEntry] = []
     first: BackupEntry | None = None
     for file in task.files:
@@ -278,7 +261,7 @@ def task_of(task: LoadedTask, robot: int | None, hooks: Mapping[str, str], notes
                 file.name,
                 hooks.get(routine.name, ""),
                 tuple(p.name for p in routine.parameters if not p.optional),
-                count(routine),
+                task.moving.get(id(routine), 0),
             )
             if routine.name == stated.casefold():
                 first = entry

@@ -168,14 +168,8 @@ class RapidTree:
 
 def count_moves(data: Globals, routine: tree.Routine) -> int:
     """How many statements of a routine, and of those that it calls, move the robot."""
-    return move_counts(data)(routine)
-
-
-def move_counts(data: Globals) -> Callable[[tree.Routine], int]:
-    """`count_moves` for many routines, of which each statement is looked at once."""
     statements = RapidTree(data)
-    analysis = Analysis(statements)
-    return lambda routine: analysis.move_count(statements.body(routine))
+    return Analysis(statements).move_count(statements.body(routine))
 
 
 def _evaluated(statement: tree.Statement) -> Iterator[tree.Expression]:

@@ -335,6 +335,7 @@ def test_texts_with_robots_that_no_controller_has(tmp_path: Path) -> None:
         ("LOCAL PROC b()\nENDPROC\nLOCAL PROC B()\nENDPROC", "B"),
         ("PERS num c:=1;\nPERS num c:=2;", "c"),
         ("RECORD r\nnum x;\nENDRECORD\nRECORD r\nnum y;\nENDRECORD", "r"),
+        ("RECORD r\nnum x;\nnum x;\nENDRECORD", "r.x"),
     ],
 )
 def test_modules_that_contradict_themselves(inside: str, name: str, tmp_path: Path) -> None:
@@ -345,10 +346,15 @@ def test_modules_that_contradict_themselves(inside: str, name: str, tmp_path: Pa
     assert backup.tasks[0].entry == "Main"
 
 
-def test_types_that_make_no_sense(tmp_path: Path) -> None:
-    wrong = "MODULE wrong\nRECORD r\nnum x;\nnum x;\nENDRECORD\nENDMODULE\n"
-    modules = {"PROGMOD/MainModule.mod": MAIN, "PROGMOD/wrong.mod": wrong}
-    backup = opened(Station(tasks={"TASK1": ("T_ROB1", modules)}).write(tmp_path))
-    (note,) = texts(backup)
-    assert "wrong.mod:2:1: component x is declared twice" in note
-    assert [entry.name for entry in backup.tasks[0].entries] == ["Main", "Pick", "At"]
+@pytest.mark.parametrize("size", [30, 3000])
+def test_moves_are_counted_through_calls(size: int, tmp_path: Path) -> None:
+    move = "    MoveL p, v10, fine, tool0;\n"
+    procs = [f"  PROC r{k}()\n{move}    r{k + 1};\n    r{k + 1};\n  ENDPROC\n" for k in range(size)]
+    text = f"MODULE M\n{''.join(procs)}  PROC r{size}()\n    r0;\n  ENDPROC\nENDMODULE\n"
+    modules = {
+        "PROGMOD/M.mod": text.replace("PROC r0()", "PROC main()\n    r1;\n  ENDPROC\n  PROC r0()")
+    }
+    entries = opened(Station(tasks={"TASK1": ("T_ROB1", modules)}).write(tmp_path)).tasks[0].entries
+    assert len(entries) == size + 2 and entries[0].name == "main"
+    moves = {entry.name: entry.moves for entry in entries}["main"]
+    assert moves == size if size < 1000 else moves >= 1  # too many calls to be followed
