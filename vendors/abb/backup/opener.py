@@ -60,6 +60,11 @@ def _opened(source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Bac
         raise InputError(
             f"{source}: nothing of this backup can be read: {_first(notes) or 'it is empty'}"
         )
+    if tasks and not sys.file:
+        notes.add(
+            "SYS.cfg is not in the backup: which tasks move an arm is taken from their routines, "
+            "and they are taken to begin in PROC main"
+        )
     return _backup(source, root, contents, info, (sys, moc, eio), tasks, find_robot, notes)
 
 
