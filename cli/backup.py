@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..core.display import counted
 from ..tasks.backup.opening import open_backup
 from ..tasks.files.outputs import check_folder, write_in
 from .output.console import print_json, print_rich, print_table, progress, warn
@@ -80,7 +81,7 @@ def _print(backup: Backup) -> None:
         print_rich(f"named positions: {', '.join(backup.homes)}")
     if backup.signals:
         kinds = [signal.kind.value for signal in backup.signals]
-        told = (f"{kinds.count(kind)} {kind}s" for kind in dict.fromkeys(kinds))
+        told = (counted(kinds.count(kind), kind) for kind in dict.fromkeys(kinds))
         print_rich(f"signals: {', '.join(told)}")
     for key, (value, origin) in backup.motion.items():
         print_rich(f"motion figure {key} = {value} ({origin})")

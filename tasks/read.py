@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.door import spelt
-from ..core.errors import FlybyError, InputError, OptionError, ParseError
+from ..core.errors import FlybyError, InputError, Note, OptionError, ParseError
 from .backup.finding import find_backup
 from .backup.opening import read_task, setup_in, task_of
 from .catalogue import registry
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from ..core.backup.backup import Backup
     from ..core.program.program import Program
     from ..core.program.target import JointTarget
+    from ..core.robot.model import Robot
     from ..core.source.execution.answers import Answers
 
 
@@ -98,7 +100,10 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
     start = joint_target(options.start, spelt("start"), robot)
     if isinstance(source, str) and "\n" in source:
         name = f"program{vendor.suffixes[0] if vendor.suffixes else ''}"
-        program = vendor.read(source, name, options.entry, robot, answers_of(options), start)
+        answers = answers_of(options)
+        program = from_ready_posture(
+            lambda at: vendor.read(source, name, options.entry, robot, answers, at), start, robot
+        )
     else:
         if not str(source):
             raise OptionError("source is empty: name a file or a folder, or give a program's text")
@@ -106,10 +111,69 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
         if file.is_dir():
             file = _program_in(file, setup, options)
         check_language(vendor, file)
-        program = vendor.read_file(
-            file, options.entry, robot, answers_of(options), options.others, start
+        answers = answers_of(options)
+        program = from_ready_posture(
+            lambda at: vendor.read_file(file, options.entry, robot, answers, options.others, at),
+            start,
+            robot,
         )
     return replace(program, setup=setup)
+
+
+def from_ready_posture(
+    read: Callable[[JointTarget | None], Program], start: JointTarget | None, robot: Robot
+) -> Program:
+    """A program that may ask where the robot stands before its first move.
+
+    Where nobody says, and what it asks keeps it from being driven, it is taken to begin in the
+    robot's ready posture, with a note.
+
+    Args:
+        read: reads it from a start.
+        start: that the user gives.
+        robot: that it is for.
+
+    Raises:
+        FlybyError: it cannot be read from there either; what keeps it from being read without.
+    """
+    if start is not None:
+        return read(start)
+    failed: FlybyError | None = None
+    without: Program | None = None
+    try:
+        without = read(None)
+    except ParseError:
+        raise
+    except FlybyError as error:
+        failed = error
+    if without is not None and not any(move.open for move in without.moves):
+        return without
+    from ..core.program.target import JointTarget
+    from ..core.robot.ready_posture import ready_posture
+
+    posture = ready_posture(robot)
+    program = None
+    if posture is not None:
+        at = JointTarget(posture[: robot.arm_size], posture[robot.arm_size :])
+        with suppress(FlybyError):
+            program = read(at)
+    if program is None or (without is not None and _open(program) >= _open(without)):
+        if without is None:
+            assert failed is not None
+            raise failed
+        return without
+    axes = [*robot.joints, *(axis.joint for axis in robot.external_axes)]
+    shown = ", ".join(joint.shown(value) for joint, value in zip(axes, posture or (), strict=True))
+    note = Note(
+        "the program asks where the robot stands before its first move: it is taken to stand at "
+        f"{shown}; {spelt('start')} says where it does"
+    )
+    return replace(program, notes=(note, *program.notes))
+
+
+def _open(program: Program) -> int:
+    """Moves of which nobody knows where they go."""
+    return sum(bool(move.open) for move in program.moves)
 
 
 def _backup_in(source: str | Path, options: SourceOptions) -> Backup | None:
@@ -141,7 +205,11 @@ def _read_backup(backup: Backup, options: SourceOptions) -> Program:
     setup = setup_in(backup, task, options)
     start = joint_target(options.start, spelt("start"), setup.robot)
     answers = answers_of(options)
-    program = read_task(backup, task, setup, options.entry, answers, options.others, start)
+    program = from_ready_posture(
+        lambda at: read_task(backup, task, setup, options.entry, answers, options.others, at),
+        start,
+        setup.robot,
+    )
     setup = replace(setup, backup=backup)
     return replace(program, setup=setup, notes=(*backup.notes, *program.notes))
 
