@@ -230,7 +230,7 @@ def answers_of(options: SourceOptions) -> Answers:
     return replace(answers, cycles=options.cycles, goes_on=True)
 
 
-_BESIDE_PROGRAMS = frozenset({".sub", ".txt"})
+_BESIDE_PROGRAMS = frozenset({".sub", ".txt", ".urp", ".urpx"})
 """Suffixes of files that are a folder's program where no other file is."""
 
 

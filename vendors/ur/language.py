@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from ...core.robot.model import Robot
     from ...core.source.reading import Files, ReadOptions
 
-SUFFIXES = (".script", ".urp", ".urscript", ".txt")
+SUFFIXES = (".script", ".urp", ".urpx", ".urscript", ".txt")
 
 
 class UrScript:

@@ -11,7 +11,7 @@ the flange is, never row by row.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -33,7 +33,7 @@ class DhTable:
     """
 
     rows: tuple[tuple[float, float, float, float], ...]
-    status: str = ""
+    status: str = field(default="", compare=False)
 
     @property
     def calibrated(self) -> bool:

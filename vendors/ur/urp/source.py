@@ -17,10 +17,12 @@ from ....core.program.program import Program
 from ....core.source.text.files import LARGEST_FILE, MOST_LINES, SourceFile, decode
 from .emission import node_at
 from .installation import Installation, read_installation
+from .polyscope_x import content_of, script_in
 from .program import ROOT, UrProgram, script_of, urp_of
 from .xml_file import is_xml, parsed, unpacked
 
 INSTALLATION = ".installation"
+POLYSCOPE_X = ".urpx"
 _TREE = re.compile(rf"\ufeff?\s*(<\?xml[^>]*>)?\s*<{ROOT}\b")
 """How the text of a tree begins."""
 
@@ -39,6 +41,8 @@ def source_of(path: Path, beside: Sequence[Path] | None) -> tuple[SourceFile, tu
         InputError: the file cannot be read, is damaged, or is no program.
     """
     plain = unpacked(read_bytes(path, LARGEST_FILE), str(path))
+    if path.suffix.casefold() == POLYSCOPE_X:
+        return SourceFile(str(path), script_in(content_of(plain, str(path)), str(path))), ()
     if not is_xml(plain):
         if max(plain.count(b"\n"), plain.count(b"\r")) > MOST_LINES:
             raise InputError(f"{path}: has more than {MOST_LINES:,} lines: no robot program")
@@ -82,7 +86,7 @@ def installation_beside(
     Returns:
         It, and why it is not used.
     """
-    for place in _places(path, program):
+    for place in installation_places(path, program):
         try:
             if beside is None:
                 found = place if place.is_file() else None
@@ -96,7 +100,7 @@ def installation_beside(
     return None, ()
 
 
-def _places(path: Path, program: UrProgram) -> list[Path]:
+def installation_places(path: Path, program: UrProgram) -> list[Path]:
     """Where the installation may be: as the program says, or beside it."""
     names = [program.installation_path, program.installation]
     plain = [name.replace("\\", "/").strip() for name in names if name.strip()]

@@ -19,7 +19,7 @@ from flyby.core.source.reading import ReadOptions
 from flyby.vendors.ur.run.reader import read, read_file
 from flyby.vendors.ur.urp.kinematics import DhTable
 
-from .conftest import HOME, TCP, UR5E, Build
+from ..conftest import HOME, TCP, UR5E, Build
 
 A, B, C = (0.1, -1.4, 1.6, -1.8, -1.5, 0.2), (0.3, -1.2, 1.5, -1.9, -1.6, 0.1), HOME
 NAMES = "Waypoint_1", "Über 2", "3", "end", "p 'q'"

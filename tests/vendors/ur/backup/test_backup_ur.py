@@ -1,0 +1,326 @@
+"""Folders of UR controllers: tasks, the arm itself, tools, frames, signals."""
+
+from __future__ import annotations
+
+import json
+import math
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import flyby
+from flyby.core.backup.backup import Backup, SignalKind
+from flyby.core.errors import FlybyError, InputError, OptionError
+from flyby.core.registry import find_robot
+from flyby.vendors.ur.backup.opener import OPENER
+from flyby.vendors.ur.calibration import apart, calibrated, nominal_table, type_of
+from flyby.vendors.ur.urp.kinematics import DhTable
+
+from ..conftest import HOME, TCP, UR5E, Build, listed
+
+A, B = (0.1, -1.4, 1.6, -1.8, -1.5, 0.2), (0.3, -1.2, 1.5, -1.9, -1.6, 0.1)
+SAFETY = """<SafetySettings>
+[SafetyLimits Normal Values]
+maxTcpSpeed = 1.5
+
+[SafetyLimits Normal Joints]
+maxJointSpeed = [1.0, 3.0, 3.3, 3.3, 3.3, 9.0]
+minJointPosition = [0.0, 6.230825, 6.230825, 6.230825, 6.230825, 6.230825]
+maxJointPosition = [1.0, 0.05236, 0.05236, 0.05236, 0.05236, 0.05236]
+minJointRevolutions = [-1, -2, -2, -2, -2, -2]
+maxJointRevolutions = [0, 1, 1, 1, 1, 1]
+</SafetySettings>"""
+
+
+def opened(folder: Path) -> Backup:
+    return flyby.open_backup(folder)
+
+
+def move(build: Build) -> str:
+    return build.move(build.fixed("A", A), build.fixed("B", B))
+
+
+def test_a_folder_is_read_without_a_robot(build: Build, tmp_path: Path) -> None:
+    names = (
+        '<IOs><DigitalOutputNames value=", valve, , "/><AnalogInputNames value="force, "/></IOs>'
+    )
+    home = f'<SafeHomeSettings enabled="true" position="{listed(HOME)}"/>'
+    payload = (
+        '<PayloadSettings><Payload name="P" mass="1.5" defaultPayload="true" '
+        'centerOfGravity="0, 0, 0.05" inertiaParameters="0.01, 0.01, 0.01, 0, 0, 0"/>'
+        "</PayloadSettings>"
+    )
+    feature = (
+        '<Features><GeomPlaneNode><GeomPlaneNode name="Bench" isVariable="true"><firstPoint>'
+        '<GeomPoseNode name="hidden" hiddenSubFeature="true"><toolPosition value="0.4, 0, 0.1"/>'
+        '<toolAxisAngle value="0, 0, 0"/></GeomPoseNode></firstPoint></GeomPlaneNode>'
+        "</GeomPlaneNode></Features>"
+    )
+    folder = tmp_path / "work" / "programs"
+    build.packed(
+        folder / "default.installation", build.installation(names, home, payload, feature, SAFETY)
+    )
+    build.packed(folder / "pick.urp", build.program(move(build)))
+    build.packed(folder / "lamp.urp", build.program(build.node("Halt")))
+    for name in ("pick.script", "pick.txt", "default.variables", "pick.urp.old0", "README.md"):
+        (folder / name).write_text("anything")
+    backup = opened(tmp_path / "work")
+    assert backup.root == folder and backup.version == "5.12.0"
+    assert [(task.name, task.robot, task.main, task.entry) for task in backup.tasks] == [
+        ("lamp", None, "lamp.urp", None),
+        ("pick", 0, "pick.urp", None),
+    ]
+    (known,) = backup.robots
+    assert (known.unit, known.written) == ("20205500001", "UR5e 20205500001")
+    assert known.robot is not None and known.robot.name == "ur/ur5e"
+    first = known.robot.joints[0]
+    assert (first.lower, first.upper, first.velocity) == (-math.tau, 1.0, 1.0)
+    assert known.robot.joints[5].velocity == find_robot("ur/ur5e").joints[5].velocity
+    assert known.robot.joints[1].upper == pytest.approx(math.tau + 0.05236)
+    tool = backup.tools["gripper"]
+    assert tool.tcp.position == TCP[:3] and tool.load is not None and tool.load.mass == 1.5
+    assert backup.frames["Bench"].pose.position == (0.4, 0.0, 0.1)
+    assert backup.homes["SafeHome"].joints == HOME
+    assert [(one.name, one.kind, one.address) for one in backup.signals] == [
+        ("valve", SignalKind.DIGITAL_OUTPUT, "digital_out[1]"),
+        ("force", SignalKind.ANALOG_INPUT, "analog_in[0]"),
+    ]
+    assert not backup.notes
+    program = flyby.read(tmp_path / "work")
+    assert len(program.moves) == 2 and program.setup is not None
+    assert program.setup.robot == known.robot
+
+
+def test_one_file_is_opened_alone_with_its_installation(build: Build, tmp_path: Path) -> None:
+    build.packed(tmp_path / "default.installation", build.installation())
+    build.packed(tmp_path / "a.urp", build.program(move(build)))
+    build.packed(tmp_path / "b.urp", build.program(move(build)))
+    assert [task.name for task in opened(tmp_path / "a.urp").tasks] == ["a"]
+    assert "gripper" in opened(tmp_path / "a.urp").tools
+    assert opened(tmp_path / "default.installation").tasks == ()
+    with pytest.raises(OptionError, match="which task"):
+        flyby.read(tmp_path)
+    assert len(flyby.read(tmp_path, task="b").moves) == 2
+
+
+def test_an_archive_is_the_folder_in_it(build: Build, tmp_path: Path) -> None:
+    path = build.packed(tmp_path / "job.urp", build.program(move(build)))
+    with zipfile.ZipFile(tmp_path / "robot.zip", "w") as archive:
+        archive.write(path, "usb/programs/job.urp")
+    assert [task.name for task in opened(tmp_path / "robot.zip").tasks] == ["job"]
+
+
+def test_a_program_names_its_installation(build: Build, tmp_path: Path) -> None:
+    for name, z in (("left", 0.1), ("right", 0.3)):
+        tcp = f'<tcp name="gripper" offset="0, 0, {z}, 0, 0, 0"/>'
+        build.packed(tmp_path / f"{name}.installation", build.installation(tcps=tcp))
+        build.packed(tmp_path / f"{name}.urp", build.program(move(build), installation=name))
+    build.packed(tmp_path / "sub/far.urp", build.program(move(build), installation="../right"))
+    build.packed(tmp_path / "lost.urp", build.program(move(build), installation="gone"))
+    backup = opened(tmp_path)
+    assert len(backup.robots) == 1
+    told = " ".join(str(note) for note in backup.notes)
+    assert "listed are those of right.installation" in told and "gone.installation" in told
+    for task, z in (("left", 0.1), ("right", 0.3), ("far", 0.3), ("lost", 0.12)):
+        program = flyby.read(tmp_path, task=task)
+        assert program.moves[0].tool.tcp.position[2] == z
+
+
+small = st.lists(st.floats(-1.0, 1.0), min_size=24, max_size=24).map(
+    lambda values: np.reshape(values, (6, 4)) * (5e-4, 2e-4, 2e-4, 5e-4)
+)
+TYPES = ["ur3", "ur5", "ur10", "ur3e", "ur5e", "ur10e", "ur20", "ur30", "ur15", "ur18", "ur8long"]
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.sampled_from(TYPES), small)
+def test_an_arm_is_known_by_where_its_flange_is(name: str, deltas: np.ndarray) -> None:
+    nominal = find_robot(f"ur/{name}")
+    rows = np.array(nominal_table(nominal).rows) + deltas
+    table = DhTable(tuple((a, b, c, d) for a, b, c, d in rows.tolist()), "LINEARIZED")
+    near = type_of(table, [find_robot(f"ur/{one}") for one in TYPES])
+    assert [one.name for one in near] == [nominal.name]
+    arm = calibrated(nominal, table, "x.urp")
+    assert apart(arm, table) < 1e-9
+    q = np.zeros(6)
+    for one, other in zip(arm.joints, nominal.joints, strict=True):
+        assert math.dist(one.placement.position, other.placement.position) < 0.01
+    assert math.dist(arm.flange_pose(q).position, nominal.flange_pose(q).position) < 0.01
+
+
+def test_frames_stay_at_the_arm_where_the_table_has_them_far_off() -> None:
+    """Axes 3 and 4 along their own lines by hundreds of metres, and turned: the same arm."""
+    nominal = find_robot("ur/ur5e")
+    rows = [list(row) for row in nominal_table(nominal).rows]
+    rows[1][2], rows[2][2], rows[3][2] = 400.0, -1000.0, rows[3][2] + 600.0
+    arm = calibrated(nominal, DhTable(tuple(map(tuple, rows)), "LINEARIZED"), "x.urp")
+    for one, other in zip(arm.joints, nominal.joints, strict=True):
+        assert math.dist(one.placement.position, other.placement.position) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("serial", "arm", "told"),
+    [
+        ("20205500001", "ur/ur5e", None),
+        ("", "ur/ur5e", "ur/ur7e has the same kinematics"),
+        ("20205200001", "ur/ur5e", "its serial number 20205200001 is one of a UR10E"),
+        ("20205599999", "ur/ur5e", None),
+        ("nonsense", "ur/ur5e", "ur/ur7e has the same kinematics"),
+    ],
+)
+def test_the_serial_number_is_a_second_witness(
+    build: Build, tmp_path: Path, serial: str, arm: str, told: str | None
+) -> None:
+    build.packed(tmp_path / "default.installation", build.installation())
+    path = build.packed(tmp_path / "job.urp", build.program(move(build), serial=serial))
+    backup = opened(path)
+    assert backup.robots[0].robot is not None and backup.robots[0].robot.name == arm
+    assert (told is None) == (not backup.notes)
+    assert told is None or told in str(backup.notes[0])
+
+
+def test_an_arm_of_no_known_type_is_told(build: Build, tmp_path: Path) -> None:
+    rows = [list(row) for row in UR5E]
+    rows[1][1] -= 0.04
+    build.packed(tmp_path / "default.installation", build.installation())
+    path = build.packed(tmp_path / "job.urp", build.program(move(build), rows=rows))
+    known = opened(path).robots[0]
+    assert known.robot is None and "those of no arm that is known" in known.lacks[0]
+    with pytest.raises(OptionError, match=r"no arm that is known.*robot"):
+        flyby.read(path)
+    assert len(flyby.read(path, robot="ur/ur5e").moves) == 2
+
+
+def test_without_kinematics_the_serial_number_decides(build: Build, tmp_path: Path) -> None:
+    zeros = [(0.0, 0.0, 0.0, 0.0)] * 6
+    text = build.program(move(build), rows=zeros, serial="20195300001")
+    known = opened(build.packed(tmp_path / "job.urp", text)).robots[0]
+    assert known.robot is not None and known.robot.name == "ur/ur3e"
+    text = build.program(move(build), rows=zeros, serial="")
+    known = opened(build.packed(tmp_path / "none.urp", text)).robots[0]
+    assert known.robot is None and known.lacks == ("nothing says which arm it is",)
+
+
+def test_programs_of_two_arms_are_two_robots(build: Build, tmp_path: Path) -> None:
+    ur10e = nominal_table(find_robot("ur/ur10e")).rows
+    build.packed(tmp_path / "default.installation", build.installation())
+    build.packed(tmp_path / "a.urp", build.program(move(build)))
+    text = build.program(move(build), rows=ur10e, serial="20205200001")
+    build.packed(tmp_path / "b.urp", text)
+    (tmp_path / "c.urp").write_text("def c():\n  movej([0, -1, 1, 0, 1, 0])\nend\n")
+    backup = opened(tmp_path)
+    assert [one.robot and one.robot.name for one in backup.robots] == ["ur/ur5e", "ur/ur10e"]
+    assert [task.robot for task in backup.tasks] == [0, 1, 0]
+
+
+def test_the_mounting_turns_the_base(build: Build, tmp_path: Path) -> None:
+    """On a wall up is the base's axis y: ``set_gravity([0, 9.82, 0])`` ("Script Directory")."""
+    tilted = (
+        '<Features><CameraView><worldTransform class="WorldTransform"><WorldtoMarshal '
+        f'baseAngle="0.0" tiltAngle="{math.pi / 2}"/></worldTransform></CameraView></Features>'
+    )
+    build.packed(tmp_path / "default.installation", build.installation(tilted))
+    backup = opened(build.packed(tmp_path / "job.urp", build.program(move(build))))
+    robot = backup.robots[0].robot
+    assert robot is not None
+    up = robot.base.matrix()[:3, :3].T @ (0.0, 0.0, 1.0)
+    np.testing.assert_allclose(up, (0.0, 1.0, 0.0), atol=1e-12)
+
+
+def test_damaged_files_are_passed_over(build: Build, tmp_path: Path) -> None:
+    build.packed(tmp_path / "default.installation", build.installation())
+    good = build.packed(tmp_path / "good.urp", build.program(move(build)))
+    (tmp_path / "cut.urp").write_bytes(good.read_bytes()[:200])
+    (tmp_path / "old.urp").write_text("<gui.program.ProgramRootNode/>")
+    (tmp_path / "other.installation").write_text("<Installation")
+    backup = opened(tmp_path)
+    assert [task.name for task in backup.tasks] == ["good"]
+    told = [str(note) for note in backup.notes]
+    assert [note.partition(":")[0] for note in told[:3]] == ["passed over"] * 3
+    assert not any(str(tmp_path) in note for note in told)
+    with pytest.raises(InputError, match="damaged or cut short"):
+        opened(tmp_path / "cut.urp")
+
+
+@pytest.mark.parametrize(
+    ("names", "root"),
+    [
+        (["a.script", "b.txt"], None),
+        (["x/a.urp", "b.script"], "x"),
+        (["x/y/a.urp", "x/default.INSTALLATION"], "x"),
+        (["a.urpx"], ""),
+        (["a.urp.old0", "default.variables"], None),
+    ],
+)
+def test_programs_and_installations_mark_a_backup(names: list[str], root: str | None) -> None:
+    assert OPENER.root_in(names) == root
+
+
+def urpx(script: str) -> dict[str, object]:
+    def value(number: float, unit: str) -> dict[str, object]:
+        return {"value": number, "unit": unit}
+
+    tcp = {"id": "t", "name": "Gripper", **{k: value(0, "rad") for k in ("rx", "ry", "rz")}}
+    tcp |= {"x": value(0, "m"), "y": value(0, "m"), "z": value(120, "mm")}
+    effector = {
+        "id": "e",
+        "name": "Hand",
+        "payload": {"weight": value(2, "kg")},
+        "cog": {"cx": value(0, "m"), "cy": value(0, "m"), "cz": value(5, "cm")},
+        "tcps": [tcp],
+    }
+    frame = {"name": "bench", "parent": "base", "pose": {"position": [0.4, 0, 0.1]}}
+    frame["pose"]["orientation"] = [0, 0, 0]  # type: ignore[index]
+    contributions = {
+        "ur-mounting": {
+            "type": "ur-mounting",
+            "mounting": {"baseAngle": value(0, "deg"), "tiltAngle": value(180, "deg")},
+        },
+        "ur-frames": {"type": "ur-frames", "framesList": [{"name": "base"}, frame]},
+        "ur-end-effector": {
+            "type": "ur-end-effector",
+            "endEffectors": [effector],
+            "defaultTcp": {"endEffectorId": "e", "tcpId": "t"},
+        },
+    }
+    application = {"applicationContent": {"applicationContributions": contributions}}
+    application["urscript"] = {"script": "set_tcp(p[0, 0, 0.12, 0, 0, 0])"}  # type: ignore[assignment]
+    return {"application": application, "program": {"urscript": {"script": script}}}
+
+
+def test_programs_of_polyscope_x(tmp_path: Path) -> None:
+    path = tmp_path / "job.urpx"
+    path.write_text(json.dumps(urpx("movej([0, -1, 1, 0, 1, 0])\nmovej([0, -1, 1, 0, 1, 1])")))
+    backup = opened(path)
+    assert backup.tools["Gripper"].tcp.position == (0.0, 0.0, 0.12)
+    load = backup.tools["Gripper"].load
+    assert load is not None and (load.mass, load.centre) == (2.0, (0.0, 0.0, 0.05))
+    assert backup.frames["bench"].pose.position == (0.4, 0.0, 0.1)
+    assert backup.robots[0].robot is None
+    program = flyby.read(path, robot="ur/ur15")
+    assert len(program.moves) == 2 and program.moves[0].tool.tcp.position == (0.0, 0.0, 0.12)
+    for text in ("{", "[]", "{}", '{"program": {}}', "[" * 100_000):
+        path.write_text(text)
+        with pytest.raises(FlybyError):
+            opened(path)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.data())
+def test_damaged_installations_do_no_harm(
+    build: Build, tmp_path_factory: pytest.TempPathFactory, data: st.DataObject
+) -> None:
+    folder = tmp_path_factory.getbasetemp() / "harmed"
+    text = build.installation(SAFETY).encode()
+    start = data.draw(st.integers(0, len(text)))
+    length = data.draw(st.integers(0, 60))
+    harm = data.draw(st.binary(max_size=20))
+    build.packed(folder / "job.urp", build.program(move(build)))
+    (folder / "default.installation").write_bytes(text[:start] + harm + text[start + length :])
+    backup = opened(folder)
+    assert [task.name for task in backup.tasks] == ["job"]
+    assert len(flyby.read(folder).moves) == 2

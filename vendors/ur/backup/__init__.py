@@ -1,0 +1,1 @@
+"""What UR controllers keep: programs, installations, and folders of them."""
