@@ -54,11 +54,18 @@ class DataList:
     Args:
         name: of the list, for messages.
         data: by name, in capitals, and index; 0 of what has none.
+        unread: lines whose values make no sense, in the same way.
     """
 
-    def __init__(self, name: str, data: Mapping[tuple[str, int], Assigned]) -> None:
+    def __init__(
+        self,
+        name: str,
+        data: Mapping[tuple[str, int], Assigned],
+        unread: Mapping[tuple[str, int], int] | None = None,
+    ) -> None:
         self.name = name
         self.data = data
+        self.unread = unread or {}
 
     @classmethod
     def read(cls, file: Path) -> DataList:
@@ -73,18 +80,22 @@ class DataList:
     def of(cls, source: SourceFile) -> DataList:
         """The data of a file's text."""
         data: dict[tuple[str, int], Assigned] = {}
+        unread: dict[tuple[str, int], int] = {}
         for number, line in enumerate(lines_of(source.text), 1):
             found = _LINE.match(line) if "=" in line else None
             if found is None:
                 continue
-            value = _value_of(found[3])
-            if value is not None:
-                data[found[1].upper(), int(found[2] or 0)] = Assigned(value, source.name, number)
-        return cls(source.name, data)
+            value, key = _value_of(found[3]), (found[1].upper(), int(found[2] or 0))
+            if value is None:
+                unread[key] = number
+            else:
+                data[key] = Assigned(value, source.name, number)
+        return cls(source.name, data, unread)
 
     def over(self, other: DataList) -> DataList:
         """Both, where this one counts for what both assign."""
-        return DataList(self.name, {**other.data, **self.data})
+        below = {key: one for key, one in other.data.items() if key not in self.unread}
+        return DataList(self.name, {**below, **self.data}, self.unread)
 
     def has(self, name: str, index: int = 0) -> bool:
         """Whether it assigns a datum."""
@@ -128,6 +139,9 @@ class DataList:
         return found is not None and found.value is True
 
     def _datum(self, name: str, index: int) -> Value:
+        if not self.has(name, index) and (name, index) in self.unread:
+            line = self.unread[name, index]
+            raise InputError(f"{self.name}:{line}: {_spelt(name, index)} has no value that is one")
         if not self.has(name, index):
             raise InputError(f"{self.name}: {_spelt(name, index)} is missing")
         return self.data[name, index].value

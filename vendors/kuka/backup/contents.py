@@ -83,6 +83,13 @@ class Contents:
                 self.notes.add(f"left out: {told}")
         return self._sources[name]
 
+    def same(self, one: str, other: str) -> bool:
+        """Whether two files have the same text."""
+        texts = [
+            None if (found := self.source(name)) is None else found.text for name in (one, other)
+        ]
+        return texts[0] == texts[1]
+
     def data(self, name: str | None) -> DataList | None:
         """A data list; None if there is none, or with a note if it cannot be read."""
         source = None if name is None else self.source(name)

@@ -28,6 +28,7 @@ HOMES = ("XHOME", *(f"XHOME{k}" for k in range(1, 6)))
 ROBOT = "#ROBOT"
 """Of ``MECH_TYPE``."""
 _STANDING = "#TCP"
+_READ = frozenset({"TOOL_DATA", "BASE_DATA", "LOAD_DATA", "MACHINE_DEF", *HOMES})
 _MOST_MACHINES = 1000.0
 _AXES = tuple(f"A{k}" for k in range(1, 7))
 
@@ -79,6 +80,10 @@ def declared_in(
         robot: for its external axes; None if it is not known.
         notes: where it is said what makes no sense.
     """
+    for (name, index), line in config.unread.items():
+        if name in _READ and (name, index) not in config.data:
+            shown = f"{name}[{index}]" if index else name
+            notes.add(f"{shown} is left out: its value makes no sense", config.name, line)
     made = Declared()
     for index, one in config.items("TOOL_DATA"):
         if not isinstance(one.value, Mapping) or not index >= 1:

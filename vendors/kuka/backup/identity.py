@@ -9,15 +9,16 @@ from ....core.source.text.files import lines_of
 from ..data_list import DataList
 from .contents import Contents
 
-_ENTRY = re.compile(r"\s*([A-Za-z]\w*)\s*=\s*(.*?)\s*")
-_SECTION = re.compile(r"\s*\[([^\]]*)\]\s*")
-_PROLOGUE = re.compile(r"<\?xml[^>]*>", re.IGNORECASE)
+_ENTRY = re.compile(r"\s*([A-Za-z]\w{0,30})\s*=(.*)")
+_SECTION = re.compile(r"\s*\[([^\]]{0,80})\]\s*")
+_PROLOGUE = re.compile(r"<\?xml[^>]{0,200}>", re.IGNORECASE)
 _XML_VERSION = re.compile(
-    r"""(?:kss|system|software|controller)?_?-?version\w*\s*(?:=\s*["']|>)\s*[^"'<]*?"""
-    r"""(\d+\.\d+(?:\.\d+)*)""",
+    r"""version\w{0,20}\s{0,4}(?:=\s{0,4}["']|>)[^"'<]{0,20}?(\d{1,4}\.\d{1,4}(?:\.\d{1,6}){0,3})""",
     re.IGNORECASE,
 )
-_XML_TYPE = re.compile(r"""["'>]\s*(KR\s?C\s?[1-5][^"'<]*?)\s*["'<]""", re.IGNORECASE)
+_XML_TYPE = re.compile(
+    r"""["'>]\s{0,20}(KR\s?C\s?[1-5][^"'<]{0,40}?)\s{0,20}["'<]""", re.IGNORECASE
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +58,7 @@ def identity_of(contents: Contents, machine: DataList | None) -> Identity:
             if (head := _SECTION.fullmatch(line)) is not None:
                 section = head[1].strip().lower()
             elif (entry := _ENTRY.fullmatch(line)) is not None:
-                told.setdefault((section, entry[1].lower()), entry[2].strip('"'))
+                told.setdefault((section, entry[1].lower()), entry[2].strip().strip('"'))
     version, kind = told.get(("version", "version"), ""), ""
     for name in contents.called("connections.xml")[:1]:
         source = contents.source(name)

@@ -36,26 +36,42 @@ def source_files(contents: Contents) -> tuple[str, ...]:
     """
     layout = contents.layout
     found: dict[tuple[str, str], str] = {}
-    twice: dict[tuple[str, str], list[str]] = {}
+    twice: dict[tuple[str, str], list[tuple[str, str]]] = {}
     config_beside = contents.find(layout.controller, CONFIG)
     inside = [name for name in contents.names if _is_source(name, layout)]
     for name in sorted(inside, key=lambda name: _rank(name, layout)):
         place = PurePosixPath(name)
         key = place.stem.casefold(), place.suffix.casefold()
         if key in found:
-            pair = str(place.parent), str(PurePosixPath(found[key]).parent)
-            twice.setdefault(pair, []).append(place.name)
+            twice.setdefault(_relocated(name, found[key]), []).append((name, found[key]))
         else:
             found[key] = name
     if config_beside is not None:
         found.setdefault(("$config", DATA), config_beside)
-    for (left, taken), files in twice.items():
-        count = f"{len(files)} files" if len(files) > 1 else "a file"
-        contents.notes.add(
-            f"{count} of {left} stand in {taken} as well, where names are global: those in {taken} "
-            f"are read, left out: {listed(sorted(files))}"
-        )
+    for (left, taken), pairs in twice.items():
+        contents.notes.add(_left_out(contents, left, taken, pairs))
     return tuple(found.values())
+
+
+def _relocated(left: str, taken: str) -> tuple[str, str]:
+    """The folders by which two files of one name are apart: ``Old`` of ``Old/a/x`` and ``a/x``."""
+    one, other = left.split("/")[:-1], taken.split("/")[:-1]
+    while one and other and one[-1].casefold() == other[-1].casefold():
+        del one[-1], other[-1]
+    return "/".join(one), "/".join(other)
+
+
+def _left_out(contents: Contents, left: str, taken: str, pairs: Sequence[tuple[str, str]]) -> str:
+    """What is said of files that are there twice."""
+    named = listed(sorted(PurePosixPath(name).name for name, _ in pairs))
+    changed = sorted(
+        PurePosixPath(name).name for name, other in pairs if not contents.same(name, other)
+    )
+    differ = f"other text in {listed(changed)}" if changed else "their texts are the same"
+    return (
+        f"left out of {left or 'the root'}: {named}, which {taken or 'the root'} has as well; "
+        f"names are global over an archive ({differ})"
+    )
 
 
 def tasks_of(contents: Contents, files: Sequence[str]) -> tuple[Task, ...]:
@@ -133,12 +149,14 @@ def _numbers(source: SourceFile, routines: Routines) -> dict[str, str]:
     """Which program numbers ``cell.src`` runs a routine for, of those that are at hand."""
     text = _COMMENT.sub("", source.text)
     found: dict[str, list[str]] = {}
-    for switch in _SWITCH.finditer(text):
-        end = _END.search(text, switch.end())
-        part = text[switch.end() : end.start() if end else len(text)]
+    switches = list(_SWITCH.finditer(text))
+    behind = [*(switch.start() for switch in switches[1:]), len(text)]
+    for switch, most in zip(switches, behind, strict=True):
+        end = _END.search(text, switch.end(), most)
+        part = text[switch.end() : end.start() if end else most]
         cases = list(_CASE.finditer(part))
-        ends = [*(case.start() for case in cases[1:]), len(part)]
-        for case, stop in zip(cases, ends, strict=False):
+        stops = [*(case.start() for case in cases[1:]), len(part)]
+        for case, stop in zip(cases, stops, strict=False):
             number = " ".join(case[1].split())
             for name in _CALL.findall(part[case.end() : stop]):
                 routine = routines.named(name)

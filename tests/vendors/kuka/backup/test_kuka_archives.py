@@ -183,12 +183,30 @@ def test_a_model_file_of_another_arm(tmp_path) -> None:
 def test_copies_of_folders_are_said_once(tmp_path) -> None:
     files = archive()
     for name, text in programs().items():
-        if "/Line/" in name:
-            files[name.replace("/Line/", "/Line - Copy/")] = str(text).replace("XAPP", "XOLD")
+        if "/Program/" in name:
+            copy = str(text).replace("DECL E6AXIS XAPP", "DECL E6AXIS XOLD")
+            files[name.replace("/Program/", "/Program/Copy of it/")] = copy
     backup = opened(tmp_path, files)
     (note,) = [n for n in backup.notes if "left out" in str(n)]
-    assert "2 files of KRC/R1/Program/Line - Copy stand in KRC/R1/Program/Line as well" in str(note)
+    assert str(note) == (
+        "left out of KRC/R1/Program/Copy of it: HANDLING.src, PICK.dat, PICK.src, PLACE.dat, "
+        "PLACE.src, which KRC/R1/Program has as well; names are global over an archive (other text "
+        "in PICK.dat)"
+    )
     assert not [name for name in backup.tasks[0].files if "Copy" in name]
+
+
+def test_lines_that_make_no_sense_are_said(tmp_path) -> None:
+    files = archive()
+    config = CONFIG.replace("TOOL_DATA[1]={X 0.0", "TOOL_DATA[1]={X 0..0")
+    files["KRC/R1/System/$config.dat"] = config
+    backup = opened(tmp_path, files)
+    assert "KRC/R1/System/$config.dat:5:1: TOOL_DATA[1] is left out" in said(backup)
+    files["KRC/R1/Mada/$machine.dat"] = machine_data(KR16, NAME).replace(
+        "$LENGTH_A=", "$LENGTH_A=?"
+    )
+    (known,) = opened(tmp_path, files).robots
+    assert "$LENGTH_A has no value that is one" in known.lacks[0]
 
 
 def test_a_copy_of_the_whole_archive_beside_it(tmp_path) -> None:
