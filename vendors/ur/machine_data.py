@@ -1,7 +1,7 @@
-"""A UR's ``calibration.conf``: how this arm differs from the nominal one of its type.
+"""How one arm of UR differs from the nominal one of its type: ``calibration.conf``, programs.
 
-The controller keeps it beside ``urcontrol.conf``; an INI file of which the section ``[mounting]``
-is read:
+The controller keeps ``calibration.conf`` beside ``urcontrol.conf``; an INI file of which the section
+``[mounting]`` is read:
 
     [mounting]
     delta_theta = [ 4.6e-08, 1.5e-05, … ]   six of each: rad, m, m, rad
@@ -9,9 +9,11 @@ is read:
     delta_d = [ … ]
     delta_alpha = [ … ]
 
-They add to the rows of the type's Denavit–Hartenberg table: the frame behind joint i is
-Rz(qᵢ + δθᵢ) Tz(dᵢ + δdᵢ) Tx(aᵢ + δaᵢ) Rx(αᵢ + δαᵢ). What a controller has linearised has d of
-hundreds of metres along the parallel axes 2, 3 and 4, which cancel.
+A program or an installation of PolyScope states all of its arm's table in ``kinematics``.
+
+The values of ``calibration.conf`` add to the rows of the type's Denavit–Hartenberg table: the frame
+behind joint i is Rz(qᵢ + δθᵢ) Tz(dᵢ + δdᵢ) Tx(aᵢ + δaᵢ) Rx(αᵢ + δαᵢ). What a controller has
+linearised has d of hundreds of metres along the parallel axes 2, 3 and 4, which cancel.
 """
 
 from __future__ import annotations
@@ -27,10 +29,12 @@ from ...core.errors import InputError
 from ...core.files.reading import read_text
 from ...core.robot.model import Robot
 from .calibration import calibrated, nominal_table
-from .urp.kinematics import DhTable
+from .urp.kinematics import DhTable, table_of
+from .urp.xml_file import child, read_xml
 
 _ROWS = "theta", "a", "d", "alpha"
 _LARGEST = 1 << 20
+_POLYSCOPE = (".urp", ".installation")
 _NUMBER = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*")
 
 
@@ -39,11 +43,17 @@ def with_machine_data(robot: Robot, file: Path) -> Robot:
 
     Args:
         robot: of this type, nominal.
-        file: ``calibration.conf``.
+        file: ``calibration.conf``, or a program or installation of PolyScope that was saved on the
+            robot.
 
     Raises:
         InputError: the file cannot be read, states no calibration, or that of another type of arm.
     """
+    if file.suffix.casefold() in _POLYSCOPE:
+        table = table_of(child(read_xml(file), "kinematics", "Kinematics"))
+        if table is None:
+            raise InputError(f"{file}: states no kinematics of its arm")
+        return calibrated(robot, table, file)
     nominal = nominal_table(robot)
     rows = np.array(nominal.rows) + _deltas(file, robot.arm_size)
     return calibrated(

@@ -148,3 +148,17 @@ def test_a_program_is_driven_by_the_calibrated_arm(tmp_path) -> None:
 def test_vendors_without_such_files_say_so(tmp_path) -> None:
     with pytest.raises(InputError, match="no machine data"):
         find_vendor("abb").as_described(find_robot("abb/irb1200-5-090"), tmp_path / "x")
+
+
+def test_a_program_saved_on_the_robot_states_its_arm(build, tmp_path) -> None:
+    rows = TABLE + np.random.default_rng(3).uniform(-1, 1, (6, 4)) * (1e-3, 3e-4, 3e-4, 1e-3)
+    path = build.packed(tmp_path / "job.urp", build.program(rows=rows.tolist()))
+    robot = with_machine_data(NOMINAL, path)
+    q = np.random.default_rng(1).uniform(-2, 2, (20, 6))
+    for joints, position in zip(q, robot.forward(q)[1], strict=True):
+        np.testing.assert_allclose(position, product(joints, rows - TABLE)[:3, 3], atol=1e-12)
+    with pytest.raises(InputError, match="name another robot"):
+        with_machine_data(find_robot("ur/ur5e"), path)
+    none = build.packed(tmp_path / "none.urp", "<URProgram/>")
+    with pytest.raises(InputError, match="states no kinematics"):
+        with_machine_data(NOMINAL, none)

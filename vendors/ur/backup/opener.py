@@ -172,8 +172,8 @@ def _told(contents: Contents, main: str | None) -> list[Note]:
     if others and main is not None:
         notes.append(
             Note(
-                f"TCPs, features and signals listed are those of {main}; programs that name "
-                f"another installation use it: {_listed(others)}"
+                f"TCPs, features and signals are those of {main}, which most programs name; not "
+                f"listed are those of {_listed(others)}"
             )
         )
     missing = {
@@ -181,7 +181,7 @@ def _told(contents: Contents, main: str | None) -> list[Note]:
         for one in contents.programs
         if one.tree is not None and one.installation is None and one.tree.installation
     }
-    if missing:
+    if missing and len(contents.programs) > 1:  # of one program its reading says so
         notes.append(
             Note(
                 f"not at hand: {_listed([f'{name}.installation' for name in sorted(missing)])}; "

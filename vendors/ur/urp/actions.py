@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .emission import Emission, payload_text, quoted
 from .expressions import variable_name
-from .frames import set_tcp
+from .frames import installation, set_tcp
 from .installation import TOOL_FEATURE
 from .signals import read_signal, set_signal
 from .xml_file import Element, child, number, resolved
@@ -43,7 +43,11 @@ def _set_payload(out: Emission, node: Element) -> None:
     name = named.get("referencedName") or named.get("name") or ""
     known = out.installation.payloads.get(name)
     if known is None:
-        out.note(f"the payload '{name}' is in no installation at hand: the one before is in force")
+        lacks = "has it not" if out.with_installation else "is not at hand"
+        out.note(
+            f"the payload '{name}' is not known, as {installation(out)} {lacks}: the one before "
+            "stays in force"
+        )
         return
     out.write(payload_text(known))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 from ....core.source.text.files import lines_of
 from .expressions import expression_text, identifier
@@ -47,30 +48,32 @@ class Emission:
 
     Args:
         installation: the one of the program; an empty one if there is none.
-        with_installation: whether there is one.
+        named: the installation that the program names.
+        with_installation: whether it is at hand.
 
     Attributes:
         lines: of the program's body.
         preamble: what stands before it: waypoints, functions, subprograms.
         told: notes by their text, each with the node that it is first about.
-        waypoints: joint values by name, of those that were declared.
+        waypoints: the data of each, by its name.
         path: of the node that is being written.
     """
 
     installation: Installation
+    named: str
     with_installation: bool
     lines: list[str] = field(default_factory=list)
     preamble: list[str] = field(default_factory=list)
     told: dict[str, str] = field(default_factory=dict)
-    waypoints: dict[str, object] = field(default_factory=dict)
+    waypoints: dict[str, Mapping[str, str]] = field(default_factory=dict)
     path: tuple[str, ...] = ()
     _depth: int = 1
     _nodes: int = 0
 
     @property
-    def named_signals(self) -> dict[str, str]:
+    def named_signals(self) -> Mapping[str, str]:
         """The controller's names of signals by the operator's."""
-        return dict(self.installation.signals)
+        return self.installation.signals
 
     @property
     def number(self) -> int:
@@ -143,12 +146,12 @@ class Emission:
         """
         stem = identifier(name) or "Waypoint"
         tried, count = stem, 1
-        while self.waypoints.setdefault(tried, dict(value)) != dict(value):
+        while self.waypoints.get(tried, value) != value:
             count += 1
             tried = f"{stem}_{count}"
-        new = [f"  global {tried}{end}={text}" for end, text in value.items()]
-        if new and new[0] not in self.preamble:
-            self.preamble += new
+        if tried not in self.waypoints:
+            self.waypoints[tried] = dict(value)
+            self.preamble += [f"  global {tried}{end}={text}" for end, text in value.items()]
         return tried
 
 
@@ -159,10 +162,18 @@ def node_at(text: str, line: int) -> str | None:
         text: of the script.
         line: counted from 1.
     """
-    if not text.startswith(GENERATED):
-        return None
-    for one in reversed(lines_of(text)[:line]):
-        marked = one.strip()
+    nodes = _nodes(text) if text.startswith(GENERATED) else ()
+    return nodes[line - 1] if 0 < line <= len(nodes) else None
+
+
+@lru_cache(maxsize=4)
+def _nodes(text: str) -> tuple[str | None, ...]:
+    """The node of each line."""
+    node: str | None = None
+    found = []
+    for line in lines_of(text):
+        marked = line.strip()
         if marked.startswith(f"{MARKER} ") and marked.endswith('"'):
-            return marked.partition('"')[2][:-1]
-    return None
+            node = marked.partition('"')[2][:-1]
+        found.append(node)
+    return tuple(found)

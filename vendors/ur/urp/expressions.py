@@ -9,6 +9,7 @@ What is unfinished is written as it is: the controller refuses it too.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 from ..syntax.names import RESERVED
 from .signals import read_signal
@@ -32,7 +33,7 @@ def function_name(name: str) -> str:
     return f"{made}_" if made in RESERVED else made
 
 
-def expression_text(element: Element | None, named_signals: dict[str, str]) -> str:
+def expression_text(element: Element | None, named_signals: Mapping[str, str]) -> str:
     """The text of an element ``expression``; empty if nothing was entered.
 
     Args:
@@ -44,7 +45,7 @@ def expression_text(element: Element | None, named_signals: dict[str, str]) -> s
     return _one_line("".join(_part(part, named_signals) for part in element))
 
 
-def _part(part: Element, named: dict[str, str]) -> str:
+def _part(part: Element, named: Mapping[str, str]) -> str:
     for key in ("character", "token"):
         value = part.get(key)
         if value is not None:

@@ -9,6 +9,11 @@ from .positions import taught_tcps
 from .xml_file import Element, resolved
 
 
+def installation(out: Emission) -> str:
+    """The installation, for messages."""
+    return f"the installation '{out.named}'"
+
+
 def set_tcp(out: Emission, tcp: Element | None, node: Element) -> None:
     """The call that sets the TCP that a node names.
 
@@ -26,12 +31,13 @@ def set_tcp(out: Emission, tcp: Element | None, node: Element) -> None:
         known = next(taught_tcps(node), None)
         for behind in node.itersiblings():
             known = next(taught_tcps(behind), None) if known is None else known
-        where = "the installation" if out.with_installation else "no installation at hand"
-        lacks = f"has no TCP '{name}'" if out.with_installation else f"has the TCP '{name}'"
+        lacks = f"{installation(out)} has no TCP '{name}'"
+        if not out.with_installation:
+            lacks = f"the TCP '{name}' is not known, as {installation(out)} is not at hand"
         if known is None:
-            out.note(f"{where} {lacks}: the one before stays in force")
+            out.note(f"{lacks}: the one before stays in force")
             return
-        out.note(f"{where} {lacks}: it is the one that the waypoints behind were taught with")
+        out.note(f"{lacks}: it is taken to be the one that the waypoints behind were taught with")
     out.write(f"set_tcp({pose_text(known)})")
 
 
@@ -45,6 +51,7 @@ def feature_text(out: Emission, feature: Element | None) -> str | None:
         return "get_target_tcp_pose()"
     known = out.installation.features.get(name)
     if known is None:
-        out.note(f"the feature '{name}' is in no installation at hand")
+        lacks = "has it not" if out.with_installation else "is not at hand"
+        out.note(f"where the feature '{name}' is is not known: {installation(out)} {lacks}")
         return identifier(name)
     return identifier(name) if known.variable else pose_text(known.pose)

@@ -66,10 +66,8 @@ def safe_home(out: Emission, node: Element) -> None:
             speed = f"t={time!r}"
         else:
             speed = _arguments(number(node.get("acceleration")), number(node.get("speed")))
-        if home is None:
-            out.note("the safe home is in no installation at hand: this move is left out")
-            return
-        out.write(_call("movej", list_text(home), speed))
+        target = "safe_home_position" if home is None else list_text(home)
+        out.write(_call("movej", target, speed))
 
 
 def _is_waypoint(node: Element) -> bool:

@@ -76,10 +76,7 @@ class Tree:
         else:
             with out.node(node.get("name") or node.tag):
                 out.write(f"# {node.tag}: not known")
-                out.note(
-                    f"nodes of the kind '{node.tag}' are not known: with all that is below "
-                    "they are left out"
-                )
+                out.note(_not_known(node))
 
     def _move(self, out: Emission, node: Element) -> None:
         with out.node(node.get("motionType", "Move")):
@@ -217,6 +214,13 @@ class Tree:
             out.note(
                 "an event interrupts the program when its condition comes true: not carried out"
             )
+
+
+def _not_known(node: Element) -> str:
+    count = sum(1 for _ in node.iter("Waypoint"))
+    below = f" with the {count} waypoints below it" if count > 1 else ""
+    below = " with the waypoint below it" if count == 1 else below
+    return f"a node of the kind '{node.tag}' is not known: it is left out{below}"
 
 
 def safe_home_node(out: Emission, node: Element) -> None:

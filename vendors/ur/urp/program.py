@@ -85,7 +85,7 @@ def script_of(
     Returns:
         The script, and what of the tree is not in it.
     """
-    out = Emission(installation or Installation(), installation is not None)
+    out = Emission(installation or Installation(), program.installation, installation is not None)
     tree = Tree(program.table)
     _settings(out, program)
     top = child(program.root, "children")
@@ -145,7 +145,7 @@ def _main(out: Emission, tree: Tree, main: Element) -> None:
 
 def _lacks_tcp(out: Emission, program: UrProgram) -> str:
     lacks = (
-        "the installation names no TCP in force"
+        f"the installation '{program.installation}' names no TCP in force"
         if out.with_installation
         else f"the installation '{program.installation}' is not at hand"
     )

@@ -37,10 +37,10 @@ def unpacked(data: bytes, name: str) -> bytes:
     try:
         with gzip.GzipFile(fileobj=io.BytesIO(data)) as file:
             plain = file.read(MOST_UNPACKED + 1)
-    except (OSError, EOFError, zlib.error) as error:
+    except (OSError, EOFError, zlib.error):
         raise InputError(
-            f"{name}: its compressed data are damaged or cut short ({error}); copy it from the "
-            "controller again"
+            f"{name}: its compressed data are damaged or cut short; copy it from the controller "
+            "again"
         ) from None
     if len(plain) > MOST_UNPACKED:
         raise InputError(f"{name}: unpacks to more than {MOST_UNPACKED:,} bytes: no robot program")
