@@ -1,7 +1,7 @@
 """How one arm of UR differs from the nominal one of its type: ``calibration.conf``, programs.
 
-The controller keeps ``calibration.conf`` beside ``urcontrol.conf``; an INI file of which the section
-``[mounting]`` is read:
+The controller keeps ``calibration.conf`` beside ``urcontrol.conf``; an INI file of which the
+section ``[mounting]`` is read:
 
     [mounting]
     delta_theta = [ 4.6e-08, 1.5e-05, … ]   six of each: rad, m, m, rad

@@ -223,7 +223,8 @@ def test_an_installation_says_tcp_payload_and_features(build: Build, tmp_path: P
         assert isinstance(driven.target, PoseTarget)
         assert driven.target.pose.position == pytest.approx((-0.4, -0.2, 0.3), abs=1e-12)
         assert driven.tool.tcp.position == TCP[:3]
-        assert driven.tool.load is not None or driven.payload is not None  # type: ignore[attr-defined]
+        load = driven.load or driven.tool.load
+        assert load is not None and load.mass == 1.5
 
 
 def test_without_its_installation_waypoints_tell_the_tcp(build: Build, tmp_path: Path) -> None:
