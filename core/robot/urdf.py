@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from ..spatial.pose import IDENTITY, Pose
 from .inertia import Inertia
 from .joint import Joint, JointKind
 from .model import Robot
+from .urdf_shapes import UrdfShapes
 
 ACCELERATION_TIMES = (0.65, 0.65, 0.65, 0.21)
 """s in which joints are assumed to reach their top speed, from the base on; the last counts for all
@@ -47,7 +49,8 @@ def load_urdf(path: str | Path, base: str | None = None, tip: str | None = None)
     """The serial arm between two links of a URDF file.
 
     Fixed joints on the way are merged into placements, bodies fixed to the arm into its links.
-    Meshes are not read.
+    Meshes are read for the shapes that enclose them (`urdf_shapes`); where one is not at hand the
+    robot has no shapes, and says why.
 
     Args:
         path: the file.
@@ -68,7 +71,7 @@ def load_urdf(path: str | Path, base: str | None = None, tip: str | None = None)
         if base is not None:
             return reader.robot(base, tip)
         robot = reader.robot(reader.root(), tip)
-        return replace(robot, joints=reader.from_controller(robot.joints))
+        return _moved(robot, reader.from_controller())
     except UnknownNameError:
         raise
     except InputError as error:
@@ -156,12 +159,15 @@ class _Reader:
         if not joints:
             raise self.error("there is no moving joint between base and tip")
         known = [body for body in bodies if body is not None]
+        found = self.shapes(base, way)
         return Robot(
             name=self.model.name or self.path.stem,
             joints=tuple(joints),
             flange=pending,
             links=tuple(known) if len(known) == len(joints) else (),
-            origins=self.origins(assumed),
+            shapes=() if found.unread else tuple(found.shapes),
+            origins=self.origins(assumed) | ({"shape": found.origin} if found.stated else {}),
+            doubts=tuple(found.unread),
             spread={"acceleration": ACCELERATION_SPREAD},
         )
 
@@ -186,18 +192,17 @@ class _Reader:
             return ends[0]
         raise self.error(f"ends in several links ({', '.join(sorted(ends))}); name the tip")
 
-    def from_controller(self, joints: tuple[Joint, ...]) -> tuple[Joint, ...]:
-        """The joints, the first placed in the controller's own frame where the file has it."""
+    def from_controller(self) -> Pose:
+        """The root's frame in the controller's own one; none other where the file has no such."""
         if BASE not in self.links:
-            return joints
+            return IDENTITY
         way = self.way(self.root(), BASE)
         if any(element.type != "fixed" for element in way):
-            return joints
+            return IDENTITY
         own = IDENTITY
         for element in way:
             own = own @ _pose(element.origin)
-        first = replace(joints[0], placement=own.inverse() @ joints[0].placement)
-        return (first, *joints[1:])
+        return own.inverse()
 
     def way(self, base: str, tip: str) -> list[Any]:
         """The joints from base to tip."""
@@ -262,13 +267,24 @@ class _Reader:
 
     def body(self, link: str, way: list[Any]) -> Inertia | None:
         """The link's body with all that is fixed to it; None if there is no inertial at all."""
-        bodies: list[Inertia] = []
+        bodies = [
+            _inertia(inertial).placed(placement)
+            for name, placement in self.rigid(link, way)
+            if (inertial := self.links[name].inertial) is not None
+        ]
+        if not bodies:
+            return None
+        total = bodies[0]
+        for body in bodies[1:]:
+            total = total + body
+        return total
+
+    def rigid(self, link: str, way: list[Any]) -> Iterator[tuple[str, Pose]]:
+        """A link and all that is fixed to it, each with its frame in the link's."""
         stack = [(link, IDENTITY)]
         while stack:
             name, placement = stack.pop()
-            inertial = self.links[name].inertial
-            if inertial is not None:
-                bodies.append(_inertia(inertial).placed(placement))
+            yield name, placement
             for joint in self.model.joints:
                 if joint.parent != name:
                     continue
@@ -279,12 +295,20 @@ class _Reader:
                         f"the arm branches at link {name!r}: joint {joint.name!r} moves too; "
                         "only serial arms can be used, so remove it or make it fixed"
                     )
-        if not bodies:
-            return None
-        total = bodies[0]
-        for body in bodies[1:]:
-            total = total + body
-        return total
+
+    def shapes(self, base: str, way: list[Any]) -> UrdfShapes:
+        """The shapes of base and links; the visual geometry of those without collision geometry."""
+        found = UrdfShapes(self.path)
+        moving = [element.child for element in way if element.type != "fixed"]
+        for index, link in enumerate((base, *moving)):
+            rigid = list(self.rigid(link, way))
+            elements = [
+                (element, frame)
+                for name, frame in rigid
+                for element in self.links[name].collisions or self.links[name].visuals
+            ]
+            found.add(index, link, elements)
+        return found
 
     def origins(self, assumed: dict[str, list[str]]) -> dict[str, str]:
         file = f"published: {self.path.name}"
@@ -304,6 +328,16 @@ class _Reader:
             names = assumed[group]
             origins[group] = f"{rule} ({', '.join(names)}); else {file}" if names else file
         return origins
+
+
+def _moved(robot: Robot, root: Pose) -> Robot:
+    """The robot in a frame in which the root of its file lies so."""
+    first = replace(robot.joints[0], placement=root @ robot.joints[0].placement)
+    shapes = tuple(
+        replace(shape, placement=root @ shape.placement) if shape.link == 0 else shape
+        for shape in robot.shapes
+    )
+    return replace(robot, joints=(first, *robot.joints[1:]), shapes=shapes)
 
 
 def _pose(origin: Any) -> Pose:

@@ -15,11 +15,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import flyby
-from flyby.core.cell import mesh_file
 from flyby.core.cell.geometry import Mesh
-from flyby.core.cell.mesh_file import read_scene
 from flyby.core.errors import InputError
+from flyby.core.files import mesh_file
 from flyby.core.files.arrays import read_npz
+from flyby.core.files.mesh_file import read_scene
 from flyby.core.files.reading import read_bytes, read_json, read_text, read_toml
 from flyby.core.files.tables import TomlTable
 from flyby.core.motion.command.trajectory import Trajectory

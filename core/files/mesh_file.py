@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from ..files.reading import check_unpacked, read_bytes
+from .reading import check_unpacked, read_bytes
 
 MOST_BYTES = 200_000_000
 """Of a mesh file, and of what a compressed one unpacks to: four million triangles of STL."""
