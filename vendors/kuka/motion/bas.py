@@ -19,7 +19,8 @@ from ..values.evaluator import Evaluator
 from ..values.frames import null_frame
 from ..values.scope import Scope
 from ..values.types import convert
-from ..values.values import Array, Choice, Struct, Unknown, Value, shown, supposed
+from ..values.values import Array, Choice, Struct, Unknown, Value, find_unknown, shown, supposed
+from .tables import Tables
 
 AXES = 6
 Command = Callable[["Basis", Value | None, Span], None]
@@ -36,6 +37,7 @@ class Basis:
     data: Data
     evaluator: Evaluator
     config: ConfigData
+    tables: Tables
     notes: Notes
     changed: Callable[[], None]
 
@@ -145,7 +147,24 @@ class Basis:
         """``BAS(#BASE,n)``"""
         index = self.index(number, "the number of a base", span)
         self.set("$act_base", index)
-        self.set("$base", self.frame("base_data", index, span))
+        base = self.frame("base_data", index, span)
+        machine = self.machine_under(index)
+        if machine is not None and isinstance(base, Struct):
+            root = machine.fields.get("root")
+            known = root if isinstance(root, Struct) and find_unknown(root) is None else None
+            base = self.tables.base_on(known, base, f"MACHINE_FRAME_DAT[{index}]", span)
+        self.set("$base", base)
+
+    def machine_under(self, index: int) -> Struct | None:
+        """The table that a base stands on, as ``MACHINE_FRAME_DAT`` says; None for the world."""
+        link = self.config.item("machine_frame_dat", index) if index > 0 else None
+        number = link.fields.get("mach_def_index") if isinstance(link, Struct) else None
+        if isinstance(number, bool) or not isinstance(number, int | float) or number < 1:
+            return None
+        machine = self.config.item("machine_def", int(number))
+        kind = machine.fields.get("mech_type") if isinstance(machine, Struct) else None
+        tabled = isinstance(kind, Choice) and kind.name not in ("robot", "none", "ersys")
+        return machine if tabled and isinstance(machine, Struct) else None
 
     def use_frames(self, value: Value | None, span: Span) -> None:
         """``BAS(#FRAMES)``: what FDAT_ACT says."""

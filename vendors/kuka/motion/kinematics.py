@@ -6,18 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ....core.program.target import JointTarget, PoseTarget
-from ....core.robot.joint import ExternalRole
 from ....core.robot.model import Robot
-from ....core.source.execution.transcript import Notes
 from ..syntax.tree import Call, Name
 from ..values.evaluator import Evaluator
 from ..values.frames import frame_of, null_frame
-from ..values.operators import chained
 from ..values.scope import Scope
 from ..values.values import Struct, Unknown, Value, find_unknown, supposed
 from .frames import Placements
 from .inline_forms import Function
 from .position import Position
+from .tables import Tables
 from .targets import Targets
 
 
@@ -34,7 +32,7 @@ class Kinematics:
     placements: Placements
     targets: Targets
     position: Position
-    notes: Notes
+    tables: Tables
 
     def functions(self) -> Mapping[str, Function]:
         """By lower-case name."""
@@ -50,38 +48,13 @@ class Kinematics:
 
         Of a robot that has no table, or several that this may mean, it stands still.
         """
-        robot = self.robot
-        axes = () if robot is None else robot.external_axes
-        carriers = {axis.carried_by for axis in axes}
-        tables = [
-            axis.name
-            for axis in axes
-            if axis.role is ExternalRole.TABLE and axis.name not in carriers
-        ]
         offset = supposed(arguments[2]) if len(arguments) > 2 and arguments[2] else None
-        made = offset.copy() if isinstance(offset, Struct) else null_frame()
-        if len(tables) != 1:
-            have = "no robot is named" if robot is None else f"the robot has {len(tables)} tables"
-            root = supposed(arguments[0]) if arguments and arguments[0] else None
-            known = isinstance(root, Struct) and find_unknown(root) is None
-            self.notes.once(
-                "EK",
-                f"{call.text} couples the base to an external kinematic system, but {have}: the "
-                f"base is taken to stand still at {'its root' if known else 'the world'}; describe "
-                "the one table that is meant in a cell file, [external_axis.…], and name that",
-                call.span,
-            )
-            if known:
-                assert isinstance(root, Struct)
-                return chained(root, made)
-            return made
-        made.moved_by = tables[0]
-        self.notes.once(
-            "EK",
-            f"{call.text}: the base is on {tables[0]}, at its place in the robot's cell",
-            call.span,
+        made = offset if isinstance(offset, Struct) else null_frame()
+        root = supposed(arguments[0]) if arguments and arguments[0] else None
+        known = isinstance(root, Struct) and find_unknown(root) is None
+        return self.tables.base_on(
+            root if known and isinstance(root, Struct) else None, made, call.text, call.span
         )
-        return made
 
     def forward(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``FORWARD(axes, error)``: the pose of ``$TOOL`` in ``$BASE``."""

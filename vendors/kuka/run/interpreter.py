@@ -28,6 +28,7 @@ from ..motion.moves import MotionReader
 from ..motion.own_position import OwnPosition
 from ..motion.position import Position
 from ..motion.settings import Settings
+from ..motion.tables import Tables
 from ..motion.targets import Targets
 from ..motion.triggers import Triggers
 from ..syntax.tree import (
@@ -110,7 +111,8 @@ class Interpreter:
         config = ConfigData(data, evaluator.names, scopes)
         self._settings = Settings(data.system, config.value, notes.once)
         targets = Targets(robot, position, notes.once)
-        basis = Basis(data, evaluator, config, notes, self._system_changed)
+        tables = Tables(robot, notes)
+        basis = Basis(data, evaluator, config, tables, notes, self._system_changed)
         tree = KrlTree(data, evaluator.names, scopes)
         self._analysis = analysis = Analysis(tree)
         writes = OutputWrites(data, evaluator.names, tree, analysis)
@@ -137,7 +139,7 @@ class Interpreter:
         )
         functions = {
             **InlineForms(basis, data).functions(),
-            **Kinematics(robot, evaluator, placements, targets, position, notes).functions(),
+            **Kinematics(robot, evaluator, placements, targets, position, tables).functions(),
         }
         self._position = position
         self._routines = Routines(data, evaluator, meter, transcript, scopes, flow.run_body)

@@ -60,7 +60,7 @@ PREDEFINED: dict[str, dict[str, str]] = {
         "@real vel acc apo_dist apo_fac axis_vel axis_acc @ ori_typ circ_typ "
         "@real jerk_fac gear_jerk @int exax_ign @ cb"
     ),
-    "machine_def_t": _fields("@ name coop_krc_index @char mech_type @frame root"),
+    "machine_def_t": _fields("@ name coop_krc_index parent geometry @char mech_type @frame root"),
 }
 """Type of each component by structure; "" where any value is kept as it is."""
 

@@ -10,6 +10,8 @@ import pytest
 
 from flyby.core.backup.backup import Backup, SignalKind
 from flyby.core.errors import InputError
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.program.program import Program
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.joint import ExternalRole
 from flyby.vendors.kuka.backup.marks import layout_of
@@ -29,6 +31,16 @@ def opened(folder: Path, files) -> Backup:
 
 def said(backup: Backup) -> str:
     return "\n".join(map(str, backup.notes))
+
+
+def read(backup: Backup, entry: str) -> Program:
+    """An entry's program, as the commands read it."""
+    main = backup.tasks[0]
+    (chosen,) = [one for one in main.entries if one.name == entry]
+    beside = [backup.root / name for name in main.files if name != chosen.file]
+    return find_vendor("kuka").read_file(
+        backup.root / chosen.file, chosen.name, backup.robots[0].robot, beside=beside
+    )
 
 
 def test_a_whole_one(tmp_path) -> None:
@@ -102,12 +114,10 @@ def test_a_cell_that_calls_nothing_is_the_operators_choice(tmp_path) -> None:
 @pytest.mark.parametrize("made", [archive, kr_c2])
 def test_entries_are_read_across_folders_and_driven(tmp_path, entry: str, made) -> None:
     backup = opened(tmp_path, made())
-    (known,), main = backup.robots, backup.tasks[0]
+    (known,) = backup.robots
     assert known.robot is not None
-    (chosen,) = [one for one in main.entries if one.name == entry]
-    beside = [backup.root / name for name in main.files if name != chosen.file]
     kuka = find_vendor("kuka").with_stated(known.robot, backup.motion)
-    program = kuka.read_file(backup.root / chosen.file, chosen.name, known.robot, beside=beside)
+    program = read(backup, entry)
     assert len(program.moves) == (2 if entry == "PLACE" else 4)
     if entry == "PICK":
         assert [move.tool.name for move in program.moves[1:]] == ["TOOL_DATA[1]"] * 3
@@ -115,8 +125,6 @@ def test_entries_are_read_across_folders_and_driven(tmp_path, entry: str, made) 
         load = program.moves[2].tool.load
         assert load is not None and load.mass == 6.5
     assert not [note for note in program.notes if "unknown routine" in str(note)]
-    from flyby.core.motion.emulator.controller import Controller
-
     assert 0.3 < Controller(kuka, known.robot).run(program).duration < 20.0
 
 
@@ -269,6 +277,9 @@ def test_a_track_and_a_table(tmp_path) -> None:
     assert backup.frames["BASE_DATA[1] Tisch"].user.position == pytest.approx((0.9, -0.2, 0.4))
     assert backup.homes["XHOME1"].external == pytest.approx((0.5, 0.0))
     assert not any("where the table" in lack for lack in backup.robots[0].lacks)
+    program = read(backup, "PICK")
+    assert program.moves[2].work_object.moved_by == "E2"
+    assert program.moves[2].work_object.user.position == pytest.approx((0.9, -0.2, 0.4))
 
 
 def test_a_base_on_a_table_that_is_not_there(tmp_path) -> None:
@@ -277,6 +288,10 @@ def test_a_base_on_a_table_that_is_not_there(tmp_path) -> None:
     backup = opened(tmp_path, files)
     assert "BASE_DATA[1] stands on TISCH, which is no table in $machine.dat" in said(backup)
     assert backup.frames["BASE_DATA[1] Tisch"].moved_by is None
+    program = read(backup, "PICK")
+    assert "MACHINE_FRAME_DAT[1] couples the base" in "".join(map(str, program.notes))
+    at = program.moves[2].work_object.user.position
+    assert at == pytest.approx((2.4, 0.0, 0.5))  # its root and the base on it
 
 
 @pytest.mark.parametrize(
