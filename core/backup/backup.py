@@ -115,6 +115,7 @@ class Backup:
         tasks: the programs.
         tools, frames: by name, those that the controller declares for all of its programs.
         homes: named positions.
+        comments: what the operator calls a tool or frame, by its name.
         signals: in the controller's order.
         motion: figures of the motion model that the backup states, by their names in motion files
             (``"time.period_s"``), each with its value and its origin.
@@ -132,13 +133,14 @@ class Backup:
     tools: Mapping[str, Tool] = field(default_factory=dict)
     frames: Mapping[str, WorkObject] = field(default_factory=dict)
     homes: Mapping[str, JointTarget] = field(default_factory=dict)
+    comments: Mapping[str, str] = field(default_factory=dict)
     signals: tuple[Signal, ...] = ()
     motion: Mapping[str, tuple[Any, str]] = field(default_factory=dict)
     notes: tuple[Note, ...] = ()
     unpacked: Path | None = None
 
     def __post_init__(self) -> None:
-        for name in ("tools", "frames", "homes", "motion"):
+        for name in ("tools", "frames", "homes", "comments", "motion"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
 
     def __repr__(self) -> str:
