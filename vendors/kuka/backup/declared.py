@@ -35,11 +35,12 @@ _AXES = tuple(f"A{k}" for k in range(1, 7))
 
 @dataclass
 class Declared:
-    """What they are, by the names that programs use, with the operator's names behind."""
+    """What they are, by the names that programs use, and what the operator calls them."""
 
     tools: dict[str, Tool] = field(default_factory=dict)
     frames: dict[str, WorkObject] = field(default_factory=dict)
     homes: dict[str, JointTarget] = field(default_factory=dict)
+    comments: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,10 +97,11 @@ def declared_in(
         if pose == IDENTITY and load is None and not named:
             continue
         name = f"TOOL_DATA[{index}]"
+        made.comments |= {name: named} if named else {}
         if config.text("TOOL_TYPE", index) == _STANDING:
-            made.frames[name + named] = WorkObject(name, pose, robot_held=True)
+            made.frames[name] = WorkObject(name, pose, robot_held=True)
         else:
-            made.tools[name + named] = Tool(name, pose, load)
+            made.tools[name] = Tool(name, pose, load)
     for index, one in config.items("BASE_DATA"):
         if not isinstance(one.value, Mapping) or not index >= 1:
             continue
@@ -111,18 +113,19 @@ def declared_in(
         if pose == IDENTITY and not named and table is None:
             continue
         name = f"BASE_DATA[{index}]"
+        made.comments |= {name: named} if named else {}
         if config.text("BASE_TYPE", index) == _STANDING:
-            made.tools[name + named] = Tool(name, pose, robot_held=False)
+            made.tools[name] = Tool(name, pose, robot_held=False)
         else:
-            made.frames[name + named] = WorkObject(name, pose, moved_by=table)
+            made.frames[name] = WorkObject(name, pose, moved_by=table)
     made.homes = _homes(config, robot)
     return made
 
 
 def _named(config: DataList, kind: str, index: int) -> str:
-    """What the operator calls it, for behind its number."""
+    """What the operator calls it."""
     name = config.text(f"{kind}_NAME", index)
-    return f" {name}" if name and name.upper() != f"{kind}_DATA[{index}]" else ""
+    return "" if name.upper() == f"{kind}_DATA[{index}]" else name
 
 
 def _load(config: DataList, index: int, notes: Notes) -> Load | None:

@@ -64,6 +64,7 @@ class Opener:
             tools=declared.tools,
             frames=declared.frames,
             homes=declared.homes,
+            comments=declared.comments,
             signals=signals_in(data),
             motion=motion_figures(config, lists.machine, notes),
             notes=notes.all(),

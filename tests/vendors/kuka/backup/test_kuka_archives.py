@@ -64,17 +64,18 @@ def test_a_whole_one(tmp_path) -> None:
 
 def test_tools_bases_homes_and_signals(tmp_path) -> None:
     backup = opened(tmp_path, archive())
-    gripper = backup.tools["TOOL_DATA[1] Greifer groß"]
+    gripper = backup.tools["TOOL_DATA[1]"]
     assert gripper.name == "TOOL_DATA[1]" and gripper.robot_held
+    assert backup.comments == {"TOOL_DATA[1]": "Greifer groß", "BASE_DATA[1]": "Tisch"}
     assert gripper.tcp.position == pytest.approx((0.0, 0.0, 0.15))
     assert gripper.load is not None
     assert (gripper.load.mass, gripper.load.inertia) == (6.5, (0.1, 0.2, 0.3))
     assert gripper.load.centre == pytest.approx((0.01, 0.0, 0.08))
-    assert list(backup.tools) == ["TOOL_DATA[1] Greifer groß", "BASE_DATA[2]"]
+    assert list(backup.tools) == ["TOOL_DATA[1]", "BASE_DATA[2]"]
     assert not backup.tools["BASE_DATA[2]"].robot_held  # BASE_TYPE #TCP
-    assert list(backup.frames) == ["TOOL_DATA[2]", "BASE_DATA[1] Tisch"]
+    assert list(backup.frames) == ["TOOL_DATA[2]", "BASE_DATA[1]"]
     assert backup.frames["TOOL_DATA[2]"].robot_held
-    table = backup.frames["BASE_DATA[1] Tisch"].pose
+    table = backup.frames["BASE_DATA[1]"].pose
     assert table.position == pytest.approx((0.9, -0.2, 0.4))
     assert np.degrees(backup.homes["XHOME"].joints) == pytest.approx([0, -90, 90, 0, 10, 0])
     assert list(backup.homes) == ["XHOME", "XHOME1"] and backup.homes["XHOME1"].external == ()
@@ -273,8 +274,8 @@ def test_a_track_and_a_table(tmp_path) -> None:
     ]
     table = robot.external_axes[1].joint.placement
     assert table.position == pytest.approx((1.5, 0.2, 0.4))
-    assert backup.frames["BASE_DATA[1] Tisch"].moved_by == "E2"
-    assert backup.frames["BASE_DATA[1] Tisch"].user.position == pytest.approx((0.9, -0.2, 0.4))
+    assert backup.frames["BASE_DATA[1]"].moved_by == "E2"
+    assert backup.frames["BASE_DATA[1]"].user.position == pytest.approx((0.9, -0.2, 0.4))
     assert backup.homes["XHOME1"].external == pytest.approx((0.5, 0.0))
     assert not any("where the table" in lack for lack in backup.robots[0].lacks)
     program = read(backup, "PICK")
@@ -287,7 +288,7 @@ def test_a_base_on_a_table_that_is_not_there(tmp_path) -> None:
     files["KRC/R1/System/$config.dat"] = CONFIG.replace("ENDDAT\n", MACHINES)
     backup = opened(tmp_path, files)
     assert "BASE_DATA[1] stands on TISCH, which is no table in $machine.dat" in said(backup)
-    assert backup.frames["BASE_DATA[1] Tisch"].moved_by is None
+    assert backup.frames["BASE_DATA[1]"].moved_by is None
     program = read(backup, "PICK")
     assert "MACHINE_FRAME_DAT[1] couples the base" in "".join(map(str, program.notes))
     at = program.moves[2].work_object.user.position
