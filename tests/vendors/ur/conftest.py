@@ -20,7 +20,7 @@ UR5E = (
 )
 """δθ, a, d, α of the nominal UR5e ("DH parameters", maker's site)."""
 TCP = (0.0, 0.0, 0.12, 0.0, 0.0, 0.0)
-HOME = (0.1, -1.4, 1.6, -1.8, -1.5, 0.2)
+HOME = (0.5, -1.3, 1.6, -1.9, -1.5, 0.4)
 
 
 def listed(values: Iterable[float]) -> str:

@@ -13,7 +13,7 @@ from ....core.source.text.files import LARGEST_FILE
 from ..urp.installation import Installation, read_installation
 from ..urp.polyscope_x import content_of, installation_in, script_in
 from ..urp.program import UrProgram, urp_of
-from ..urp.source import INSTALLATION, POLYSCOPE_X, installation_places
+from ..urp.source import INSTALLATION, POLYSCOPE_X, SCRIPT, installation_places
 from ..urp.xml_file import is_xml, parsed, unpacked
 
 PROGRAM = ".urp"
@@ -31,6 +31,7 @@ class Found:
         name: its file, below the root.
         tree: None if it is a script.
         installation: name of the one that it uses; None if that is not at hand.
+        script: the one that PolyScope has saved beside it; None if there is none.
         moves: whether it moves the robot.
     """
 
@@ -38,6 +39,7 @@ class Found:
     tree: UrProgram | None
     installation: str | None
     moves: bool
+    script: str | None = None
 
 
 @dataclass
@@ -136,7 +138,10 @@ def _add_program(contents: Contents, name: str) -> None:
         contents.programs.append(Found(name, None, None, b"move" in plain))
         return
     tree = urp_of(parsed(plain, str(path)), str(path))
-    contents.programs.append(Found(name, tree, _installation(contents, path, tree), _moves(tree)))
+    script = path.with_suffix(SCRIPT)
+    beside = PurePosixPath(name).with_suffix(SCRIPT).as_posix() if script.is_file() else None
+    installation = _installation(contents, path, tree)
+    contents.programs.append(Found(name, tree, installation, _moves(tree), beside))
 
 
 def _installation(contents: Contents, path: Path, tree: UrProgram) -> str | None:

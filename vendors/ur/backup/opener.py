@@ -150,9 +150,8 @@ def _tasks(contents: Contents, indices: Sequence[int]) -> tuple[Task, ...]:
     for found, index in zip(contents.programs, indices, strict=False):
         path = PurePosixPath(found.name)
         name = path.stem if stems[path.stem.casefold()] == 1 else found.name
-        beside = found.installation
-        files = (found.name,) if beside in (None, found.name) else (found.name, str(beside))
-        tasks.append(Task(name, index if found.moves else None, files, found.name))
+        files = dict.fromkeys(filter(None, (found.name, found.installation, found.script)))
+        tasks.append(Task(name, index if found.moves else None, tuple(files), found.name))
     return tuple(tasks)
 
 

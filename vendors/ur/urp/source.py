@@ -11,17 +11,21 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from ....core.errors import InputError, LeftOpenError, Note, ParseError, SourceError
+from ....core.display import counted
+from ....core.errors import FlybyError, InputError, LeftOpenError, Note, ParseError, SourceError
 from ....core.files.reading import read_bytes
 from ....core.program.program import Program
-from ....core.source.text.files import LARGEST_FILE, MOST_LINES, SourceFile, decode
+from ....core.source.text.files import LARGEST_FILE, MOST_LINES, SourceFile, decode, read_source
 from .emission import node_at
 from .installation import Installation, read_installation
 from .polyscope_x import content_of, script_in
 from .program import ROOT, UrProgram, script_of, urp_of
+from .script_beside import moved_waypoints
 from .xml_file import is_xml, parsed, unpacked
 
-INSTALLATION = ".installation"
+INSTALLATION, SCRIPT = ".installation", ".script"
+_NAMED = 4
+"""Waypoints that a note names at most."""
 POLYSCOPE_X = ".urpx"
 _TREE = re.compile(rf"\ufeff?\s*(<\?xml[^>]*>)?\s*<{ROOT}\b")
 """How the text of a tree begins."""
@@ -49,7 +53,25 @@ def source_of(path: Path, beside: Sequence[Path] | None) -> tuple[SourceFile, tu
         return SourceFile(str(path), *decode(plain, str(path))), ()
     program = urp_of(parsed(plain, str(path)), str(path))
     installation, notes = installation_beside(path, program, beside)
-    return _script(program, installation, str(path), notes)
+    source, told = _script(program, installation, str(path), notes)
+    return source, (*told, *_stale(path, source.text, beside))
+
+
+def _stale(path: Path, text: str, beside: Sequence[Path] | None) -> tuple[Note, ...]:
+    """That the script beside a tree is of another state."""
+    place = path.with_suffix(SCRIPT)
+    there = place.is_file() if beside is None else _key(place) in map(_key, beside)
+    if not there:
+        return ()
+    try:
+        moved = moved_waypoints(text, read_source(place).text)
+    except FlybyError:
+        return ()  # it is not this program that is read
+    if not moved:
+        return ()
+    names = ", ".join(moved[:_NAMED]) + (", …" if len(moved) > _NAMED else "")
+    said = f"{path}: {counted(moved, 'waypoint')} elsewhere in {place.name} ({names})"
+    return (Note(f"{said}: one of the two files is older; {path.name} is read"),)
 
 
 def source_of_text(text: str, file: str) -> tuple[SourceFile, tuple[Note, ...]]:

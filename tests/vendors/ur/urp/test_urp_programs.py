@@ -306,3 +306,17 @@ def test_damaged_files_are_refused_in_words(
         read_file(path, ReadOptions())
     except FlybyError as error:
         assert str(error)
+
+
+@pytest.mark.parametrize("as_backup", [False, True])
+def test_a_script_of_another_state_is_told(build: Build, tmp_path: Path, as_backup: bool) -> None:
+    build.packed(tmp_path / "default.installation", build.installation())
+    step = build.move(build.fixed("A", A), build.fixed("B", B))
+    path = build.packed(tmp_path / "job.urp", build.program(step))
+    script = tmp_path / "job.script"
+    robot = None if as_backup else "ur/ur5e"
+    for joints, stale in ((A, False), (C, True)):
+        script.write_text(f"def job():\n  global A_q={list(joints)}\n  movej(A_q)\nend\n")
+        notes = [str(note) for note in flyby.read(path, robot=robot).notes]
+        assert any("1 waypoint elsewhere in job.script (A)" in note for note in notes) == stale
+        assert len(flyby.read(path, robot=robot).moves) == 2
