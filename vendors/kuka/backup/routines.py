@@ -17,7 +17,7 @@ _DEF = re.compile(
     re.IGNORECASE | re.MULTILINE,
 )
 _MOVE = re.compile(
-    r"^[ \t]*(?:S?(?:PTP|LIN|CIRC)(?:_REL)?|SPL)[ \t]+(?![ \t]*=)", re.IGNORECASE | re.MULTILINE
+    r"^[ \t]*(?:S?(?:PTP|LIN|CIRC)(?:_REL)?|SPL)(?![\w$]|[ \t]*=)", re.IGNORECASE | re.MULTILINE
 )
 _CALLED = re.compile(r"(?<![\w$])([A-Z_][\w$]*)[ \t]*\(", re.IGNORECASE)
 _MOST_COUNTED = 500

@@ -70,13 +70,12 @@ def robot_of(file: Path) -> Robot:
     from ....core.registry import find_robot
 
     data = _read(file)
-    beside = next((one for one in file.parent.iterdir() if one.name.lower() == _MODEL), None)
     model = None
-    if beside is not None:
-        try:
-            model = DataList.read(beside)
-        except FlybyError:  # it says little, and nothing that cannot be done without
-            model = None
+    try:
+        beside = [one for one in file.parent.iterdir() if one.name.lower() == _MODEL]
+        model = DataList.read(beside[0]) if beside else None
+    except (FlybyError, OSError):  # it says little, and nothing that cannot be done without
+        pass
     return described(data, model, (data.text("$TRAFONAME"),), {}, find_robot)
 
 

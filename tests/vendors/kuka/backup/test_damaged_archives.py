@@ -94,6 +94,24 @@ def test_any_text_has_routines(text: str) -> None:
         assert found.moves_robot(routine) == bool(found.moves(routine))
 
 
+def test_what_moves_the_robot() -> None:
+    text = """DEF A()
+PTP{A1 0}
+  lin XP1 C_DIS ; PTP XP2
+SPLINE
+ SPL XP3
+ENDSPLINE
+PTP_REL {A1 5}
+LINE=3
+PTP_SPEED=1
+;LIN XP4
+GOTO LIN1
+END
+"""
+    (routine,) = routines_in(SourceFile("a.src", text))
+    assert routine.moves == 4
+
+
 def test_routines_that_call_each_other_in_a_ring() -> None:
     text = (
         "".join(f"DEF R{k}()\nR{(k + 1) % 3000}()\nEND\n" for k in range(3000))

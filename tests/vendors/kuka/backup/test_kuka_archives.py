@@ -14,6 +14,7 @@ from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.program import Program
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.joint import ExternalRole
+from flyby.core.source.execution.answers import Answers, key
 from flyby.vendors.kuka.backup.marks import layout_of
 from flyby.vendors.kuka.backup.opener import OPENER
 
@@ -33,13 +34,13 @@ def said(backup: Backup) -> str:
     return "\n".join(map(str, backup.notes))
 
 
-def read(backup: Backup, entry: str) -> Program:
+def read(backup: Backup, entry: str, answers: Answers | None = None) -> Program:
     """An entry's program, as the commands read it."""
     main = backup.tasks[0]
     (chosen,) = [one for one in main.entries if one.name == entry]
     beside = [backup.root / name for name in main.files if name != chosen.file]
     return find_vendor("kuka").read_file(
-        backup.root / chosen.file, chosen.name, backup.robots[0].robot, beside=beside
+        backup.root / chosen.file, chosen.name, backup.robots[0].robot, answers, beside=beside
     )
 
 
@@ -127,6 +128,15 @@ def test_entries_are_read_across_folders_and_driven(tmp_path, entry: str, made) 
         assert load is not None and load.mass == 6.5
     assert not [note for note in program.notes if "unknown routine" in str(note)]
     assert 0.3 < Controller(kuka, known.robot).run(program).duration < 20.0
+
+
+@pytest.mark.parametrize(("number", "moves"), [(1, 4), (2, 2), (3, 2)])
+def test_a_program_number_is_an_answer(tmp_path, number: int, moves: int) -> None:
+    backup = opened(tmp_path, archive())
+    asked = read(backup, "CELL")
+    assert any("PGNO" in str(question) for question in asked.questions)
+    program = read(backup, "CELL", Answers(values={key("PGNO"): number}))
+    assert len(program.moves) == moves
 
 
 def test_kr_c2(tmp_path) -> None:
