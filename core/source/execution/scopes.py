@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Generic, Self, TypeVar
 
 Cell = TypeVar("Cell")
@@ -47,7 +48,13 @@ def near_names(name: str, known: Iterable[str]) -> list[str]:
     """Names that are written nearly like one that nobody declares, the nearest first."""
     spelled = {other.casefold(): other for other in sorted(known, reverse=True)}
     spelled.pop(name.casefold(), None)
-    return [spelled[n] for n in difflib.get_close_matches(name.casefold(), spelled, cutoff=0.6)]
+    return [spelled[near] for near in alike(name.casefold(), tuple(spelled), 3, 0.6)]
+
+
+@lru_cache(maxsize=256)  # a loop misses the same name thousands of times
+def alike(name: str, known: tuple[str, ...], most: int, share: float) -> tuple[str, ...]:
+    """Names that have a share of their letters in common with one, the nearest first."""
+    return tuple(difflib.get_close_matches(name, known, most, share))
 
 
 def unknown_name(kind: str, name: str, known: Iterable[str], otherwise: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from collections.abc import Callable, Sequence
@@ -14,6 +13,7 @@ from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import Load, Tool, WorkObject
 from ....core.program.zone import FINE, Zone
+from ....core.source.execution.scopes import alike
 from ....core.source.execution.transcript import Notes
 from ....core.spatial.pose import Pose, Quaternion
 from ..syntax.tree import Expression, Name
@@ -440,8 +440,7 @@ def undeclared(kind: str, name: Name, type_: Type, scope: Scope) -> str:
         known += [cell.name for cell in inner.cells.values() if cell.type == type_]
     otherwise = "declare it, name the file that declares it, or put it beside this one"
     message = unknown_name(kind, name.text, known, otherwise)
-    folded = [other.lower() for other in known]
-    mistyped = difflib.get_close_matches(name.name, folded, 1, _ALIKE)
+    mistyped = alike(name.name, tuple(other.lower() for other in known), 1, _ALIKE)
     if mistyped and _DIGITS.sub("", mistyped[0]) != _DIGITS.sub("", name.name):
         raise SourceError(message, name.span)
     return message

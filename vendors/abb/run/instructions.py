@@ -6,12 +6,12 @@ note: what it does is not known.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable
 from typing import Protocol
 
 from ....core.errors import InputError, SourceError
 from ....core.program.move import Wait
+from ....core.source.execution.scopes import alike
 from ....core.source.text.lexer import words
 from ..motion.moves import MOVES, MovesRun
 from ..motion.settings_instructions import SETTINGS, SettingsRun
@@ -220,6 +220,7 @@ MOVING = frozenset({*MOVES, *TRIGGER_MOVES, *SPECIAL_MOVES})
 """Names of instructions that move the robot."""
 
 
+_MOVING = tuple(sorted(MOVING))
 _ALIKE = 0.85
 """Share of its letters in which the name of a routine is like that of a move by mistake."""
 
@@ -235,7 +236,7 @@ def refusal(statement: Invoke, data: Globals) -> str:
     if reason is not None:
         raise SourceError(f"{statement.text} is refused: {reason}", statement.span)
     answer = f"answer '{statement.text} = \"skip\"' in the table [calls] of the answers"
-    mistyped = difflib.get_close_matches(name, MOVING, 1, _ALIKE)
+    mistyped = alike(name, _MOVING, 1, _ALIKE)
     if mistyped:
         raise SourceError(
             f"unknown instruction or routine '{statement.text}': did you mean {mistyped[0]}? If it "
