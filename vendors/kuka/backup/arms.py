@@ -102,7 +102,9 @@ def _by_name(unit: str, written: str, names: list[str], find: FindRobot) -> Back
         return BackupRobot(
             unit, written, None, (f"no listed arm is called so, or several are; {_ELSEWHERE}",)
         )
-    lack = f"no {MACHINE} is there: lengths, limits and place are those of its type; {_ELSEWHERE}"
+    lack = (
+        f"no {MACHINE} can be read: lengths, limits and place are those of its type; {_ELSEWHERE}"
+    )
     return BackupRobot(unit, written, robot, (lack,))
 
 
