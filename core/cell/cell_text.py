@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from ..errors import InputError
 from ..files.toml_text import key_text, value_text
 from ..program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from ..robot.catalogue_text import pose_entries
@@ -31,9 +30,6 @@ def cell_text(
         named: as the file names it: its name, or a file beside the cell's.
         tools, frames: by name; the bare flange and the world are left out.
         motion: file of how it is driven, beside the cell's; None for none.
-
-    Raises:
-        InputError: a cell file cannot state an external axis.
     """
     lines = [f"robot = {value_text(named)}"]
     if motion is not None:
@@ -87,15 +83,11 @@ def _frame(frame: WorkObject, tables: set[str]) -> dict[str, Any]:
 def _axis(axis: ExternalAxis) -> dict[str, Any]:
     joint = axis.joint
     along = next((name for name, unit in AXES.items() if unit == tuple(joint.axis)), None)
-    if along is None:
-        raise InputError(
-            f"external axis {axis.name}: it runs along {joint.axis}, and cell files say x, y or z"
-        )
     unit = _UNITS[joint.kind]
     entries: dict[str, Any] = {
         "role": axis.role.value,
         "kind": joint.kind.value,
-        "axis": along,
+        "axis": along or list(joint.axis),
         f"range_{unit}": [joint.lower, joint.upper],
         f"speed_{unit}_s": joint.velocity,
         f"acceleration_{unit}_s2": joint.acceleration,

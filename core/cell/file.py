@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +14,7 @@ from ..robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from ..robot.model import Robot
 from ..robot.pose_table import pose_at
 from ..robot_files import load_robot_file, names_file
+from ..spatial.pose import Vector3
 from .arm import read_arm
 from .cell import Cell, Obstacle
 from .geometry import Geometry
@@ -22,6 +24,7 @@ from .workpiece import Workpiece, read_part
 if TYPE_CHECKING:
     from ..registry import Registry
 
+_LEAST = 1e-9
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
@@ -157,7 +160,7 @@ def _external_axis(name: str, table: TomlTable) -> ExternalAxis:
     joint = Joint(
         name=name,
         placement=pose_at(table, "pose"),
-        axis=AXES[table.choice("axis", AXES)],
+        axis=_direction(table),
         lower=lower,
         upper=upper,
         velocity=_positive(table, "speed", per(unit, "s")),
@@ -171,6 +174,17 @@ def _external_axis(name: str, table: TomlTable) -> ExternalAxis:
     )
     table.finish()
     return axis
+
+
+def _direction(table: TomlTable) -> Vector3:
+    """``axis``: x, y or z, or three numbers along it."""
+    if not isinstance(table.value("axis"), list):
+        return AXES[table.choice("axis", AXES)]
+    x, y, z = table.numbers("axis", 3)
+    length = math.hypot(x, y, z)
+    if not _LEAST < length < math.inf:
+        raise table.error("axis", "is x, y or z, or three numbers along it that are not all zero")
+    return x / length, y / length, z / length
 
 
 def _allowed(table: TomlTable, known: Collection[str]) -> tuple[tuple[str, str], ...]:
