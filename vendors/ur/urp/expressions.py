@@ -12,11 +12,13 @@ import re
 from collections.abc import Mapping
 
 from ..syntax.names import RESERVED
+from .installation import BASE_FEATURE, TOOL_FEATURE
 from .signals import read_signal
 from .xml_file import Element, resolved
 
 _SIGNS = {"≠": "!=", "≟": "==", "≤": "<=", "≥": ">=", "×": "*", "÷": "/", "−": "-", "\xa0": " "}
 """Keys of the pendant, and what the controller writes for them."""
+_FEATURES = {BASE_FEATURE: "p[0, 0, 0, 0, 0, 0]", TOOL_FEATURE: "get_target_tcp_pose()"}
 _NAME = re.compile(r"\W")
 
 
@@ -53,10 +55,13 @@ def _part(part: Element, named: Mapping[str, str]) -> str:
     found = resolved(part)
     if found is None:
         return " not_known "
-    if "referencedName" in found.attrib:
-        return read_signal(named.get(found.get("referencedName"), found.get("referencedName")))
+    named_as = found.get("referencedName")
+    if named_as in _FEATURES:
+        return _FEATURES[named_as]
+    if named_as is not None:
+        return read_signal(named.get(named_as, named_as))
     if found.get("name"):
-        return identifier(found.get("name"))
+        return identifier(found.get("name")) + ("_p" if found.tag == "Waypoint" else "")
     if found is not part:
         return _part(found, named)
     return "".join(_part(inner, named) for inner in part)

@@ -179,6 +179,8 @@ class Tree:
 
     def _call(self, out: Emission, node: Element) -> None:
         found = _called(node)
+        if found is not None and found != node and found.getparent() == node:
+            self._subprogram(out, found)
         name = None if found is None else found.get("name")
         with out.node(f"Call {name or 'SubProg'}"):
             if not name:

@@ -288,3 +288,30 @@ def test_an_operator_is_asked(build: Build) -> None:
         'popup("the \'box\' is full", title="Warning", warning=True, error=False, blocking=True)',
         "halt",
     ]
+
+
+def test_a_subprogram_may_stand_inside_its_call(build: Build, tmp_path: Path) -> None:
+    sub = build.node("SubProgram", build.move(build.fixed("S", C)), name="inner")
+    again = (
+        '<CallSubProgram><SubProgram reference="../../CallSubProgram/SubProgram"/></CallSubProgram>'
+    )
+    steps = build.move(build.fixed("A", A)), f"<CallSubProgram>{sub}</CallSubProgram>", again
+    assert names(opened(build, tmp_path, *steps)) == ["A_p", "S_p", "S_p"]
+
+
+def test_expressions_name_waypoints_and_features(build: Build, tmp_path: Path) -> None:
+    inside = (
+        '<variable name="v"/><expression><ExpressionToken token="pose_trans"/>'
+        '<ExpressionChar character="("/><ExpressionFeature referencedName="Joint_0_name"/>'
+        '<ExpressionChar character=","/><ExpressionWaypoint>'
+        '<Waypoint reference="../../../../Move/children/Waypoint"/>'
+        '</ExpressionWaypoint><ExpressionChar character=")"/></expression>'
+    )
+    assigned = f'<Assignment valueSource="Expression">{inside}</Assignment>'
+    step = build.move(build.fixed("A", A), build.fixed("B", B), kind="MoveL")
+    program = opened(
+        build, tmp_path, step, assigned, build.move(VARIABLE.format("v"), kind="MoveL")
+    )
+    first, _, last = (move.target for move in program.moves)
+    assert isinstance(first, PoseTarget) and isinstance(last, PoseTarget)
+    assert last.pose.position == pytest.approx(first.pose.position, abs=1e-12)
