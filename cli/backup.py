@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -75,8 +75,9 @@ def _print(backup: Backup) -> None:
     several = len({task.name for task, _ in entries}) > 1
     cells = [_entry_cells(entry, task.name if several else None) for task, entry in entries]
     _rows("entries", _ENTRIES[0 if several else 1 :], cells)
-    _rows("tools", _TOOLS, [_tool_cells(name, tool) for name, tool in backup.tools.items()])
-    _rows("frames", _FRAMES, [_frame_cells(name, one) for name, one in backup.frames.items()])
+    called = backup.comments
+    _rows("tools", _TOOLS, [_tool_cells(*one, called) for one in backup.tools.items()])
+    _rows("frames", _FRAMES, [_frame_cells(*one, called) for one in backup.frames.items()])
     if backup.homes:
         print_rich(f"named positions: {', '.join(backup.homes)}")
     if backup.signals:
@@ -124,16 +125,18 @@ def _entry_cells(entry: BackupEntry, task: str | None) -> tuple[str, ...]:
     return (*([] if task is None else [task]), name, moves, entry.file, entry.comment)
 
 
-def _tool_cells(name: str, tool: Tool) -> tuple[str, ...]:
+def _tool_cells(name: str, tool: Tool, called: Mapping[str, str]) -> tuple[str, ...]:
     mass = "" if tool.load is None else f"{tool.load.mass:g}"
-    return (name, *_pose(tool.tcp), mass, "" if tool.robot_held else "stands still")
+    told = [called.get(name, ""), "" if tool.robot_held else "stands still"]
+    return (name, *_pose(tool.tcp), mass, ", ".join(filter(None, told)))
 
 
-def _frame_cells(name: str, frame: WorkObject) -> tuple[str, ...]:
+def _frame_cells(name: str, frame: WorkObject, called: Mapping[str, str]) -> tuple[str, ...]:
     told = "held by the robot" if frame.robot_held else ""
     if frame.moved_by is not None:
         told = f"moved by {frame.moved_by}"
-    return (name, *_pose(frame.user @ frame.frame), told)
+    shown = ", ".join(filter(None, (called.get(name, ""), told)))
+    return (name, *_pose(frame.user @ frame.frame), shown)
 
 
 def _place(pose: Pose) -> str:
@@ -154,6 +157,7 @@ def _backup_json(backup: Backup) -> dict[str, Any]:
         "tasks": [_task_json(backup, task) for task in backup.tasks],
         "tools": {name: _tool_json(tool) for name, tool in backup.tools.items()},
         "frames": {name: _frame_json(frame) for name, frame in backup.frames.items()},
+        "comments": dict(backup.comments),
         "named_positions": {name: [*at.joints, *at.external] for name, at in backup.homes.items()},
         "signals": [
             {"name": one.name, "kind": one.kind.value, "address": one.address}
