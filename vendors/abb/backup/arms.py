@@ -6,10 +6,10 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
+from ....core.backup.contents import listed
 from ....core.door import given
 from ....core.errors import InputError, UnknownNameError
 from ....core.robot.model import Robot
-from .contents import listed
 
 FindRobot = Callable[[str], Robot]
 

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
+from ....core.backup.contents import Notes
 from ....core.errors import InputError
 from ....core.program.target import JointTarget
 from ....core.program.tool import Tool, WorkObject
@@ -20,7 +21,6 @@ from ..syntax import tree
 from ..values.predefined import NAMES
 from ..values.records import LOAD0, PER_METRE, UNUSED_AXIS, Record, tool_value, work_object_value
 from ..values.types import BUILT_IN, RecordType, Value, mismatch
-from .contents import Notes
 from .modules import ModuleFile
 
 _HOME = ("home", "park", "safe", "grundst")

@@ -15,6 +15,7 @@ import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.backup.backup import BackupRobot
+from ....core.backup.contents import Notes, listed
 from ....core.door import called
 from ....core.errors import InputError
 from ....core.robot.joint import ExternalAxis, Joint
@@ -23,7 +24,6 @@ from ....core.spatial.pose import IDENTITY, Pose
 from ....core.spatial.rotation import matrix_from_quaternion, matrix_from_rotation_vector
 from .arms import FindRobot, agreeing, find_arm
 from .cfg import Parameters, Record
-from .contents import Notes, listed
 from .external_axes import Unit, base_frame, conveyors, units_of
 
 _SAME = 1e-3

@@ -7,12 +7,13 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from ....core.backup.backup import Backup, BackupRobot
+from ....core.backup.contents import Notes, listed
 from ....core.errors import InputError
 from ....core.robot.model import Robot
 from ....core.source.collection import collection_paused
 from .backinfo import BackInfo, arms_in, parse_backinfo
 from .cfg import Parameters, parse_parameters
-from .contents import Contents, Notes, listed
+from .contents import Contents
 from .declared import Declared
 from .marks import root_in
 from .mechanics import mechanics_of

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from ....core.backup.contents import Notes
 from ....core.errors import InputError
 from .cfg import Parameters, Record
-from .contents import Notes
 
 _PERIODS = (0.004032, 0.004)
 """s: the one that queue times of all backups seen are whole multiples of, and the catalogue's."""

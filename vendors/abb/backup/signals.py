@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ....core.backup.backup import Signal, SignalKind
+from ....core.backup.contents import Notes, listed
 from .cfg import Parameters, Record
-from .contents import Notes, listed
 
 _KINDS = {
     "DI": SignalKind.DIGITAL_INPUT,

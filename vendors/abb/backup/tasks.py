@@ -12,11 +12,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ....core.backup.backup import BackupEntry, Task
+from ....core.backup.contents import Notes, listed
 from ....core.display import counted
 from ..run.files import MODULES
 from .backinfo import BackInfo, ListedTask
 from .cfg import Parameters, Record
-from .contents import Contents, Notes, listed
+from .contents import Contents
 from .modules import ModuleFile, ModuleFiles, doubled, moving_routines
 
 _FOLDER = re.compile(r"rapid/(task\d+)/(?:progmod|sysmod)/[^/]+", re.IGNORECASE)

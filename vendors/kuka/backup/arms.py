@@ -7,13 +7,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from ....core.backup.backup import BackupRobot
+from ....core.backup.contents import Notes
 from ....core.errors import InputError
 from ....core.robot.model import Robot
 from ..data_list import DataList
 from ..machine_data.described import described, rated_load
 from ..machine_data.external_axes import tables_of
 from ..machine_data.named_arms import name_alone, named
-from .contents import Contents, Notes
+from .contents import Contents
 from .declared import ROBOT, Machine
 from .marks import MACHINE, MODEL
 

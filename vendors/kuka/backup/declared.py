@@ -14,6 +14,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from ....core.backup.contents import Notes
 from ....core.errors import InputError
 from ....core.program.target import JointTarget
 from ....core.program.tool import Load, Tool, WorkObject
@@ -22,7 +23,6 @@ from ....core.robot.model import Robot
 from ....core.spatial.pose import IDENTITY, Pose
 from ..data_list import Assigned, DataList, Value, numbers_of, part_of
 from ..machine_data.geometry import pose_of
-from .contents import Notes
 
 HOMES = ("XHOME", *(f"XHOME{k}" for k in range(1, 6)))
 ROBOT = "#ROBOT"

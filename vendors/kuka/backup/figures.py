@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ....core.backup.contents import Notes
 from ....core.errors import InputError
 from ..data_list import DataList
-from .contents import Notes
 
 
 def motion_figures(

@@ -6,10 +6,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path, PurePosixPath
 
 from ....core.backup.backup import Backup
+from ....core.backup.contents import Notes, listed
 from ....core.errors import InputError
 from ....core.robot.model import Robot
 from .arms import lists_of, robots_of, tables_in
-from .contents import Contents, Notes, listed
+from .contents import Contents
 from .declared import Declared, declared_in, machines_of
 from .figures import motion_figures
 from .identity import identity_of

@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import PurePosixPath
 
 from ....core.backup.backup import BackupEntry, Task
+from ....core.backup.contents import listed
 from ....core.source.text.files import SourceFile
-from .contents import Contents, listed
+from .contents import Contents
 from .marks import CONFIG, Layout
 from .routines import Routine, Routines, routines_in
 

@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flyby.core.backup.contents import Notes
 from flyby.core.registry import find_robot
 from flyby.core.robot.model import Robot
 from flyby.vendors.abb.backup.arms import find_arm
 from flyby.vendors.abb.backup.backinfo import parse_backinfo
 from flyby.vendors.abb.backup.cfg import parse_parameters
-from flyby.vendors.abb.backup.contents import Notes
 from flyby.vendors.abb.backup.mechanics import Mechanics, mechanics_of
 from flyby.vendors.abb.backup.planner import motion_figures
 
