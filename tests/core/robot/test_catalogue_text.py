@@ -19,7 +19,7 @@ from flyby.core.robot.catalogue import load_robot
 from flyby.core.robot.catalogue_text import robot_text
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from flyby.core.robot.model import Robot
-from flyby.core.spatial.pose import IDENTITY, Pose
+from flyby.core.spatial.pose import Pose
 from flyby.testing.strategies import poses, tools, work_objects
 
 NAMES = installed().robot_names
@@ -116,9 +116,11 @@ def test_a_robot_that_says_nothing_of_its_origins_is_written_all_the_same(tmp_pa
     assert read_back(robot, tmp_path).origins["geometry"].startswith("unknown")
 
 
-def test_an_axis_that_no_cell_file_can_state_is_refused() -> None:
+def test_an_oblique_axis_comes_back(tmp_path: Path) -> None:
     oblique = replace(TILT, joint=replace(TILT.joint, axis=(0.6, 0.8, 0.0)))
     robot = find_robot("ur/ur5e").with_external_axes((oblique,))
-    with pytest.raises(Exception, match="tilt: it runs along"):
-        cell_text(robot, "robot.toml", {}, {})
-    assert robot.base == IDENTITY
+    (tmp_path / "robot.toml").write_text(robot_text(robot), "utf-8")
+    path = tmp_path / "cell.toml"
+    path.write_text(cell_text(robot, "robot.toml", {}, {}), "utf-8")
+    (axis,) = load_cell(path, installed()).robot.external_axes
+    assert axis.joint.axis == pytest.approx((0.6, 0.8, 0.0))

@@ -85,7 +85,7 @@ def read_contents(root: Path, names: Sequence[str]) -> Contents:
     return contents
 
 
-def names_below(root: Path) -> list[str]:
+def marked_below(root: Path) -> list[str]:
     """Programs and installations below a folder, links passed over.
 
     Raises:

@@ -18,7 +18,7 @@ from ....core.spatial.pose import IDENTITY
 from ..urp.installation import Installation, JointLimits
 from ..urp.kinematics import DhTable
 from .arms import Stated, Types, backup_robot
-from .contents import PASSED_OVER, Contents, Found, names_below, read_contents, root_in
+from .contents import PASSED_OVER, Contents, Found, marked_below, read_contents, root_in
 from .declared import frames_of, homes_of, signals_of, tools_of
 
 VENDOR = "ur"
@@ -36,7 +36,7 @@ class Opener:
     def open(self, source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
         """The backup in a folder, or one file; see `BackupOpener.open`."""
         alone = source.is_file() and root_in([source.name]) is not None
-        contents = read_contents(root, [source.name] if alone else names_below(root))
+        contents = read_contents(root, [source.name] if alone else marked_below(root))
         if not contents.programs and not contents.installations:
             told = str(contents.notes[0]) if contents.notes else "it holds no program"
             why = told.removeprefix(PASSED_OVER)
