@@ -13,6 +13,7 @@ import typer
 from ..core.display import counted
 from ..core.errors import FlybyError, InputError, OptionError
 from ..core.program.entry_point import ALL
+from ..tasks.backup.finding import find_backup
 from ..tasks.catalogue import registry
 from ..tasks.files.outputs import check_folder, encoded, write_in
 from ..tasks.files.source_places import note_json, short_place
@@ -51,7 +52,7 @@ def translate(
 ) -> None:
     """Carry a program to another robot: targets, zones and speeds in its vendor's terms."""
     check_folder("--out", out)
-    if old is None and cell is None:
+    if old is None and cell is None and find_backup(program, registry()) is None:
         vendor = registry().reader_of(program).name
         raise OptionError(
             f"which robot is {program} for now? Give --from ('flyby robots {vendor}' lists those "

@@ -99,3 +99,15 @@ def test_a_folder_that_is_no_backup_asks_for_the_robot(flyby: Flyby, tmp_path: P
     result = flyby("emulate", tmp_path)
     assert result.exit_code == 2
     assert "which robot?" in result.output
+
+
+def test_a_backup_says_which_robot_a_translated_program_is_for(
+    flyby: Flyby, station: Path, tmp_path: Path
+) -> None:
+    words = ("--to", "ur", "--robot", "ur/ur20", "--out", tmp_path / "out", "--entry", "Pick")
+    result = flyby("translate", station, *words)
+    assert "--from" not in result.output
+    assert "which robot" not in result.output
+    result = flyby("translate", station / "RAPID/TASK1/PROGMOD/MainModule.mod", *words)
+    assert result.exit_code == 2
+    assert "Give --from" in result.output
