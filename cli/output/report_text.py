@@ -65,12 +65,14 @@ def _named(program: Program, move: int) -> str:
 
 
 def _range(report: Report) -> str:
-    """What the robot's assumed figures leave open of the time."""
+    """What the robot's assumed figures leave open of the time; nothing where they hold nothing up."""
     if report.time_range is None:
         return ""
-    least, most = report.time_range
+    least, most = (f"{end:.3f}" for end in report.time_range)
+    if least == most:
+        return ""
     figures = " and ".join(_FIGURES[name] for name in report.assumed)
-    return f" ({least:.3f} to {most:.3f} s, as the robot's {figures} are assumed)"
+    return f" ({least} to {most} s, as the robot's {figures} are assumed)"
 
 
 def print_notes(report: Report, questions: Sequence[Question] = ()) -> None:

@@ -78,11 +78,9 @@ def setup_in(backup: Backup, task: Task, options: RobotOptions) -> Setup:
         )
     known = backup.robots[index]
     if known.robot is None:
-        why = "; ".join(known.lacks) or "it is not known"
-        raise OptionError(
-            f"{backup.source}: its robot is {known.written or 'not named'}: {why}; or give "
-            f"{spelt('robot')}"
-        )
+        why = "; ".join(known.lacks) or f"its robot {known.written} is not known"
+        way = f"; {spelt('robot')} names one that will do"
+        raise OptionError(f"{backup.source}: {why}{'' if spelt('robot') in why else way}")
     vendor = registry().find_vendor(backup.vendor).with_stated(known.robot, backup.motion)
     return laid_on(Setup(vendor, known.robot), options)
 
