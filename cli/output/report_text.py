@@ -65,7 +65,7 @@ def _named(program: Program, move: int) -> str:
 
 
 def _range(report: Report) -> str:
-    """What the robot's assumed figures leave open of the time; nothing where they hold nothing up."""
+    """What the robot's assumed figures leave open of the time, if anything."""
     if report.time_range is None:
         return ""
     least, most = (f"{end:.3f}" for end in report.time_range)
