@@ -14,7 +14,7 @@ _NAMED = 6
 """Names that a note has at most."""
 
 
-class Notes:
+class BackupNotes:
     """What is left out of a backup, missing in it, or doubtful."""
 
     def __init__(self) -> None:
@@ -43,7 +43,7 @@ def listed(names: Iterable[str]) -> str:
     return ", ".join(given[:_NAMED]) + more
 
 
-def names_below(root: Path, notes: Notes) -> list[str]:
+def names_below(root: Path, notes: BackupNotes) -> list[str]:
     """Names of the files below a folder, with ``/`` between folders, sorted.
 
     Hidden folders and links are passed over; that there are too many is noted.

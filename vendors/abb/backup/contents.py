@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from ....core.backup.contents import Notes, names_below
+from ....core.backup.contents import BackupNotes, names_below
 from ....core.errors import FlybyError
 from ....core.files.reading import read_bytes
 from ....core.source.text.files import LARGEST_FILE, SourceFile, source_of
@@ -26,7 +26,7 @@ class Contents:
         notes: where it is said what cannot be read.
     """
 
-    def __init__(self, root: Path, notes: Notes) -> None:
+    def __init__(self, root: Path, notes: BackupNotes) -> None:
         self.root = root
         self.notes = notes
         self.names = names_below(root, notes)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from ....core.backup.contents import Notes
+from ....core.backup.contents import BackupNotes
 from ....core.errors import InputError
 from ....core.program.target import JointTarget
 from ....core.program.tool import Tool, WorkObject
@@ -38,7 +38,7 @@ class Declared:
     homes: dict[str, JointTarget] = field(default_factory=dict)
 
     def add(
-        self, task: str, files: Sequence[ModuleFile], robot: Robot | None, notes: Notes
+        self, task: str, files: Sequence[ModuleFile], robot: Robot | None, notes: BackupNotes
     ) -> None:
         """What a task's modules declare.
 
@@ -68,7 +68,7 @@ def _keep(
     one: tree.Declaration,
     file: str,
     make: Callable[[Record, str], T | None],
-    notes: Notes,
+    notes: BackupNotes,
 ) -> None:
     """A datum by its name; where another task has one of that name, by the task's too."""
     if one.name in NAMES or one.value is None:

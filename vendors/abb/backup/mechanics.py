@@ -15,7 +15,7 @@ import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.backup.backup import BackupRobot
-from ....core.backup.contents import Notes, listed
+from ....core.backup.contents import BackupNotes, listed
 from ....core.door import called
 from ....core.errors import InputError
 from ....core.robot.joint import ExternalAxis, Joint
@@ -50,7 +50,7 @@ def mechanics_of(
     products: Sequence[str],
     groups: Mapping[str, Sequence[str]],
     find_robot: FindRobot,
-    notes: Notes,
+    notes: BackupNotes,
 ) -> Mechanics:
     """The arms.
 
@@ -122,7 +122,7 @@ def _robot(
     products: Sequence[str],
     units: Sequence[Unit],
     find_robot: FindRobot,
-    notes: Notes,
+    notes: BackupNotes,
 ) -> BackupRobot:
     written = arm.text("use_robot_type") or ""
     found = find_arm(written, agreeing(written, products) or products, find_robot)
@@ -154,7 +154,7 @@ def _assumed(robot: Robot) -> list[str]:
 
 
 def _with_ranges(
-    robot: Robot, moc: Parameters, arm: Record, notes: Notes
+    robot: Robot, moc: Parameters, arm: Record, notes: BackupNotes
 ) -> tuple[Robot, list[str]]:
     """The robot with the ranges of its ARM records."""
     joints, coupled, records = [], [], []
@@ -206,7 +206,7 @@ def _folded(name: str) -> str:
     return name.casefold().replace("_", "")
 
 
-def _ranged(joint: Joint, record: Record, notes: Notes) -> Joint:
+def _ranged(joint: Joint, record: Record, notes: BackupNotes) -> Joint:
     """A joint with the range of its record; of its type where the record has none."""
     try:
         lower, upper = (record.number(f"{end}_joint_bound") for end in ("lower", "upper"))
@@ -256,7 +256,7 @@ def _with_units(robot: Robot, units: Sequence[Unit]) -> tuple[Robot, list[str]]:
         return robot, [*lacks, f"external axes are left out: {error}"]
 
 
-def _placed(robot: Robot, arm: Record, units: Sequence[Unit], notes: Notes) -> Robot:
+def _placed(robot: Robot, arm: Record, units: Sequence[Unit], notes: BackupNotes) -> Robot:
     """The robot where it stands, and hanging as it does."""
     try:
         base = base_frame(arm)
@@ -295,7 +295,9 @@ def _standing(robot: Robot, unit: str) -> Pose:
     return frame
 
 
-def _gravity(robot: Robot, arm: Record, frame: Pose, notes: Notes) -> tuple[float, float, float]:
+def _gravity(
+    robot: Robot, arm: Record, frame: Pose, notes: BackupNotes
+) -> tuple[float, float, float]:
     """m/s² in the world.
 
     The controller has it by ``gravity_alpha`` and ``gravity_beta``, the turns about x and y by

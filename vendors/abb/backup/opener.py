@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from ....core.backup.backup import Backup, BackupRobot
-from ....core.backup.contents import Notes, listed
+from ....core.backup.contents import BackupNotes, listed
 from ....core.errors import InputError
 from ....core.robot.model import Robot
 from ....core.source.collection import collection_paused
@@ -46,7 +46,7 @@ OPENER = Opener()
 
 
 def _opened(source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
-    notes = Notes()
+    notes = BackupNotes()
     contents = Contents(root, notes)
     if root_in(contents.names) is None:
         raise InputError(
@@ -77,7 +77,7 @@ def _backup(
     parameters: tuple[Parameters, Parameters, Parameters],
     tasks: Sequence[LoadedTask],
     find_robot: Callable[[str], Robot],
-    notes: Notes,
+    notes: BackupNotes,
 ) -> Backup:
     sys, moc, eio = parameters
     groups = unit_groups(sys)
@@ -119,7 +119,7 @@ def _index(
     tasks: Sequence[LoadedTask],
     groups: dict[str, tuple[str, list[str]]],
     robots: Sequence[BackupRobot],
-    notes: Notes,
+    notes: BackupNotes,
 ) -> int | None:
     """Index of the arm that a task moves."""
     if not moves_an_arm(task, tasks):
@@ -136,7 +136,7 @@ def _controller(info: BackInfo, root: Path) -> str:
     return ", ".join(filter(None, (info.system or root.name, kind)))
 
 
-def _parameters(contents: Contents, topic: str, notes: Notes) -> Parameters:
+def _parameters(contents: Contents, topic: str, notes: BackupNotes) -> Parameters:
     """A topic of the system parameters; empty where its file is missing or damaged."""
     names = (f"SYSPAR/{topic}.cfg", f"{topic}.cfg")
     name = next((found for one in names if (found := contents.find(one))), None)
@@ -170,7 +170,7 @@ def _hooks(sys: Parameters) -> dict[str, str]:
     return found
 
 
-def _note_hooks(sys: Parameters, tasks: Sequence[LoadedTask], notes: Notes) -> None:
+def _note_hooks(sys: Parameters, tasks: Sequence[LoadedTask], notes: BackupNotes) -> None:
     """Event routines that move an arm run beside the program."""
     hooks = _hooks(sys)
     found = {
@@ -185,7 +185,7 @@ def _note_hooks(sys: Parameters, tasks: Sequence[LoadedTask], notes: Notes) -> N
         notes.add(f"the controller runs routines that move the robot by itself, not driven: {said}")
 
 
-def _note_add_ins(sys: Parameters, contents: Contents, notes: Notes) -> None:
+def _note_add_ins(sys: Parameters, contents: Contents, notes: BackupNotes) -> None:
     """Modules of add-ins are loaded from the controller's disk, of which a backup has HOME alone.
 
     Those of RobotWare itself (``RELEASE:``) are on every controller.
@@ -202,5 +202,5 @@ def _note_add_ins(sys: Parameters, contents: Contents, notes: Notes) -> None:
         notes.add(f"SYS.cfg loads modules of add-ins that are not in the backup: {names}")
 
 
-def _first(notes: Notes) -> str:
+def _first(notes: BackupNotes) -> str:
     return next((str(note) for note in notes.all()), "")

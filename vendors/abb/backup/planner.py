@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ....core.backup.contents import Notes
+from ....core.backup.contents import BackupNotes
 from ....core.errors import InputError
 from .cfg import Parameters, Record
 
@@ -19,7 +19,7 @@ _LOW = 4.0
 """m/s; backups as delivered state 6.2 to 8.4."""
 
 
-def motion_figures(moc: Parameters, notes: Notes) -> dict[str, tuple[Any, str]]:
+def motion_figures(moc: Parameters, notes: BackupNotes) -> dict[str, tuple[Any, str]]:
     """Figures by their names in motion files, each with its value and its origin."""
     planners = moc.section("MOTION_PLANNER")
     for planner in planners:
@@ -51,7 +51,7 @@ def _multiple(time: float, period: float) -> bool:
     return count > 0 and abs(time - count * period) < 1e-4 * period
 
 
-def _note_cap(planner: Record, notes: Notes) -> None:
+def _note_cap(planner: Record, notes: BackupNotes) -> None:
     try:
         speed = planner.number("linear_max_speed")
     except InputError:

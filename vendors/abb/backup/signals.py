@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ....core.backup.backup import Signal, SignalKind
-from ....core.backup.contents import Notes, listed
+from ....core.backup.contents import BackupNotes, listed
 from .cfg import Parameters, Record
 
 _KINDS = {
@@ -16,7 +16,7 @@ _KINDS = {
 }
 
 
-def signals_of(eio: Parameters, notes: Notes) -> tuple[Signal, ...]:
+def signals_of(eio: Parameters, notes: BackupNotes) -> tuple[Signal, ...]:
     """Its signals, each name once; those of no known kind are noted and left out."""
     found: dict[str, Signal] = {}
     unknown: list[Record] = []

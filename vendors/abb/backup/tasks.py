@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ....core.backup.backup import BackupEntry, Task
-from ....core.backup.contents import Notes, listed
+from ....core.backup.contents import BackupNotes, listed
 from ....core.display import counted
 from ..run.files import MODULES
 from .backinfo import BackInfo, ListedTask
@@ -60,7 +60,7 @@ class _Missing:
 
 
 def loaded_tasks(
-    contents: Contents, info: BackInfo, sys: Parameters, modules: ModuleFiles, notes: Notes
+    contents: Contents, info: BackInfo, sys: Parameters, modules: ModuleFiles, notes: BackupNotes
 ) -> list[LoadedTask]:
     """The tasks in the order of the list."""
     stated = list(info.tasks)
@@ -100,7 +100,7 @@ def _record(task: ListedTask, sys: Parameters) -> Record | None:
 
 
 def _files(
-    contents: Contents, task: ListedTask, modules: ModuleFiles, notes: Notes
+    contents: Contents, task: ListedTask, modules: ModuleFiles, notes: BackupNotes
 ) -> list[ModuleFile]:
     """The modules of a task that can be read; what cannot is noted."""
     missing = _Missing()
@@ -147,7 +147,7 @@ def _all_modules(contents: Contents, task: ListedTask) -> list[str]:
     ]
 
 
-def _fitting(files: Sequence[ModuleFile], notes: Notes) -> list[ModuleFile]:
+def _fitting(files: Sequence[ModuleFile], notes: BackupNotes) -> list[ModuleFile]:
     """Those that a controller could load together, earlier ones first."""
     taken: dict[str, str] = {}
     fitting = []
@@ -162,7 +162,7 @@ def _fitting(files: Sequence[ModuleFile], notes: Notes) -> list[ModuleFile]:
     return fitting
 
 
-def _note_unlisted(contents: Contents, tasks: Sequence[ListedTask], notes: Notes) -> None:
+def _note_unlisted(contents: Contents, tasks: Sequence[ListedTask], notes: BackupNotes) -> None:
     known = {f"RAPID/{t.folder}/{m.file}".casefold() for t in tasks for m in t.modules}
     others = [
         name
@@ -238,7 +238,9 @@ def _called(name: str, robots: Sequence[str]) -> int | None:
     return folded.index(key) if key in folded else None
 
 
-def task_of(task: LoadedTask, robot: int | None, hooks: Mapping[str, str], notes: Notes) -> Task:
+def task_of(
+    task: LoadedTask, robot: int | None, hooks: Mapping[str, str], notes: BackupNotes
+) -> Task:
     """What is handed out of a task.
 
     Args:

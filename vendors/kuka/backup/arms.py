@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from ....core.backup.backup import BackupRobot
-from ....core.backup.contents import Notes
+from ....core.backup.contents import BackupNotes
 from ....core.errors import InputError
 from ....core.robot.model import Robot
 from ..data_list import DataList
@@ -122,7 +122,7 @@ def _without_data(
     return BackupRobot(unit, written, found.robot, (lack,))
 
 
-def _agreeing_model(lists: Lists, trafo: str, notes: Notes) -> DataList | None:
+def _agreeing_model(lists: Lists, trafo: str, notes: BackupNotes) -> DataList | None:
     """``$robcor.dat``, unless it is another arm's."""
     model = lists.model
     if model is None or lists.machine is None:

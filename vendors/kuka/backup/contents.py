@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 
-from ....core.backup.contents import Notes, names_below
+from ....core.backup.contents import BackupNotes, names_below
 from ....core.errors import FlybyError
 from ....core.source.text.files import SourceFile, read_source
 from ..data_list import DataList
@@ -22,7 +22,7 @@ class Contents:
         notes: where it is said what cannot be read.
     """
 
-    def __init__(self, root: Path, notes: Notes) -> None:
+    def __init__(self, root: Path, notes: BackupNotes) -> None:
         self.root = root
         self.notes = notes
         self.names = names_below(root, notes)

@@ -14,7 +14,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ....core.backup.contents import Notes
+from ....core.backup.contents import BackupNotes
 from ....core.errors import InputError
 from ....core.program.target import JointTarget
 from ....core.program.tool import Load, Tool, WorkObject
@@ -52,7 +52,7 @@ class Machine:
     root: Pose
 
 
-def machines_of(config: DataList | None, notes: Notes) -> dict[int, Machine]:
+def machines_of(config: DataList | None, notes: BackupNotes) -> dict[int, Machine]:
     """The mechanisms of a cell by their numbers; 1 is the robot."""
     found: dict[int, Machine] = {}
     for index, one in config.items("MACHINE_DEF") if config else ():
@@ -70,7 +70,7 @@ def declared_in(
     machines: Mapping[int, Machine],
     tables: Mapping[str, str],
     robot: Robot | None,
-    notes: Notes,
+    notes: BackupNotes,
 ) -> Declared:
     """What a ``$config.dat`` declares.
 
@@ -128,7 +128,7 @@ def _named(config: DataList, kind: str, index: int) -> str:
     return "" if name.upper() == f"{kind}_DATA[{index}]" else name
 
 
-def _load(config: DataList, index: int, notes: Notes) -> Load | None:
+def _load(config: DataList, index: int, notes: BackupNotes) -> Load | None:
     one = config.data.get(("LOAD_DATA", index))
     if one is None or not isinstance(one.value, Mapping):
         return None
@@ -151,7 +151,7 @@ def _table(
     machines: Mapping[int, Machine],
     index: int,
     tables: Mapping[str, str],
-    notes: Notes,
+    notes: BackupNotes,
 ) -> str | None:
     """The axis of the robot whose table a base stands on."""
     one = config.data.get(("MACHINE_FRAME_DAT", index))
@@ -190,7 +190,7 @@ def _homes(config: DataList, robot: Robot | None) -> dict[str, JointTarget]:
     return found
 
 
-def _pose(what: str, one: Assigned, struct: Mapping[str, Value], notes: Notes) -> Pose:
+def _pose(what: str, one: Assigned, struct: Mapping[str, Value], notes: BackupNotes) -> Pose:
     try:
         return pose_of(struct)
     except InputError as error:

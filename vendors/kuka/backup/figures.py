@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ....core.backup.contents import Notes
+from ....core.backup.contents import BackupNotes
 from ....core.errors import InputError
 from ..data_list import DataList
 
 
 def motion_figures(
-    config: DataList | None, machine: DataList | None, notes: Notes
+    config: DataList | None, machine: DataList | None, notes: BackupNotes
 ) -> dict[str, tuple[Any, str]]:
     """By their names in motion files, each with its value and its origin.
 

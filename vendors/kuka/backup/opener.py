@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path, PurePosixPath
 
 from ....core.backup.backup import Backup
-from ....core.backup.contents import Notes, listed
+from ....core.backup.contents import BackupNotes, listed
 from ....core.errors import InputError
 from ....core.robot.model import Robot
 from .arms import lists_of, robots_of, tables_in
@@ -30,7 +30,7 @@ class Opener:
 
     def open(self, source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
         """The archive in a folder; see `BackupOpener.open`."""
-        notes = Notes()
+        notes = BackupNotes()
         contents = Contents(root, notes)
         if root_in(contents.names) is None:
             raise InputError(
@@ -75,7 +75,7 @@ class Opener:
 OPENER = Opener()
 
 
-def _note_missing(notes: Notes, programs: bool, config: bool) -> None:
+def _note_missing(notes: BackupNotes, programs: bool, config: bool) -> None:
     """What an archive has, and this one lacks."""
     if not programs:
         notes.add("no programs are in it: no .src below R1")

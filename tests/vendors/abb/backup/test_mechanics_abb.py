@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flyby.core.backup.contents import Notes
+from flyby.core.backup.contents import BackupNotes
 from flyby.core.registry import find_robot
 from flyby.core.robot.model import Robot
 from flyby.vendors.abb.backup.arms import find_arm
@@ -23,10 +23,10 @@ from .station import arm_records, cfg, on_track, one_robot, robot_record
 
 
 def made(
-    sections: dict[str, list[str]] | dict[str, object], notes: Notes | None = None
+    sections: dict[str, list[str]] | dict[str, object], notes: BackupNotes | None = None
 ) -> Mechanics:
     moc = parse_parameters(cfg("MOC", sections), "SYSPAR/MOC.cfg")  # type: ignore[arg-type]
-    return mechanics_of(moc, (), {}, find_robot, notes or Notes())
+    return mechanics_of(moc, (), {}, find_robot, notes or BackupNotes())
 
 
 def robot_of(sections: dict[str, object]) -> Robot:
@@ -71,7 +71,7 @@ def test_records_come_back(records: list[dict[str, str]], end: str, broken: bool
 def test_any_text_is_parsed_or_noted(text: str) -> None:
     parameters = parse_parameters(text, "SYSPAR/MOC.cfg")
     assert parameters.records or parameters.notes
-    mechanics_of(parameters, (), {}, find_robot, Notes())
+    mechanics_of(parameters, (), {}, find_robot, BackupNotes())
     parse_backinfo(text)
 
 
@@ -146,7 +146,7 @@ def test_gravity_agrees_with_the_base_of_a_tilted_robot(beta: float, around: flo
         turn[3] * tilt[0],
     )
     parts = [f"-base_frame_orient_u{k} {float(v)!r}" for k, v in enumerate((w, x, y, z))]
-    notes = Notes()
+    notes = BackupNotes()
     (found,) = made(one_robot(f"{' '.join(parts)} -gravity_beta {beta!r}"), notes).robots
     assert found.robot is not None
     assert found.robot.gravity == (0.0, 0.0, -9.80665)
@@ -154,7 +154,7 @@ def test_gravity_agrees_with_the_base_of_a_tilted_robot(beta: float, around: flo
 
 
 def test_a_track_with_a_base_of_its_own() -> None:
-    notes = Notes()
+    notes = BackupNotes()
     turned = "-base_frame_orient_u0 0 -base_frame_orient_u3 1"
     (found,) = made(on_track(base=turned, single="-base_frame_pos_z 0.5"), notes).robots
     assert found.robot is not None
@@ -238,12 +238,12 @@ def test_arms_by_what_controllers_write(written: str, options: tuple[str, ...]) 
 def test_periods(times: tuple[float, ...], period: float | None) -> None:
     planner = " ".join(f"-queue_time_{k} {time}" for k, time in enumerate(times))
     moc = parse_parameters(cfg("MOC", {"MOTION_PLANNER": [f'-name "p" {planner}']}), "MOC.cfg")
-    figures = motion_figures(moc, Notes())
+    figures = motion_figures(moc, BackupNotes())
     assert (figures["period_s"][0] if figures else None) == period
 
 
 def test_a_low_cap_of_the_speed_is_said() -> None:
-    notes = Notes()
+    notes = BackupNotes()
     text = cfg("MOC", {"MOTION_PLANNER": ['-name "p" -linear_max_speed 1.5']})
     assert not motion_figures(parse_parameters(text, "SYSPAR/MOC.cfg"), notes)
     (note,) = notes.all()
