@@ -22,13 +22,19 @@ def names_file(name: str) -> bool:
     return Path(name).suffix.lower() in (CATALOGUE, URDF, *_OTHERS)
 
 
-def load_robot_file(path: str | Path, registry: Registry, vendor: str | None = None) -> Robot:
+def load_robot_file(
+    path: str | Path,
+    registry: Registry,
+    vendor: str | None = None,
+    srdf: str | Path | None = None,
+) -> Robot:
     """The robot of a file.
 
     Args:
         path: a catalogue file (``.toml``), a URDF, or machine data of a controller.
         registry: of vendors.
         vendor: whose controller drives it, where the file does not say.
+        srdf: for a URDF, the file of the pairs of links that may touch; see `load_urdf`.
 
     Raises:
         InputError: it is none of these, nobody says whose controller drives it, or two say so
@@ -38,10 +44,12 @@ def load_robot_file(path: str | Path, registry: Registry, vendor: str | None = N
     if vendor is not None:
         registry.find_vendor(vendor)
     suffix = path.suffix.lower()
+    if srdf is not None and suffix != URDF:
+        raise InputError(f"{path}: an SRDF belongs to a URDF, and this is none; leave {srdf} out")
     if suffix == CATALOGUE:
         return _of_vendor(path, _catalogue(path), registry, vendor)
     if suffix == URDF:
-        return _of_urdf(path, registry, vendor)
+        return _of_urdf(path, registry, vendor, srdf)
     owners = [v for v in registry.vendors.values() if v.described and vendor in (None, v.name)]
     if len(owners) != 1 or owners[0].described is None:
         known = ", ".join(v.name for v in owners) or "no vendor"
@@ -72,8 +80,8 @@ def _of_vendor(path: Path, robot: Robot, registry: Registry, vendor: str | None)
     return robot
 
 
-def _of_urdf(path: Path, registry: Registry, vendor: str | None) -> Robot:
-    from .robot.urdf import load_urdf
+def _of_urdf(path: Path, registry: Registry, vendor: str | None, srdf: str | Path | None) -> Robot:
+    from .robot.urdf.arm import load_urdf
 
     if vendor is None:
         known = ", ".join(sorted(registry.vendors))
@@ -81,7 +89,7 @@ def _of_urdf(path: Path, registry: Registry, vendor: str | None) -> Robot:
             f"{path}: a URDF does not say whose controller drives the robot: say so with "
             f"{spelt('vendor')} ({known})"
         )
-    robot = load_urdf(path)
+    robot = load_urdf(path, srdf=srdf)
     return replace(robot, name=f"{vendor}/{_called(robot.name)}")
 
 

@@ -73,7 +73,10 @@ def _robot(file: TomlTable, registry: Registry, axes: tuple[ExternalAxis, ...]) 
     named = file.text("robot")
     try:
         if names_file(named):
-            robot = load_robot_file(file.file.parent / named, registry)
+            folder = file.file.parent
+            vendor = file.text("vendor") if file.has("vendor") else None
+            srdf = file.existing_file("srdf") if file.has("srdf") else None
+            robot = load_robot_file(folder / named, registry, vendor, srdf)
         else:
             robot = registry.find_robot(named)
     except InputError as error:

@@ -64,6 +64,11 @@ With ``dh``, bodies and shapes of link k are in Denavit–Hartenberg frame k, as
     from_mm = [0, 0, 0]                  # capsule and cylinder: ends of the middle line
     to_mm = [0, 0, 1075]
     # sphere: radius_mm, centre_mm; box: size_mm, xyz_mm and an orientation
+
+    [[may_touch]]                        # optional: links that may touch each other
+    links = [1, 3]                       # as in [[shape]], the lower one first
+    file = "arm.srdf"                    # who says so
+    reason = "Never"                     # and why
 """
 
 from __future__ import annotations
@@ -81,7 +86,16 @@ from .inertia import Inertia
 from .joint import Joint, JointKind
 from .model import Robot
 from .pose_table import pose_at, read_pose
-from .shape import Box, Capsule, Cylinder, LinkShape, Shape, Sphere, pose_along
+from .shape import (
+    Box,
+    Capsule,
+    Cylinder,
+    LinkShape,
+    Shape,
+    Sphere,
+    TouchingLinks,
+    pose_along,
+)
 
 TRUST = ("published", "identified", "measured", "computed", "assumed", "unknown")
 """The words that an origin starts with."""
@@ -152,6 +166,7 @@ def _robot(table: TomlTable) -> Robot:
         origins=_origins(table.table("origin"), needed),
         spread=_spread(table.table("spread")),
         doubts=tuple(table.texts("doubts")) if table.has("doubts") else (),
+        may_touch=tuple(_touching(row, len(joints)) for row in table.listed_tables("may_touch")),
     )
 
 
@@ -259,6 +274,15 @@ def _link_shape(row: TomlTable, frames: list[Pose]) -> LinkShape:
     shape, placement = read_shape(row)
     row.finish()
     return LinkShape(int(link), shape, frames[int(link)] @ placement)
+
+
+def _touching(row: TomlTable, count: int) -> TouchingLinks:
+    first, second = row.numbers("links", 2)
+    if first not in range(count + 1) or second not in range(count + 1) or not first < second:
+        raise row.error("links", f"must be two whole numbers from 0 to {count}, the lower first")
+    pair = TouchingLinks(int(first), int(second), row.text("file"), row.text("reason"))
+    row.finish()
+    return pair
 
 
 def read_shape(row: TomlTable) -> tuple[Shape, Pose]:

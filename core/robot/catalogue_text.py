@@ -46,6 +46,9 @@ def robot_text(robot: Robot) -> str:
         lines += _table("[[link]]", _link(body))
     for shape in robot.shapes:
         lines += _table("[[shape]]", _shape(shape))
+    for pair in robot.may_touch:
+        told = {"links": [pair.first, pair.second], "file": pair.file, "reason": pair.reason}
+        lines += _table("[[may_touch]]", told)
     return "\n".join(lines) + "\n"
 
 

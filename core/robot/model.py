@@ -24,7 +24,7 @@ from .kinematics.arm_geometry import Recognised, recognise
 from .kinematics.chain import Chain
 from .kinematics.chain_derivatives import hessians
 from .kinematics.chain_kernels import jacobians, poses
-from .shape import LinkShape
+from .shape import LinkShape, TouchingLinks
 
 STANDARD_GRAVITY: Vector3 = (0.0, 0.0, -9.80665)
 """m/s² (3rd General Conference on Weights and Measures, 1901)."""
@@ -51,10 +51,11 @@ class Robot:
         origins: what each group of numbers rests on, e.g. ``"velocity": "published: …"``.
         spread: by what factor, either way, a group of assumed numbers may be off; one or more.
         doubts: what speaks against single numbers.
+        may_touch: pairs of the arm's own links that may touch.
 
     Raises:
-        InputError: two axes share a name, the links are not one a joint, a shape belongs to no
-            link, or an external axis stands on one that does not exist.
+        InputError: two axes share a name, the links are not one a joint, a shape or a pair that
+            may touch belongs to no link, or an external axis stands on one that does not exist.
     """
 
     name: str
@@ -69,6 +70,7 @@ class Robot:
     origins: Mapping[str, str] = field(default_factory=dict, hash=False)
     spread: Mapping[str, float] = field(default_factory=dict, hash=False)
     doubts: tuple[str, ...] = ()
+    may_touch: tuple[TouchingLinks, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "origins", MappingProxyType(dict(self.origins)))
@@ -87,6 +89,12 @@ class Robot:
         for shape in self.shapes:
             if not 0 <= shape.link <= self.arm_size:
                 raise InputError(f"robot {self.name}: a shape belongs to link {shape.link}")
+        for pair in self.may_touch:
+            if not 0 <= pair.first < pair.second <= self.arm_size:
+                raise InputError(
+                    f"robot {self.name}: links {pair.first} and {pair.second} may touch by "
+                    f"{pair.file}, but links are counted from 0 to {self.arm_size}, the lower first"
+                )
         for axis in self.external_axes:
             self.frame_stages(axis.name)
         self._carrying_track()

@@ -86,6 +86,22 @@ class LinkShape:
     placement: Pose = IDENTITY
 
 
+@dataclass(frozen=True, slots=True)
+class TouchingLinks:
+    """Two links that may touch, as somebody says who knows the arm.
+
+    Args:
+        first, second: 0 for the base, k for the link behind the arm's joint k.
+        file: name of the file that says so.
+        reason: why, in its words.
+    """
+
+    first: int
+    second: int
+    file: str
+    reason: str
+
+
 def pose_along(start: FloatArray, end: FloatArray) -> Pose:
     """The frame midway between two points with z from the first to the second."""
     z = (end - start) / np.linalg.norm(end - start)

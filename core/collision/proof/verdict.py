@@ -12,6 +12,7 @@ import numpy as np
 
 from ...motion.emulator.run import Run
 from ...motion.path.building import NEAR_SINGULAR
+from ...robot.model import Robot
 from ..scene.scene import CollisionScene
 from .enclosure import Span
 from .findings import FailureCause, NearestPair, UnprovenStretch
@@ -128,7 +129,7 @@ class VerdictReader:
         if clearance == math.inf:
             message = "nothing is near that it could touch"
             return Certificate(Verdict.PROVEN, clearance, message, measured=measured)
-        message = in_words(clearance)
+        message = in_words(clearance) + _rests_on(known[0].scene.robot)
         nearest = nearest_of(known)
         if nearest is None or nearest.nearest.kept > clearance + resolution:
             # Nothing was measured where it matters: what was met is not what is nearest.
@@ -212,6 +213,15 @@ class VerdictReader:
 def _shown(distance: float) -> str:
     """A distance in mm, rounded down: what is proven is not rounded up."""
     return f"{math.floor(distance * MM * 1e3) / 1e3:.3f} mm"
+
+
+def _rests_on(robot: Robot) -> str:
+    """What a proof takes for granted of the arm: shapes that are assumed, links that may touch."""
+    told = ""
+    if robot.origins.get("shape", "").startswith("assumed"):
+        told += " (shape assumed)"
+    files = dict.fromkeys(pair.file for pair in robot.may_touch)
+    return told + "".join(f" (pairs allowed to touch by {file})" for file in files)
 
 
 def in_words(clearance: float) -> str:

@@ -75,6 +75,9 @@ def exclusion_reason(cell: Cell, first: Body, second: Body, frames: FrameTree) -
         return "they do not move against each other"
     if _adjacent(cell.robot, first, second):
         return "adjacent links"
+    told = _told_by_robot(cell.robot, first, second)
+    if told is not None:
+        return told
     for pair in cell.allowed:
         if _meant(cell.robot, pair, first, second):
             return f"allowed by the cell as {pair[0]!r}, {pair[1]!r}"
@@ -82,10 +85,43 @@ def exclusion_reason(cell: Cell, first: Body, second: Body, frames: FrameTree) -
 
 
 def _adjacent(robot: Robot, first: Body, second: Body) -> bool:
+    links = _links(robot, first, second)
+    return links is not None and links[1] - links[0] == 1
+
+
+def _told_by_robot(robot: Robot, first: Body, second: Body) -> str | None:
+    """Why the robot's own file lets two of its links touch; None if it does not."""
+    links = _links(robot, first, second)
+    for pair in robot.may_touch:
+        if links == (pair.first, pair.second):
+            return f"allowed by {pair.file} ({pair.reason})"
+    return None
+
+
+def _links(robot: Robot, first: Body, second: Body) -> tuple[int, int] | None:
+    """The numbers of two links, the lower first; None if one is none."""
     if first.kind is not BodyKind.LINK or second.kind is not BodyKind.LINK:
-        return False
+        return None
     order = ["base", *(joint.name for joint in robot.joints)]
-    return abs(order.index(first.part) - order.index(second.part)) == 1
+    a, b = sorted((order.index(first.part), order.index(second.part)))
+    return a, b
+
+
+def robot_notes(robot: Robot) -> tuple[Note, ...]:
+    """A note on the links that may touch by the word of a file, for every report."""
+    order = ["base", *(joint.name for joint in robot.joints)]
+    files = dict.fromkeys(pair.file for pair in robot.may_touch)
+    return tuple(
+        Note(
+            f"pairs allowed to touch by {file}: "
+            + ", ".join(
+                f"{order[pair.first]} and {order[pair.second]} ({pair.reason})"
+                for pair in robot.may_touch
+                if pair.file == file
+            )
+        )
+        for file in files
+    )
 
 
 def _meant(robot: Robot, pair: tuple[str, str], first: Body, second: Body) -> bool:

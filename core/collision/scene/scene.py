@@ -22,7 +22,14 @@ from ..distance.coal_engine import CoalEngine
 from ..distance.containment import Nesting
 from ..distance.engine import BodyPoses, ContactEngine, DistanceEngine, Witness
 from ..distance.fcl_engine import FclEngine
-from .allowed_pairs import Exclusion, always_touching, drop_own_overlaps, overlap_notes, sort_pairs
+from .allowed_pairs import (
+    Exclusion,
+    always_touching,
+    drop_own_overlaps,
+    overlap_notes,
+    robot_notes,
+    sort_pairs,
+)
 from .bodies import Body, bodies_of
 from .frames import FrameTree, distance_gradients, frame_tree, place_bodies
 from .outline import Outlines, outlines_of
@@ -78,7 +85,12 @@ class CollisionScene:
         pairs = drop_own_overlaps(pairs, self.bodies, always)
         self._standing_pairs = pairs.kept
         self.exclusions: tuple[Exclusion, ...] = pairs.exclusions
-        self.notes: tuple[Note, ...] = (*found.notes, *odd, *notes)
+        self.notes: tuple[Note, ...] = (
+            *found.notes,
+            *odd,
+            *notes,
+            *robot_notes(cell.robot),
+        )
         self._set_pairs(parts or ())
 
     def rearranged(self, parts: Arrangement) -> CollisionScene:

@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import FloatArray
-from ..errors import InputError
-from ..files.mesh_file import check_extent, read_scene
-from ..spatial.pose import IDENTITY, Pose
-from .shape import Box, Cylinder, LinkShape, Shape, Sphere
+from ...arrays import FloatArray
+from ...errors import InputError
+from ...files.mesh_file import check_extent, read_scene
+from ...spatial.pose import IDENTITY, Pose
+from ..shape import Box, Cylinder, LinkShape, Shape, Sphere
 
 _PACKAGE = "package://"
 _FILE = "file://"

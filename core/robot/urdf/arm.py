@@ -15,13 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import InputError, UnknownNameError
-from ..files.reading import read_bytes
-from ..spatial.pose import IDENTITY, Pose
-from .inertia import Inertia
-from .joint import Joint, JointKind
-from .model import Robot
-from .urdf_shapes import UrdfShapes
+from ...errors import InputError, UnknownNameError
+from ...files.reading import read_bytes
+from ...spatial.pose import IDENTITY, Pose
+from ..inertia import Inertia
+from ..joint import Joint, JointKind
+from ..model import Robot
+from .shapes import UrdfShapes
+from .srdf import TouchRules, find_srdf, read_srdf
 
 ACCELERATION_TIMES = (0.65, 0.65, 0.65, 0.21)
 """s in which joints are assumed to reach their top speed, from the base on; the last counts for all
@@ -45,11 +46,16 @@ KINDS = {
 }
 
 
-def load_urdf(path: str | Path, base: str | None = None, tip: str | None = None) -> Robot:
+def load_urdf(
+    path: str | Path,
+    base: str | None = None,
+    tip: str | None = None,
+    srdf: str | Path | None = None,
+) -> Robot:
     """The serial arm between two links of a URDF file.
 
     Fixed joints on the way are merged into placements, bodies fixed to the arm into its links.
-    Meshes are read for the shapes that enclose them (`urdf_shapes`); where one is not at hand the
+    Meshes are read for the shapes that enclose them (`shapes`); where one is not at hand the
     robot has no shapes, and says why.
 
     Args:
@@ -58,14 +64,16 @@ def load_urdf(path: str | Path, base: str | None = None, tip: str | None = None)
             conventions of ROS-Industrial, if it is fixed to the root, else for the root.
         tip: name of the flange's link; None for ``tool0``, the controller's flange by the same
             conventions, else for ``flange``, else for the leaf behind most joints.
+        srdf: file of the pairs of links that may touch; None for the one beside the URDF or in
+            the package's folders (`find_srdf`), if there is one.
 
     Raises:
-        InputError: the file is no URDF; the arm branches or depends on other joints; a joint's
-            kind or velocity cannot be used.
+        InputError: the file is no URDF, or the SRDF none; the arm branches or depends on other
+            joints; a joint's kind or velocity cannot be used.
         UnknownNameError: there is no link of that name.
     """
     path = Path(path)
-    reader = _Reader(path, _parse(path))
+    reader = _Reader(path, _parse(path), None if srdf is None else Path(srdf))
     try:
         reader.check()
         if base is not None:
@@ -76,7 +84,8 @@ def load_urdf(path: str | Path, base: str | None = None, tip: str | None = None)
         raise
     except InputError as error:
         told = str(error)
-        raise InputError(told if told.startswith(f"{path}:") else f"{path}: {told}") from None
+        known = told.startswith(tuple(f"{one}:" for one in (path, reader.srdf)))
+        raise InputError(told if known else f"{path}: {told}") from None
 
 
 def _parse(path: Path) -> Any:
@@ -107,6 +116,7 @@ class _Reader:
 
     path: Path
     model: Any
+    srdf: Path | None = None
 
     def error(self, message: str) -> InputError:
         return InputError(f"{self.path}: {message}")
@@ -160,6 +170,7 @@ class _Reader:
             raise self.error("there is no moving joint between base and tip")
         known = [body for body in bodies if body is not None]
         found = self.shapes(base, way)
+        rules = self.touch_rules()
         return Robot(
             name=self.model.name or self.path.stem,
             joints=tuple(joints),
@@ -167,9 +178,18 @@ class _Reader:
             links=tuple(known) if len(known) == len(joints) else (),
             shapes=() if found.unread else tuple(found.shapes),
             origins=self.origins(assumed) | ({"shape": found.origin} if found.stated else {}),
-            doubts=tuple(found.unread),
+            doubts=(*found.unread, *(() if rules is None else rules.doubts)),
             spread={"acceleration": ACCELERATION_SPREAD},
+            may_touch=() if rules is None else rules.touching(self.drawn(base, way)),
         )
+
+    def touch_rules(self) -> TouchRules | None:
+        """What the SRDF says; None where there is none."""
+        if self.srdf is None:
+            self.srdf = find_srdf(self.path, self.model.name or "")
+        if self.srdf is None:
+            return None
+        return read_srdf(self.srdf, self.model.name or "", self.links)
 
     def leaf(self, base: str) -> str:
         """Where the arm ends: what is called as flanges are, else the leaf behind most joints."""
@@ -299,8 +319,7 @@ class _Reader:
     def shapes(self, base: str, way: list[Any]) -> UrdfShapes:
         """The shapes of base and links; the visual geometry of those without collision geometry."""
         found = UrdfShapes(self.path)
-        moving = [element.child for element in way if element.type != "fixed"]
-        for index, link in enumerate((base, *moving)):
+        for index, link in enumerate(self.bodies(base, way)):
             rigid = list(self.rigid(link, way))
             elements = [
                 (element, frame)
@@ -309,6 +328,21 @@ class _Reader:
             ]
             found.add(index, link, elements)
         return found
+
+    def drawn(self, base: str, way: list[Any]) -> list[list[str]]:
+        """The links with geometry of the base and of each link of the arm."""
+        return [
+            [
+                name
+                for name, _ in self.rigid(link, way)
+                if self.links[name].collisions or self.links[name].visuals
+            ]
+            for link in self.bodies(base, way)
+        ]
+
+    def bodies(self, base: str, way: list[Any]) -> list[str]:
+        """The base, and the link behind each joint that moves."""
+        return [base, *(element.child for element in way if element.type != "fixed")]
 
     def origins(self, assumed: dict[str, list[str]]) -> dict[str, str]:
         file = f"published: {self.path.name}"

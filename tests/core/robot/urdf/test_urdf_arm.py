@@ -9,7 +9,7 @@ import pinocchio as pin
 import pytest
 
 from flyby.core.errors import InputError, UnknownNameError
-from flyby.core.robot.urdf import load_urdf
+from flyby.core.robot.urdf.arm import load_urdf
 
 LIMIT = '<limit lower="-2" upper="1.5" velocity="3" effort="40"/>'
 INERTIAL = """
