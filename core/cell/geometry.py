@@ -14,12 +14,10 @@ from numpy.typing import NDArray
 
 from ..arrays import FloatArray
 from ..errors import InputError, Note
-from ..files.mesh_file import check_extent, read_scene
+from ..files.mesh_file import MESH_UNITS, check_extent, read_scene
 from ..robot.shape import Shape
 from ..spatial.pose import IDENTITY, Pose, Vector3
 
-MESH_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 25.4e-3}
-"""Metres in one unit of a mesh file."""
 PLAUSIBLE_EXTENT = (5e-3, 20.0)
 """m; beyond, the unit is probably wrong."""
 _USUAL_EXTENT = 0.5

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..errors import InputError
+from ..files.mesh_file import MESH_UNITS
 from ..files.tables import LENGTH, TomlTable
 from ..program.tool import Load
 from ..robot.pose_table import read_vector
 from ..robot.shape import Box, Capsule, Cylinder, Shape, Sphere
 from ..spatial.pose import Pose
-from .geometry import MESH_UNITS, Geometry, Mesh
+from .geometry import Geometry, Mesh
 
 SHAPES: dict[str, tuple[int, Callable[[tuple[float, ...]], Shape]]] = {
     "box": (3, lambda edges: Box((edges[0], edges[1], edges[2]))),

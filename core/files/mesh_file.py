@@ -22,6 +22,8 @@ MOST_TRIANGLES = 4_000_000
 """Of all copies of all meshes of a file."""
 MOST_EXTENT = 1e4
 """m; nothing near a robot is as long, and squares of lengths beyond would lose all digits."""
+MESH_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 25.4e-3}
+"""Metres in one unit of a mesh file."""
 _ARCHIVES = {".3mf", ".zae", ".3dxml"}
 _COUNT = re.compile(rb'"count"\s*:\s*(\d+)')
 

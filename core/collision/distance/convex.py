@@ -1,8 +1,8 @@
 """Convex pieces of meshes, where a depth is wanted and not only a distance.
 
 Only convex solids have a depth when they overlap. A mesh of convex parts is taken apart into
-them. A tool whose parts are not convex is filled up to the hulls of its parts, and a note says
-how much that adds; an obstacle keeps its surface.
+them. A tool's parts that are far from convex are split into convex ones that enclose them, others
+are filled up to their hulls, and a note says how much that adds; an obstacle keeps its surface.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ...arrays import FloatArray
 from ...cell.geometry import Mesh
+from ...convex.split import Split, split
 from ...errors import InputError, Note
 from .solid import Polytope, Solid, TriangleMesh, connected_parts
 
@@ -41,29 +42,36 @@ class _Part(NamedTuple):
 
 
 def tool_solids(name: str, mesh: Mesh) -> tuple[list[Solid], list[Note]]:
-    """A tool's mesh as convex solids, and what they add to it.
+    """A tool's mesh as convex solids that enclose it, and what they add to it.
 
     Raises:
         InputError: the mesh cannot be used.
     """
     parts = [_part(mesh.vertices, mesh.faces[row]) for row in _part_rows(mesh)]
-    solids: list[Solid] = [part.hull for part in parts]
     notes = list(mesh.notes)
-    if not all(part.convex for part in parts):
-        notes.append(Note(_filled(name, mesh, parts)))
+    if all(part.convex for part in parts):
+        return [part.hull for part in parts], notes
+    solids: list[Solid] = []
+    lacks = None
+    for part, row in zip(parts, _part_rows(mesh), strict=True):
+        made = Split(()) if part.convex else split(mesh.vertices, mesh.faces[row])
+        lacks = lacks or made.lacks
+        solids += [part.hull] if len(made.parts) < 2 else [hull(points) for points in made.parts]
+    remedy = "a mesh of convex parts is used as it is" if lacks is None else lacks
+    notes.append(Note(f"{_filled(name, mesh, parts, solids)}; {remedy}"))
     return solids, notes
 
 
-def _filled(name: str, mesh: Mesh, parts: list[_Part]) -> str:
+def _filled(name: str, mesh: Mesh, parts: list[_Part], solids: list[Solid]) -> str:
     more = "larger by an unknown volume, since the mesh is not closed"
     if all(part.closed for part in parts):
         volume = sum(part.volume for part in parts)
-        hulls = sum(part.hull_volume for part in parts)
+        hulls = sum(_volume(one.vertices, one.faces) for one in solids if isinstance(one, Polytope))
         more = f"{100.0 * (hulls / volume - 1.0):.3g} % larger in volume"
-    return (
-        f"tool {name!r}: {mesh.file} is not made of convex parts; their hulls stand for it, "
-        f"{more}; a mesh of convex parts is used as it is"
-    )
+    what = "their hulls stand for it"
+    if len(solids) > len(parts):
+        what = f"{len(solids)} convex parts that enclose it stand for it"
+    return f"tool {name!r}: {mesh.file} is not made of convex parts; {what}, {more}"
 
 
 def obstacle_solids(mesh: Mesh) -> tuple[list[Solid], list[Note]]:

@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ....core.arrays import FloatArray, IntArray
-from ....core.cell.geometry import MESH_UNITS
 from ....core.door import given
 from ....core.errors import InputError, Note
-from ....core.files.mesh_file import check_extent, read_scene
+from ....core.files.mesh_file import MESH_UNITS, check_extent, read_scene
 from .mesh_repair import find_edges, repair
 from .part import Part
 from .rays.engine import RayEngine, make_rays

@@ -81,6 +81,12 @@ def u_profile() -> trimesh.Trimesh:
     )
 
 
+def u_parts() -> list[np.ndarray]:
+    """Corners of the three boxes that `u_profile` is made of."""
+    spans = [((-0.3, 0.3), (-0.3, -0.1)), ((-0.3, -0.1), (-0.1, 0.3)), ((0.1, 0.3), (-0.1, 0.3))]
+    return [np.array(np.meshgrid(*span, (-0.1, 0.1))).reshape(3, 8).T for span in spans]
+
+
 @pytest.fixture
 def mesh_file(tmp_path: Path) -> Callable[..., Mesh]:
     """Writes a mesh and gives it as a cell does."""

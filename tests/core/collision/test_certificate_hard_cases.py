@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 import trimesh
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -13,6 +14,8 @@ from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry, Mesh, Triangles
 from flyby.core.collision.proof.certificate import certify, scenes_of
 from flyby.core.collision.proof.verdict import Certificate, Verdict
+from flyby.core.convex import decomposition, split
+from flyby.core.convex.decomposition import NotSplitError
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.emulator.run import Run
 from flyby.core.motion.model.motion_model import MotionModel
@@ -26,7 +29,7 @@ from flyby.core.robot.shape import Sphere
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
 
-from .conftest import u_profile
+from .conftest import u_parts, u_profile
 
 ARM = "abb/irb6640-180-255"
 HOME = np.array([0.1, 0.2, 0.3, 0.2, 0.9, 0.1])
@@ -110,6 +113,42 @@ def test_meshes_are_proven_as_tightly_as_simple_shapes(step, angles, change, hol
     assert least - 3e-4 <= found.clearance <= least + 1e-7
     found = certify(controller, run, scenes_of(cell), least + 1e-3)
     assert found.verdict is Verdict.VIOLATED and found.distance < least + 1e-3
+
+
+@pytest.mark.parametrize("parts", ["whole", "three", "coarse", "coacd"])
+def test_what_is_in_the_gap_of_a_tool_is_clear_where_it_is_split(
+    parts: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """A ball between the arms of a C-shaped gun, 30 mm from either."""
+
+    def made(vertices, faces):
+        if parts == "whole":
+            raise NotSplitError("not there")
+        grown = 1.0 if parts == "three" else 0.9
+        return [0.5 * (part.mean(axis=0) + grown * (part - part.mean(0))) for part in u_parts()]
+
+    if parts == "coacd":
+        pytest.importorskip("coacd")
+        monkeypatch.setattr(decomposition, "cache_folder", lambda: tmp_path)
+    else:
+        monkeypatch.setattr(split, "approximate_parts", made)
+    gun = u_profile()
+    gun.apply_scale(0.5)
+    place = Pose((0.0, 0.0, 0.4))
+    at = find_robot(ARM).flange_pose(HOME) @ place @ Pose((0.0, 0.05, 0.0))
+    ball = Obstacle("ball", Geometry(Sphere(0.02), Pose(at.position)))
+    cell = cell_with(Geometry(mesh(gun, "gun.stl"), place), ball)
+    run, found = check(cell, 0.01, turn(0.005), resolution=1e-4)
+    if parts == "whole":
+        assert found.verdict is Verdict.VIOLATED
+        return
+    assert found.proven, found.message
+    # The parts enclose the gun, so no more is proven than there is.
+    surface = trimesh.Trimesh(gun.vertices, gun.faces)
+    frames = [cell.robot.flange_pose(q) @ place for q in run.path.q]
+    centres = [frame.inverse() @ Pose(at.position) for frame in frames]
+    _, gaps, _ = trimesh.proximity.closest_point(surface, [c.position for c in centres])
+    assert 0.01 < found.clearance <= gaps.min() - 0.02 + 1e-6
 
 
 def deep_block() -> Obstacle:

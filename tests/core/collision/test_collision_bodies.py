@@ -19,12 +19,14 @@ from flyby.core.collision.distance.solid import Polytope, TriangleMesh
 from flyby.core.collision.scene.bodies import BodyKind, bodies_of
 from flyby.core.collision.scene.frames import WORLD, frame_of_axis
 from flyby.core.collision.scene.scene import CollisionScene
+from flyby.core.convex import split
+from flyby.core.convex.decomposition import NotSplitError
 from flyby.core.errors import InputError
 from flyby.core.program.tool import FLANGE, Tool
 from flyby.core.robot.shape import Box, Capsule, LinkShape, Sphere
 from flyby.core.spatial.pose import Pose
 
-from .conftest import arm, cell_of, shell, table, track, u_profile
+from .conftest import arm, cell_of, shell, table, track, u_parts, u_profile
 
 GUN, SPINDLE = Tool("gun"), Tool("spindle", robot_held=False)
 TOOLS = {"gun": GUN, "spindle": SPINDLE, "bare": Tool("bare")}
@@ -191,13 +193,30 @@ def test_a_dented_obstacle_keeps_its_surface(mesh_file: Callable[..., Mesh]) -> 
         assert notes == []
 
 
-def test_a_dented_tool_is_filled_and_noted(mesh_file: Callable[..., Mesh]) -> None:
+def test_a_dented_tool_is_filled_and_noted(
+    mesh_file: Callable[..., Mesh], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def not_there(vertices, faces):
+        raise NotSplitError("install something")
+
+    monkeypatch.setattr(split, "approximate_parts", not_there)
     ((solid,), notes) = tool_solids("gun", mesh_file(u_profile()))
     assert isinstance(solid, Polytope)
     assert len(solid.vertices) == 8
     (note,) = notes
     # 0.36 - 0.08 of the square's area are there: the hull is 0.36 / 0.28 as large.
     assert "tool 'gun'" in note.message and "28.6 % larger in volume" in note.message
+    assert note.message.endswith("has 1.29 times its volume; install something")
+
+
+def test_a_dented_tool_is_split(
+    mesh_file: Callable[..., Mesh], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(split, "approximate_parts", lambda vertices, faces: u_parts())
+    solids, notes = tool_solids("gun", mesh_file(u_profile()))
+    assert [type(solid) for solid in solids] == [Polytope] * 3
+    (note,) = notes
+    assert "3 convex parts that enclose it stand for it" in note.message
 
 
 def test_an_open_mesh_has_no_inside_and_says_so(mesh_file: Callable[..., Mesh]) -> None:

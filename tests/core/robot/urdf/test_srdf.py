@@ -141,7 +141,9 @@ def test_garbage_is_refused_or_read(tmp_path_factory: pytest.TempPathFactory, da
 
 
 def test_pairs_are_kept_in_catalogue_files(tmp_path: Path) -> None:
-    robot = load_urdf(written(tmp_path, pair("l1", "l3"), pair("base_link", "l2", 'a &quot;b&quot;')))
+    robot = load_urdf(
+        written(tmp_path, pair("l1", "l3"), pair("base_link", "l2", "a &quot;b&quot;"))
+    )
     kept = tmp_path / "kept.toml"
     kept.write_text(robot_text(robot), "utf-8")
     assert load_robot(kept).may_touch == robot.may_touch

@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from flyby.core.robot.mesh_shapes import enclosing
 from flyby.core.robot.shape import Box, Cylinder, Sphere
 from flyby.core.robot.urdf.arm import load_urdf
-from flyby.core.robot.urdf.shapes import enclosing
 from flyby.core.spatial.pose import Pose
 
 POINTS = arrays(float, st.tuples(st.integers(1, 30), st.just(3)), elements=st.floats(-1, 1))
