@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..files.tables import TomlTable, per
-from ..robot.catalogue import UNITS, read_shape
+from ..robot.catalogue import UNITS
 from ..robot.joint import Joint
 from ..robot.model import Robot
 from ..robot.shape import LinkShape
+from ..robot.shape_table import read_shapes
 from ..spatial.pose import IDENTITY, Pose
 
 BASE = "base"
@@ -21,21 +22,28 @@ def read_arm(file: TomlTable, robot: Robot) -> Robot:
         InputError: a link or joint is unknown, or a range is wider than the robot's; the message
             names file and key.
     """
-    return replace(robot, shapes=_shapes(file, robot), joints=_joints(file, robot))
+    shapes, doubts = _shapes(file, robot)
+    return replace(
+        robot, shapes=shapes, joints=_joints(file, robot), doubts=(*robot.doubts, *doubts)
+    )
 
 
-def _shapes(file: TomlTable, robot: Robot) -> tuple[LinkShape, ...]:
-    """Those of the links that the file names, and the robot's own of all others."""
+def _shapes(file: TomlTable, robot: Robot) -> tuple[tuple[LinkShape, ...], list[str]]:
+    """Those of the links that the file names, and the robot's own of all others; doubts."""
     names = [BASE, *(joint.name for joint in robot.joints)]
     frames = _at_zero(robot)
     given: list[LinkShape] = []
+    doubts: list[str] = []
     for row in file.listed_tables("robot_shape"):
         link = names.index(row.choice("link", names))
-        shape, placement = read_shape(row)
+        made = read_shapes(row)
         row.finish()
-        given.append(LinkShape(link, shape, frames[link].inverse() @ placement))
+        own = frames[link].inverse()
+        given += [LinkShape(link, shape, own @ placement) for shape, placement in made.bodies]
+        doubts += made.doubts
     named = {shape.link for shape in given}
-    return (*(shape for shape in robot.shapes if shape.link not in named), *given)
+    kept = (shape for shape in robot.shapes if shape.link not in named)
+    return (*kept, *given), doubts
 
 
 def _at_zero(robot: Robot) -> list[Pose]:

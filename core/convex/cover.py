@@ -16,7 +16,7 @@ from ..arrays import FloatArray
 
 CLOSE = 1e-3
 """By the mesh's extent: farther a piece need not stick out of a part to be cut further."""
-FINEST = 0.02
+FINEST = 0.004
 """By the mesh's extent: pieces with no longer edges are not cut further."""
 _CHUNK = 2_000_000
 """Numbers worked on at once."""

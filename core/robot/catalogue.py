@@ -64,6 +64,7 @@ With ``dh``, bodies and shapes of link k are in Denavit–Hartenberg frame k, as
     from_mm = [0, 0, 0]                  # capsule and cylinder: ends of the middle line
     to_mm = [0, 0, 1075]
     # sphere: radius_mm, centre_mm; box: size_mm, xyz_mm and an orientation
+    # mesh: mesh = "J1.stl", units = "mm", xyz_mm and an orientation: the bodies that enclose it
 
     [[may_touch]]                        # optional: links that may touch each other
     links = [1, 3]                       # as in [[shape]], the lower one first
@@ -86,16 +87,8 @@ from .inertia import Inertia
 from .joint import Joint, JointKind
 from .model import Robot
 from .pose_table import pose_at, read_pose
-from .shape import (
-    Box,
-    Capsule,
-    Cylinder,
-    LinkShape,
-    Shape,
-    Sphere,
-    TouchingLinks,
-    pose_along,
-)
+from .shape import LinkShape, TouchingLinks
+from .shape_table import read_shapes
 
 TRUST = ("published", "identified", "measured", "computed", "assumed", "unknown")
 """The words that an origin starts with."""
@@ -151,7 +144,9 @@ def _robot(table: TomlTable) -> Robot:
         _inertia(row).placed(frame)
         for row, frame in zip(_link_rows(table, len(rows)), frames, strict=False)
     )
-    shapes = tuple(_link_shape(row, [IDENTITY, *frames]) for row in table.listed_tables("shape"))
+    made = [_link_shapes(row, [IDENTITY, *frames]) for row in table.listed_tables("shape")]
+    shapes = tuple(shape for of_row, _ in made for shape in of_row)
+    odd = tuple(doubt for _, doubts in made for doubt in doubts)
     needed = ["geometry", "range", "velocity", "acceleration"]
     needed += ["effort"] if any(joint.effort for joint in joints) else []
     needed += ["inertia"] if links else []
@@ -165,7 +160,7 @@ def _robot(table: TomlTable) -> Robot:
         payload=table.number("payload_kg") if table.has("payload_kg") else None,
         origins=_origins(table.table("origin"), needed),
         spread=_spread(table.table("spread")),
-        doubts=tuple(table.texts("doubts")) if table.has("doubts") else (),
+        doubts=(*(table.texts("doubts") if table.has("doubts") else ()), *odd),
         may_touch=tuple(_touching(row, len(joints)) for row in table.listed_tables("may_touch")),
     )
 
@@ -266,14 +261,15 @@ def _inertia(row: TomlTable) -> Inertia:
     return body
 
 
-def _link_shape(row: TomlTable, frames: list[Pose]) -> LinkShape:
-    """A shape, moved from the frame it is given in to the frame behind its joint."""
+def _link_shapes(row: TomlTable, frames: list[Pose]) -> tuple[list[LinkShape], list[str]]:
+    """Shapes, moved from the frame they are given in to the frame behind their joint; doubts."""
     link = row.number("link")
     if link not in range(len(frames)):
         raise row.error("link", f"must be a whole number from 0 to {len(frames) - 1}")
-    shape, placement = read_shape(row)
+    frame, made = frames[int(link)], read_shapes(row)
     row.finish()
-    return LinkShape(int(link), shape, frames[int(link)] @ placement)
+    shapes = [LinkShape(int(link), shape, frame @ placement) for shape, placement in made.bodies]
+    return shapes, made.doubts
 
 
 def _touching(row: TomlTable, count: int) -> TouchingLinks:
@@ -283,33 +279,3 @@ def _touching(row: TomlTable, count: int) -> TouchingLinks:
     pair = TouchingLinks(int(first), int(second), row.text("file"), row.text("reason"))
     row.finish()
     return pair
-
-
-def read_shape(row: TomlTable) -> tuple[Shape, Pose]:
-    """A shape by ``kind`` with its lengths, and its frame in the one that these are given in.
-
-    Raises:
-        InputError: naming file and key.
-    """
-    try:
-        return _shape(row)
-    except InputError as error:
-        if str(error).startswith(str(row.file)):
-            raise
-        raise row.error("kind", str(error)) from None
-
-
-def _shape(row: TomlTable) -> tuple[Shape, Pose]:
-    kind = row.choice("kind", ("sphere", "capsule", "cylinder", "box"))
-    if kind == "box":
-        x, y, z = row.quantities("size", LENGTH, 3)
-        return Box((x, y, z)), read_pose(row)
-    radius = row.quantity("radius", LENGTH)
-    if kind == "sphere":
-        x, y, z = row.quantities("centre", LENGTH, 3)
-        return Sphere(radius), Pose((x, y, z))
-    start = np.array(row.quantities("from", LENGTH, 3))
-    end = np.array(row.quantities("to", LENGTH, 3))
-    length = float(np.linalg.norm(end - start))
-    solid = Capsule(radius, length) if kind == "capsule" else Cylinder(radius, length)
-    return solid, pose_along(start, end)

@@ -7,13 +7,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from flyby.core.cell.cell import Cell
 from flyby.core.cell.file import load_cell
 from flyby.core.collision.scene.scene import CollisionScene
+from flyby.core.convex import split
+from flyby.core.convex.decomposition import NotSplitError
 from flyby.core.errors import InputError
 from flyby.core.registry import find_robot, installed
 from flyby.core.robot.shape import Capsule
+from flyby.core.spatial.pose import Pose
 
 UR = 'robot = "ur/ur10e"\n'
 ABB = 'robot = "abb/irb6640-180-255"\n'
@@ -95,7 +99,7 @@ acceleration_rad_s2 = 30
         ("[joint_limit.J1]\njerk_deg_s3 = 10", "jerk"),
         (REACH.format(link="J9", x=0, z=0, top=1), "link"),
         (REACH.format(link="J1", x=0, z=5, top=5), "positive lengths"),
-        (REACH.format(link="J1", x=0, z=5, top=9).replace("capsule", "mesh"), "kind"),
+        (REACH.format(link="J1", x=0, z=5, top=9).replace("capsule", "blob"), "kind"),
         (REACH.format(link="J1", x=0, z=5, top=9).replace("radius_mm", "radius"), "radius"),
     ],
 )
@@ -103,3 +107,56 @@ def test_what_is_wrong_is_told_with_its_key(tmp_path: Path, text: str, message: 
     with pytest.raises(InputError, match=message) as caught:
         loaded(tmp_path, ABB + text)
     assert str(caught.value).count("cell.toml") == 1
+
+
+MESH = """
+[[robot_shape]]
+link = "J3"
+kind = "mesh"
+mesh = "{name}"
+units = "mm"
+xyz_mm = [500, 0, 1000]
+"""
+
+
+def test_a_link_has_the_bodies_that_enclose_its_mesh(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def three(vertices, faces):
+        spans = [((0, 3), (0, 1)), ((0, 1), (1, 3)), ((2, 3), (1, 3))]
+        return [0.1 * np.array(np.meshgrid(*s, (0, 1))).reshape(3, 8).T for s in spans]
+
+    profile = [(0, 0), (3, 0), (3, 3), (2, 3), (2, 1), (1, 1), (1, 3), (0, 3)]
+    caps = [(0, 1, 4), (0, 4, 5), (1, 2, 3), (1, 3, 4), (0, 5, 6), (0, 6, 7)]
+    corners = np.array([(*at, z) for z in (0, 1) for at in profile], float) * 100
+    faces = [(a, c, b) for a, b, c in caps] + [(a + 8, b + 8, c + 8) for a, b, c in caps]
+    for i in range(8):
+        j = (i + 1) % 8
+        faces += [(i, j, j + 8), (i, j + 8, i + 8)]
+    trimesh.Trimesh(corners, faces, process=False).export(tmp_path / "u.stl")
+    monkeypatch.setattr(split, "approximate_parts", three)
+    cell = loaded(tmp_path, ABB + MESH.format(name="u.stl"))
+    own = [shape for shape in cell.robot.shapes if shape.link == 3]
+    assert len(own) == 3
+    assert cell.robot.doubts == find_robot("abb/irb6640-180-255").doubts
+    frame = Pose()
+    for joint in cell.robot.joints[:3]:
+        frame = frame @ joint.placement
+    middles = [(frame @ shape.placement).position for shape in own]
+    wanted = [(0.65, 0.05, 1.05), (0.55, 0.2, 1.05), (0.75, 0.2, 1.05)]
+    np.testing.assert_allclose(middles, wanted, atol=1e-3)
+
+    def not_there(vertices, faces):
+        raise NotSplitError("install something")
+
+    monkeypatch.setattr(split, "approximate_parts", not_there)
+    cell = loaded(tmp_path, ABB + MESH.format(name="u.stl"))
+    assert len([shape for shape in cell.robot.shapes if shape.link == 3]) == 1
+    assert cell.robot.doubts[-1].endswith("install something")
+
+
+def test_meshes_of_links_that_cannot_be_read_are_named(tmp_path: Path) -> None:
+    (tmp_path / "bad.stl").write_bytes(b"nothing")
+    for name in ("bad.stl", "none.stl"):
+        with pytest.raises(InputError, match=rf"cell\.toml.*mesh.*{name}"):
+            loaded(tmp_path, ABB + MESH.format(name=name))
