@@ -12,6 +12,7 @@ from ..core.door import spelt
 from ..core.errors import FlybyError, InputError, Note, OptionError, ParseError
 from .backup.finding import find_backup
 from .backup.opening import read_task, setup_in, task_of
+from .backup.surrounding import surrounding_note
 from .catalogue import registry
 from .options.entries import TaskOptions, count, value
 from .options.keywords import by_keywords
@@ -95,7 +96,13 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
         return _read_backup(backup, options)
     if options.task is not None:
         raise OptionError(f"{spelt('task')} {options.task}: {source} is no backup with tasks")
-    setup = setup_of(options)
+    note = _surrounding(source)
+    try:
+        setup = setup_of(options)
+    except InputError as error:
+        if note is None or options.robot is not None or options.cell is not None:
+            raise
+        raise type(error)(f"{error}; {note}") from None
     vendor, robot = setup.vendor, setup.robot
     start = joint_target(options.start, spelt("start"), robot)
     if isinstance(source, str) and "\n" in source:
@@ -117,7 +124,15 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
             start,
             robot,
         )
-    return replace(program, setup=setup)
+    notes = program.notes if note is None else (note, *program.notes)
+    return replace(program, setup=setup, notes=notes)
+
+
+def _surrounding(source: str | Path) -> Note | None:
+    """What to do with a program file that lies in a backup."""
+    if (isinstance(source, str) and "\n" in source) or not Path(source).is_file():
+        return None
+    return surrounding_note(Path(source), registry())
 
 
 def from_ready_posture(

@@ -55,11 +55,11 @@ def find_backup(path: str | Path, registry: Registry) -> Backup | None:
     notes: tuple[Note, ...] = ()
     folder, unpacked = source, None
     if source.is_dir():
-        names = _names(source)
+        names = names_below(source)
     elif is_archive(source):
         unpacked, notes = unpack(source)
         folder = unpacked
-        names = _names(folder)
+        names = names_below(folder)
     else:
         folder, names = source.parent, [source.name]
     found = _nearest(source, _found(names, registry))
@@ -107,7 +107,7 @@ def _nearest(source: Path, found: Iterator[_Found]) -> _Found | None:
     return nearest[0] if nearest else None
 
 
-def _names(folder: Path) -> list[str]:
+def names_below(folder: Path) -> list[str]:
     """The files below a folder, links passed over.
 
     Raises:
