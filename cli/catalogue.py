@@ -168,11 +168,16 @@ def _robot_json(robot: Robot, vendor: Vendor) -> dict[str, Any]:
         "origins": dict(robot.origins),
         "spread": dict(robot.spread),
         "doubts": list(robot.doubts),
+        "may_touch": [
+            {"links": [p.first, p.second], "file": p.file, "reason": p.reason}
+            for p in robot.may_touch
+        ],
         "motion_fitted_to": None if taught is None else range_entries(taught),
     }
 
 
 def _print_robot(robot: Robot, vendor: Vendor) -> None:
+    from ..core.collision.scene.allowed_pairs import robot_notes
     from ..core.motion.model.taught_range import shown
     from ..core.robot.joint import COLUMNS
 
@@ -183,6 +188,8 @@ def _print_robot(robot: Robot, vendor: Vendor) -> None:
         print_rich(f"Emulation only: {reason}")
     print_table(COLUMNS, [joint.cells() for joint in robot.joints])
     print_table((("figures", "left"), ("origin", "left")), list(robot.origins.items()))
+    for note in robot_notes(robot):
+        print_rich(f"In collisions: {note}")
     for doubt in robot.doubts:
         print_rich(f"In doubt: {doubt}")
     taught = vendor.motion_of(robot).taught

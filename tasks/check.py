@@ -67,6 +67,7 @@ def clearance_findings(
     if setup.cell is None or not (found or notes):
         return []
     from ..core.collision.clearance import nearest_of
+    from ..core.collision.scene.allowed_pairs import robot_notes
     from ..core.lint.check import CLEARANCE, COLLISION, NEAREST
 
     allow = "or let them touch: [allow] pairs in the cell file"
@@ -98,8 +99,14 @@ def clearance_findings(
             told.append(
                 _finding(course, NEAREST, message, "nothing, if that is enough", least.move)
             )
-    fix = "complete the cell file"
-    told += [_finding(course, NEAREST, n.message, fix, n.move, n.span) for n in notes]
+    allowed = {note.message for note in robot_notes(setup.robot)}
+    for note in notes:
+        fix = (
+            "nothing, if that file is right"
+            if note.message in allowed
+            else "complete the cell file"
+        )
+        told.append(_finding(course, NEAREST, note.message, fix, note.move, note.span))
     return told
 
 

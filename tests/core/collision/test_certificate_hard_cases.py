@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +26,7 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Tool
 from flyby.core.registry import find_robot, find_vendor
-from flyby.core.robot.shape import Sphere
+from flyby.core.robot.shape import Sphere, TouchingLinks
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
 
@@ -149,6 +150,21 @@ def test_what_is_in_the_gap_of_a_tool_is_clear_where_it_is_split(
     centres = [frame.inverse() @ Pose(at.position) for frame in frames]
     _, gaps, _ = trimesh.proximity.closest_point(surface, [c.position for c in centres])
     assert 0.01 < found.clearance <= gaps.min() - 0.02 + 1e-6
+
+
+def test_what_a_proof_takes_for_granted_of_the_arm_is_said() -> None:
+    cell = cell_with(POINT)
+    _, found = check(cell, 0.0, turn(0.01))
+    assert found.proven
+    assumed = cell.robot.origins["shape"].startswith("assumed")
+    assert ("(shape assumed)" in found.message) is assumed
+    pair = TouchingLinks(1, 3, "arm.srdf", "Never")
+    origins = {**cell.robot.origins, "shape": "published: x" if assumed else "assumed: x"}
+    robot = replace(cell.robot, may_touch=(pair,), origins=origins)
+    _, found = check(replace(cell, robot=robot), 0.0, turn(0.01))
+    assert found.proven
+    assert ("(shape assumed)" in found.message) is not assumed
+    assert "(pairs allowed to touch by arm.srdf)" in found.message
 
 
 def deep_block() -> Obstacle:
