@@ -23,14 +23,18 @@ from ..arrays import FloatArray
 from ..errors import FlybyError
 from ..files.arrays import read_npz
 from ..files.writing import write_files
-from .coacd_worker import MOST_PARTS, NAMES, THRESHOLD
+from .coacd_worker import MOST_PARTS, NAMES, SEARCH, THRESHOLD
 
 REMEDY = "pip install 'flyby[shapes]'"
 VARIABLE = "FLYBY_CACHE"
 """Environment variable of a folder for what is kept between runs."""
 MOST_TRIANGLES = 200_000
-LONGEST = 300.0
+LONGEST = 60.0
 """s that CoACD may take."""
+_LATE = (
+    f"CoACD does not split it into convex parts within {LONGEST:.0f} s: make it coarser, or save "
+    "it as convex solids"
+)
 _MOST_BYTES = 50_000_000
 
 
@@ -57,12 +61,20 @@ def approximate_parts(vertices: FloatArray, faces: NDArray[np.int64]) -> list[Fl
             f"its {len(faces):,} triangles are too many to split it into convex parts (at most "
             f"{MOST_TRIANGLES:,}): make it coarser"
         )
-    settings = f"{library} {THRESHOLD} {MOST_PARTS}".encode()
+    settings = f"{library} {THRESHOLD} {MOST_PARTS} {SEARCH} {LONGEST}".encode()
     content = np.ascontiguousarray(vertices).tobytes() + np.ascontiguousarray(faces).tobytes()
     file = cache_folder() / f"{sha256(settings + content).hexdigest()}.npz"
     with contextlib.suppress(FlybyError, OSError):
         return _parts(read_npz(file, NAMES, _MOST_BYTES))
-    answer = _asked(vertices, faces)
+    given_up = file.with_suffix(".late")
+    if given_up.exists():
+        raise NotSplitError(_LATE)
+    try:
+        answer = _asked(vertices, faces)
+    except subprocess.TimeoutExpired:
+        with contextlib.suppress(FlybyError, OSError):
+            write_files({given_up: _LATE.encode()}, file.parent)
+        raise NotSplitError(_LATE) from None
     try:
         with contextlib.suppress(FlybyError, OSError):
             write_files({file: answer}, file.parent)
@@ -93,11 +105,6 @@ def _asked(vertices: FloatArray, faces: NDArray[np.int64]) -> bytes:
         done = subprocess.run(
             command, input=question.getvalue(), capture_output=True, timeout=LONGEST, check=False
         )
-    except subprocess.TimeoutExpired:
-        raise NotSplitError(
-            f"CoACD does not split it into convex parts within {LONGEST:.0f} s: make it coarser, "
-            "or save it as convex solids"
-        ) from None
     except OSError as error:
         raise NotSplitError(f"CoACD cannot be started: {error}") from None
     if done.returncode != 0:

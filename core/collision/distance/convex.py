@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...arrays import FloatArray
 from ...cell.geometry import Mesh
-from ...convex.split import Split, split
+from ...convex.split import split
 from ...errors import InputError, Note
 from .solid import Polytope, Solid, TriangleMesh, connected_parts
 
@@ -47,14 +47,18 @@ def tool_solids(name: str, mesh: Mesh) -> tuple[list[Solid], list[Note]]:
     Raises:
         InputError: the mesh cannot be used.
     """
-    parts = [_part(mesh.vertices, mesh.faces[row]) for row in _part_rows(mesh)]
+    rows = _part_rows(mesh)
+    parts = [_part(mesh.vertices, mesh.faces[row]) for row in rows]
     notes = list(mesh.notes)
     if all(part.convex for part in parts):
         return [part.hull for part in parts], notes
     solids: list[Solid] = []
     lacks = None
-    for part, row in zip(parts, _part_rows(mesh), strict=True):
-        made = Split(()) if part.convex else split(mesh.vertices, mesh.faces[row])
+    for part, row in zip(parts, rows, strict=True):
+        if part.convex:
+            solids.append(part.hull)
+            continue
+        made = split(mesh.vertices, mesh.faces[row])
         lacks = lacks or made.lacks
         solids += [part.hull] if len(made.parts) < 2 else [hull(points) for points in made.parts]
     remedy = "a mesh of convex parts is used as it is" if lacks is None else lacks
