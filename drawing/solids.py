@@ -46,10 +46,9 @@ def obstacle_triangles(cell: Cell, q: FloatArray) -> dict[str, FloatArray]:
 def robot_triangles(cell: Cell, tool: str, q: FloatArray) -> FloatArray:
     """Corners (F, 3, 3) m in the world of the robot's shapes and its tool's at q (N,)."""
     robot = cell.robot
-    flange = robot.flange_stages()
-    links = len(flange) - robot.arm_size - 1
+    base, flange = robot.base_stages(), robot.flange_stages()
     parts = [
-        _placed(Geometry(s.shape, s.placement), flange[: links + s.link], q[None])[0]
+        _placed(Geometry(s.shape, s.placement), [*base, *robot.arm_stages(s.link)], q[None])[0]
         for s in robot.shapes
     ]
     held = tool in cell.tool_geometries and cell.tools[tool].robot_held
@@ -60,11 +59,11 @@ def robot_triangles(cell: Cell, tool: str, q: FloatArray) -> FloatArray:
 
 def skeleton(robot: Robot, tip: Pose, q: FloatArray) -> FloatArray:
     """Base, joints' origins, flange and the tool's tip (M, n + 3, 3) m at q (M, N)."""
-    stages = [*robot.flange_stages(), tip]
-    first = len(stages) - robot.arm_size - 2
-    ends = range(first, len(stages) + 1)
+    base, flange = robot.base_stages(), robot.flange_stages()
+    ends = [[*base, *robot.arm_stages(k)] for k in range(robot.arm_size + 1)]
+    ends += [flange, [*flange, tip]]
     q = np.ascontiguousarray(q)
-    return np.stack([poses(assemble(stages[:k]), q)[1] for k in ends], axis=1)
+    return np.stack([poses(assemble(stages), q)[1] for stages in ends], axis=1)
 
 
 def _placed(geometry: Geometry, stages: list[Stage], q: FloatArray) -> FloatArray:

@@ -6,11 +6,11 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..spatial.pose import Pose
-from .joint import Joint, JointKind
+from .joint import Follower, Joint, JointKind
 from .kinematics.chain import Chain
 
-Stage = Pose | tuple[Joint, int]
-"""A fixed step, or a joint with the index of its value in the configuration."""
+Stage = Pose | tuple[Joint | Follower, int]
+"""A fixed step, or a joint (or what follows one) with the index of its value."""
 
 
 def assemble(stages: list[Stage]) -> Chain:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import InputError
 from ..files.toml_text import key_text, value_text
 from ..spatial.pose import IDENTITY, Pose, Vector3
 from ..spatial.rotation import matrix_from_quaternion
@@ -27,9 +28,17 @@ def robot_text(robot: Robot) -> str:
     Args:
         robot: the arm.
 
+    Raises:
+        InputError: a joint has followers.
+
     Returns:
         TOML; every number is read back as it was to within rounding of its last digits.
     """
+    if robot.has_followers:
+        raise InputError(
+            f"{robot.name}: rods or gears turn one of its joints with another, for which catalogue "
+            "files have no keys yet"
+        )
     head: dict[str, Any] = {"name": robot.name}
     head |= {} if robot.payload is None else {"payload_kg": robot.payload}
     head |= {"doubts": list(robot.doubts)} if robot.doubts else {}

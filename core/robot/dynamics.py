@@ -12,7 +12,7 @@ import pinocchio as pin
 from ..arrays import FloatArray
 from ..spatial.pose import Pose, Vector3
 from .inertia import Inertia
-from .joint import Joint, JointKind
+from .joint import Follower, Joint, JointKind
 from .kinematics.chain import Chain
 from .torque_gradient import TreeBodies, pull_torques
 
@@ -22,14 +22,14 @@ class TreeNode:
     """A joint and the body behind it.
 
     Args:
-        joint: the joint.
+        joint: the joint, or what follows one.
         parent: number of the node it stands on, -1 for the world.
         step: a further placement between the parent's frame and the joint's own placement.
-        index: of the joint's value in the configuration.
+        index: of the joint's value in the configuration; several may share one.
         body: in the frame behind the joint; None if not known.
     """
 
-    joint: Joint
+    joint: Joint | Follower
     parent: int
     step: Pose
     index: int
@@ -58,6 +58,9 @@ class Dynamics:
         self._pool = pin.ModelPool(self._model, 1)
         # Pinocchio's order of values is that of the nodes.
         self._order = np.array([node.index for node in tree.nodes])
+        # What a value drives in several places needs the sum of their torques.
+        self._drives = np.zeros((len(tree.nodes), 1 + int(self._order.max())))
+        self._drives[np.arange(len(tree.nodes)), self._order] = 1.0
         self._unknown = [node.index for node in tree.nodes if node.body is None]
         self._bodies, self._gravity = _bodies(tree), np.array(tree.gravity)
 
@@ -73,7 +76,7 @@ class Dynamics:
         if len(q):
             found = np.asarray(pin.rneaInParallel(1, self._pool, *columns))
             # Pinocchio drops the axis of a single joint.
-            torques[:, self._order] = found.reshape(len(self._order), -1).T
+            torques[:] = found.reshape(len(self._order), -1).T @ self._drives
         torques[:, self._unknown] = np.nan
         return torques
 
@@ -81,14 +84,14 @@ class Dynamics:
         self, q: FloatArray, dq: FloatArray, ddq: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """∂τ/∂q, ∂τ/∂q̇ and ∂τ/∂q̈, each (M, N, N)."""
-        count, size = q.shape
-        parts = np.empty((3, count, size, size))
+        count = len(q)
+        nodes = len(self._order)
+        parts = np.empty((3, count, nodes, nodes))
         rows = zip(*(np.ascontiguousarray(x[:, self._order]) for x in (q, dq, ddq)), strict=True)
         for m, (at, rate, rise) in enumerate(rows):
             derivatives = pin.computeRNEADerivatives(self._model, self._data, at, rate, rise)
             parts[0, m], parts[1, m], parts[2, m] = derivatives[:3]
-        back = np.argsort(self._order)
-        parts = parts[:, :, back][:, :, :, back]
+        parts = self._drives.T @ parts @ self._drives
         parts[:, :, self._unknown] = np.nan
         return parts[0], parts[1], parts[2]
 
@@ -112,12 +115,10 @@ def _pinocchio_model(tree: JointTree) -> Any:
     model.name = tree.name
     model.gravity.linear = np.array(tree.gravity)
     ids: list[int] = []
-    for node in tree.nodes:
+    for number, node in enumerate(tree.nodes):
         matrix = node.step.matrix() @ node.joint.placement.matrix()
         parent = 0 if node.parent < 0 else ids[node.parent]
-        identity = model.addJoint(
-            parent, _joint_model(node.joint), pin.SE3(matrix), node.joint.name
-        )
+        identity = model.addJoint(parent, _joint_model(node.joint), pin.SE3(matrix), str(number))
         body = node.body or Inertia(0.0)
         inertia = pin.Inertia(body.mass, np.array(body.centre), np.array(body.tensor))
         model.appendBodyToJoint(identity, inertia, pin.SE3.Identity())
@@ -148,7 +149,7 @@ def _bodies(tree: JointTree) -> TreeBodies:
     )
 
 
-def _joint_model(joint: Joint) -> Any:
+def _joint_model(joint: Joint | Follower) -> Any:
     axis = np.array(joint.axis) / np.linalg.norm(joint.axis)
     if joint.kind is JointKind.PRISMATIC:
         return pin.JointModelPrismaticUnaligned(axis)

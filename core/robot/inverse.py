@@ -160,6 +160,7 @@ def _closed_form(
 ) -> tuple[list[UnboundedSolution], float]:
     q, measures = np.empty((8, 6)), np.empty((8, 4))
     least = float(SOLVERS[known.family](known.geometry, R, p, q, measures))
+    q = np.ascontiguousarray(known.values(q))
     candidates = []
     for number, (bits, (*sizes, missing)) in enumerate(
         zip(_BRANCHES, measures.tolist(), strict=True)

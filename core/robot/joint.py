@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import InputError
-from ..spatial.pose import Pose, Vector3
+from ..spatial.pose import IDENTITY, Pose, Vector3
 from .inertia import Inertia
 
 COLUMNS = (
@@ -34,6 +34,38 @@ class JointKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class Follower:
+    """A turn behind a joint that has no motor of its own: rods or gears make it.
+
+    A forearm that a rod holds against the base turns back by the angle of the upper arm's joint:
+    behind the joint of the forearm, a follower about the reversed axis.
+
+    Args:
+        driver: name of the arm's joint whose value it turns by.
+        axis: unit axis in its own frame; the opposite one turns it against its driver.
+        placement: its frame in the frame behind the joint, or the follower, before.
+
+    Raises:
+        InputError: the axis is no unit vector.
+    """
+
+    driver: str
+    axis: Vector3
+    placement: Pose = IDENTITY
+
+    def __post_init__(self) -> None:
+        if abs(math.hypot(*self.axis) - 1.0) > 1e-6:
+            raise InputError(
+                f"what follows joint {self.driver}: axis {self.axis} must have length 1"
+            )
+
+    @property
+    def kind(self) -> JointKind:
+        """Followers turn."""
+        return JointKind.REVOLUTE
+
+
+@dataclass(frozen=True, slots=True)
 class Joint:
     """One joint with one value: rad if revolute, m if prismatic.
 
@@ -46,6 +78,8 @@ class Joint:
         acceleration: largest acceleration, rad/s² or m/s².
         effort: largest torque N m (force N); None if it is not known.
         kind: revolute or prismatic.
+        followers: turns by other joints' values, one behind the other; the frame behind the joint
+            is that behind the last of them.
 
     Raises:
         InputError: a number is not finite, the range is empty, or the axis is no unit vector.
@@ -60,6 +94,7 @@ class Joint:
     acceleration: float
     effort: float | None = None
     kind: JointKind = JointKind.REVOLUTE
+    followers: tuple[Follower, ...] = ()
 
     def __post_init__(self) -> None:
         if abs(math.hypot(*self.axis) - 1.0) > 1e-6:

@@ -19,7 +19,7 @@ from .assembly import Stage, assemble
 from .dynamics import Dynamics, JointTree, TreeNode
 from .inertia import Inertia
 from .inverse import InverseSolution, Ranges, equivalent_turns, solve
-from .joint import COLUMNS, ExternalAxis, ExternalRole, Joint, JointLimits
+from .joint import COLUMNS, ExternalAxis, ExternalRole, Follower, Joint, JointKind, JointLimits
 from .kinematics.arm_geometry import Recognised, recognise
 from .kinematics.chain import Chain
 from .kinematics.chain_derivatives import hessians
@@ -86,6 +86,7 @@ class Robot:
                 f"robot {self.name} has {self.arm_size} joints but inertias of "
                 f"{len(self.links)} links; give one behind each joint, or none"
             )
+        self._check_followers()
         for shape in self.shapes:
             if not 0 <= shape.link <= self.arm_size:
                 raise InputError(f"robot {self.name}: a shape belongs to link {shape.link}")
@@ -98,6 +99,22 @@ class Robot:
         for axis in self.external_axes:
             self.frame_stages(axis.name)
         self._carrying_track()
+
+    def _check_followers(self) -> None:
+        turning = [joint.name for joint in self.joints if joint.kind is JointKind.REVOLUTE]
+        for joint in self.joints:
+            for follower in joint.followers:
+                if follower.driver not in turning:
+                    raise InputError(
+                        f"robot {self.name}: behind joint {joint.name} a turn follows "
+                        f"{follower.driver!r}, but the arm's turning joints are "
+                        f"{', '.join(turning)}"
+                    )
+
+    @property
+    def has_followers(self) -> bool:
+        """Whether rods or gears turn one of the arm's joints with another."""
+        return any(joint.followers for joint in self.joints)
 
     def __repr__(self) -> str:
         carries = "payload not known" if self.payload is None else f"payload {self.payload:g} kg"
@@ -114,10 +131,9 @@ class Robot:
     def outline(self) -> FloatArray:
         """Base, joints and flange (n + 2, 3) m in the world, all axes as near to zero as can be."""
         q = np.clip(np.zeros((1, self.size)), self.limits.lower, self.limits.upper)
-        stages = self.flange_stages()
-        first = len(stages) - self.arm_size - 1
-        ends = range(first, len(stages) + 1)
-        return np.concatenate([poses(assemble(stages[:k]), q)[1] for k in ends])
+        base = self.base_stages()
+        ends = [[*base, *self.arm_stages(k)] for k in range(self.arm_size + 1)]
+        return np.concatenate([poses(assemble(s), q)[1] for s in [*ends, self.flange_stages()]])
 
     @property
     def arm_size(self) -> int:
@@ -204,8 +220,21 @@ class Robot:
 
     def flange_stages(self) -> list[Stage]:
         """The stages from the world to the flange."""
-        arm: list[Stage] = [(joint, index) for index, joint in enumerate(self.joints)]
-        return [*self.base_stages(), *arm, self.flange]
+        return [*self.base_stages(), *self.arm_stages(), self.flange]
+
+    def arm_stages(self, count: int | None = None) -> list[Stage]:
+        """The stages from the base's frame to that behind the first ``count`` joints (None: all).
+
+        What follows a joint is a stage of its own, with the index of the joint that drives it.
+        """
+        stages: list[Stage] = []
+        for index, joint in enumerate(self.joints[:count]):
+            stages += [(joint, index), *self._followers(joint)]
+        return stages
+
+    def _followers(self, joint: Joint) -> list[tuple[Joint | Follower, int]]:
+        """What follows a joint, with the index of what drives it."""
+        return [(one, self.axis_names.index(one.driver)) for one in joint.followers]
 
     @cached_property
     def chain(self) -> Chain:
@@ -220,7 +249,7 @@ class Robot:
     @cached_property
     def arm_chain(self) -> Chain:
         """The chain from the base's frame to the flange, over the arm's n values."""
-        return assemble([*((joint, k) for k, joint in enumerate(self.joints)), self.flange])
+        return assemble([*self.arm_stages(), self.flange])
 
     # Kinematics
 
@@ -328,8 +357,11 @@ class Robot:
         for index, (joint, body) in enumerate(zip(self.joints, self.links, strict=True)):
             if index == self.arm_size - 1:
                 body = body + load.placed(self.flange)
-            nodes.append(TreeNode(joint, parent, step, index, body))
-            parent, step = len(nodes) - 1, IDENTITY
+            turns: list[tuple[Joint | Follower, int]] = [(joint, index), *self._followers(joint)]
+            for turn, driver in turns:
+                carried = body if turn is turns[-1][0] else Inertia(0.0)
+                nodes.append(TreeNode(turn, parent, step, driver, carried))
+                parent, step = len(nodes) - 1, IDENTITY
         return JointTree(self.name, tuple(nodes), self.gravity)
 
     def inverse_dynamics(

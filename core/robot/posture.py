@@ -39,7 +39,8 @@ def posture(robot: Robot, q: ArrayLike) -> Posture | None:
     if known is None or known.family is not Family.SPHERICAL_WRIST:
         return None
     arm = known.geometry
-    _, q2, q3, _, q5 = (float(value) for value in np.asarray(q)[:5])
+    angles = known.angles(np.asarray(q, dtype=float)[:6])
+    _, q2, q3, _, q5 = (float(value) for value in angles[:5])
     # The plane that axes 2 and 3 are normal to, x real, z imaginary; a turn about y takes z to x.
     shoulder, elbow, wrist = (complex(x, z) for x, z in (arm.shoulder, arm.elbow, arm.wrist))
     lower = (elbow - shoulder) * cmath.exp(-1j * q2)

@@ -55,7 +55,7 @@ def nearest_singularity(robot: Robot, q: ArrayLike) -> Singularity | None:
     R, p = poses(robot.arm_chain, arm[None])
     solutions, measures = np.empty((8, 6)), np.empty((8, 4))
     SOLVERS[known.family](known.geometry, R[0], p[0], solutions, measures)
-    apart = solutions - arm
+    apart = solutions - known.angles(arm)
     apart -= FULL_TURN * np.round(apart / FULL_TURN)
     shoulder, *sines = np.abs(measures[np.argmin(np.abs(apart).max(axis=1)), :3])
     upper = np.linalg.norm(known.geometry.elbow - known.geometry.shoulder)

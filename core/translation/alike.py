@@ -86,8 +86,9 @@ def _elbow_height(robot: Robot, q: FloatArray) -> float:
     arm = known.geometry
     # The plane that axes 2 and 3 are normal to, x real, z imaginary; a turn about y takes z to x.
     shoulder, elbow, wrist = (complex(x, z) for x, z in (arm.shoulder, arm.elbow, arm.wrist))
-    lower = (elbow - shoulder) * cmath.exp(-1j * q[1])
-    reach = lower + (wrist - elbow) * cmath.exp(-1j * (q[1] + arm.signs[2] * q[2]))
+    angles = known.angles(q[:6])
+    lower = (elbow - shoulder) * cmath.exp(-1j * angles[1])
+    reach = lower + (wrist - elbow) * cmath.exp(-1j * (angles[1] + arm.signs[2] * angles[2]))
     if abs(reach) < _EDGE:
         return 0.0
     along = (lower * reach.conjugate()).real / abs(reach) ** 2

@@ -60,16 +60,16 @@ class SweptArm:
 def _axes(robot: Robot, tool: Geometry, q: FloatArray) -> Iterable[tuple[float, FloatArray]]:
     """The radius and the points (P, 3) of each shape's axis over all configurations."""
     stages = robot.flange_stages()
-    first = len(robot.base_stages())
-    shapes = [(first + s.link, s.shape, s.placement) for s in robot.shapes]
-    for count, shape, placement in [*shapes, (len(stages), tool.shape, tool.placement)]:
+    base = robot.base_stages()
+    shapes = [([*base, *robot.arm_stages(s.link)], s.shape, s.placement) for s in robot.shapes]
+    for carried, shape, placement in [*shapes, (stages, tool.shape, tool.placement)]:
         if not isinstance(shape, Sphere | Capsule | Cylinder):
             raise InputError(f"a swept arm is made of spheres, capsules and cylinders, not {shape}")
         length = 0.0 if isinstance(shape, Sphere) else shape.length
         steps = int(np.ceil(length / SPACING)) + 1
         line = np.zeros((steps, 3))
         line[:, 2] = np.linspace(-0.5, 0.5, steps) * length if steps > 1 else 0.0
-        R, p = poses(assemble([*stages[:count], placement]), q)
+        R, p = poses(assemble([*carried, placement]), q)
         yield shape.radius, (np.einsum("mij,sj->msi", R, line) + p[:, None]).reshape(-1, 3)
 
 

@@ -13,8 +13,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray
+from ...errors import InputError
 from ...robot.assembly import Stage
-from ...robot.joint import Joint, JointKind
+from ...robot.joint import Follower, Joint, JointKind
 from ...robot.kinematics.vectors import (
     Rotation,
     Vector,
@@ -82,7 +83,16 @@ def frame_of_axis(robot: Robot, name: str) -> int:
 
 
 def frame_tree(robot: Robot) -> FrameTree:
-    """All frames of a robot with its external axes."""
+    """All frames of a robot with its external axes.
+
+    Raises:
+        InputError: a joint of the arm has followers, for which there are no frames yet.
+    """
+    if robot.has_followers:
+        raise InputError(
+            f"collisions of {robot.name} are not computed: rods or gears turn one of its joints "
+            "with another, which the bodies of a scene do not follow yet"
+        )
     count = robot.size + 1
     parent = np.zeros(count, dtype=np.int64)
     rotation, translation = np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3))
@@ -105,7 +115,7 @@ def frame_tree(robot: Robot) -> FrameTree:
     return FrameTree(parent, places, rotation, translation, axis, prismatic, moves)
 
 
-def _stages(robot: Robot) -> list[tuple[int, Pose, Joint, int]]:
+def _stages(robot: Robot) -> list[tuple[int, Pose, Joint | Follower, int]]:
     """Every axis as (frame below, fixed step from it, joint, index), carriers first."""
     chains = [robot.frame_stages(axis.name) for axis in robot.external_axes]
     found = []
@@ -114,7 +124,7 @@ def _stages(robot: Robot) -> list[tuple[int, Pose, Joint, int]]:
     return found
 
 
-def _walk(chain: list[Stage]) -> list[tuple[int, Pose, Joint, int]]:
+def _walk(chain: list[Stage]) -> list[tuple[int, Pose, Joint | Follower, int]]:
     frame, step, found = WORLD, IDENTITY, []
     for stage in chain:
         if isinstance(stage, Pose):

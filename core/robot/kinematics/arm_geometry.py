@@ -59,11 +59,30 @@ class ArmGeometry(NamedTuple):
 
 
 class Recognised(NamedTuple):
-    """An arm's family, its numbers, and how far (rad, m) its axes miss the ideal."""
+    """An arm's family and its numbers.
+
+    Args:
+        family: which closed form.
+        geometry: its numbers.
+        error: rad and m, how far the axes miss the ideal.
+        coupling: (6, 6), whole numbers: the angles that the closed form speaks of are
+            ``coupling @ q``. They differ from q where joints have followers.
+    """
 
     family: Family
     geometry: ArmGeometry
     error: float
+    coupling: FloatArray
+
+    def angles(self, q: FloatArray) -> FloatArray:
+        """Angles (..., 6) of the axes of joints with the values q (..., 6)."""
+        turned: FloatArray = q @ self.coupling.T
+        return turned
+
+    def values(self, angles: FloatArray) -> FloatArray:
+        """Reverse of `angles`."""
+        back: FloatArray = angles @ np.rint(np.linalg.inv(self.coupling)).T
+        return back
 
 
 class _Lines(NamedTuple):
@@ -77,14 +96,45 @@ class _Lines(NamedTuple):
 
 def recognise(chain: Chain) -> Recognised | None:
     """The closed form that fits an arm's chain (base to flange) within `NEAR`, None if none."""
-    if chain.joint.size != 6 or chain.prismatic.any():
+    if chain.prismatic.any():
+        return None
+    chain, coupling = _uncoupled(chain)
+    if coupling.shape != (6, 6) or (np.diag(coupling) != 1.0).any() or np.triu(coupling, 1).any():
         return None
     lines = _lines(chain)
     for family in Family:
         geometry, error = _geometry(lines, family)
         if error < NEAR:
-            return Recognised(family, geometry, error)
+            return Recognised(family, geometry, error, coupling)
     return None
+
+
+def _uncoupled(chain: Chain) -> tuple[Chain, FloatArray]:
+    """The chain (of turning joints) with a value for each axis, and those axes' angles (K, N) by
+    the values of all: turns about one axis right behind each other are one."""
+    kept: list[int] = []
+    size = int(chain.joint.max()) + 1
+    rows: list[FloatArray] = []
+    for k, value in enumerate(np.eye(size)[chain.joint] * chain.sign[:, None]):
+        along = float(chain.axis[k] @ chain.axis[k - 1]) if kept else 0.0
+        still = np.abs(chain.rotation[k] - np.eye(3)).max() < EXACT
+        still = bool(still and np.abs(chain.translation[k]).max() < EXACT)
+        if still and abs(along) > 1.0 - EXACT and chain.joint[k] in chain.joint[:k]:
+            first = kept[-1]
+            same = np.sign(chain.axis[k] @ chain.axis[first]) * chain.sign[first]
+            rows[-1] = rows[-1] + same * value
+        else:
+            kept.append(k)
+            rows.append(value * chain.sign[k])
+    serial = chain._replace(
+        rotation=chain.rotation[kept],
+        translation=chain.translation[kept],
+        axis=chain.axis[kept],
+        prismatic=chain.prismatic[kept],
+        joint=np.arange(len(kept)),
+        sign=chain.sign[kept],
+    )
+    return serial, np.array(rows)
 
 
 def _lines(chain: Chain) -> _Lines:
