@@ -169,9 +169,9 @@ def first_turn(
     No joint turns it faster than by itself, which makes each step of the search safe down to steps
     of 1e-4 of the line.
     """
-    turning = np.zeros(q_wp.size, dtype=np.bool_)
-    turning[chain.joint[~chain.prismatic]] = True
-    fastest = float(np.abs(q_other - q_wp)[turning].sum())
+    # An axis counts as often as it turns: followers may add to it.
+    turns = np.bincount(chain.joint[~chain.prismatic], minlength=q_wp.size)
+    fastest = float((turns * np.abs(q_other - q_wp)).sum())
     low = share = 0.0
     while True:
         gap = angle - tool_apart(chain, q_wp, q_other, share)[0]

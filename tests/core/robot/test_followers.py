@@ -16,6 +16,7 @@ from flyby.core.robot.inertia import Inertia
 from flyby.core.robot.joint import Follower
 from flyby.core.robot.posture import posture
 from flyby.core.spatial.pose import Pose
+from flyby.problems.free_motion.optimal_control.task.torque_bounds import BendBounds
 
 from .conftest import abb
 
@@ -113,6 +114,11 @@ def test_a_joint_that_follows_elsewhere_has_no_closed_form() -> None:
     pose = arm.flange_pose(q)
     for solution in arm.inverse(pose):
         np.testing.assert_allclose(arm.flange_pose(solution.q).matrix(), pose.matrix(), atol=1e-8)
+
+
+def test_bends_of_torques_are_refused() -> None:
+    with pytest.raises(InputError, match="test/rod-arm"):
+        BendBounds(ROD, None, Pose(), np.ones((1, 6, 5)))
 
 
 def test_what_does_not_know_followers_refuses_them() -> None:

@@ -17,6 +17,7 @@ from math import comb
 import numpy as np
 
 from .....core.arrays import FloatArray
+from .....core.errors import InputError
 from .....core.robot.inertia import Inertia
 from .....core.robot.joint import JointKind
 from .....core.robot.model import Robot
@@ -33,9 +34,17 @@ class BendBounds:
         load: in the flange's frame.
         tcp: in the flange's frame.
         rates: (M, N, 5), bounds of |q|, |q̇| and on to |q⁗|.
+
+    Raises:
+        InputError: a joint of the arm has followers.
     """
 
     def __init__(self, robot: Robot, load: Inertia | None, tcp: Pose, rates: FloatArray) -> None:
+        if robot.has_followers:
+            raise InputError(
+                f"the torques of {robot.name} between samples are not bounded: rods or gears turn "
+                "one of its joints with another, which the bounds do not follow yet"
+            )
         self._robot = robot
         self._bodies = _bodies(robot, load)
         self._count = len(rates)
