@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from flyby.tasks.pareto import pareto
     from flyby.tasks.read import read
     from flyby.tasks.record import record
+    from flyby.tasks.station.station import station
     from flyby.tasks.translate import translate
     from flyby.tasks.tune import tune
     from flyby.tasks.write import patch, write
@@ -53,6 +54,7 @@ __all__ = [
     "record",
     "robot",
     "robots",
+    "station",
     "translate",
     "tune",
     "vendors",
@@ -67,6 +69,7 @@ _ELSEWHERE = {
     "patch": "write",
     "robot": "catalogue",
     "robots": "catalogue",
+    "station": "station.station",
 }
 """Files of `flyby.tasks` that are not called as what they hold."""
 

@@ -30,6 +30,7 @@ COMMANDS = {
     "free": "free",
     "tune": "free",
     "paint": "paint",
+    "station": "station",
     "import": "backup",
     "diff": "diff",
     "robots": "catalogue",

@@ -20,7 +20,7 @@ from .program.zone import Radius, Zone
 if TYPE_CHECKING:
     from .program.event import Event
     from .program.move import Move
-    from .program.signal import SignalAction
+    from .program.signal import Meet, SignalAction
 
 _VISIBLE = re.compile(r"[^\r\n]")
 _LISTED = re.compile(r"(?:\[[^\]]*\]|\{[^}]*\}|[^,\[{])+")
@@ -121,6 +121,10 @@ def _as_it_is(text: str) -> str:
     return text
 
 
+def _no_meeting(text: str) -> Meet | None:
+    return None
+
+
 @dataclass(frozen=True)
 class SignalWords:
     """How a language sets outputs and waits for signals, in statements of their own.
@@ -132,6 +136,7 @@ class SignalWords:
         example: what a signal of such an action is called, with ``?`` for what the user fills in.
         event: the statement that the text of an event on the way is short for.
         stops: whether the robot stops where an output is set.
+        meets: what a statement waits for of other robots' programs; None for nothing.
     """
 
     read: Callable[[str], SignalAction | None]
@@ -140,6 +145,7 @@ class SignalWords:
     example: Callable[[SignalAction], str]
     event: Callable[[str], str] = _as_it_is
     stops: bool = False
+    meets: Callable[[str], Meet | None] = _no_meeting
 
 
 @dataclass(frozen=True)

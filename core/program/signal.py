@@ -88,3 +88,17 @@ def negated(condition: Condition) -> Condition:
     if isinstance(condition, Level):
         return Level(condition.name, not condition.on)
     return Joined(tuple(map(negated, condition.parts)), not condition.every)
+
+
+@dataclass(frozen=True, slots=True)
+class Meet:
+    """The program waits until others are at their meetings of the same name.
+
+    Args:
+        label: of the meeting.
+        parties: indices of the robots that meet, in the station's order; None for all that have a
+            meeting of the name.
+    """
+
+    label: str
+    parties: tuple[int, ...] | None = None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from ...core.dialect import SignalWords
-from ...core.program.signal import Level, SetSignal, SignalAction, WaitSignal
+from ...core.program.signal import Level, Meet, SetSignal, SignalAction, WaitSignal
 from ...core.source.text.conditions import ConditionWords, NoConditionError
 
 _NAME = re.compile(r"[A-Za-z]\w*")
@@ -81,6 +81,19 @@ def _action(
     return None
 
 
+_MEETING = re.compile(
+    r"\s*(?:WaitSyncTask|SyncMoveOn|SyncMoveOff)\b\s*(?:\\\w+(?:\s*:=\s*[^\\,;]+)?\s*,?\s*)*"
+    r"(?P<label>[A-Za-z]\w*)\b.*",
+    re.IGNORECASE | re.DOTALL,
+)
+
+
+def meets(text: str) -> Meet | None:
+    """The meeting of MultiMove that an instruction is ("Application manual MultiMove")."""
+    found = _MEETING.fullmatch(text)
+    return None if found is None else Meet(found["label"].casefold())
+
+
 def event(text: str) -> str:
     r"""The instruction that an event's text is short for: ``doGun,1``, ``\DOp:=doGun,1``."""
     found = re.fullmatch(r"\s*(?:\\(?P<kind>[AD])Op\s*:=)?\s*(?P<what>\w+\s*,.*)", text, re.I)
@@ -109,5 +122,10 @@ def _spelt(name: str) -> str | None:
 
 
 SIGNALS = SignalWords(
-    read, said, _spelt, lambda action: "do?" if isinstance(action, SetSignal) else "di?", event
+    read,
+    said,
+    _spelt,
+    lambda action: "do?" if isinstance(action, SetSignal) else "di?",
+    event,
+    meets=meets,
 )

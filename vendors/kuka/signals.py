@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from ...core.dialect import SignalWords
-from ...core.program.signal import Level, SetSignal, SignalAction, WaitSignal
+from ...core.program.signal import Level, Meet, SetSignal, SignalAction, WaitSignal
 from ...core.source.text.conditions import ConditionWords, NoConditionError
 
 _SIGNAL = r"\$?[A-Za-z_]\w*(?:\s*\[\s*\d+\s*\])?"
@@ -52,6 +52,25 @@ def read(text: str) -> SignalAction | None:
     return None
 
 
+_MEETING = re.compile(
+    r"\s*SYNCCMD\s*\(\s*#(?:ProgSync|MotionSync)\s*,\s*\"(?P<label>[^\"]+)\"\s*,"
+    r"\s*(?P<mask>\d+|'B[01]+'|'H[0-9A-F]+')\s*\)\s*",
+    re.IGNORECASE,
+)
+
+
+def meets(text: str) -> Meet | None:
+    """The meeting of RoboTeam that a statement is; bit i of its mask is the (i + 1)-th robot."""
+    found = _MEETING.fullmatch(text)
+    if found is None:
+        return None
+    mask = found["mask"].strip("'").upper()
+    bases = {"B": 2, "H": 16}
+    bits = int(mask[1:], bases[mask[0]]) if mask[0] in bases else int(mask)
+    parties = tuple(k for k in range(bits.bit_length()) if bits >> k & 1)
+    return Meet(found["label"].casefold(), parties or None)
+
+
 def said(action: SignalAction) -> str | None:
     """The statement; None if there is none."""
     if isinstance(action, WaitSignal):
@@ -82,4 +101,5 @@ SIGNALS = SignalWords(
     _spelt,
     lambda action: "$OUT[?]" if isinstance(action, SetSignal) else "$IN[?]",
     stops=True,
+    meets=meets,
 )

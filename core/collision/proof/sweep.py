@@ -65,7 +65,7 @@ class _Travel(NamedTuple):
     origin: Vector
 
 
-class _Middle(NamedTuple):
+class Middle(NamedTuple):
     """Bodies in the world at the middle of an interval.
 
     Args:
@@ -112,7 +112,7 @@ def sweep(
         found: written.
     """
     frames, bodies = tree.parent.size, outlines.frame.size
-    at = _Middle(
+    at = Middle(
         tree,
         outlines,
         np.empty((frames, 3, 3)),
@@ -127,11 +127,11 @@ def sweep(
         i = items.interval[k]
         if i != current:
             current = i
-            _place(at, boxes.q[i])
-            _measure_levers(at, boxes.reach[i], stretches.most[i])
+            place(at, boxes.q[i])
+            measure_levers(at, boxes.reach[i], stretches.most[i])
         a, b = pairs[items.pair[k], 0], pairs[items.pair[k], 1]
-        first = _travel(at, boxes, stretches.most[i], residual, i, a, b)
-        second = _travel(at, boxes, stretches.most[i], residual, i, b, a)
+        first = travel(at, boxes, stretches.most[i], residual, i, a, b)
+        second = travel(at, boxes, stretches.most[i], residual, i, b, a)
         found.travel[k] = first.reach + second.reach
         motion = first.reach + second.reach + first.deviation + second.deviation
         found.motion[k] = motion
@@ -157,13 +157,13 @@ def sweep(
 
 
 @lean
-def _apart(at: _Middle, body: int, other: int, f: int) -> bool:
+def _apart(at: Middle, body: int, other: int, f: int) -> bool:
     """Whether frame f moves ``body`` against ``other``."""
     return f > 0 and not at.tree.moves[at.outlines.frame[other], f - 1]
 
 
 @lean
-def _deviation(at: _Middle, most_off: FloatArray, residual: float, a: int, b: int) -> float:
+def _deviation(at: Middle, most_off: FloatArray, residual: float, a: int, b: int) -> float:
     """m by which deviations within ``most_off`` (N,) and the residual move two bodies at most."""
     total = 0.0
     for body, other in ((a, b), (b, a)):
@@ -177,7 +177,7 @@ def _deviation(at: _Middle, most_off: FloatArray, residual: float, a: int, b: in
 
 
 @lean
-def _deviation_bend(at: _Middle, most_off: FloatArray, a: int, b: int) -> float:
+def _deviation_bend(at: Middle, most_off: FloatArray, a: int, b: int) -> float:
     """m by which they move them at most beside what is linear in them."""
     total = 0.0
     for body, other in ((a, b), (b, a)):
@@ -193,7 +193,7 @@ def _deviation_bend(at: _Middle, most_off: FloatArray, a: int, b: int) -> float:
 
 @lean
 def _lost(
-    at: _Middle, deviations: DeviationBounds, c: int, residual: float, a: int, b: int, n: Vector
+    at: Middle, deviations: DeviationBounds, c: int, residual: float, a: int, b: int, n: Vector
 ) -> float:
     """m that deviations and the residual may take along n, as far as it is linear in them."""
     total: float = _deviation(at, deviations.rest[c], residual, a, b)
@@ -210,7 +210,7 @@ def _lost(
 
 
 @lean
-def _extent(at: _Middle, way: FloatArray, body: int, other: int, n: Vector) -> tuple[float, float]:
+def _extent(at: Middle, way: FloatArray, body: int, other: int, n: Vector) -> tuple[float, float]:
     """How far along n the points of a body go against another, joints going a way (N,)."""
     f = own = at.outlines.frame[body]
     omega, origin, moved = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), False
@@ -231,7 +231,7 @@ def _extent(at: _Middle, way: FloatArray, body: int, other: int, n: Vector) -> t
 
 
 @lean
-def _place(at: _Middle, q: FloatArray) -> None:
+def place(at: Middle, q: FloatArray) -> None:
     """Write frames, joint axes (F, 3), and the bodies' boxes in the world."""
     place_frames(at.tree, q, at.R, at.p)
     for f in range(1, at.tree.parent.size):
@@ -248,7 +248,7 @@ def _place(at: _Middle, q: FloatArray) -> None:
 
 
 @lean
-def _measure_levers(at: _Middle, reach: FloatArray, most_off: FloatArray) -> None:
+def measure_levers(at: Middle, reach: FloatArray, most_off: FloatArray) -> None:
     """Write the levers."""
     for b in range(at.outlines.frame.size):
         own = at.outlines.frame[b]
@@ -276,8 +276,8 @@ def _into(R: FloatArray, f: int, x: Vector) -> Vector:
 
 
 @lean
-def _travel(
-    at: _Middle, boxes: Boxes, most_off: FloatArray, residual: float, i: int, body: int, other: int
+def travel(
+    at: Middle, boxes: Boxes, most_off: FloatArray, residual: float, i: int, body: int, other: int
 ) -> _Travel:
     """How ``body`` moves on interval i, seen from the last joint that also carries ``other``.
 
@@ -309,7 +309,7 @@ def _travel(
 
 
 @lean
-def _planar_gap(at: _Middle, a: int, b: int, first: _Travel, second: _Travel, n: Vector) -> float:
+def _planar_gap(at: Middle, a: int, b: int, first: _Travel, second: _Travel, n: Vector) -> float:
     """How far apart planes square to n keep bodies a and b all along the interval."""
     gap = math.inf
     fa, fb = at.outlines.frame[a], at.outlines.frame[b]
@@ -323,7 +323,7 @@ def _planar_gap(at: _Middle, a: int, b: int, first: _Travel, second: _Travel, n:
 
 
 @lean
-def _box_gap(at: _Middle, a: int, b: int) -> float:
+def _box_gap(at: Middle, a: int, b: int) -> float:
     """A lower bound of the distance of two bodies from the boxes and balls that hold them."""
     step = subtract(load_row(at.centre, a), load_row(at.centre, b))
     gap = math.sqrt(dot(step, step)) - at.outlines.reach[a] - at.outlines.reach[b]
@@ -340,7 +340,7 @@ def _box_gap(at: _Middle, a: int, b: int) -> float:
 
 
 @lean
-def _half_width(at: _Middle, body: int, n: Vector) -> float:
+def _half_width(at: Middle, body: int, n: Vector) -> float:
     """Half the width along n of the box or ball that holds a body, whichever is less."""
     width = 0.0
     for i in range(3):

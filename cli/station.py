@@ -1,0 +1,67 @@
+"""``flyby station``: several robots on one clock, and their clearances to each other."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..tasks.files.outputs import check_outputs, picture_kind, write_all
+from ..tasks.station.station import StationOptions, station_with
+from .output.console import fail, print_json, print_rich, print_table, progress, warn
+from .parameters import AsJson, Force, with_options
+
+if TYPE_CHECKING:
+    from ..tasks.results.stations import DrivenStation
+
+StationFile = Annotated[Path, typer.Argument(help="Station file (TOML).")]
+
+
+@with_options
+def station(
+    file: StationFile,
+    options: StationOptions,
+    plot: Annotated[
+        Path | None,
+        typer.Option("--plot", help="Draw moves, waits and signals over time: PNG, PDF or SVG."),
+    ] = None,
+    json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Run several robots on one clock: who waits for whom, and whether they keep clear.
+
+    The exit status is 1 if the station never ends, or is not proven to keep its clearance in time.
+    """
+    if plot is not None:
+        picture_kind(plot, "--plot")
+    check_outputs({"--plot": plot}, [file], replace_existing=force)
+    with progress("reading the station") as say:
+        made = station_with(file, replace(options, report=say))
+        if plot is not None:
+            write_all("--plot", {plot: made.picture(picture_kind(plot, "--plot"))})
+    if json:
+        print_json(made.as_json())
+    else:
+        _tell(made)
+        if plot is not None:
+            print_rich(f"wrote {plot}")
+    if made.deadlock is not None or not made.clear:
+        raise typer.Exit(1)
+
+
+def _tell(made: DrivenStation) -> None:
+    from ..tasks.results.stations import PAIRS, ROBOTS, WAITS
+
+    print_table(ROBOTS, made.robot_rows())
+    if rows := made.wait_rows():
+        print_table(WAITS, rows)
+    if rows := made.pair_rows():
+        print_table(PAIRS, rows)
+    if made.deadlock is None:
+        print_rich(f"station time {made.duration:.3f} s; {made.bottleneck} ends last")
+    for note in made.notes:
+        warn(str(note))
+    for finding in made.findings():
+        fail(finding)

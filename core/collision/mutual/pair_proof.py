@@ -1,0 +1,387 @@
+"""Proof that two robots keep a clearance: in time, at any time, or in what an interlock lets be.
+
+What may come near is found by trees of boxes (`interval_tree`), and each pair of bodies on a pair
+of intervals then halved, the one that moves more, until it is proven or found too near.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import FloatArray, IntArray
+from ..distance.answers import Distances
+from ..distance.closed_form import Hulls, measure
+from ..distance.coal_engine import CoalEngine
+from ..distance.containment import Nesting
+from ..distance.engine import BodyPoses
+from .interval_tree import interval_tree, near_pairs
+from .pair_bounds import PairBounds, bound_measured, bound_pairs, solid_place
+from .robot_motion import RobotMotion
+
+ROUNDING = 1e-6
+"""m by which measured distances may be off."""
+TOLERANCE = 1e-5
+"""m by which what is proven may stay below the clearance asked for."""
+_WIDE = 0.25
+"""m of motion above which bodies are not measured by an engine."""
+_LOCATED = 2e-3
+"""m of motion below which a place that is too near counts as found."""
+_STALLED = 1e-4
+"""m of motion below which nothing is halved any more."""
+_CHUNK = 512
+BUDGET = 20_000_000
+
+
+class ConflictCause(StrEnum):
+    """Why two robots are not proven to keep clear of each other."""
+
+    NEAR = "too near"
+    """They come too near."""
+    DEVIATION = "off the path"
+    """What smoothing in time and the residual may take uses up what there is."""
+    UNVERIFIED = "near a singular posture"
+    """No bounds of the configurations were found."""
+    STALLED = "within rounding"
+    """Within rounding of the clearance."""
+    EXHAUSTED = "budget used up"
+    """The budget was used up."""
+
+
+@dataclass(frozen=True, slots=True)
+class Conflict:
+    """Where two robots are not proven to keep clear.
+
+    Args:
+        cause: why.
+        moves: indices of the moves of the one and of the other.
+        pair: names of the bodies.
+        distance: m between them; None where it was not measured.
+        times: s, own times of the one and of the other there.
+        rows: the intervals of the one and of the other.
+    """
+
+    cause: ConflictCause
+    moves: tuple[int, int]
+    pair: tuple[str, str]
+    distance: float | None
+    times: tuple[float, float]
+    rows: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Meetings:
+    """When two robots may be where at once.
+
+    Args:
+        clocks: what makes of own times (L, 2) s of the one, and of the other, the station's.
+        apart: s by which the two clocks may be off against each other; infinite for at any time.
+        together: of rows (K,) of intervals, whether the two can be there at once; None for always.
+        every: whether every pair of moves is looked at; else only the first conflict in time is
+            looked for.
+        until: s on the station's clock behind which nothing is looked for.
+    """
+
+    clocks: tuple[Callable[[FloatArray], FloatArray], Callable[[FloatArray], FloatArray]]
+    apart: float = math.inf
+    together: Callable[[IntArray, IntArray], NDArray[np.bool_]] | None = None
+    every: bool = True
+    until: float = math.inf
+
+    @classmethod
+    def at_any_time(cls) -> Meetings:
+        """Whatever the two clocks say."""
+        return cls((_as_it_is, _as_it_is))
+
+
+def _as_it_is(own: FloatArray) -> FloatArray:
+    return own
+
+
+@dataclass
+class PairVerdict:
+    """What was found of two robots.
+
+    Args:
+        clearance: m that is proven where there is no conflict.
+        conflicts: by moves of the one and of the other.
+        looks: how many bounds were made.
+    """
+
+    clearance: float
+    conflicts: dict[tuple[int, int], Conflict] = field(default_factory=dict)
+    looks: int = 0
+
+    @property
+    def proven(self) -> bool:
+        """Whether nothing is left."""
+        return not self.conflicts
+
+
+class PairProver:
+    """Two robots.
+
+    Args:
+        one, other: their motions.
+        allowed: pairs of names of things that may touch, of the one and of the other.
+    """
+
+    def __init__(
+        self,
+        one: RobotMotion,
+        other: RobotMotion,
+        allowed: Sequence[tuple[str, str]] = (),
+    ) -> None:
+        self.one, self.other = one, other
+        self.pairs: IntArray = np.array(
+            [
+                (a, b)
+                for a, first in enumerate(one.bodies)
+                for b, second in enumerate(other.bodies)
+                if (first.moves or second.moves)
+                and (first.body.part, second.body.part) not in allowed
+            ],
+            dtype=np.int64,
+        ).reshape(-1, 2)
+        solids = [own.body.solid for own in (*one.bodies, *other.bodies)]
+        self._engine = CoalEngine(solids, Nesting(solids))
+        self._count = len(solids)
+
+    def prove(self, clearance: float, meetings: Meetings, budget: int = BUDGET) -> PairVerdict:
+        """Whether the two keep a clearance of each other.
+
+        Args:
+            clearance: m.
+            meetings: when they may be where at once.
+            budget: how many bounds may be made.
+        """
+        return _Search(self, clearance, meetings, budget).run()
+
+    def measure(self, items: IntArray, found: PairBounds) -> None:
+        """Distances and normals of items at the middles, by the engine."""
+        for k in range(len(items)):
+            i, j, row = items[k]
+            a, b = self.pairs[row]
+            (Ra, pa), (Rb, pb) = (
+                solid_place(self.one.side, i, a),
+                solid_place(self.other.side, j, b),
+            )
+            R, p = np.empty((self._count, 3, 3)), np.empty((self._count, 3))
+            second = len(self.one.bodies) + b
+            R[a], R[second] = np.reshape(Ra, (3, 3)), np.reshape(Rb, (3, 3))
+            p[a], p[second] = pa, pb
+            within = self.one.side.swept.motion[i, a] + self.other.side.swept.motion[j, b] + 0.1
+            witness = self._engine.distance(int(a), int(second), BodyPoses(R, p), within)
+            if witness is None:
+                found.distance[k] = within
+            else:
+                found.distance[k], found.normal[k] = witness.distance, witness.normal
+
+    def nearest(self, q: FloatArray, other: FloatArray) -> tuple[float, int, int]:
+        """The least distance at instants at which both stand somewhere.
+
+        Args:
+            q, other: (T, N), (T, M), configurations of the one and of the other.
+
+        Returns:
+            m, the instant and the row of `pairs`.
+        """
+        sides = self.one.side, self.other.side
+        shift = np.array([0, len(self.one.bodies)])
+        least = math.inf, 0, 0
+        for start in range(0, len(q), _CHUNK):
+            part = slice(start, start + _CHUNK)
+            placed = [
+                motion.placed(rows[part]) for motion, rows in ((self.one, q), (self.other, other))
+            ]
+            R, p = (np.concatenate(both, axis=1) for both in zip(*placed, strict=True))
+            hulls = Hulls(*map(np.concatenate, zip(*(s.hulls for s in sides), strict=True)))
+            found = Distances.farther(len(R), len(self.pairs), least[0])
+            bound = measure(hulls, self.pairs + shift, R, p, least[0], found.numbers)
+            k, row = np.unravel_index(int(found.distance.argmin()), found.distance.shape)
+            if found.distance[k, row] < least[0]:
+                least = float(found.distance[k, row]), start + int(k), int(row)
+            left = np.argwhere(bound < least[0])
+            for k, row in left[np.argsort(bound[tuple(left.T)])].tolist():
+                if bound[k, row] >= least[0]:
+                    break
+                a, b = self.pairs[row] + shift
+                at = BodyPoses(R[k], p[k])
+                witness = self._engine.distance(int(a), int(b), at, least[0])
+                if witness is not None:
+                    least = float(witness.distance), start + k, row
+        return least
+
+    def names(self, row: int) -> tuple[str, str]:
+        """Names of the bodies of a pair."""
+        a, b = self.pairs[row]
+        return self.one.bodies[a].body.name, self.other.bodies[b].body.name
+
+
+class _Search:
+    def __init__(
+        self, prover: PairProver, clearance: float, meetings: Meetings, budget: int
+    ) -> None:
+        self._prover, self._meetings, self._left = prover, meetings, budget
+        self._wanted = max(clearance - TOLERANCE, 1e-9)
+        self._verdict = PairVerdict(clearance)
+        self._first = meetings.until
+
+    def run(self) -> PairVerdict:
+        """Look at everything that may come near."""
+        items = self._begun()
+        while len(items):
+            self._verdict.looks += len(items)
+            self._left -= len(items)
+            found = self._bounds(items)
+            open_ones = ~(found.lower >= self._wanted)
+            items, found = items[open_ones], found.chosen(open_ones)
+            if self._left < 0:
+                self._note(items, found, np.ones(len(items), dtype=bool), ConflictCause.EXHAUSTED)
+                break
+            items = self._judged(items, found)
+            items = self._halved(items)
+        return self._verdict
+
+    def _begun(self) -> IntArray:
+        prover, meetings = self._prover, self._meetings
+        trees = [
+            interval_tree(m.side.swept, m.first, clock(m.own_time[: m.first]))
+            for m, clock in zip((prover.one, prover.other), meetings.clocks, strict=True)
+        ]
+        items = near_pairs(*trees, prover.pairs, self._wanted, meetings.apart)
+        return self._meeting(items)
+
+    def _meeting(self, items: IntArray) -> IntArray:
+        """Those whose intervals can be passed at once, and are not decided yet."""
+        prover, meetings = self._prover, self._meetings
+        i, j = items[:, 0], items[:, 1]
+        kept = np.ones(len(items), dtype=bool)
+        if meetings.apart < math.inf:
+            first, second = self._clocked(i, j)
+            kept &= first[:, 0] <= second[:, 1] + meetings.apart
+            kept &= second[:, 0] <= first[:, 1] + meetings.apart
+            if not meetings.every:
+                kept &= np.maximum(first[:, 0], second[:, 0]) - meetings.apart <= self._first
+        if meetings.together is not None:
+            kept &= meetings.together(i, j)
+        if meetings.every and self._verdict.conflicts:
+            groups = prover.one.moves[i], prover.other.moves[j]
+            decided = np.zeros((groups[0].max(initial=0) + 1, groups[1].max(initial=0) + 1), bool)
+            for a, b in self._verdict.conflicts:
+                if a < decided.shape[0] and b < decided.shape[1]:
+                    decided[a, b] = True
+            kept &= ~decided[groups]
+        return items[kept]
+
+    def _clocked(self, i: IntArray, j: IntArray) -> tuple[FloatArray, FloatArray]:
+        prover, (one, other) = self._prover, self._meetings.clocks
+        return one(prover.one.own_time[i]), other(prover.other.own_time[j])
+
+    def _bounds(self, items: IntArray) -> PairBounds:
+        prover = self._prover
+        sides = prover.one.side, prover.other.side
+        found = PairBounds.unknown(len(items))
+        bound_pairs(*sides, items, prover.pairs, self._wanted, found)
+        motion = self._travel(items)
+        asked = found.engine & ~(found.lower >= self._wanted) & (motion.sum(axis=1) < _WIDE)
+        if asked.any():
+            chosen = found.chosen(asked)
+            prover.measure(items[asked], chosen)
+            bound_measured(*sides, items[asked], prover.pairs, chosen)
+            for whole, part in zip(found, chosen, strict=True):
+                whole[asked] = part
+        return found
+
+    def _travel(self, items: IntArray) -> FloatArray:
+        """(K, 2) m, how far the paths move both bodies at most; infinite where not known."""
+        prover = self._prover
+        of = []
+        for side, motion in ((0, prover.one), (1, prover.other)):
+            swept, row = motion.side.swept, items[:, side]
+            body = prover.pairs[items[:, 2], side]
+            of.append(swept.motion[row, body] - np.nan_to_num(swept.off[row, body]))
+        return np.stack(of, -1)
+
+    def _judged(self, items: IntArray, found: PairBounds) -> IntArray:
+        """Note what is too near, or as good as too near; what is to be halved."""
+        travel = self._travel(items).sum(axis=1)
+        near = found.distance + ROUNDING < self._wanted
+        near &= np.isfinite(found.distance)
+        near &= (travel < _LOCATED) | (
+            self._meetings.apart == math.inf and self._meetings.together is None
+        )
+        stalled = travel < _STALLED
+        off = stalled & (found.distance - travel >= self._wanted)
+        self._note(items, found, near, ConflictCause.NEAR)
+        self._note(items, found, off & ~near, ConflictCause.DEVIATION)
+        self._note(items, found, stalled & ~off & ~near, ConflictCause.STALLED)
+        return self._meeting(items[~(near | stalled)])
+
+    def _halved(self, items: IntArray) -> IntArray:
+        """The same items with one interval of each halved."""
+        travel = self._travel(items)
+        second = travel[:, 1] > travel[:, 0]
+        made = []
+        for side, motion in ((0, self._prover.one), (1, self._prover.other)):
+            rows = items[second == bool(side)]
+            if not len(rows):
+                continue
+            child, known = motion.halved(rows[:, side])
+            if not known.all():
+                stuck = rows[~known]
+                unknown = PairBounds.unknown(len(stuck))
+                every = np.ones(len(stuck), dtype=bool)
+                self._note(stuck, unknown, every, ConflictCause.UNVERIFIED)
+            for half in (0, 1):
+                part = rows[known].copy()
+                part[:, side] = child[known] + half
+                made.append(part)
+        if not made:
+            return np.empty((0, 3), dtype=np.int64)
+        return self._meeting(np.concatenate(made))
+
+    def _note(
+        self, items: IntArray, found: PairBounds, chosen: NDArray[np.bool_], cause: ConflictCause
+    ) -> None:
+        """Keep the nearest of chosen items of each pair of moves, or the first in time."""
+        if not chosen.any():
+            return
+        prover = self._prover
+        rows, distance = items[chosen], found.distance[chosen]
+        if not self._meetings.every:
+            first, second = self._clocked(rows[:, 0], rows[:, 1])
+            when = np.maximum(first[:, 0], second[:, 0])
+            k = int(np.argmin(when))
+            if when[k] < self._first or not self._verdict.conflicts:
+                self._first = float(when[k])
+                self._verdict.conflicts = {}
+                self._keep(rows[k], float(distance[k]), cause)
+            return
+        groups = np.stack([prover.one.moves[rows[:, 0]], prover.other.moves[rows[:, 1]]], -1)
+        order = np.argsort(distance, kind="stable")
+        _, index = np.unique(groups[order], axis=0, return_index=True)
+        for k in order[index]:
+            self._keep(rows[k], float(distance[k]), cause)
+
+    def _keep(self, item: IntArray, distance: float, cause: ConflictCause) -> None:
+        one, other = self._prover.one, self._prover.other
+        i, j, row = (int(k) for k in item)
+        moves = int(one.moves[i]), int(other.moves[j])
+        times = _middle(one.own_time[i]), _middle(other.own_time[j])
+        known = distance if math.isfinite(distance) else None
+        conflict = Conflict(cause, moves, self._prover.names(row), known, times, (i, j))
+        self._verdict.conflicts.setdefault(moves, conflict)
+
+
+def _middle(span: FloatArray) -> float:
+    """The middle of a span of time; its end that is known, where the other is without end."""
+    low, high = (float(t) for t in span)
+    if math.isinf(low):
+        return 0.0 if math.isinf(high) else high
+    return low if math.isinf(high) else 0.5 * (low + high)

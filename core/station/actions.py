@@ -1,0 +1,133 @@
+"""What a program does with signals and other robots on its way, and when on its own clock."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..dialect import SignalWords
+from ..errors import Span
+from ..motion.emulator.run import Run
+from ..program.event import Event, EventAnchor
+from ..program.move import Move, Opaque, Wait
+from ..program.signal import Meet, SetSignal, SignalAction
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """Something that a program does at a time of its own clock, waits for others left out.
+
+    Args:
+        does: a signal set, a condition or other robots waited for.
+        time: s since it began.
+        move: index of the move before; -1 before the first.
+        text: as it stands in the source.
+        span: where.
+    """
+
+    does: SignalAction | Meet
+    time: float
+    move: int
+    text: str
+    span: Span | None
+
+
+def actions_of(run: Run, words: SignalWords | None) -> tuple[Action, ...]:
+    """What a driven program does, in the order of its own clock.
+
+    Outputs that are set at a fly-by point count at the zone's middle, though the program pointer
+    may be there earlier. Waits count when the robot has come to rest.
+
+    Args:
+        run: the whole program as driven.
+        words: how its language says such things; None if nobody knows, and nothing is found.
+    """
+    if words is None:
+        return ()
+    places = _Places(run)
+    found = [*_between(run, words, places), *_on_the_way(run, words, places)]
+    return tuple(sorted(found, key=lambda action: action.time))
+
+
+def _between(run: Run, words: SignalWords, places: _Places) -> Iterator[Action]:
+    """Statements that stand between moves."""
+    move, waited = -1, 0.0
+    total = _waits(run)
+    for statement in run.program.statements:
+        if isinstance(statement, Move):
+            move, waited = move + 1, 0.0
+        elif isinstance(statement, Wait):
+            waited += statement.duration
+        elif isinstance(statement, Opaque):
+            does = words.meets(statement.text) or words.read(statement.text)
+            if does is None:
+                continue
+            reached, left = places.of(move)
+            time = max(reached, left - total.get(move, 0.0) + waited)
+            yield Action(does, time, move, _in_a_line(statement.text), statement.span)
+
+
+def _waits(run: Run) -> dict[int, float]:
+    """s of all waits behind each move."""
+    found: dict[int, float] = {}
+    move = -1
+    for statement in run.program.statements:
+        if isinstance(statement, Move):
+            move += 1
+        elif isinstance(statement, Wait):
+            found[move] = found.get(move, 0.0) + statement.duration
+    return found
+
+
+def _on_the_way(run: Run, words: SignalWords, places: _Places) -> Iterator[Action]:
+    """Events of moves."""
+    for index, move in enumerate(run.program.moves):
+        for event in move.events:
+            does = words.read(words.event(event.text))
+            if isinstance(does, SetSignal):
+                time = places.passed(index, event)
+                yield Action(does, time, index, _in_a_line(event.text), event.span)
+
+
+class _Places:
+    """When a run is at its waypoints, and at places before and behind them."""
+
+    def __init__(self, run: Run) -> None:
+        timing, route = run.timing, run.path.route
+        segments = timing.interval_segments
+        count = len(route.moves)
+        first = np.searchsorted(segments, np.arange(count))
+        last = np.searchsorted(segments, np.arange(count), "right") - 1
+        driven = timing.start.driven
+        self._moves = list(route.moves)
+        self._reached = driven(timing.end[last])
+        self._left = np.append(driven(timing.begin[first])[1:], run.duration)
+        self._begun = float(driven(timing.begin[first[:1]])[0])
+        trajectory = run.trajectory
+        steps = np.linalg.norm(np.diff(trajectory.position, axis=0), axis=1)
+        self._t, self._way = trajectory.t, np.append(0.0, np.cumsum(steps))
+
+    def of(self, move: int) -> tuple[float, float]:
+        """When the end of a move is reached, and left, s; of -1 the start."""
+        k = bisect_right(self._moves, move) - 1
+        if k < 0:
+            return 0.0, self._begun
+        return float(self._reached[k]), float(self._left[k])
+
+    def passed(self, move: int, event: Event) -> float:
+        """When the place of an event is passed, s."""
+        begin, end = self.of(move - 1)[1], self.of(move)[0]
+        at, step = (begin, 1.0) if event.anchor is EventAnchor.START else (end, -1.0)
+        way = float(np.interp(at, self._t, self._way)) + step * event.distance
+        k = int(np.searchsorted(self._way, way, "right" if step > 0 else "left"))
+        inside = 0 < k < len(self._way)
+        if event.distance > 0.0 and inside:
+            at = float(np.interp(way, self._way[k - 1 : k + 1], self._t[k - 1 : k + 1]))
+        return max(min(max(at, begin), max(end, begin)) - event.time, 0.0)
+
+
+def _in_a_line(text: str) -> str:
+    return " ".join(text.split()).rstrip(";")

@@ -1,0 +1,171 @@
+"""Clearances between the robots of a station: proven in time, at any time, or under interlocks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..collision.mutual.pair_proof import Meetings, PairProver, PairVerdict
+from ..collision.mutual.robot_motion import RobotMotion
+from .actions import Action
+from .clock import Schedule, StationRun
+from .orders import Orders, sections_mask
+from .station import RobotStation
+
+_SAMPLED = 0.004
+"""s between the instants at which a conflict is looked for before anything is proven."""
+
+
+@dataclass(frozen=True)
+class PairClearance:
+    """What is proven of two robots.
+
+    Args:
+        robots: their names.
+        in_time: for the schedule, each robot up to the jitter early or late.
+        any_time: whatever the clocks say; each pair of moves that may conflict is named.
+        interlocked: in all orders that the signals allow; None where these are not known.
+        least: m, the least distance met at the schedule's own times, in steps; no proof.
+        least_at: s, when.
+    """
+
+    robots: tuple[str, str]
+    in_time: PairVerdict
+    any_time: PairVerdict
+    interlocked: PairVerdict | None
+    least: float
+    least_at: float
+
+    @property
+    def safe(self) -> bool:
+        """Whether the interlocks as programmed, or no need of any, keep the two apart."""
+        return self.any_time.proven or (self.interlocked is not None and self.interlocked.proven)
+
+
+class StationProver:
+    """Proves the clearances of a station; motions are swept once.
+
+    Args:
+        station: the robots.
+        actions: of their programs.
+    """
+
+    def __init__(self, station: RobotStation, actions: Mapping[str, Sequence[Action]]) -> None:
+        self._station, self._actions = station, actions
+        known = {
+            name: {obstacle.name for obstacle in member.cell.obstacles}
+            for name, member in station.members.items()
+        }
+        lone = {
+            name: sorted(
+                {thing for other in known if other != name for thing in own - known[other]}
+            )
+            for name, own in known.items()
+        }
+        self._motions = {
+            name: RobotMotion(
+                name,
+                member.controller,
+                member.run,
+                member.cell,
+                lone[name],
+                any_speed=True,
+            )
+            for name, member in station.members.items()
+        }
+        self._provers: dict[tuple[str, str], PairProver] = {}
+
+    def prover(self, one: str, other: str) -> PairProver:
+        """Of two robots."""
+        if (one, other) not in self._provers:
+            allowed = [
+                pair
+                for a, b in self._station.allowed
+                for pair in (_own(a, b, one, other), _own(b, a, one, other))
+                if pair is not None
+            ]
+            self._provers[one, other] = PairProver(
+                self._motions[one], self._motions[other], allowed
+            )
+        return self._provers[one, other]
+
+    def all(
+        self,
+        run: StationRun,
+        jitter: float,
+        orders: Orders | None,
+        say: Callable[[str], None] = lambda _: None,
+    ) -> list[PairClearance]:
+        """Of all pairs.
+
+        Args:
+            run: the schedule.
+            jitter: s by which each robot may be early or late.
+            orders: that the signals allow; None where they are not known.
+            say: told what is being done.
+        """
+        found = []
+        for one, other in combinations(self._station.members, 2):
+            say(f"proving that {one} and {other} keep clear of each other")
+            found.append(self._pair(one, other, run, jitter, orders))
+        return found
+
+    def _pair(
+        self, one: str, other: str, run: StationRun, jitter: float, orders: Orders | None
+    ) -> PairClearance:
+        prover, clearance = self.prover(one, other), self._station.clearance
+        schedules = run.schedules[one], run.schedules[other]
+        least, at = self._sampled(prover, schedules)
+        clocks = schedules[0].clocked, schedules[1].clocked
+        until = at + _SAMPLED if least < clearance else np.inf
+        meetings = Meetings(clocks, 2.0 * jitter, every=False, until=until)
+        in_time = prover.prove(clearance, meetings)
+        any_time = prover.prove(clearance, Meetings.at_any_time())
+        interlocked = None
+        if orders is not None and not any_time.proven:
+            together = self._together(one, other, orders, prover)
+            identity = Meetings.at_any_time().clocks
+            interlocked = prover.prove(clearance, Meetings(identity, together=together))
+        return PairClearance((one, other), in_time, any_time, interlocked, least, at)
+
+    def _together(
+        self, one: str, other: str, orders: Orders, prover: PairProver
+    ) -> Callable[..., np.ndarray]:
+        times = [np.array([action.time for action in self._actions[name]]) for name in (one, other)]
+        reachable = orders.together(one, other, (len(times[0]) + 1, len(times[1]) + 1))
+        lags = [self._station.members[name].run.timing.lag for name in (one, other)]
+        return sections_mask(
+            reachable,
+            (times[0], times[1]),
+            (lambda: prover.one.own_time, lambda: prover.other.own_time),
+            (lags[0], lags[1]),
+        )
+
+    def _sampled(
+        self, prover: PairProver, schedules: tuple[Schedule, Schedule]
+    ) -> tuple[float, float]:
+        """The least distance at the schedule's own times, in steps, and when."""
+        t = np.arange(0.0, max(map(self._until, schedules)) + _SAMPLED, _SAMPLED)
+        q = [self._at(schedule, t) for schedule in schedules]
+        least, k, _ = prover.nearest(q[0], q[1])
+        return least, float(t[k])
+
+    def _until(self, schedule: Schedule) -> float:
+        """s, when a robot stands still for good."""
+        if np.isfinite(schedule.end):
+            return schedule.end
+        return schedule.waits[-1].begin
+
+    def _at(self, schedule: Schedule, t: FloatArray) -> FloatArray:
+        trajectory, own = self._station.members[schedule.name].run.trajectory, schedule.own(t)
+        return np.stack([np.interp(own, trajectory.t, q) for q in trajectory.q.T], -1)
+
+
+def _own(a: str, b: str, one: str, other: str) -> tuple[str, str] | None:
+    """An allowed pair as parts of the one and the other."""
+    (first, _, part), (second, _, piece) = a.partition("."), b.partition(".")
+    return (part, piece) if (first, second) == (one, other) else None

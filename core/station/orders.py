@@ -1,0 +1,304 @@
+"""All orders in which a station's programs may pass their actions, whatever time they take.
+
+A state says how far each program is, which outputs are on, which changes are still on their way
+along a wire, and what latches and counters hold. What wires and timers take is left open, so that
+every order that the signals allow is among them, and some that times rule out. What no reachable
+state holds together cannot be at one time (`together`); states out of which nothing leads are
+deadlocks that may happen.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..program.signal import Condition, Joined, Meet, SetSignal, WaitSignal
+from .actions import Action
+from .gates import Gate, GateKind, Input
+from .plc import PLC
+from .station import RobotStation, signal_key
+
+_MOST_STATES = 300_000
+_ON_THE_WAY = 3
+"""Changes of one signal that may be on their way at once; of more, two undo each other."""
+
+
+class _State(NamedTuple):
+    """Where everything is."""
+
+    at: tuple[int, ...]
+    levels: frozenset[str]
+    pending: tuple[int, ...]
+    counts: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Orders:
+    """What may be at once.
+
+    Args:
+        names: of the robots.
+        reachable: how far all of them may be at one time.
+        stuck: states in which some robots wait for ever: how far each is.
+        states: how many were looked at.
+    """
+
+    names: tuple[str, ...]
+    reachable: frozenset[tuple[int, ...]]
+    stuck: tuple[tuple[int, ...], ...]
+    states: int
+
+    def together(self, one: str, other: str, sizes: tuple[int, int]) -> NDArray[np.bool_]:
+        """Whether two robots may be in two sections at once, as an array of ``sizes``.
+
+        Section k of a robot lies between its actions k − 1 and k.
+        """
+        a, b = self.names.index(one), self.names.index(other)
+        found = np.zeros(sizes, dtype=bool)
+        for at in self.reachable:
+            found[at[a], at[b]] = True
+        return found
+
+
+def explore(station: RobotStation, actions: Mapping[str, Sequence[Action]]) -> Orders:
+    """Look at every order.
+
+    Args:
+        station: with its wires and gates.
+        actions: of each robot.
+
+    Raises:
+        InputError: there are too many to look at, or one signal changes faster than wires carry.
+    """
+    return _Explorer(station, actions).all()
+
+
+class _Explorer:
+    def __init__(self, station: RobotStation, actions: Mapping[str, Sequence[Action]]) -> None:
+        self._station = station
+        self._names = tuple(station.members)
+        self._actions = [tuple(actions[name]) for name in self._names]
+        self._wires = [(signal_key(w.source), signal_key(w.target)) for w in station.wires]
+        self._gates = list(station.gates.items())
+        self._timers = [
+            signal_key(f"{PLC}.{name}") for name, gate in self._gates if gate.kind is GateKind.TIMER
+        ]
+        sets = {
+            signal_key(f"{name}.{action.does.name}")
+            for name, doings in zip(self._names, self._actions, strict=True)
+            for action in doings
+            if isinstance(action.does, SetSignal)
+        }
+        self._known = {target for _, target in self._wires} | sets
+        self._known |= {signal_key(name) for name in station.given}
+        self._known |= {signal_key(name) for name in station.initial}
+
+    def all(self) -> Orders:
+        """Breadth first."""
+        levels = {signal_key(name) for name in self._station.initial}
+        levels |= {signal_key(name) for name, on in self._station.given.items() if on}
+        first = _State(
+            (0,) * len(self._names),
+            frozenset(levels),
+            (0,) * len(self._wires),
+            (0,) * len(self._gates),
+        )
+        queue, seen = deque([self._settled(first, first.levels)]), set()
+        seen.add(queue[0])
+        stuck: list[tuple[int, ...]] = []
+        while queue:
+            state = queue.popleft()
+            moved = False
+            for after in self._successors(state):
+                moved = True
+                if after not in seen:
+                    if len(seen) >= _MOST_STATES:
+                        raise InputError(
+                            f"the programs' actions can come in more than {_MOST_STATES:,} orders: "
+                            "what their interlocks allow is not looked at; clearances in time are"
+                        )
+                    seen.add(after)
+                    queue.append(after)
+            ends = tuple(map(len, self._actions))
+            if not moved and state.at != ends and state.at not in stuck:
+                stuck.append(state.at)
+        return Orders(self._names, frozenset(s.at for s in seen), tuple(stuck), len(seen))
+
+    def _successors(self, state: _State) -> Iterator[_State]:
+        for k, pending in enumerate(state.pending):
+            if pending:
+                yield self._delivered(state, k)
+        for name, gate in self._gates:
+            if gate.kind is GateKind.TIMER:
+                key = signal_key(f"{PLC}.{name}")
+                if key not in state.levels and any(_holds(state.levels, i) for i in gate.inputs):
+                    yield self._changed(state, key, True)
+        for k, actions in enumerate(self._actions):
+            if state.at[k] < len(actions):
+                yield from self._acted(state, k, actions[state.at[k]])
+
+    def _acted(self, state: _State, k: int, action: Action) -> Iterator[_State]:
+        onward = state._replace(at=_stepped(state.at, (k,)))
+        match action.does:
+            case SetSignal(name, value, pulse):
+                key = signal_key(f"{self._names[k]}.{name}")
+                after = self._changed(onward, key, bool(value))
+                yield after
+                if pulse is not None:
+                    # It may have ended before anybody has seen anything else.
+                    yield self._changed(after, key, not bool(value))
+            case WaitSignal(condition, longest):
+                if longest is not None or self._met(state.levels, self._names[k], condition):
+                    yield onward
+            case Meet(label, _):
+                yield from self._together(state, k, label)
+
+    def _together(self, state: _State, k: int, label: str) -> Iterator[_State]:
+        """All robots of a meeting go on at once, when they are all there."""
+        parties = self._parties(k, label)
+        first = min(parties)
+        if k != first:
+            return
+        for party in parties:
+            actions = self._actions[party]
+            at = state.at[party]
+            does = actions[at].does if at < len(actions) else None
+            if not isinstance(does, Meet) or does.label != label:
+                return
+        yield state._replace(at=_stepped(state.at, parties))
+
+    def _parties(self, k: int, label: str) -> tuple[int, ...]:
+        own = next(
+            action.does
+            for action in self._actions[k]
+            if isinstance(action.does, Meet) and action.does.label == label
+        )
+        if own.parties is not None:
+            return tuple(p for p in own.parties if p < len(self._names)) or (k,)
+        return tuple(
+            p
+            for p, actions in enumerate(self._actions)
+            if any(isinstance(a.does, Meet) and a.does.label == label for a in actions)
+        )
+
+    def _met(self, levels: frozenset[str], robot: str, condition: Condition) -> bool:
+        if isinstance(condition, Joined):
+            parts = [self._met(levels, robot, part) for part in condition.parts]
+            return all(parts) if condition.every else any(parts)
+        key = signal_key(f"{robot}.{condition.name}")
+        if key not in self._known:
+            return True
+        return (key in levels) == condition.on
+
+    def _delivered(self, state: _State, k: int) -> _State:
+        """A change reaches its target."""
+        _, target = self._wires[k]
+        pending = list(state.pending)
+        pending[k] -= 1
+        on = target not in state.levels
+        return self._changed(state._replace(pending=tuple(pending)), target, on)
+
+    def _changed(self, state: _State, key: str, on: bool) -> _State:
+        if (key in state.levels) == on:
+            return state
+        levels = state.levels | {key} if on else state.levels - {key}
+        return self._settled(state._replace(levels=levels), state.levels)
+
+    def _settled(self, state: _State, before: frozenset[str]) -> _State:
+        """Gates follow, and what changed goes on its way."""
+        counts = list(state.counts)
+        levels = set(state.levels)
+        seen = set(before)
+        for _ in range(len(self._gates) + 1):
+            changed = False
+            for g, (name, gate) in enumerate(self._gates):
+                key = signal_key(f"{PLC}.{name}")
+                on = self._gate(g, key, gate, levels, seen, counts)
+                if on != (key in levels):
+                    levels ^= {key}
+                    changed = True
+            seen = set(levels)
+            if not changed:
+                break
+        pending = list(state.pending)
+        moved = levels ^ before
+        for k, (source, _) in enumerate(self._wires):
+            if source in moved:
+                pending[k] += 1
+                if pending[k] > _ON_THE_WAY:
+                    # Two changes that nobody has seen undo each other.
+                    pending[k] -= 2
+        return _State(state.at, frozenset(levels), tuple(pending), tuple(counts))
+
+    def _gate(
+        self,
+        g: int,
+        key: str,
+        gate: Gate,
+        levels: set[str],
+        before: set[str],
+        counts: list[int],
+    ) -> bool:
+        holds = [_holds(levels, one) for one in gate.inputs]
+        match gate.kind:
+            case GateKind.AND:
+                return all(holds)
+            case GateKind.OR:
+                return any(holds)
+            case GateKind.LATCH:
+                reset = any(_holds(levels, one) for one in gate.resets)
+                return not reset and (key in levels or any(holds))
+            case GateKind.COUNTER:
+                if any(holds) and not any(_holds(before, one) for one in gate.inputs):
+                    counts[g] = min(counts[g] + 1, gate.least)
+                if any(_holds(levels, one) for one in gate.resets):
+                    counts[g] = 0
+                return counts[g] >= gate.least
+            case GateKind.TIMER:
+                return key in levels and any(holds)
+
+
+def _holds(levels: frozenset[str] | set[str], one: Input) -> bool:
+    return (signal_key(one.name) in levels) == one.on
+
+
+def _stepped(at: tuple[int, ...], which: Sequence[int]) -> tuple[int, ...]:
+    return tuple(value + (k in which) for k, value in enumerate(at))
+
+
+def sections_mask(
+    reachable: NDArray[np.bool_],
+    times: tuple[NDArray[np.float64], NDArray[np.float64]],
+    own: tuple[Callable[[], NDArray[np.float64]], Callable[[], NDArray[np.float64]]],
+    lags: tuple[float, float],
+) -> Callable[[NDArray[np.int64], NDArray[np.int64]], NDArray[np.bool_]]:
+    """Whether intervals of two robots can be passed at one time.
+
+    Args:
+        reachable: of sections, see `Orders.together`.
+        times: s, own times of the actions of each.
+        own: (L, 2) s of the intervals of each, as they are when it is asked.
+        lags: s by which each motion is behind its command.
+    """
+    sums = np.zeros((reachable.shape[0] + 1, reachable.shape[1] + 1), dtype=np.int64)
+    sums[1:, 1:] = reachable.cumsum(axis=0).cumsum(axis=1)
+
+    def sections(k: int, rows: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        span = own[k]()[rows]
+        # While it waits, a robot may still be coming to rest.
+        first = np.searchsorted(times[k], span[:, 0] - lags[k] - 1e-9, "left")
+        last = np.searchsorted(times[k], span[:, 1] + 1e-9, "right")
+        return first, last
+
+    def together(i: NDArray[np.int64], j: NDArray[np.int64]) -> NDArray[np.bool_]:
+        (a0, a1), (b0, b1) = sections(0, i), sections(1, j)
+        count = sums[a1 + 1, b1 + 1] - sums[a0, b1 + 1] - sums[a1 + 1, b0] + sums[a0, b0]
+        return np.asarray(count > 0)
+
+    return together

@@ -1,0 +1,103 @@
+"""A station as a value: robots with their programs, and what joins their signals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ..cell.cell import Cell
+from ..display import counted, in_line
+from ..motion.emulator.controller import Controller
+from ..motion.emulator.run import Run
+from ..program.program import Program
+from .gates import Gate
+
+
+@dataclass(frozen=True, repr=False)
+class StationRobot:
+    """One robot of a station with its program.
+
+    Args:
+        name: in the station.
+        program: that it drives.
+        controller: that drives it.
+        cell: where it stands, with what stands around.
+        run: the program as driven.
+        begins: s after the station's start at which its program begins.
+    """
+
+    name: str
+    program: Program
+    controller: Controller
+    cell: Cell
+    run: Run
+    begins: float = 0.0
+
+    def __repr__(self) -> str:
+        return in_line(
+            f"StationRobot {self.name}: {self.cell.robot.name} with {self.program.name}, "
+            f"{self.run.duration:.3f} s"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Wire:
+    """What one signal does to another.
+
+    Args:
+        source: ``robot.signal`` or ``gate.output``.
+        target: ``robot.signal``.
+        least, greatest: s that a change takes from the one to the other.
+    """
+
+    source: str
+    target: str
+    least: float = 0.0
+    greatest: float = 0.0
+
+    @property
+    def usual(self) -> float:
+        """s that a change takes where one figure is asked for."""
+        return 0.5 * (self.least + self.greatest)
+
+
+@dataclass(frozen=True, repr=False)
+class RobotStation:
+    """Robots that share a cell.
+
+    Args:
+        members: by name, in the order of the file.
+        wires: that carry signals from one to another.
+        gates: of the PLC, by name.
+        initial: signals that are on at the beginning.
+        given: inputs that nobody of the station sets, and what they are.
+        clearance: m that robots must keep from each other.
+        allowed: pairs of ``robot.thing`` that may touch.
+        file: that it was read from.
+    """
+
+    members: Mapping[str, StationRobot]
+    wires: tuple[Wire, ...] = ()
+    gates: Mapping[str, Gate] = field(default_factory=dict)
+    initial: frozenset[str] = frozenset()
+    given: Mapping[str, bool] = field(default_factory=dict)
+    clearance: float = 0.0
+    allowed: tuple[tuple[str, str], ...] = ()
+    file: Path | None = None
+
+    def __repr__(self) -> str:
+        name = "" if self.file is None else f" {self.file.name}"
+        return in_line(
+            f"Station{name}: {', '.join(self.members)}; {counted(self.wires, 'wire')}, "
+            f"clearance {1e3 * self.clearance:g} mm"
+        )
+
+
+def signal_key(name: str) -> str:
+    """A signal's name as it is looked up: languages write names in many ways.
+
+    Args:
+        name: ``robot.signal``.
+    """
+    return "".join(name.split()).casefold()

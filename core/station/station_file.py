@@ -1,0 +1,245 @@
+"""The station file: TOML that names the robots' cells and programs, and joins their signals.
+
+See ``docs/reference/station.md`` for its keys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import InputError
+from ..files.tables import LENGTH, TomlTable
+from .gates import Gate, GateKind, Input
+from .plc import PLC
+from .station import Wire, signal_key
+
+_DELAY = {"ms": 1e-3, "s": 1.0}
+_LONGEST = 60.0
+_CONFIGURATIONS = ("exact", "nearest")
+
+
+@dataclass(frozen=True, slots=True)
+class MemberFile:
+    """What a station file says of one robot.
+
+    Args:
+        name: of the robot in its station.
+        cell: its cell file; None where the program is a backup that says it all.
+        program: file, folder or backup.
+        entry, task, answers, start, configuration: as options of commands have them.
+        begins: s after the station's start.
+    """
+
+    name: str
+    cell: Path | None
+    program: Path
+    entry: str | None
+    task: str | None
+    answers: Path | None
+    start: str | None
+    configuration: str | None
+    begins: float
+
+
+@dataclass(frozen=True)
+class StationFile:
+    """A station file, read; the names of its signals are not checked yet.
+
+    Args:
+        members: the robots.
+        wires, gates, initial, given: what joins their signals; see `RobotStation`.
+        clearance: m.
+        allowed: pairs of ``robot.thing``.
+        file: that it is.
+    """
+
+    members: tuple[MemberFile, ...]
+    wires: tuple[Wire, ...]
+    gates: Mapping[str, Gate]
+    initial: frozenset[str]
+    given: Mapping[str, bool]
+    clearance: float
+    allowed: tuple[tuple[str, str], ...]
+    file: Path
+
+
+def read_station_file(path: str | Path) -> StationFile:
+    """Read a station file.
+
+    Raises:
+        InputError: a file is missing or no TOML, or a key is missing, unknown or of a wrong kind;
+            the message names file and key.
+    """
+    file = TomlTable.read(path)
+    clearance = file.quantity("clearance", LENGTH, 0.0)
+    if clearance < 0:
+        raise file.error("clearance", "must be zero or more")
+    members = tuple(_member(name, t) for name, t in file.named_tables("robot").items())
+    if len(members) < 2:
+        raise file.error("robot", "a station has two robots or more: [robot.left], [robot.right] …")
+    for member in members:
+        if member.name.casefold() == PLC or "." in member.name:
+            raise file.error(f"robot.{member.name}", f"a robot cannot be called {member.name!r}")
+    gates, outputs = _gates(file)
+    wires = (*_links(file), *outputs)
+    initial = frozenset(file.texts("initial") if file.has("initial") else ())
+    given_table = file.table("given")
+    given = {name: given_table.flag(name, False) for name in given_table.data}
+    allow = file.table("allow")
+    pairs = allow.value("pairs") if allow.has("pairs") else []
+    allow.finish()
+    if not isinstance(pairs, list) or not all(
+        isinstance(pair, list) and len(pair) == 2 and all(isinstance(n, str) for n in pair)
+        for pair in pairs
+    ):
+        raise allow.error("pairs", 'must be pairs of names, [["left.gun", "right.fixture"]]')
+    file.finish()
+    names = {member.name.casefold() for member in members} | {PLC}
+    made = StationFile(
+        members,
+        wires,
+        gates,
+        initial,
+        given,
+        clearance,
+        tuple((a, b) for a, b in pairs),
+        Path(path),
+    )
+    _check_robots(made, names)
+    return made
+
+
+def _member(name: str, table: TomlTable) -> MemberFile:
+    folder = table.file.parent
+    program = folder / table.text("program")
+    if not program.exists():
+        raise table.error("program", f"there is no file {program}")
+    made = MemberFile(
+        name,
+        table.existing_file("cell") if table.has("cell") else None,
+        program,
+        table.text("entry") if table.has("entry") else None,
+        table.text("task") if table.has("task") else None,
+        table.existing_file("answers") if table.has("answers") else None,
+        table.text("start") if table.has("start") else None,
+        table.choice("configuration", _CONFIGURATIONS) if table.has("configuration") else None,
+        table.quantity("begins", _DELAY, 0.0),
+    )
+    if made.begins < 0:
+        raise table.error("begins", "must be zero or more")
+    table.finish()
+    return made
+
+
+def _links(file: TomlTable) -> tuple[Wire, ...]:
+    """``[links]``: ``"left.doReady" = "right.diGo"``, a list, or a table with a delay."""
+    table = file.table("links")
+    found: list[Wire] = []
+    for source in table.data:
+        value = table.value(source)
+        if isinstance(value, Mapping):
+            link = table.table(source)
+            targets = link.value("to")
+            least, greatest = _delay(link)
+            link.finish()
+        else:
+            targets, least, greatest = value, 0.0, 0.0
+        found += _wires(table, source, source, targets, least, greatest)
+    return tuple(found)
+
+
+def _wires(
+    table: TomlTable, key: str, source: str, targets: object, least: float, greatest: float
+) -> list[Wire]:
+    several = targets if isinstance(targets, list) else [targets]
+    for target in several:
+        if not isinstance(target, str):
+            raise table.error(key, f"must name signals, not {target!r}")
+    return [Wire(source, str(target), least, greatest) for target in several]
+
+
+def _delay(table: TomlTable) -> tuple[float, float]:
+    """``delay_ms``: a number, or the least and the greatest."""
+    name = table.unit_key("delay", _DELAY)
+    if name is None:
+        return 0.0, 0.0
+    if isinstance(table.value(name), list):
+        least, greatest = table.quantities("delay", _DELAY, 2)
+    else:
+        least = greatest = table.quantity("delay", _DELAY)
+    if not 0.0 <= least <= greatest <= _LONGEST:
+        raise table.error(name, "is the least and the greatest, from zero to a minute")
+    return least, greatest
+
+
+def _gates(file: TomlTable) -> tuple[dict[str, Gate], tuple[Wire, ...]]:
+    gates: dict[str, Gate] = {}
+    wires: list[Wire] = []
+    for name, table in file.named_tables("logic").items():
+        gates[name] = _gate(table)
+        if table.has("to"):
+            least, greatest = _delay(table)
+            wires += _wires(table, "to", f"{PLC}.{name}", table.value("to"), least, greatest)
+        table.finish()
+    return gates, tuple(wires)
+
+
+def _gate(table: TomlTable) -> Gate:
+    kinds = [kind for kind in GateKind if table.has(kind.value)]
+    if len(kinds) != 1:
+        known = ", ".join(kind.value for kind in GateKind)
+        raise table.error("", f"needs one of {known}")
+    kind = kinds[0]
+    if kind in (GateKind.AND, GateKind.OR):
+        return Gate(kind, _inputs(table, kind.value))
+    inner = table.table(kind.value)
+    match kind:
+        case GateKind.LATCH:
+            gate = Gate(kind, _inputs(inner, "set"), _inputs(inner, "reset"))
+        case GateKind.COUNTER:
+            resets = _inputs(inner, "reset") if inner.has("reset") else ()
+            least = inner.number("at")
+            if least < 1 or least != int(least):
+                raise inner.error("at", "is a whole number from 1 on")
+            gate = Gate(kind, _inputs(inner, "of"), resets, least=int(least))
+        case _:
+            gate = Gate(kind, _inputs(inner, "of"), delay=inner.quantity("after", _DELAY))
+            if gate.delay < 0:
+                raise inner.error("after", "must be zero or more")
+    inner.finish()
+    return gate
+
+
+def _inputs(table: TomlTable, key: str) -> tuple[Input, ...]:
+    value = table.value(key)
+    texts = value if isinstance(value, list) else [value]
+    if not texts or not all(isinstance(text, str) and text.strip() for text in texts):
+        raise table.error(key, 'names signals: "left.doReady", "not right.doInside"')
+    return tuple(map(Input.read, texts))
+
+
+def _check_robots(made: StationFile, names: set[str]) -> None:
+    """Every signal is one of a robot of the station, or of the PLC."""
+    told = [(f"links: {wire.source}", wire.source) for wire in made.wires]
+    told += [(f"links: {wire.target}", wire.target) for wire in made.wires]
+    told += [
+        (f"logic.{name}", one.name)
+        for name, gate in made.gates.items()
+        for one in (*gate.inputs, *gate.resets)
+    ]
+    told += [("initial", name) for name in made.initial]
+    told += [("given", name) for name in made.given]
+    told += [("allow.pairs", name) for pair in made.allowed for name in pair]
+    gates = {signal_key(f"{PLC}.{name}") for name in made.gates}
+    for where, name in told:
+        robot, dot, rest = name.partition(".")
+        known = ", ".join([member.name for member in made.members])
+        if not dot or not rest or robot.strip().casefold() not in names:
+            raise InputError(
+                f"{made.file}: {where}: {name!r} is of no robot of the station; write "
+                f"ROBOT.SIGNAL, with one of {known}, or plc.NAME for what [logic.NAME] makes"
+            )
+        if robot.strip().casefold() == PLC and signal_key(name) not in gates:
+            raise InputError(f"{made.file}: {where}: there is no [logic.{rest}]")

@@ -1,0 +1,135 @@
+"""Station files with their programs as driven, and what joins these checked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...core.errors import FlybyError, InputError, UnknownNameError
+from ..read import SourceOptions, read_with
+from ..setup import Setup, setup_of_program, start_of
+
+if TYPE_CHECKING:
+    from ...core.program.program import Program
+    from ...core.station.actions import Action
+    from ...core.station.station import RobotStation, StationRobot
+    from ...core.station.station_file import MemberFile, StationFile
+
+
+def open_station(
+    source: Path, say: Callable[[str], None]
+) -> tuple[RobotStation, dict[str, tuple[Action, ...]]]:
+    """A station with its programs as driven, and what these do with signals.
+
+    Raises:
+        InputError, MotionError: as `station_with`.
+    """
+    from ...core.station.actions import actions_of
+    from ...core.station.station import RobotStation
+    from ...core.station.station_file import read_station_file
+
+    file = read_station_file(source)
+    members, actions = {}, {}
+    for member in file.members:
+        say(f"reading and driving {member.name}")
+        made, setup = _member(member, file)
+        members[member.name] = made
+        speaks = setup.vendor.speaks
+        words = None if speaks is None else speaks.signals
+        actions[member.name] = actions_of(made.run, words)
+    _check_signals(file, members, actions)
+    _check_starts(file, members)
+    station = RobotStation(
+        members,
+        file.wires,
+        file.gates,
+        file.initial,
+        file.given,
+        file.clearance,
+        file.allowed,
+        file.file,
+    )
+    return station, actions
+
+
+def _member(member: MemberFile, file: StationFile) -> tuple[StationRobot, Setup]:
+    from ...core.driving.past_faults import refuse_faults
+    from ...core.motion.emulator.controller import Controller
+    from ...core.station.station import StationRobot
+
+    try:
+        source = SourceOptions(
+            cell=member.cell,
+            entry=member.entry,
+            task=member.task,
+            answers=member.answers,
+            start=member.start,
+            configuration=member.configuration,
+        )
+        program: Program = read_with(member.program, source)
+        setup = setup_of_program(program)
+        controller = Controller(setup.vendor, setup.robot)
+        refuse_faults(controller, program, start_of(program))
+        run = controller.run(program, start_of(program))
+    except FlybyError as error:
+        raise InputError(f"{file.file}: robot.{member.name}: {error}") from error
+    cell = setup.surroundings(program)
+    return StationRobot(member.name, program, controller, cell, run, member.begins), setup
+
+
+def _check_signals(
+    file: StationFile, members: dict[str, StationRobot], actions: dict[str, tuple[Action, ...]]
+) -> None:
+    """Links lead from outputs that a program sets to inputs that one waits for."""
+    from ...core.program.signal import SetSignal, WaitSignal, levels
+    from ...core.station.plc import PLC
+    from ...core.station.station import signal_key
+
+    sets, asked = {}, {}
+    for name, doings in actions.items():
+        for action in doings:
+            if isinstance(action.does, SetSignal):
+                spelt = f"{name}.{action.does.name}"
+                sets[signal_key(spelt)] = spelt
+            elif isinstance(action.does, WaitSignal):
+                for level in levels(action.does.condition):
+                    spelt = f"{name}.{level.name}"
+                    asked[signal_key(spelt)] = spelt
+    plc = f"{PLC}."
+    targets = {signal_key(wire.target) for wire in file.wires}
+    for wire in file.wires:
+        source, target = signal_key(wire.source), signal_key(wire.target)
+        if not source.startswith(plc) and source not in sets and source not in targets:
+            raise InputError(
+                f"{file.file}: links: "
+                + str(UnknownNameError("output that a program sets", wire.source, sets.values()))
+            )
+        used = {
+            signal_key(one.name)
+            for gate in file.gates.values()
+            for one in (*gate.inputs, *gate.resets)
+        }
+        if target not in asked and target not in used:
+            raise InputError(
+                f"{file.file}: links: "
+                + str(
+                    UnknownNameError("input that a program waits for", wire.target, asked.values())
+                )
+            )
+
+
+def _check_starts(file: StationFile, members: dict[str, StationRobot]) -> None:
+    """No two robots stand in one place."""
+    import numpy as np
+
+    places = {name: np.asarray(member.cell.robot.base.position) for name, member in members.items()}
+    names = list(places)
+    for k, one in enumerate(names):
+        for other in names[k + 1 :]:
+            if np.linalg.norm(places[one] - places[other]) < 1e-3:
+                raise InputError(
+                    f"{file.file}: {one} and {other} stand at one place: their cells put both "
+                    f"bases at {1e3 * places[one].round(4)} mm in the world; say in each cell "
+                    "where its robot stands ([base])"
+                )

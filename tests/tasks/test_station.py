@@ -1,0 +1,275 @@
+"""Stations of two and three robots whose answers are known."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+
+import flyby
+from flyby.core.errors import FlybyError
+
+HOMES = ("[0,0,0,0,30,0]", "[20,0,0,0,30,0]", "[-20,0,0,0,30,0]")
+UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
+Write = Callable[..., Path]
+
+
+def module(name: str, statements: Sequence[str]) -> str:
+    """A RAPID module; ``go K`` in place of an instruction drives to the K-th home."""
+    lines = [
+        f"MoveAbsJ [{HOMES[int(s.split()[1])]},{UNUSED}], v1000, fine, tool0;"
+        if s.startswith("go ")
+        else f"{s};"
+        for s in statements
+    ]
+    body = "\n    ".join(lines)
+    return (
+        f"MODULE {name}\n  VAR syncident s1;\n  VAR syncident s2;\n"
+        '  PERS tasks all{2} := [["T1"],["T2"]];\n'
+        f"  PROC main()\n    {body}\n  ENDPROC\nENDMODULE\n"
+    )
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Write:
+    """Writes a station of robots far apart."""
+
+    def made(programs: dict[str, Sequence[str]], rest: str = "", gap: float = 9000.0) -> Path:
+        text = "clearance_mm = 10\n"
+        for k, (name, statements) in enumerate(programs.items()):
+            turned = "[0, 0, 0, 1]" if k % 2 else "[1, 0, 0, 0]"
+            base = f"{{ xyz_mm = [{k * gap}, 0, 0], quat_wxyz = {turned} }}"
+            cell = f'robot = "abb/irb120-3-058"\nbase = {base}\n'
+            (tmp_path / f"{name}.toml").write_text(cell)
+            (tmp_path / f"{name}.mod").write_text(module(name, statements))
+            text += f'[robot.{name}]\ncell = "{name}.toml"\nprogram = "{name}.mod"\n'
+        file = tmp_path / "station.toml"
+        file.write_text(text + rest)
+        return file
+
+    return made
+
+
+def station(file: Path, **options: object):
+    return flyby.station(file, **{"no_proof": True, **options})
+
+
+def test_a_handshake_makes_one_wait_for_the_other(write: Write) -> None:
+    made = station(
+        write(
+            {
+                "one": ["go 0", "go 1", "SetDO doDone,1", "go 0"],
+                "two": ["go 0", "WaitDI diGo,1", "go 1"],
+            },
+            '[links]\n"one.doDone" = { to = "two.diGo", delay_ms = [20, 40] }\n',
+        )
+    )
+    ((name, wait),) = made.waits()
+    (done,) = (a for a in made.actions["one"])
+    assert name == "two" and wait.action.text == "WaitDI diGo,1"
+    assert wait.end == pytest.approx(done.time + 0.030)
+    two = made.station.members["two"].run.duration
+    assert made.duration == pytest.approx(two + wait.end - wait.begin)
+    assert made.deadlock is None and not made.may_lock
+
+
+def test_two_that_wait_for_each_other_are_a_deadlock_with_its_cycle(write: Write) -> None:
+    made = station(
+        write(
+            {
+                "one": ["go 0", "go 1", "WaitDI diTwo,1", "SetDO doOne,1", "go 0"],
+                "two": ["go 0", "go 1", "WaitDI diOne,1", "SetDO doTwo,1", "go 0"],
+            },
+            '[links]\n"one.doOne" = "two.diOne"\n"two.doTwo" = "one.diTwo"\n',
+        )
+    )
+    assert made.deadlock is not None and set(made.deadlock.cycle) == {"one", "two"}
+    said = str(made.deadlock)
+    assert "one waits at WaitDI diTwo,1" in said and "two.mod:" in said
+    assert math.isinf(made.duration) and made.may_lock
+
+
+def test_what_nobody_sets_any_more_is_said(write: Write) -> None:
+    made = station(
+        write(
+            {
+                "one": ["go 0", "SetDO doOne,1", "SetDO doOne,0", "go 1"],
+                "two": ["go 0", "go 1", "go 2", "go 0", "WaitDI diOne,1", "go 1"],
+            },
+            '[links]\n"one.doOne" = "two.diOne"\n',
+        )
+    )
+    assert made.deadlock is not None and not made.deadlock.cycle
+    assert "nobody sets diOne any more" in str(made.deadlock)
+
+
+def test_a_deadlock_that_timing_hides_is_found(write: Write) -> None:
+    """Both ask for both halves, in unlike order: a classic."""
+    locks = """
+[logic.freeA]
+latch = { set = ["one.giveA", "two.giveA"], reset = ["one.takeA", "two.takeA"] }
+to = ["one.diA", "two.diA"]
+[logic.freeB]
+latch = { set = ["one.giveB", "two.giveB"], reset = ["one.takeB", "two.takeB"] }
+to = ["one.diB", "two.diB"]
+"""
+    one = ["go 0", "WaitDI diA,1", "SetDO takeA,1", "go 1", "WaitDI diB,1", "SetDO takeB,1", "go 0"]
+    give = ["SetDO takeA,0", "SetDO takeB,0", "SetDO giveA,1", "SetDO giveB,1"]
+    two = [
+        *("go 0", "go 1", "go 2", "go 1", "go 0", "go 1", "go 2"),
+        *("WaitDI diB,1", "SetDO takeB,1", "go 1", "WaitDI diA,1", "SetDO takeA,1", "go 0"),
+    ]
+    made = station(
+        write(
+            {"one": [*one, *give], "two": [*two, *give]},
+            locks,
+        )
+    )
+    assert made.deadlock is not None or made.may_lock
+
+
+def test_multimove_tasks_meet(write: Write) -> None:
+    made = station(
+        write(
+            {
+                "one": ["go 0", "WaitSyncTask s1, all", "go 1", "WaitSyncTask s2, all", "go 0"],
+                "two": [
+                    *("go 0", "go 1", "go 2", "go 0", "WaitSyncTask s1, all", "go 1"),
+                    *("go 0", "WaitSyncTask s2, all"),
+                ],
+            }
+        )
+    )
+    waits = made.waits()
+    assert [(name, wait.action.text) for name, wait in waits] == [
+        ("one", "WaitSyncTask s1, all"),
+        ("one", "WaitSyncTask s2, all"),
+    ]
+    assert made.deadlock is None and made.duration < math.inf
+
+
+def test_a_meeting_that_one_task_lacks_is_named(write: Write) -> None:
+    made = station(
+        write(
+            {
+                "one": ["go 0", "WaitSyncTask s1, all", "go 1", "WaitSyncTask s1, all"],
+                "two": ["go 0", "WaitSyncTask s1, all", "go 1"],
+            }
+        )
+    )
+    assert made.deadlock is not None
+    assert "one waits at WaitSyncTask s1, all" in str(made.deadlock)
+
+
+def test_time_outs_end_waits_and_are_noted(write: Write) -> None:
+    made = station(
+        write(
+            {
+                "one": ["go 0", "go 1"],
+                "two": ["go 0", "WaitDI diNever,1 \\MaxTime:=0.5", "go 1"],
+            },
+            '[given]\n"two.diNever" = false\n',
+        )
+    )
+    ((name, wait),) = made.waits()
+    assert (name, wait.given_up) == ("two", True)
+    assert wait.end - wait.begin == pytest.approx(0.5)
+    assert any("error handler" in str(note) for note in made.notes)
+
+
+def test_an_input_without_a_link_holds_nobody_up_and_is_noted(write: Write) -> None:
+    made = station(write({"one": ["go 0", "go 1"], "two": ["go 0", "WaitDI diOther,1", "go 1"]}))
+    assert not made.waits()
+    assert any("diOther: no link sets it" in str(note) for note in made.notes)
+
+
+def test_counters_and_timers_of_the_plc(write: Write) -> None:
+    pulses = ["SetDO doPart,1", "go 1", "SetDO doPart,0", "go 0"]
+    made = station(
+        write(
+            {
+                "one": ["go 0", *pulses, *pulses, *pulses],
+                "two": ["WaitDI diFull,1", "go 0", "go 1"],
+            },
+            "[logic.full]\ncounter = { of = 'one.doPart', at = 3 }\n"
+            "[logic.settled]\ntimer = { of = 'plc.full', after_ms = 250 }\nto = 'two.diFull'\n",
+        )
+    )
+    third = [a for a in made.actions["one"] if a.text == "SetDO doPart,1"][2]
+    ((_, wait),) = made.waits()
+    assert wait.end == pytest.approx(third.time + 0.25)
+
+
+def test_the_station_is_as_long_as_its_slowest_robot(write: Write) -> None:
+    made = station(write({"one": ["go 0", "go 1"], "two": ["go 0", "go 1", "go 2", "go 0"]}))
+    runs = [member.run.duration for member in made.station.members.values()]
+    assert made.duration == pytest.approx(max(runs)) and made.bottleneck == "two"
+
+
+def test_robots_that_share_space_are_named_with_both_lines(write: Write) -> None:
+    made = station(
+        write({"one": ["go 1", "go 0", "go 2"], "two": ["go 0", "go 1"]}, gap=300.0),
+        no_proof=False,
+    )
+    assert not made.clear
+    (finding,) = [f for f in made.findings() if "one's move" in f][:1]
+    assert "one.mod:" in finding and "two.mod:" in finding
+
+
+def test_an_interlock_is_proven_or_the_pair_of_moves_is_named(write: Write) -> None:
+    """Both turn to the place between them, the second when the first has left it."""
+    away = f"MoveAbsJ [[90,0,0,0,30,0],{UNUSED}], v1000, fine, tool0"
+    programs = {
+        "one": [away, "go 0", away, "SetDO doOut,1"],
+        "two": [away, "WaitDI diOut,1", "go 0", away],
+    }
+    link = '[links]\n"one.doOut" = "two.diOut"\n'
+    made = station(write(programs, link, gap=650.0), no_proof=False)
+    (pair,) = made.clearances
+    assert not pair.any_time.proven and pair.in_time.proven and pair.safe
+    open_ones = {**programs, "two": [s for s in programs["two"] if "WaitDI" not in s]}
+    made = station(write(open_ones, gap=650.0), no_proof=False)
+    (pair,) = made.clearances
+    assert not pair.safe and not made.clear
+
+
+@pytest.mark.parametrize(
+    ("rest", "words"),
+    [
+        ('[links]\n"one.doDoen" = "two.diGo"\n', ("one.doDoen", "one.doDone")),
+        ('[links]\n"one.doDone" = "two.diGoo"\n', ("two.diGoo", "two.diGo")),
+        ('[links]\n"three.doDone" = "two.diGo"\n', ("three.doDone", "one, two")),
+        ('[links]\n"one.doDone" = { to = "two.diGo", delay_ms = [40, 10] }\n', ("delay_ms",)),
+        ('[logic.a]\nand = ["plc.b"]\n', ("[logic.b]",)),
+        ('[logic.a]\nxor = ["one.doDone"]\n', ("needs one of and, or, latch",)),
+        ("unknown = 1\n", ("unknown",)),
+    ],
+)
+def test_bad_files_are_refused_with_the_place(
+    write: Write, rest: str, words: Sequence[str]
+) -> None:
+    programs = {"one": ["go 0", "go 1", "SetDO doDone,1"], "two": ["go 0", "WaitDI diGo,1", "go 1"]}
+    file = write(programs)
+    text = file.read_text()
+    file.write_text(rest + text if rest.startswith("unknown") else text + rest)
+    with pytest.raises(FlybyError) as caught:
+        station(file)
+    assert "station.toml" in str(caught.value)
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_two_robots_in_one_place_are_refused(write: Write) -> None:
+    with pytest.raises(FlybyError, match="stand at one place"):
+        station(write({"one": ["go 0", "go 1"], "two": ["go 0", "go 1"]}, gap=0.0))
+
+
+def test_logic_that_swings_is_refused(write: Write) -> None:
+    file = write(
+        {"one": ["go 0", "go 1", "SetDO doDone,1"], "two": ["go 0", "WaitDI diGo,1", "go 1"]},
+        "[logic.a]\nand = ['not plc.a']\nto = 'two.diGo'\n",
+    )
+    with pytest.raises(FlybyError, match="never comes to rest"):
+        station(file)
