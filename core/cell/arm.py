@@ -50,10 +50,7 @@ def _at_zero(robot: Robot) -> list[Pose]:
     """The frames of base and links in the base's, all joints at zero."""
     frames = [IDENTITY]
     for joint in robot.joints:
-        frame = frames[-1] @ joint.placement
-        for follower in joint.followers:
-            frame = frame @ follower.placement
-        frames.append(frame)
+        frames.append(frames[-1] @ joint.step)
     return frames
 
 

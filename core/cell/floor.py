@@ -66,7 +66,7 @@ def bare_cell(robot: Robot, vendor: str, tools: Iterable[Tool] = (), *, floor: b
 
 def _floor(robot: Robot, tools: Iterable[Tool]) -> Geometry:
     """As far round the base as the arm can reach."""
-    places = [joint.placement for joint in robot.joints] + [robot.flange]
+    places = [joint.step for joint in robot.joints] + [robot.flange]
     reach = sum(math.hypot(*place.position) for place in places)
     reach += max((math.hypot(*tool.tcp.position) for tool in tools), default=0.0)
     box = Box((2.0 * reach, 2.0 * reach, _THICK))
@@ -78,9 +78,10 @@ def _level(robot: Robot) -> list[str]:
     found: list[str] = []
     frame = Pose()
     for joint in robot.joints:
-        frame = frame @ joint.placement
-        axis = frame.matrix()[:3, :3] @ joint.axis
-        if joint.kind is not JointKind.REVOLUTE or abs(axis[2]) < 1.0 - _PARALLEL:
+        axis = (frame @ joint.placement).matrix()[:3, :3] @ joint.axis
+        level = joint.kind is JointKind.REVOLUTE and abs(axis[2]) > 1.0 - _PARALLEL
+        if not level or joint.followers:
             break
+        frame = frame @ joint.step
         found.append(joint.name)
     return found

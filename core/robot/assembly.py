@@ -9,8 +9,10 @@ from ..spatial.pose import Pose
 from .joint import Follower, Joint, JointKind
 from .kinematics.chain import Chain
 
-Stage = Pose | tuple[Joint | Follower, int]
-"""A fixed step, or a joint (or what follows one) with the index of its value."""
+Turn = tuple[Joint | Follower, int]
+"""A joint, or what follows one, with the index of its value."""
+Stage = Pose | Turn
+"""A fixed step, or a joint."""
 
 
 def assemble(stages: list[Stage]) -> Chain:

@@ -30,6 +30,11 @@ An origin starts with one of published, identified, measured, computed, assumed,
     acceleration_rad_s2 = 4.98           # or none, and at the top of the file:
     effort_nm = 1000                     # optional
 
+    [[joint.follower]]                   # optional: a turn right behind that joint, by the value of
+    driver = "J2"                        # another one; rods or gears make it
+    axis = [0, -1, 0]                    # the opposite axis turns it against its driver
+    xyz_mm = [0, 0, 0]                   # in the frame behind the joint, or the follower before
+
     [assumed]
     acceleration_time_s = 0.25           # joints without acceleration: top speed in this time
 
@@ -84,7 +89,7 @@ from ..files.tables import ANGLE, LENGTH, TomlTable
 from ..spatial.pose import IDENTITY, Pose
 from ..spatial.rotation import matrix_from_rotation_vector
 from .inertia import Inertia
-from .joint import Joint, JointKind
+from .joint import Follower, Joint, JointKind
 from .model import Robot
 from .pose_table import pose_at, read_pose
 from .shape import LinkShape, TouchingLinks
@@ -215,9 +220,17 @@ def _joint(row: TomlTable, placement: Pose, dh: bool, acceleration_time: float |
         acceleration=acceleration,
         effort=row.number("effort_nm") if row.has("effort_nm") else None,
         kind=kind,
+        followers=tuple(_follower(entry) for entry in row.listed_tables("follower")),
     )
     row.finish()
     return joint
+
+
+def _follower(row: TomlTable) -> Follower:
+    x, y, z = row.numbers("axis", 3)
+    follower = Follower(row.text("driver"), (x, y, z), read_pose(row))
+    row.finish()
+    return follower
 
 
 def _rate(row: TomlTable, key: str, units: Mapping[str, float]) -> float | None:

@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import InputError
 from ..files.toml_text import key_text, value_text
 from ..spatial.pose import IDENTITY, Pose, Vector3
 from ..spatial.rotation import matrix_from_quaternion
 from .inertia import Inertia
-from .joint import Joint, JointKind
+from .joint import Follower, Joint, JointKind
 from .model import Robot
 from .shape import Box, LinkShape, Sphere
 
@@ -28,17 +27,9 @@ def robot_text(robot: Robot) -> str:
     Args:
         robot: the arm.
 
-    Raises:
-        InputError: a joint has followers.
-
     Returns:
         TOML; every number is read back as it was to within rounding of its last digits.
     """
-    if robot.has_followers:
-        raise InputError(
-            f"{robot.name}: rods or gears turn one of its joints with another, for which catalogue "
-            "files have no keys yet"
-        )
     head: dict[str, Any] = {"name": robot.name}
     head |= {} if robot.payload is None else {"payload_kg": robot.payload}
     head |= {"doubts": list(robot.doubts)} if robot.doubts else {}
@@ -49,6 +40,8 @@ def robot_text(robot: Robot) -> str:
         lines += _table("[spread]", dict(robot.spread))
     for joint in robot.joints:
         lines += _table("[[joint]]", _joint(joint))
+        for follower in joint.followers:
+            lines += _table("[[joint.follower]]", _follower(follower))
     if robot.flange != IDENTITY:
         lines += _table("[flange]", pose_entries(robot.flange))
     for body in robot.links:
@@ -105,6 +98,11 @@ def _joint(joint: Joint) -> dict[str, Any]:
         f"acceleration_{unit}_s2": joint.acceleration,
     }
     return entries if joint.effort is None else {**entries, "effort_nm": joint.effort}
+
+
+def _follower(follower: Follower) -> dict[str, Any]:
+    turn = {"driver": follower.driver, "axis": list(follower.axis)}
+    return turn | pose_entries(follower.placement)
 
 
 def _link(body: Inertia) -> dict[str, Any]:

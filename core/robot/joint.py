@@ -108,6 +108,14 @@ class Joint:
             if value is not None and not 0.0 < value < math.inf:
                 raise InputError(f"joint {self.name}: {name} {value:g} must be positive")
 
+    @property
+    def step(self) -> Pose:
+        """The frame behind the joint in the frame behind the joint before, all values zero."""
+        step = self.placement
+        for follower in self.followers:
+            step = step @ follower.placement
+        return step
+
     def cells(self) -> tuple[str, ...]:
         """Name and limits in degrees or mm, as `COLUMNS` names them."""
         turning = self.kind is JointKind.REVOLUTE

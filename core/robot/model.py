@@ -15,11 +15,11 @@ from ..display import counted, in_line
 from ..errors import InputError, UnknownNameError
 from ..notebook import PictureCurve, page, picture, table
 from ..spatial.pose import IDENTITY, Pose, Vector3
-from .assembly import Stage, assemble
+from .assembly import Stage, Turn, assemble
 from .dynamics import Dynamics, JointTree, TreeNode
 from .inertia import Inertia
 from .inverse import InverseSolution, Ranges, equivalent_turns, solve
-from .joint import COLUMNS, ExternalAxis, ExternalRole, Follower, Joint, JointKind, JointLimits
+from .joint import COLUMNS, ExternalAxis, ExternalRole, Joint, JointKind, JointLimits
 from .kinematics.arm_geometry import Recognised, recognise
 from .kinematics.chain import Chain
 from .kinematics.chain_derivatives import hessians
@@ -222,17 +222,17 @@ class Robot:
         """The stages from the world to the flange."""
         return [*self.base_stages(), *self.arm_stages(), self.flange]
 
-    def arm_stages(self, count: int | None = None) -> list[Stage]:
+    def arm_stages(self, count: int | None = None) -> list[Turn]:
         """The stages from the base's frame to that behind the first ``count`` joints (None: all).
 
         What follows a joint is a stage of its own, with the index of the joint that drives it.
         """
-        stages: list[Stage] = []
+        stages: list[Turn] = []
         for index, joint in enumerate(self.joints[:count]):
             stages += [(joint, index), *self._followers(joint)]
         return stages
 
-    def _followers(self, joint: Joint) -> list[tuple[Joint | Follower, int]]:
+    def _followers(self, joint: Joint) -> list[Turn]:
         """What follows a joint, with the index of what drives it."""
         return [(one, self.axis_names.index(one.driver)) for one in joint.followers]
 
@@ -357,7 +357,7 @@ class Robot:
         for index, (joint, body) in enumerate(zip(self.joints, self.links, strict=True)):
             if index == self.arm_size - 1:
                 body = body + load.placed(self.flange)
-            turns: list[tuple[Joint | Follower, int]] = [(joint, index), *self._followers(joint)]
+            turns: list[Turn] = [(joint, index), *self._followers(joint)]
             for turn, driver in turns:
                 carried = body if turn is turns[-1][0] else Inertia(0.0)
                 nodes.append(TreeNode(turn, parent, step, driver, carried))

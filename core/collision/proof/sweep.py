@@ -159,7 +159,7 @@ def sweep(
 @lean
 def _apart(at: Middle, body: int, other: int, f: int) -> bool:
     """Whether frame f moves ``body`` against ``other``."""
-    return f > 0 and not at.tree.moves[at.outlines.frame[other], f - 1]
+    return not at.tree.rides[at.outlines.frame[other], f]
 
 
 @lean
@@ -171,7 +171,7 @@ def _deviation(at: Middle, most_off: FloatArray, residual: float, a: int, b: int
         if _apart(at, body, other, f):
             total += residual
         while _apart(at, body, other, f):
-            total += most_off[f - 1] * at.levers[body, f]
+            total += most_off[at.tree.value[f]] * at.levers[body, f]
             f = at.tree.parent[f]
     return total
 
@@ -183,7 +183,7 @@ def _deviation_bend(at: Middle, most_off: FloatArray, a: int, b: int) -> float:
     for body, other in ((a, b), (b, a)):
         f, speed = at.outlines.frame[body], 0.0
         while _apart(at, body, other, f):
-            d, far = most_off[f - 1], at.levers[body, f]
+            d, far = most_off[at.tree.value[f]], at.levers[body, f]
             if not at.tree.prismatic[f]:
                 total += 0.5 * (2.0 * d * speed + d * d * far)
             speed += d * far
@@ -215,7 +215,7 @@ def _extent(at: Middle, way: FloatArray, body: int, other: int, n: Vector) -> tu
     f = own = at.outlines.frame[body]
     omega, origin, moved = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), False
     while _apart(at, body, other, f):
-        rate = scale(way[f - 1], load_row(at.axis, f))
+        rate = scale(way[at.tree.value[f]], load_row(at.axis, f))
         if at.tree.prismatic[f]:
             origin = add(origin, rate)
         else:
@@ -261,7 +261,8 @@ def measure_levers(at: Middle, reach: FloatArray, most_off: FloatArray) -> None:
                 step = subtract(load_row(at.p, f), load_row(at.p, own))
                 s, o = _into(at.R, own, load_row(at.axis, f)), _into(at.R, own, step)
                 at.levers[b, f] = lever(at.outlines, b, s, o) + behind
-            behind += (reach[f - 1] + most_off[f - 1]) * at.levers[b, f]
+            j = at.tree.value[f]
+            behind += (reach[j] + most_off[j]) * at.levers[b, f]
             f = at.tree.parent[f]
 
 
@@ -285,12 +286,12 @@ def travel(
     ω × (ω × r) to what happens in it.
     """
     f = at.outlines.frame[body]
-    shared = at.tree.moves[at.outlines.frame[other]]
+    shared = at.tree.rides[at.outlines.frame[other]]
     reach = bend = speed = 0.0
-    deviation = residual if f > 0 and not shared[f - 1] else 0.0
+    deviation = 0.0 if shared[f] else residual
     omega, origin = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    while f > 0 and not shared[f - 1]:
-        j, far = f - 1, at.levers[body, f]
+    while not shared[f]:
+        j, far = at.tree.value[f], at.levers[body, f]
         d1, d2 = boxes.first[i, j] + most_off[j], boxes.second[i, j]
         s = load_row(at.axis, f)
         reach += boxes.reach[i, j] * far

@@ -14,7 +14,6 @@ from ...cell.cell import Cell
 from ...errors import Note
 from ...robot.model import Robot
 from .bodies import Body, BodyKind
-from .frames import FrameTree
 
 Touch = Callable[[FloatArray, NDArray[np.int64]], NDArray[np.bool_]]
 
@@ -53,7 +52,7 @@ class Pairs:
     exclusions: tuple[Exclusion, ...]
 
 
-def sort_pairs(cell: Cell, bodies: tuple[Body, ...], frames: FrameTree) -> Pairs:
+def sort_pairs(cell: Cell, bodies: tuple[Body, ...]) -> Pairs:
     """Leave out what never moves against each other, adjacent links, and what the cell allows."""
     kept: list[tuple[int, int]] = []
     exclusions: list[Exclusion] = []
@@ -61,7 +60,7 @@ def sort_pairs(cell: Cell, bodies: tuple[Body, ...], frames: FrameTree) -> Pairs
         first, second = bodies[i], bodies[j]
         if first.thing == second.thing and first.kind is second.kind:
             continue
-        reason = exclusion_reason(cell, first, second, frames)
+        reason = exclusion_reason(cell, first, second)
         if reason is None:
             kept.append((i, j))
         else:
@@ -69,9 +68,9 @@ def sort_pairs(cell: Cell, bodies: tuple[Body, ...], frames: FrameTree) -> Pairs
     return Pairs(np.array(kept, dtype=np.int64).reshape(-1, 2), tuple(exclusions))
 
 
-def exclusion_reason(cell: Cell, first: Body, second: Body, frames: FrameTree) -> str | None:
+def exclusion_reason(cell: Cell, first: Body, second: Body) -> str | None:
     """Why two bodies are not looked at together; None if they are."""
-    if (frames.moves[first.frame] == frames.moves[second.frame]).all():
+    if first.frame == second.frame:
         return "they do not move against each other"
     if _adjacent(cell.robot, first, second):
         return "adjacent links"

@@ -1,11 +1,13 @@
 """The frames that bodies ride on: the world, and one behind every axis of the robot.
 
 Frame 0 is the world; frame 1 + j lies behind the axis with value j of a configuration, so frame
-k is the one behind the arm's joint k, as in `flyby.core.robot.shape.LinkShape`.
+k is the one behind the arm's joint k, as in `flyby.core.robot.shape.LinkShape`. Of a joint with
+followers that is the frame behind the last of them; those before it come after all others.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +15,6 @@ from numba import njit
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray
-from ...errors import InputError
 from ...robot.assembly import Stage
 from ...robot.joint import Follower, Joint, JointKind
 from ...robot.kinematics.vectors import (
@@ -38,25 +39,28 @@ WORLD = 0
 
 
 class FrameTree(NamedTuple):
-    """Frames as arrays; F = 1 + N, and row 0 (the world) of the joints' arrays is not used.
+    """Frames as arrays; F = 1 + N and one for each follower of a joint. Row 0 (the world) of the
+    joints' arrays is not used.
 
     Args:
-        parent: (F,) int64, the frame that each axis stands on.
-        order: (N,) int64, the moving frames, each after its parent.
+        parent: (F,) int64, the frame that each stands on.
+        order: (F - 1,) int64, the moving frames, each after its parent.
+        value: (F,) int64, which value of a configuration moves it against its parent.
         rotation: (F, 3, 3), of the joint's placement in the parent's frame.
         translation: (F, 3) m, of the same.
         axis: (F, 3), unit axis in the joint's frame.
         prismatic: (F,) bool, whether the joint slides.
-        moves: (F, N) bool, whether axis j moves frame f.
+        rides: (F, F) bool, whether the first frame is the second or stands on it, directly or not.
     """
 
     parent: NDArray[np.int64]
     order: NDArray[np.int64]
+    value: NDArray[np.int64]
     rotation: FloatArray
     translation: FloatArray
     axis: FloatArray
     prismatic: NDArray[np.bool_]
-    moves: NDArray[np.bool_]
+    rides: NDArray[np.bool_]
 
 
 class BasePlace(NamedTuple):
@@ -83,57 +87,72 @@ def frame_of_axis(robot: Robot, name: str) -> int:
 
 
 def frame_tree(robot: Robot) -> FrameTree:
-    """All frames of a robot with its external axes.
-
-    Raises:
-        InputError: a joint of the arm has followers, for which there are no frames yet.
-    """
-    if robot.has_followers:
-        raise InputError(
-            f"collisions of {robot.name} are not computed: rods or gears turn one of its joints "
-            "with another, which the bodies of a scene do not follow yet"
-        )
-    count = robot.size + 1
-    parent = np.zeros(count, dtype=np.int64)
+    """All frames of a robot with its external axes."""
+    count = robot.size + 1 + sum(len(joint.followers) for joint in robot.joints)
+    parent, value = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.int64)
     rotation, translation = np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3))
     axis, prismatic = np.zeros((count, 3)), np.zeros(count, dtype=np.bool_)
-    moves = np.zeros((count, robot.size), dtype=np.bool_)
+    rides = np.eye(count, dtype=np.bool_)
+    rides[:, WORLD] = True
     order: list[int] = []
-    for carrier, step, joint, index in _stages(robot):
-        frame = index + 1
+    for move in _turns(robot):
+        frame, joint = move.frame, move.joint
         if frame in order:
             continue
         order.append(frame)
-        placement = step.matrix() @ joint.placement.matrix()
-        parent[frame] = carrier
+        placement = move.step.matrix() @ joint.placement.matrix()
+        parent[frame], value[frame] = move.below, move.value
         rotation[frame], translation[frame] = placement[:3, :3], placement[:3, 3]
         axis[frame] = np.array(joint.axis) / np.linalg.norm(joint.axis)
         prismatic[frame] = joint.kind is JointKind.PRISMATIC
-        moves[frame] = moves[carrier]
-        moves[frame, index] = True
+        rides[frame] |= rides[move.below]
     places = np.array(order, dtype=np.int64)
-    return FrameTree(parent, places, rotation, translation, axis, prismatic, moves)
+    return FrameTree(parent, places, value, rotation, translation, axis, prismatic, rides)
 
 
-def _stages(robot: Robot) -> list[tuple[int, Pose, Joint | Follower, int]]:
-    """Every axis as (frame below, fixed step from it, joint, index), carriers first."""
-    chains = [robot.frame_stages(axis.name) for axis in robot.external_axes]
-    found = []
-    for chain in [*chains, robot.flange_stages()]:
-        found += _walk(chain)
-    return found
+class _Turn(NamedTuple):
+    """A joint, or what follows one, between two frames.
+
+    Args:
+        below, step: the frame that it stands on, and its fixed place there.
+        joint: what turns or slides.
+        frame: the frame behind it.
+        value: which value of a configuration moves it.
+    """
+
+    below: int
+    step: Pose
+    joint: Joint | Follower
+    frame: int
+    value: int
 
 
-def _walk(chain: list[Stage]) -> list[tuple[int, Pose, Joint | Follower, int]]:
-    frame, step, found = WORLD, IDENTITY, []
+def _turns(robot: Robot) -> Iterator[_Turn]:
+    """What moves the frames, carriers first."""
+    for axis in robot.external_axes:
+        yield from _walk(robot.frame_stages(axis.name), BasePlace(WORLD, IDENTITY))
+    yield from _walk(robot.base_stages(), BasePlace(WORLD, IDENTITY))
+    below, step = base_place(robot)
+    between = robot.size + 1
+    for link in range(1, robot.arm_size + 1):
+        stages = robot.arm_stages(link)[len(robot.arm_stages(link - 1)) :]
+        frames = [*range(between, between + len(stages) - 1), link]
+        between += len(stages) - 1
+        for stage, frame in zip(stages, frames, strict=True):
+            yield _Turn(below, step, stage[0], frame, stage[1])
+            below, step = frame, IDENTITY
+
+
+def _walk(chain: list[Stage], start: BasePlace) -> Iterator[_Turn]:
+    """What moves the frames behind external axes."""
+    frame, step = start
     for stage in chain:
         if isinstance(stage, Pose):
             step = step @ stage
             continue
         joint, index = stage
-        found.append((frame, step, joint, index))
+        yield _Turn(frame, step, joint, index + 1, index)
         frame, step = index + 1, IDENTITY
-    return found
 
 
 @njit(cache=True, error_model="numpy")
@@ -156,9 +175,9 @@ def place_frames(tree: FrameTree, q: FloatArray, R: FloatArray, p: FloatArray) -
         turned = compose(below, load_rotation(tree.rotation, f))
         axis = load_row(tree.axis, f)
         if tree.prismatic[f]:
-            at = add(at, scale(q[f - 1], turn(turned, axis)))
+            at = add(at, scale(q[tree.value[f]], turn(turned, axis)))
         else:
-            turned = compose(turned, rotation_about(axis, q[f - 1]))
+            turned = compose(turned, rotation_about(axis, q[tree.value[f]]))
         store(R, p, f, turned, at)
 
 
@@ -231,19 +250,26 @@ def distance_gradients(
     for k in range(q.shape[0]):
         place_frames(tree, q[k], R, p)
         n = load_row(normal, k)
-        for j in range(q.shape[1]):
-            if tree.moves[frame_a[k], j]:
-                gradient[k, j] += dot(n, _rate(tree, R, p, j, load_row(point_a, k)))
-            if tree.moves[frame_b[k], j]:
-                gradient[k, j] -= dot(n, _rate(tree, R, p, j, load_row(point_b, k)))
+        _add_rates(tree, R, p, frame_a[k], load_row(point_a, k), n, gradient[k])
+        _add_rates(tree, R, p, frame_b[k], load_row(point_b, k), scale(-1.0, n), gradient[k])
     return gradient
 
 
 @njit(cache=True, error_model="numpy")
-def _rate(tree: FrameTree, R: FloatArray, p: FloatArray, j: int, point: Vector) -> Vector:
-    """Velocity of a point at unit speed of axis j."""
-    axis: Vector = turn(load_rotation(R, j + 1), load_row(tree.axis, j + 1))
-    if tree.prismatic[j + 1]:
-        return axis
-    moved: Vector = cross(axis, subtract(point, load_row(p, j + 1)))
-    return moved
+def _add_rates(
+    tree: FrameTree,
+    R: FloatArray,
+    p: FloatArray,
+    frame: int,
+    point: Vector,
+    n: Vector,
+    out: FloatArray,
+) -> None:
+    """Add (N,) the speeds along n of a point fixed to a frame, at unit speed of each axis."""
+    f = frame
+    while f > 0:
+        rate = turn(load_rotation(R, f), load_row(tree.axis, f))
+        if not tree.prismatic[f]:
+            rate = cross(rate, subtract(point, load_row(p, f)))
+        out[tree.value[f]] += dot(n, rate)
+        f = tree.parent[f]

@@ -16,7 +16,7 @@ from ...robot.model import Robot
 from ..distance.solid import Solid
 from .allowed_pairs import exclusion_reason
 from .bodies import Body, BodyKind, pieces_of, tool_like_solids
-from .frames import WORLD, FrameTree, frame_of_axis
+from .frames import WORLD, frame_of_axis
 
 
 def refuse_parts(cell: Cell) -> None:
@@ -65,7 +65,7 @@ def part_bodies(robot: Robot, parts: Arrangement, solids: Mapping[str, list[Soli
 
 
 def part_pairs(
-    cell: Cell, bodies: Sequence[Body], first: int, frames: FrameTree, gone: frozenset[str]
+    cell: Cell, bodies: Sequence[Body], first: int, gone: frozenset[str]
 ) -> NDArray[np.int64]:
     """Pairs (P, 2) of parts' bodies with all others that count, as in `sort_pairs`.
 
@@ -73,7 +73,6 @@ def part_pairs(
         cell: what it allows.
         bodies: all, those of parts from index ``first`` on.
         first: see there.
-        frames: that they ride on.
         gone: names of parts that have left the cell.
     """
     there = np.array([k for k in range(first, len(bodies)) if bodies[k].thing not in gone], int)
@@ -88,5 +87,5 @@ def part_pairs(
     kind = np.array([kinds.setdefault((b.part, b.kind, b.frame), len(kinds)) for b in bodies], int)
     _, at, which = np.unique(kind[i] * len(kinds) + kind[j], return_index=True, return_inverse=True)
     asked = ((bodies[i[k]], bodies[j[k]]) for k in at)
-    counts = np.array([exclusion_reason(cell, a, b, frames) is None for a, b in asked], bool)
+    counts = np.array([exclusion_reason(cell, a, b) is None for a, b in asked], bool)
     return np.asarray(np.stack([i, j], axis=1)[counts[which]])

@@ -79,7 +79,7 @@ class CollisionScene:
         self._contacts: ContactEngine = FclEngine(solids, nesting)
         self._recent = RecentDistances()
 
-        pairs = sort_pairs(cell, self._standing, self.frames)
+        pairs = sort_pairs(cell, self._standing)
         always = always_touching(self.robot, pairs.kept, self._touching)
         notes = overlap_notes(pairs, self.bodies, always)
         pairs = drop_own_overlaps(pairs, self.bodies, always)
@@ -118,7 +118,7 @@ class CollisionScene:
     def _set_pairs(self, parts: Arrangement) -> None:
         """Find the pairs of parts, those that always overlap the arm which holds them left out."""
         gone = frozenset(placed.name for placed in parts if placed.gone)
-        pairs = part_pairs(self.cell, self.bodies, len(self._standing), self.frames, gone)
+        pairs = part_pairs(self.cell, self.bodies, len(self._standing), gone)
         own = np.array([self.bodies[a].own and self.bodies[b].own for a, b in pairs], dtype=bool)
         own[own] = always_touching(self.robot, pairs[own], self._touching)
         self.pairs: NDArray[np.int64] = np.concatenate([self._standing_pairs, pairs[~own]])

@@ -13,6 +13,7 @@ from numba import njit
 
 from ...arrays import FloatArray, IntArray
 from ...errors import InputError
+from ...robot.assembly import assemble
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import (
     AXIS,
@@ -106,7 +107,8 @@ def _weights(
     for joint, weights in masses:
         if joint > robot.arm_size:
             raise InputError(f"{key}: {robot.name} has {robot.arm_size} joints, no joint {joint}")
-        weight[np.flatnonzero(chain.joint == joint - 1)[0]] += filled(weights, size)
+        before = assemble([*robot.base_stages(), *robot.arm_stages(joint - 1)])
+        weight[before.joint.size] += filled(weights, size)
     at = np.flatnonzero(weight.any(axis=1))
     return at, weight[at]
 

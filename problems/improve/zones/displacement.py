@@ -173,7 +173,7 @@ def _measure_levers(
             origin = R[own].T @ (p[f] - p[own])
             s, o = (axis[0], axis[1], axis[2]), (origin[0], origin[1], origin[2])
             levers[f] = lever(outlines, b, s, o) + behind
-        behind += deviation[f - 1] * levers[f]
+        behind += deviation[tree.value[f]] * levers[f]
         f = tree.parent[f]
 
 
@@ -187,9 +187,9 @@ def _nearer(
     levers: FloatArray,
 ) -> float:
     """m that a body moves at most, seen from the last joint that also carries the other."""
-    f, shared = outlines.frame[body], tree.moves[outlines.frame[other]]
+    f, shared = outlines.frame[body], tree.rides[outlines.frame[other]]
     total = 0.0
-    while f > 0 and not shared[f - 1]:
-        total += deviation[f - 1] * levers[body, f]
+    while not shared[f]:
+        total += deviation[tree.value[f]] * levers[body, f]
         f = tree.parent[f]
     return total

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,7 @@ from flyby.core.cell.cell import Cell
 from flyby.core.cell.geometry import Mesh
 from flyby.core.collision.distance.engine import BodyPoses
 from flyby.core.collision.distance.solid import Polytope, Solid, TriangleMesh
-from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
+from flyby.core.robot.joint import ExternalAxis, ExternalRole, Follower, Joint, JointKind
 from flyby.core.robot.model import Robot
 from flyby.core.robot.shape import Box, Capsule, Cylinder, LinkShape, Sphere
 from flyby.core.spatial.pose import Pose
@@ -103,6 +104,14 @@ def joint(k: int, at: Sequence[float], axis: Sequence[float], reach: float = 2.5
     x, y, z = at
     a, b, c = axis
     return Joint(f"J{k}", Pose((x, y, z)), (a, b, c), -reach, reach, 2.0, 8.0)
+
+
+def with_rods(robot: Robot) -> Robot:
+    """The arm with its last link held by rods: it turns back as the joints before it turn."""
+    follower = Follower("J2", (0.0, -1.0, 0.0), Pose((0.1, 0.0, 0.0)))
+    twist = Follower("J1", (0.6, 0.0, 0.8), Pose((0.0, 0.05, 0.1)))
+    *others, last = robot.joints
+    return replace(robot, joints=(*others, replace(last, followers=(follower, twist))))
 
 
 def track() -> ExternalAxis:

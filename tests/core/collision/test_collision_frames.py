@@ -18,7 +18,7 @@ from flyby.core.robot.joint import ExternalAxis, ExternalRole
 from flyby.core.robot.model import Robot
 from flyby.core.spatial.pose import Pose
 
-from .conftest import arm, configurations, table, track
+from .conftest import arm, configurations, table, track, with_rods
 
 TURNED = Pose((0.3, -0.2, 0.1), (0.8, 0.0, 0.6, 0.0))
 ROBOTS = {
@@ -26,6 +26,7 @@ ROBOTS = {
     "track": arm([track()], base=TURNED),
     "table": arm(table(), base=TURNED),
     "both": arm([*table(), track()]),
+    "rods": with_rods(arm([track()], base=TURNED)),
 }
 
 
@@ -64,8 +65,8 @@ def test_a_table_on_a_tilting_axis_moves_with_both() -> None:
     frames = frame_tree(robot)
     turning, tilting = frame_of_axis(robot, "table"), frame_of_axis(robot, "tilt")
     assert frames.parent[turning] == tilting
-    assert frames.moves[turning].tolist() == [False, False, False, True, True]
-    assert frames.moves[tilting].tolist() == [False, False, False, False, True]
+    assert np.flatnonzero(frames.rides[turning]).tolist() == [WORLD, turning, tilting]
+    assert np.flatnonzero(frames.rides[tilting]).tolist() == [WORLD, tilting]
     q = np.array([[0.0, 0.0, 0.0, 0.5, 0.3]])
     R, p = placed(robot, turning, Pose((0.2, 0.0, 0.0)), q)
     cosine, sine = np.cos(0.3), np.sin(0.3)
@@ -80,8 +81,8 @@ def test_the_base_rides_on_the_track() -> None:
     frame, placement = base_place(ROBOTS["both"])
     assert frame == frame_of_axis(ROBOTS["both"], "track")
     assert placement == Pose()
-    moves = frame_tree(ROBOTS["both"]).moves
-    assert moves[1].tolist() == [True, False, False, False, False, True]
+    rides = frame_tree(ROBOTS["both"]).rides
+    assert np.flatnonzero(rides[1]).tolist() == [WORLD, 1, frame]
 
 
 def test_a_gantry_of_two_tracks_is_walked_in_order() -> None:

@@ -19,7 +19,7 @@ from flyby.core.program.tool import Tool
 from flyby.core.robot.shape import Box, Capsule, Sphere
 from flyby.core.spatial.pose import Pose
 
-from .conftest import arm, cell_of, table, track
+from .conftest import arm, cell_of, table, track, with_rods
 
 GUN = Tool("gun")
 GUN_SHAPE = Geometry(Capsule(0.04, 0.3), Pose((0.05, 0.0, 0.1), (0.8, 0.6, 0.0, 0.0)))
@@ -41,6 +41,7 @@ SCENES = {
     "alone": scene_of(arm(), THINGS),
     "track": scene_of(arm([track()]), THINGS),
     "table": scene_of(arm(table()), CARRIED),
+    "rods": scene_of(with_rods(arm()), THINGS),
 }
 T = np.linspace(-1.0, 1.0, 21)
 
@@ -192,6 +193,6 @@ def test_a_residual_counts_once_for_each_body_that_moves() -> None:
     found = asked(scene, Boxes.at(q), items, np.zeros(3), residual=0.001)
     for k in pairs:
         frames = [scene.bodies[b].frame for b in scene.pairs[k]]
-        shared = scene.frames.moves[frames[0]] & scene.frames.moves[frames[1]]
-        moving = sum(bool((scene.frames.moves[f] & ~shared).any()) for f in frames)
+        shared = scene.frames.rides[frames[0]] & scene.frames.rides[frames[1]]
+        moving = sum(bool((scene.frames.rides[f] & ~shared).any()) for f in frames)
         assert found.deviation[k] == pytest.approx(0.001 * moving)

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flyby.core.collision.scene.frames import frame_tree
 from flyby.core.errors import InputError
+from flyby.core.motion.model.point_masses import mass_loads
+from flyby.core.robot.catalogue import load_robot
 from flyby.core.robot.catalogue_text import robot_text
 from flyby.core.robot.inertia import Inertia
 from flyby.core.robot.joint import Follower
@@ -116,15 +117,43 @@ def test_a_joint_that_follows_elsewhere_has_no_closed_form() -> None:
         np.testing.assert_allclose(arm.flange_pose(solution.q).matrix(), pose.matrix(), atol=1e-8)
 
 
-def test_bends_of_torques_are_refused() -> None:
-    with pytest.raises(InputError, match="test/rod-arm"):
-        BendBounds(ROD, None, Pose(), np.ones((1, 6, 5)))
+def test_bends_of_torques_are_those_of_a_motion_at_most() -> None:
+    t, step = np.linspace(0.05, 0.45, 40), 1e-3
+    way = np.array([1.0, -0.8, 0.6, 0.5, -0.4, 0.9])
+    rates = np.array([[np.abs(way) * size for size in (1.0, 2.0, 4.0, 8.0, 16.0)]])
+    bounds = BendBounds(ROD, LOAD, Pose((0.1, 0.0, 0.3)), np.moveaxis(rates, 1, 2))
+
+    def torques(at):
+        q, dq, ddq = (
+            np.outer(f, way) for f in (np.sin(2 * at), 2 * np.cos(2 * at), -4 * np.sin(2 * at))
+        )
+        return ROD.inverse_dynamics(q, dq, ddq, LOAD)
+
+    bend = (torques(t + step) - 2 * torques(t) + torques(t - step)) / step**2
+    assert (np.abs(bend).max(axis=0) <= bounds.torques()[0] + 1e-3).all()
 
 
-def test_what_does_not_know_followers_refuses_them() -> None:
-    for refused in (frame_tree, robot_text):
-        with pytest.raises(InputError, match="test/rod-arm"):
-            refused(ROD)
+def test_a_catalogue_file_holds_them(tmp_path) -> None:
+    aside = Follower("J4", (0.0, 1.0, 0.0), Pose((0.0, 0.05, 0.0), (0.8, 0.0, 0.6, 0.0)))
+    joints = [*ROD.joints]
+    joints[4] = replace(joints[4], followers=(BACK, aside))
+    arm = replace(ROD, joints=tuple(joints))
+    (tmp_path / "arm.toml").write_text(robot_text(arm), "utf-8")
+    found = load_robot(tmp_path / "arm.toml")
+    assert [joint.followers for joint in found.joints] == [joint.followers for joint in arm.joints]
+    q = np.array([0.3, 0.5, -0.4, 0.7, 0.6, -0.2])
+    np.testing.assert_allclose(found.flange_pose(q).matrix(), arm.flange_pose(q).matrix())
+
+
+def test_masses_stand_on_the_axes_of_their_own_joints() -> None:
+    """A mass on axis 5 is borne as a body of that mass there, a follower or not."""
+    q, rest = np.array([[0.3, 0.5, -0.4, 0.7, 0.6, -0.2]]), np.zeros((1, 6))
+    light = replace(ROD, links=tuple(Inertia(1.0 if k == 4 else 0.0) for k in range(6)))
+    held = mass_loads(ROD, [(5, (1.0,) * 6)], "key", q, rest, rest).held
+    np.testing.assert_allclose(-held[0], light.inverse_dynamics(q, rest, rest)[0], atol=1e-9)
+
+
+def test_what_followers_must_be() -> None:
     stranger = Follower("J9", (0.0, 0.0, 1.0))
     with pytest.raises(InputError, match="follows 'J9'"):
         replace(SERIAL, joints=(replace(SERIAL.joints[0], followers=(stranger,)),), links=())

@@ -17,7 +17,6 @@ from math import comb
 import numpy as np
 
 from .....core.arrays import FloatArray
-from .....core.errors import InputError
 from .....core.robot.inertia import Inertia
 from .....core.robot.joint import JointKind
 from .....core.robot.model import Robot
@@ -34,34 +33,26 @@ class BendBounds:
         load: in the flange's frame.
         tcp: in the flange's frame.
         rates: (M, N, 5), bounds of |q|, |q̇| and on to |q⁗|.
-
-    Raises:
-        InputError: a joint of the arm has followers.
     """
 
     def __init__(self, robot: Robot, load: Inertia | None, tcp: Pose, rates: FloatArray) -> None:
-        if robot.has_followers:
-            raise InputError(
-                f"the torques of {robot.name} between samples are not bounded: rods or gears turn "
-                "one of its joints with another, which the bounds do not follow yet"
-            )
         self._robot = robot
+        self._stages = robot.arm_stages()
         self._bodies = _bodies(robot, load)
         self._count = len(rates)
-        size = robot.arm_size
-        ends = [_length(joint.placement) for joint in robot.joints[1:]]
+        ends = [_length(turning.placement) for turning, _ in self._stages[1:]]
         ends.append(_length(robot.flange @ tcp))
         turn = np.zeros((self._count, _ORDERS))
         self._axis, self._turn, self._step = [], [], []
-        for j in range(size):
+        for (joint, j), end in zip(self._stages, ends, strict=True):
             axis = _carried(turn, 1.0)
             own = _product(axis, np.concatenate([rates[:, j, 1:], 0 * rates[:, j, :1]], axis=1))
-            slides = robot.joints[j].kind is JointKind.PRISMATIC
+            slides = joint.kind is JointKind.PRISMATIC
             slide = _product(axis, rates[:, j]) if slides else 0.0
             turn = turn if slides else turn + own
             self._axis.append(axis)
             self._turn.append(turn)
-            self._step.append((slide, _carried(turn, ends[j])))
+            self._step.append((slide, _carried(turn, end)))
 
     def tcp(self) -> FloatArray:
         """(M,) m/s³, bound of the second derivative of the TCP's velocity."""
@@ -69,7 +60,6 @@ class BendBounds:
 
     def torques(self) -> FloatArray:
         """(M, n), bounds of |τ̈| of the arm's joints, N m/s² or N/s²."""
-        size = self._robot.arm_size
         gravity = float(np.linalg.norm(self._robot.gravity))
         forces, moments, arms = [], [], []
         place = np.zeros((self._count, _ORDERS))
@@ -82,20 +72,20 @@ class BendBounds:
             moments.append(self._moment(i, body))
             arms.append(arm)
             place = place + self._step[i][1]
-        out = np.empty((self._count, size))
-        for j in range(size):
-            slides = self._robot.joints[j].kind is JointKind.PRISMATIC
+        out = np.zeros((self._count, self._robot.arm_size))
+        for k, (joint, j) in enumerate(self._stages):
+            slides = joint.kind is JointKind.PRISMATIC
             pull = np.zeros((self._count, 3))
             lever = np.zeros((self._count, _ORDERS))
-            for i in range(j, size):
-                if i > j:
+            for i in range(k, len(self._stages)):
+                if i > k:
                     lever = lever + self._step[i][0]
                 if slides:
                     pull = pull + forces[i]
                 else:
                     pull = pull + _product((lever + arms[i])[:, :3], forces[i]) + moments[i]
                 lever = lever + self._step[i][1]
-            out[:, j] = _product(self._axis[j][:, :3], pull)[:, 2]
+            out[:, j] += _product(self._axis[k][:, :3], pull)[:, 2]
         return out
 
     def _moment(self, i: int, body: Inertia) -> FloatArray:
@@ -108,7 +98,10 @@ class BendBounds:
 
 
 def _bodies(robot: Robot, load: Inertia | None) -> list[Inertia]:
-    bodies = list(robot.links)
+    """Those behind each stage of the arm; what followers stand between has none."""
+    bodies: list[Inertia] = []
+    for joint, body in zip(robot.joints, robot.links, strict=False):
+        bodies += [*(Inertia(0.0) for _ in joint.followers), body]
     if bodies and load is not None:
         bodies[-1] = bodies[-1] + load.placed(robot.flange)
     return bodies

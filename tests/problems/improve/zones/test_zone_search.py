@@ -282,7 +282,7 @@ def test_no_pair_comes_nearer_by_straying_joints_than_is_reckoned(seed: int) -> 
     # The first joint carries the whole arm, and changes nothing between two of its bodies.
     alone = np.array([0.01, 0.0, 0.0, 0.0, 0.0, 0.0])
     most = deviated(scene.frames, scene.outlines, scene.pairs, centre, alone)[0]
-    own = scene.frames.moves[scene.outlines.frame[scene.pairs], 0].all(axis=1)
+    own = scene.frames.rides[scene.outlines.frame[scene.pairs], 1].all(axis=1)
     assert own.any() and (most[own] == 0.0).all() and (most[~own] > 0.0).all()
 
 
