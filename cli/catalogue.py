@@ -161,6 +161,7 @@ def _robot_json(robot: Robot, vendor: Vendor) -> dict[str, Any]:
                 "velocity": joint.velocity,
                 "acceleration": joint.acceleration,
                 "effort": joint.effort,
+                "coupling": joint.coupling(),
             }
             for joint in robot.joints
         ],
@@ -187,6 +188,8 @@ def _print_robot(robot: Robot, vendor: Vendor) -> None:
     if reason is not None:
         print_rich(f"Emulation only: {reason}")
     print_table(COLUMNS, [joint.cells() for joint in robot.joints])
+    for coupled in filter(None, (joint.coupling() for joint in robot.joints)):
+        print_rich(f"Coupled by rods or gears: {coupled}")
     print_table((("figures", "left"), ("origin", "left")), list(robot.origins.items()))
     for note in robot_notes(robot):
         print_rich(f"In collisions: {note}")

@@ -26,6 +26,9 @@ COLUMNS = (
 """Of a table of joints."""
 
 
+_ALONG = 1e-9
+
+
 class JointKind(StrEnum):
     """How a joint moves along its axis."""
 
@@ -115,6 +118,19 @@ class Joint:
         for follower in self.followers:
             step = step @ follower.placement
         return step
+
+    def coupling(self) -> str | None:
+        """What rods or gears make of the joint, in words; None if it turns by its own value."""
+        terms, behind = [self.name], []
+        for follower in self.followers:
+            along = sum(a * b for a, b in zip(self.axis, follower.axis, strict=True))
+            if not behind and abs(abs(along) - 1.0) < _ALONG and follower.placement == IDENTITY:
+                terms.append(f"{'-' if along < 0 else '+'} {follower.driver}")
+            else:
+                behind.append(follower.driver)
+        said = [f"the joint of {self.name} turns by {' '.join(terms)}"] if terms[1:] else []
+        said += [f"a turn behind {self.name} follows {driver}" for driver in behind]
+        return ", ".join(said) or None
 
     def cells(self) -> tuple[str, ...]:
         """Name and limits in degrees or mm, as `COLUMNS` names them."""
