@@ -76,12 +76,13 @@ class Reading:
         """The program in the same files, of which some have another text.
 
         Args:
-            changed: files of the names that they were read by, under whatever keys.
+            changed: files of the names that they were read by, under whatever keys; others are no
+                part of the program.
 
         Raises:
             FlybyError: it cannot be read any more.
         """
-        others = {file.name: file for file in changed.values()}
+        others = {file.name: file for file in changed.values() if file.name in self.files}
         reading = replace(self, files={**self.files, **others})
         program = reading.read(reading.files, reading.main, reading.options)
         return replace(program, reading=reading)

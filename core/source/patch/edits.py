@@ -18,6 +18,7 @@ from ...program.program import Program
 from ...program.zone import Radius
 from ...spatial.pose import Pose
 from ..reading import Files, Reading
+from ..text.files import SourceFile
 
 TOLERANCE = 1e-9
 """m, rad, s and their like: how near a number must come back. Decimals of mm and degrees do not
@@ -203,20 +204,15 @@ def _apply(reading: Reading, edits: Iterable[Edit]) -> Files:
                 f"want it to become {known.text} and {edit.text}: give them one value, or each a "
                 "datum of its own"
             )
-    texts = {
+    files = {
         name: _edited(reading, name, list(places.values())) for name, places in by_file.items()
     }
-    return {
-        name: replace(reading.files[name], text=text)
-        for name, text in texts.items()
-        if text != reading.files[name].text
-    }
+    return {n: file for n, file in files.items() if file.text != reading.files[n].text}
 
 
-def _edited(reading: Reading, name: str, edits: list[Edit]) -> str:
+def _edited(reading: Reading, name: str, edits: list[Edit]) -> SourceFile:
     if name not in reading.files:
         raise InputError(f"{name} is not among the files of the program: it cannot be patched")
-    text = reading.files[name].text
     edits.sort(key=lambda edit: (edit.span.start, edit.span.end))
     for first, second in pairwise(edits):
         if second.span.start < first.span.end:
@@ -224,8 +220,4 @@ def _edited(reading: Reading, name: str, edits: list[Edit]) -> str:
                 f"{second.span}: moves {first.move + 1} and {second.move + 1} want to change "
                 "overlapping stretches of the text"
             )
-    parts, at = [], 0
-    for edit in edits:
-        parts += [text[at : edit.span.start], edit.text]
-        at = edit.span.end
-    return "".join([*parts, text[at:]])
+    return reading.files[name].edited([(e.span.start, e.span.end, e.text) for e in edits])

@@ -5,8 +5,10 @@ from __future__ import annotations
 import codecs
 import re
 from bisect import bisect_right
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Self
 
 from ...errors import InputError, Note, ParseError, SourceError, Span
 from ...files.reading import read_bytes
@@ -46,6 +48,22 @@ class SourceFile:
             raise InputError(
                 f"{self.name}: {character!r} cannot be written in the file's encoding, {self.codec}"
             ) from None
+
+    def edited(self, stretches: Sequence[tuple[int, int, str]]) -> Self:
+        """The same file with other text at some places.
+
+        Args:
+            stretches: from where, to before where, and the text that takes the place of that; in
+                order, none overlapping.
+
+        Raises:
+            InputError: the file's own format has no place for one of them.
+        """
+        parts, at = [], 0
+        for start, end, text in stretches:
+            parts += [self.text[at:start], text]
+            at = end
+        return replace(self, text="".join([*parts, self.text[at:]]))
 
 
 def read_source(path: Path) -> SourceFile:

@@ -6,25 +6,33 @@ What is changed where:
   all moves that read it are to have the same new value.
 - An argument that is not written is put in before the closing bracket.
 - Else the change is refused, or, under ``shared=own`` (literals that others read) and
-  ``derived=own`` (what the script computes), the call gets a literal in the place of the argument.
+  ``derived=own`` (what the script computes), the call gets a literal in the place of the
+  argument.
+
+Of a program's tree (``.urp``) the numbers of its nodes are changed, and the script beside it if
+that drives the same.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import replace
 
-from ....core.errors import InputError, Span
+from ....core.errors import FlybyError, InputError, Span
 from ....core.program.origin import Ownership
 from ....core.program.program import Program
 from ....core.robot.model import Robot
-from ....core.source.patch.edits import Edit, reading_of, with_one_distance
+from ....core.source.patch.edits import Edit, difference, reading_of, with_one_distance
 from ....core.source.patch.plan import PatchPlan, patch_program
 from ....core.source.patch.uses import Use
-from ....core.source.reading import Files
+from ....core.source.reading import Files, read_with
+from ....core.source.text.files import SourceFile
 from ....core.source.write.options import PatcherOptions
-from ..urp.emission import GENERATED
+from ..urp.tree_file import TreeFile
 from .inplace import Argument, ScriptLiterals, arguments
 from .places import PUT_IN, MoveCall, MoveCalls
+from .trees import trees_of, with_taught_joints
 
 
 def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
@@ -32,22 +40,39 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
 
     Args:
         options: ``shared`` and ``derived``, each ``refuse`` or ``own``; see `PatcherOptions`.
-
-    Raises:
-        InputError: a file is a program tree of PolyScope.
     """
     chosen = PatcherOptions.of(options, "URScript patcher")
-    for file in reading_of(program).files.values():
-        if file.text.startswith(GENERATED):
-            raise InputError(
-                f"{file.name}: nothing is written into program trees of PolyScope: read the "
-                ".script that PolyScope saves beside it, and that is changed in its place"
-            )
+    reading = reading_of(program)
+    wanted, trees = with_one_distance(program), trees_of(reading.files)
+    if not trees:
+        return _patched(wanted, chosen)
+    before = reading.again({})
+    wanted = with_taught_joints(wanted, before, trees, robot)
+    files = _patched(wanted, chosen)
+    main = files.get(reading.main)
+    script = main.beside if isinstance(main, TreeFile) else None
+    return files if script is None else {**files, **_carried(script, before, wanted, chosen)}
+
+
+def _patched(program: Program, options: PatcherOptions) -> Files:
     calls = MoveCalls(reading_of(program).files)
     literals = ScriptLiterals(calls)
-    return patch_program(
-        with_one_distance(program), chosen, literals, lambda plan: _Edits(plan, calls).all()
-    )
+    return patch_program(program, options, literals, lambda plan: _Edits(plan, calls).all())
+
+
+def _carried(script: SourceFile, before: Program, after: Program, options: PatcherOptions) -> Files:
+    """The script that PolyScope has saved beside a tree, changed as the tree is.
+
+    One that drives something else than the tree did is of another state, and stays as it is.
+    """
+    reading = reading_of(before)
+    with suppress(FlybyError):
+        own = read_with({script.name: script}, script.name, reading.options, reading.read)
+        if difference(Program(before.moves), Program(own.moves)) is None:
+            pairs = zip(own.moves, after.moves, strict=True)
+            moves = tuple(replace(new, origin=old.origin) for old, new in pairs)
+            return _patched(own.with_moves(moves), options)
+    return {}
 
 
 class _Edits:

@@ -10,7 +10,8 @@ from functools import lru_cache
 from ....core.source.text.files import lines_of
 from .expressions import expression_text, identifier
 from .installation import Installation, Payload
-from .xml_file import Element
+from .literals import Attribute, Literals, Position
+from .xml_file import Element, number
 
 GENERATED = "# Generated from the program tree of PolyScope; the tree itself is not changed.\n"
 """The first line of every generated script."""
@@ -56,6 +57,7 @@ class Emission:
         preamble: what stands before it: waypoints, functions, subprograms.
         told: notes by their text, each with the node that it is first about.
         waypoints: the data of each, by its name.
+        literals: with their places in the tree.
         path: of the node that is being written.
     """
 
@@ -66,9 +68,11 @@ class Emission:
     preamble: list[str] = field(default_factory=list)
     told: dict[str, str] = field(default_factory=dict)
     waypoints: dict[str, Mapping[str, str]] = field(default_factory=dict)
+    literals: Literals = field(default_factory=Literals)
     path: tuple[str, ...] = ()
     _depth: int = 1
     _nodes: int = 0
+    _elements: dict[str, list[Element]] = field(default_factory=dict)
 
     @property
     def named_signals(self) -> Mapping[str, str]:
@@ -137,22 +141,45 @@ class Emission:
             self.preamble += self.lines
             self.lines, self._depth = lines, depth
 
-    def declared(self, name: str, value: Mapping[str, str]) -> str:
+    def declared(self, name: str, value: Mapping[str, str], element: Element | None = None) -> str:
         """A name for data of a waypoint, which stand in the preamble: one for each that differs.
 
         Args:
             name: of the waypoint.
             value: of each of its variables, by what their names end with.
+            element: that holds them; None where they have no place of their own in the tree.
         """
         stem = identifier(name) or "Waypoint"
         tried, count = stem, 1
         while self.waypoints.get(tried, value) != value:
             count += 1
             tried = f"{stem}_{count}"
+        elements = self._elements.setdefault(tried, [])
         if tried not in self.waypoints:
             self.waypoints[tried] = dict(value)
-            self.preamble += [f"  global {tried}{end}={text}" for end, text in value.items()]
+            for end, text in value.items():
+                place = Position(tried, end, elements)
+                shown = text if element is None else self.literals.token(text, place)
+                self.preamble.append(f"  global {tried}{end}={shown}")
+        if element is not None and element not in elements:
+            elements.append(element)
         return tried
+
+    def shared(self, node: Element, attribute: str, end: str) -> str | None:
+        """A variable for a number that all moves of a node share; None if it states none.
+
+        Args:
+            node: that states it.
+            attribute: in which.
+            end: what the variable's name ends with.
+        """
+        value = number(node.get(attribute))
+        if value is None:
+            return None
+        name = f"{identifier(node.get('motionType') or node.tag)}_{self._nodes}{end}"
+        text = self.literals.token(repr(value), Attribute(node, attribute))
+        self.preamble.append(f"  global {name}={text}")
+        return name
 
 
 def node_at(text: str, line: int) -> str | None:

@@ -17,10 +17,16 @@ import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.spatial.pose import Pose
+from ....core.spatial.rotation import rotation_vector
 from .xml_file import Element, child, numbers
 
 _COLUMNS = "deltaTheta", "a", "d", "alpha"
 JOINTS = 6
+_MOST_STEPS = 60
+_REACHED = 1e-11
+"""m, rad."""
+_LONGEST_STEP = 0.3
+"""rad of a joint in one step."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +57,41 @@ class DhTable:
 
     def flanges(self, q: FloatArray) -> FloatArray:
         """The same of joint values (N, 6): matrices (N, 4, 4)."""
+        return self._frames(q)[-1]
+
+    def joints(self, flange: Pose, near: Sequence[float]) -> tuple[float, ...] | None:
+        """Joint values (6,) rad that put the flange at a pose, by Newton's method.
+
+        Args:
+            flange: in the base's frame.
+            near: values to begin from.
+
+        Returns:
+            Those that are reached from there; None if none are, within 1e-11 m and rad.
+        """
+        goal, q = flange.matrix(), np.array(near, dtype=float)
+        for _ in range(_MOST_STEPS):
+            frames = [frame[0] for frame in self._frames(q[None])]
+            error = np.concatenate(
+                (
+                    goal[:3, 3] - frames[-1][:3, 3],
+                    rotation_vector(goal[:3, :3] @ frames[-1][:3, :3].T),
+                )
+            )
+            if np.abs(error).max() < _REACHED:
+                return tuple(q.tolist())
+            axes = np.array([frame[:3, 2] for frame in frames[:-1]])
+            arms = frames[-1][:3, 3] - np.array([frame[:3, 3] for frame in frames[:-1]])
+            jacobian = np.vstack((np.cross(axes, arms).T, axes.T))
+            step = np.linalg.lstsq(jacobian, error, rcond=1e-9)[0]
+            q += step * min(1.0, _LONGEST_STEP / max(np.abs(step).max(), _REACHED))
+        return None
+
+    def _frames(self, q: FloatArray) -> list[FloatArray]:
+        """The base's frame and those behind each joint, of joint values (N, 6): (N, 4, 4) each."""
         table = np.array(self.rows)
         T = np.broadcast_to(np.eye(4), (len(q), 4, 4))
+        frames = [T]
         for i, (theta, a, d, alpha) in enumerate(table):
             c, s = np.cos(q[:, i] + theta), np.sin(q[:, i] + theta)
             ca, sa = np.cos(alpha), np.sin(alpha)
@@ -62,7 +101,8 @@ class DhTable:
             step[:, 2, 1], step[:, 2, 2], step[:, 2, 3] = sa, ca, d
             step[:, 3, 3] = 1.0
             T = T @ step
-        return np.asarray(T)
+            frames.append(T)
+        return frames
 
 
 def table_of(element: Element | None) -> DhTable | None:

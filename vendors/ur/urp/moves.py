@@ -9,25 +9,33 @@ What is written is what PolyScope writes (seen in 368 programs beside their scri
     movel(pose_add(get_target_tcp_pose(), pose_sub(to, from)), …)               relative
     movec(via, to, a=…, v=…, r=…, mode=1)                                       circles
 
-``nextMotionTime`` of a waypoint is written as ``t=`` in the place of a and v.
+``nextMotionTime`` of a waypoint is written as ``t=`` in the place of a and v. What a ``Move``
+states for all of its waypoints is a variable, ``MoveL_3_v``, which PolyScope writes out at each.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 
 from .emission import Emission, list_text, pose_text
 from .expressions import variable_name
 from .frames import feature_text, set_tcp
 from .kinematics import DhTable
+from .literals import JOINTS, PARAMETERS, POSE, Attribute, Ending
 from .positions import Taught, feature_was, taught_at
 from .until import direction
 from .xml_file import Element, child, number, resolved
 
 Children = Callable[[Emission, Element], None]
 """Writes the nodes below an element."""
-_SPEEDS = {"MoveJ": ("jointSpeed", "jointAcceleration"), "MoveL": (), "MoveP": ()}
-_CARTESIAN = "cartesianSpeed", "cartesianAcceleration"
+_OWN = {
+    "MoveJ": {"a": "jointAcceleration", "v": "jointSpeed", "t": "nextMotionTime"},
+    "MoveL": {"a": "cartesianAcceleration", "v": "cartesianSpeed", "t": "nextMotionTime"},
+    "MoveP": {"a": "cartesianAcceleration", "v": "cartesianSpeed"},  # movep, movec take no time
+}
+"""What a waypoint states for itself, by the argument that it becomes."""
+_RADIUS = "blendRadius"
 _FUNCTIONS = {"MoveJ": "movej", "MoveL": "movel", "MoveP": "movep"}
 _UNTIL = "Until", "gui.program.direction.UntilNode"
 
@@ -42,72 +50,118 @@ def move(out: Emission, node: Element, table: DhTable | None, others: Children) 
         set_tcp(out, child(node, "tcp"), node)
     below = child(node, "children")
     steps = [one for one in ([] if below is None else below) if isinstance(one.tag, str)]
+    if not steps:
+        return
     last = max((i for i, one in enumerate(steps) if _is_waypoint(one)), default=-1)
+    moves = _Moves(node, kind, table, _shared(out, node))
     for index, step in enumerate(steps):
         if _is_waypoint(step):
-            _waypoint(out, node, step, table, index == last)
+            _waypoint(out, moves, step, index == last)
             _until_below(out, step, others)
         elif step.tag == "CircleMove":
-            _circle(out, node, step, table, index == len(steps) - 1)
+            _circle(out, moves, step, index == len(steps) - 1)
         elif "Direction" in step.tag:
-            direction(out, node, step, _speed(node, child(step, "motionParameters"), "MoveL"))
+            direction(out, node, step, _speed(out, moves, step, "MoveL"))
             _until_below(out, step, others)
         else:
             others(out, step)
+
+
+@dataclass(frozen=True)
+class _Moves:
+    """What the moves of a ``Move`` have in common.
+
+    Args:
+        node: it.
+        kind: ``MoveJ``, ``MoveL`` or ``MoveP``.
+        table: of the program's arm.
+        shared: the variables of what it states for all of its waypoints, by argument.
+    """
+
+    node: Element
+    kind: str
+    table: DhTable | None
+    shared: Mapping[str, str] = field(default_factory=dict)
+
+
+def _shared(out: Emission, node: Element) -> dict[str, str]:
+    stated = {"a": "acceleration", "v": "speed", "r": _RADIUS}
+    if node.get("motionType", "MoveJ") != "MoveP":
+        del stated["r"]
+    names = {key: out.shared(node, name, f"_{key}") for key, name in stated.items()}
+    return {key: name for key, name in names.items() if name is not None}
 
 
 def safe_home(out: Emission, node: Element) -> None:
     """``SafeHome``: to the joints that the installation names."""
     with out.node("Home"):
         timed = "SPEED" not in node.get("positionOptionType", "SPEED_AND_ACCELERATION")
-        time = number(node.get("nextMotionTime"))
+        stated = {"t": "nextMotionTime"}
+        if not (timed and number(node.get("nextMotionTime"))):
+            stated = {"a": "acceleration", "v": "speed"}
         home = out.installation.home
-        if timed and time:
-            speed = f"t={time!r}"
-        else:
-            speed = _arguments(number(node.get("acceleration")), number(node.get("speed")))
         target = "safe_home_position" if home is None else list_text(home)
-        out.write(_call("movej", target, speed))
+        places = {key: Attribute(node, name) for key, name in stated.items()}
+        speed = [_own(out, key, node, place) for key, place in places.items()]
+        out.write(_call(out, "movej", target, places, *speed))
 
 
 def _is_waypoint(node: Element) -> bool:
     return bool(node.tag == "Waypoint")
 
 
-def _call(function: str, target: str, *arguments: str) -> str:
-    return f"{function}({', '.join([target, *filter(None, arguments)])})"
+def _call(
+    out: Emission, function: str, target: str, own: Mapping[str, Attribute], *arguments: str
+) -> str:
+    """A call of a move.
+
+    Args:
+        own: where the node states arguments of its own.
+    """
+    written = ", ".join([target, *filter(None, arguments)])
+    return f"{function}({written}{out.literals.token('', Ending(own))})"
 
 
-def _arguments(acceleration: float | None, speed: float | None) -> str:
-    stated = (("a", acceleration), ("v", speed))
-    return ", ".join(f"{name}={value!r}" for name, value in stated if value is not None)
+def _own(out: Emission, key: str, stated: Element | None, place: Attribute) -> str:
+    """An argument that an element states for itself; empty if it does not."""
+    value = None if stated is None else number(stated.get(place.name))
+    return "" if value is None else f"{key}={out.literals.token(repr(value), place)}"
 
 
-def _speed(node: Element, own: Element | None, kind: str) -> str:
+def _own_places(step: Element, kind: str, *, radius: bool = False) -> dict[str, Attribute]:
+    names = {**_OWN[kind], "r": _RADIUS} if radius else _OWN[kind]
+    return {key: Attribute(step, name, PARAMETERS) for key, name in names.items()}
+
+
+def _speed(out: Emission, moves: _Moves, step: Element, kind: str) -> str:
     """The speed of a move: the waypoint's own, or the node's."""
-    if own is not None and kind != "MoveP":  # movep and movec take no time
-        time = number(own.get("nextMotionTime"))
-        if time:
-            return f"t={time!r}"
-    speed_name, acceleration_name = _SPEEDS[kind] or _CARTESIAN
-    speed = None if own is None else number(own.get(speed_name))
-    acceleration = None if own is None else number(own.get(acceleration_name))
-    return _arguments(
-        number(node.get("acceleration")) if acceleration is None else acceleration,
-        number(node.get("speed")) if speed is None else speed,
+    own = child(step, PARAMETERS)
+    places = _own_places(step, kind)
+    if own is not None and "t" in places and number(own.get(places["t"].name)):
+        return _own(out, "t", own, places["t"])
+    stated = [(key, _own(out, key, own, places[key])) for key in ("a", "v")]
+    return ", ".join(
+        filter(None, (text or _of_all(out, moves, key, places[key]) for key, text in stated))
     )
 
 
-def _radius(node: Element, own: Element | None, kind: str, last: bool) -> str:
-    if kind == "MoveP":
-        return f"r={0.0 if last else number(node.get('blendRadius')) or 0.0!r}"
-    radius = None if own is None else number(own.get("blendRadius"))
-    return f"r={radius!r}" if radius else ""
+def _of_all(out: Emission, moves: _Moves, key: str, place: Attribute | None) -> str:
+    """An argument that the ``Move`` states; a move gets its own in the place of the variable."""
+    name = moves.shared.get(key)
+    if name is None:
+        return ""
+    return f"{key}={name if place is None else out.literals.token(name, place)}"
 
 
-def _waypoint(
-    out: Emission, node: Element, waypoint: Element, table: DhTable | None, last: bool
-) -> None:
+def _radius(out: Emission, moves: _Moves, step: Element, last: bool) -> str:
+    if moves.kind == "MoveP":
+        return "r=0.0" if last else _of_all(out, moves, "r", None) or "r=0.0"
+    own = child(step, PARAMETERS)
+    place = Attribute(step, _RADIUS, PARAMETERS)
+    return _own(out, "r", own, place) if own is not None and number(own.get(_RADIUS)) else ""
+
+
+def _waypoint(out: Emission, moves: _Moves, waypoint: Element, last: bool) -> None:
     found = resolved(waypoint)
     name = waypoint.get("name") or (None if found is None else found.get("name"))
     variable = None if found is None else variable_name(child(found, "variable"))
@@ -115,25 +169,20 @@ def _waypoint(
         if found is None:
             out.note("the waypoint stands for another one that is not in the file: it is left out")
             return
-        kind = node.get("motionType", "MoveJ")
-        target = _target(out, node, found, variable, table, kind)
+        target = _target(out, moves, found, variable, moves.kind)
         if target is None:
             return
-        own = child(found, "motionParameters")
-        out.write(
-            _call(_FUNCTIONS[kind], target, _speed(node, own, kind), _radius(node, own, kind, last))
-        )
+        speed = _speed(out, moves, found, moves.kind)
+        radius = _radius(out, moves, found, last)
+        own = _own_places(found, moves.kind, radius=moves.kind != "MoveP")
+        out.write(_call(out, _FUNCTIONS[moves.kind], target, own, speed, radius))
 
 
 def _target(
-    out: Emission,
-    node: Element,
-    waypoint: Element,
-    variable: str | None,
-    table: DhTable | None,
-    kind: str,
+    out: Emission, moves: _Moves, waypoint: Element, variable: str | None, kind: str
 ) -> str | None:
     """Where a waypoint is, as an argument; None if that is not known, which is noted."""
+    node = moves.node
     sort = waypoint.get("type", "Fixed")
     if sort == "Variable":
         if variable is None:
@@ -142,33 +191,35 @@ def _target(
         frame = feature_text(out, child(node, "feature"))
         return variable if frame is None else f"pose_trans({frame}, {variable})"
     if sort == "Relative":
-        return _relative(out, waypoint, table)
+        return _relative(out, waypoint, moves.table)
     if sort != "Fixed":
         out.note(f"a waypoint of type {sort} is not known: it is left out")
         return None
-    taught = taught_at(waypoint, table)
+    taught = taught_at(waypoint, moves.table)
     if not taught.known:
         out.note("the waypoint was never taught: it is left out")
         return None
     if feature_was(waypoint) is not None:
         out.note("taught in a feature that has its own place: driven to where it was taught")
     by_joints = kind == "MoveJ" and node.get("positionType") != "CartesianPose"
-    return _taught_text(out, waypoint.get("name", "Waypoint"), taught, kind, by_joints)
+    return _taught_text(out, waypoint, taught, kind, by_joints)
 
 
-def _taught_text(out: Emission, name: str, taught: Taught, kind: str, by_joints: bool) -> str:
+def _taught_text(
+    out: Emission, waypoint: Element, taught: Taught, kind: str, by_joints: bool
+) -> str:
     data: dict[str, str] = {}
     if taught.pose is not None:
-        data["_p"] = pose_text(taught.pose)
+        data[POSE] = pose_text(taught.pose)
     if taught.joints is not None:
-        data["_q"] = list_text(taught.joints)
-    stem = out.declared(name, data)
+        data[JOINTS] = list_text(taught.joints)
+    stem = out.declared(waypoint.get("name", "Waypoint"), data, waypoint)
     if taught.pose is None or (by_joints and taught.joints is not None):
-        return f"{stem}_q"
+        return f"{stem}{JOINTS}"
     if kind != "MoveJ":
-        return f"{stem}_p"
-    near = "" if taught.joints is None else f", qnear={stem}_q"
-    return f"get_inverse_kin({stem}_p{near})"
+        return f"{stem}{POSE}"
+    near = "" if taught.joints is None else f", qnear={stem}{JOINTS}"
+    return f"get_inverse_kin({stem}{POSE}{near})"
 
 
 def _relative(out: Emission, waypoint: Element, table: DhTable | None) -> str | None:
@@ -192,9 +243,7 @@ def _ends(waypoint: Element) -> Iterator[Element | None]:
     yield from [resolved(one) for one in waypoint if one.tag in ("position", "Waypoint")][:2]
 
 
-def _circle(
-    out: Emission, node: Element, circle: Element, table: DhTable | None, last: bool
-) -> None:
+def _circle(out: Emission, moves: _Moves, circle: Element, last: bool) -> None:
     with out.node("CircleMove"):
         points = [child(circle, "via", "viaPoint"), child(circle, "to", "endPoint")]
         if None in points:
@@ -207,25 +256,19 @@ def _circle(
             found = point if inner is None else inner
             if found is None:
                 continue
-            text = _target(
-                out, node, found, variable_name(child(found, "variable")), table, "MoveP"
-            )
+            variable = variable_name(child(found, "variable"))
+            text = _target(out, moves, found, variable, "MoveP")
             if text is not None:
                 texts.append(text)
         if len(texts) != 2:
             out.note("a point of the circle is not stored: the circle is left out")
             return
         fixed = "FIXED" in circle.get("orientationMode", circle.get("OrientationMode", "")).upper()
-        own = child(circle, "motionParameters")
-        out.write(
-            _call(
-                "movec",
-                ", ".join(texts),
-                _speed(node, own, "MoveP"),
-                _radius(node, own, "MoveP", last),
-                f"mode={int(fixed)}",
-            )
-        )
+        speed = _speed(out, moves, circle, "MoveP")
+        radius = "r=0.0" if last else _of_all(out, moves, "r", None) or "r=0.0"
+        own = _own_places(circle, "MoveP")
+        points_text = ", ".join(texts)
+        out.write(_call(out, "movec", points_text, own, speed, radius, f"mode={int(fixed)}"))
 
 
 def _until_below(out: Emission, step: Element, others: Children) -> None:

@@ -14,11 +14,12 @@ from ....core.spatial.pose import Pose
 from ..values.poses import quaternion_of, value_of
 from ..values.values import ValueFault
 from .installation import Six
-from .kinematics import JOINTS, DhTable, table_of
+from .kinematics import DhTable, table_of
 from .xml_file import Element, child, numbers
 
 _JOINTS = "JointAngles", "joints"
 _POSES = "pose", "Pose", "CartesianPose"
+_IN_FEATURE, _OF_FLANGE = "poseInFeatureCoordinates", "outputFlangePose"
 
 
 @dataclass(frozen=True)
@@ -48,15 +49,19 @@ def taught_at(waypoint: Element, table: DhTable | None) -> Taught:
         waypoint: the element, or ``from``, ``to`` of a relative one.
         table: of the program's arm, for positions that hold none.
     """
-    position = child(waypoint, "position")
-    where = waypoint if position is None else position
-    joints = numbers(_stored(where, "angles", _JOINTS), JOINTS)
-    tcp = numbers(_stored(where, "pose", ("TCPOffset", "tcpOffset")), 6)
-    own = table_of(child(where, "Kinematics", "kinematics")) or table
-    pose = numbers(_stored(where, "pose", _POSES), 6)
+    where = _where(waypoint)
+    joints = _six(stored_joints(waypoint))
+    tcp = _six(_stored(where, "pose", ("TCPOffset", "tcpOffset")))
+    own = table_at(waypoint) or table
+    pose = _six(_stored(where, "pose", _POSES))
     if pose is None and joints is not None and own is not None and tcp is not None:
         pose = _tcp_pose(own, joints, tcp)
     return Taught(joints, pose, tcp)
+
+
+def table_at(waypoint: Element) -> DhTable | None:
+    """The table of the arm that a waypoint was taught on, where it stores one."""
+    return table_of(child(_where(waypoint), "Kinematics", "kinematics"))
 
 
 def taught_tcps(element: Element) -> Iterator[Six]:
@@ -74,18 +79,68 @@ def feature_was(waypoint: Element) -> Six | None:
     return pose if pose is not None and any(pose) else None
 
 
-def _stored(where: Element, attribute: str, tags: tuple[str, ...]) -> str | None:
+@dataclass(frozen=True)
+class Stored:
+    """Where numbers stand.
+
+    Args:
+        element: that holds them.
+        attribute: in which; None for its text.
+    """
+
+    element: Element
+    attribute: str | None
+
+    @property
+    def text(self) -> str | None:
+        """What stands there."""
+        text = self.element.text if self.attribute is None else self.element.get(self.attribute)
+        return str(text) if text else None
+
+
+def stored_joints(waypoint: Element) -> Stored | None:
+    """Where the joints of a fixed waypoint stand."""
+    return _stored(_where(waypoint), "angles", _JOINTS)
+
+
+def stored_poses(waypoint: Element) -> Iterator[tuple[Stored, Six, bool]]:
+    """Where its poses stand, before PolyScope 5, and what they are.
+
+    Returns:
+        Of the TCP in the base's frame and in the feature's, and of the flange in the base's: of
+        each whether it is of the flange.
+    """
+    places = [_stored(_where(waypoint), "pose", _POSES)]
+    for tag in (_IN_FEATURE, _OF_FLANGE):
+        inside = child(waypoint, tag)
+        places.append(None if inside is None else Stored(inside, "pose"))
+    for place, of_flange in zip(places, (False, False, True), strict=True):
+        pose = _six(place)
+        if place is not None and pose is not None:
+            yield place, pose, of_flange
+
+
+def _where(waypoint: Element) -> Element:
+    position = child(waypoint, "position")
+    return waypoint if position is None else position
+
+
+def _stored(where: Element, attribute: str, tags: tuple[str, ...]) -> Stored | None:
     """Six numbers as an attribute of the element itself, or of a child, or as its text."""
     for tag in tags:
         if where.get(tag) is not None:
-            return str(where.get(tag))
+            return Stored(where, tag)
         found = child(where, tag)
         if found is not None:
             for name in (attribute, "value"):
                 if found.get(name) is not None:
-                    return str(found.get(name))
-            return found.text or None
+                    return Stored(found, name)
+            return Stored(found, None)
     return None
+
+
+def _six(stored: Stored | None) -> Six | None:
+    return None if stored is None else numbers(stored.text, 6)
 
 
 def _tcp_pose(table: DhTable, joints: tuple[float, ...], tcp: Six) -> Six | None:

@@ -16,6 +16,7 @@ from .emission import GENERATED, Emission, payload_text, pose_text
 from .expressions import function_name, identifier
 from .installation import Installation
 from .kinematics import DhTable, table_of
+from .literals import Literal
 from .nodes import Tree
 from .positions import taught_tcps
 from .xml_file import Element, child
@@ -72,18 +73,28 @@ def urp_of(root: Element, file: str) -> UrProgram:
     )
 
 
-def script_of(
-    program: UrProgram, installation: Installation | None, name: str
-) -> tuple[str, tuple[Note, ...]]:
+@dataclass(frozen=True)
+class TreeScript:
+    """A script that was made of a tree.
+
+    Args:
+        text: it.
+        literals: those with a place in the tree, in order.
+        notes: what of the tree is not in it.
+    """
+
+    text: str
+    literals: tuple[Literal, ...]
+    notes: tuple[Note, ...]
+
+
+def script_of(program: UrProgram, installation: Installation | None, name: str) -> TreeScript:
     """A program as a script.
 
     Args:
         program: it.
         installation: the one that it names; None if it is not at hand.
         name: of the script's function.
-
-    Returns:
-        The script, and what of the tree is not in it.
     """
     out = Emission(installation or Installation(), program.installation, installation is not None)
     tree = Tree(program.table)
@@ -112,7 +123,8 @@ def script_of(
             tree.node(out, node)
     lines = [f"def {function_name(name)}():", *settings, *out.preamble, *out.lines, "end", ""]
     told = [Note(f"{node}: {text}" if node else text) for text, node in out.told.items()]
-    return GENERATED + "\n".join(lines), tuple(told)
+    text, literals = out.literals.placed(GENERATED + "\n".join(lines))
+    return TreeScript(text, literals, tuple(told))
 
 
 def _settings(out: Emission, program: UrProgram) -> None:

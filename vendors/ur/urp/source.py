@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,6 +22,7 @@ from .installation import Installation, read_installation
 from .polyscope_x import content_of, script_in
 from .program import ROOT, UrProgram, script_of, urp_of
 from .script_beside import moved_waypoints
+from .tree_file import PackedScript, PolyScopeXFile, TreeFile
 from .xml_file import is_xml, parsed, unpacked
 
 INSTALLATION, SCRIPT = ".installation", ".script"
@@ -44,33 +46,41 @@ def source_of(path: Path, beside: Sequence[Path] | None) -> tuple[SourceFile, tu
     Raises:
         InputError: the file cannot be read, is damaged, or is no program.
     """
-    plain = unpacked(read_bytes(path, LARGEST_FILE), str(path))
+    data = read_bytes(path, LARGEST_FILE)
+    plain = unpacked(data, str(path))
     if path.suffix.casefold() == POLYSCOPE_X:
-        return SourceFile(str(path), script_in(content_of(plain, str(path)), str(path))), ()
+        text = script_in(content_of(plain, str(path)), str(path))
+        return PolyScopeXFile(str(path), text, packed=data), ()
     if not is_xml(plain):
         if max(plain.count(b"\n"), plain.count(b"\r")) > MOST_LINES:
             raise InputError(f"{path}: has more than {MOST_LINES:,} lines: no robot program")
-        return SourceFile(str(path), *decode(plain, str(path))), ()
+        text, codec = decode(plain, str(path))
+        return PackedScript(str(path), text, codec, data), ()
     program = urp_of(parsed(plain, str(path)), str(path))
     installation, notes = installation_beside(path, program, beside)
-    source, told = _script(program, installation, str(path), notes)
-    return source, (*told, *_stale(path, source.text, beside))
+    source, told = _script(program, installation, str(path), data, notes)
+    script = _script_beside(path, beside)
+    if script is None:
+        return source, told
+    return replace(source, beside=script), (*told, *_stale(path, source.text, script))
 
 
-def _stale(path: Path, text: str, beside: Sequence[Path] | None) -> tuple[Note, ...]:
-    """That the script beside a tree is of another state."""
+def _script_beside(path: Path, beside: Sequence[Path] | None) -> SourceFile | None:
+    """The script that PolyScope has saved beside a tree; None if none can be read."""
     place = path.with_suffix(SCRIPT)
     there = place.is_file() if beside is None else _key(place) in map(_key, beside)
-    if not there:
-        return ()
-    try:
-        moved = moved_waypoints(text, read_source(place).text)
-    except FlybyError:
-        return ()  # it is not this program that is read
+    with suppress(FlybyError):
+        return read_source(place) if there else None
+    return None  # it is not this program that is read
+
+
+def _stale(path: Path, text: str, script: SourceFile) -> tuple[Note, ...]:
+    """That the script beside a tree is of another state."""
+    moved = moved_waypoints(text, script.text)
     if not moved:
         return ()
     names = ", ".join(moved[:_NAMED]) + (", …" if len(moved) > _NAMED else "")
-    said = f"{path}: {counted(moved, 'waypoint')} elsewhere in {place.name} ({names})"
+    said = f"{path}: {counted(moved, 'waypoint')} elsewhere in {Path(script.name).name} ({names})"
     return (Note(f"{said}: one of the two files is older; {path.name} is read"),)
 
 
@@ -82,16 +92,28 @@ def source_of_text(text: str, file: str) -> tuple[SourceFile, tuple[Note, ...]]:
     """
     if _TREE.match(text) is None:
         return SourceFile(file, text), ()
-    program = urp_of(parsed(text.encode(), file), file)
-    return _script(program, None, file, ())
+    data = text.encode()
+    return _script(urp_of(parsed(data, file), file), None, file, data, ())
 
 
 def _script(
-    program: UrProgram, installation: Installation | None, file: str, notes: tuple[Note, ...]
-) -> tuple[SourceFile, tuple[Note, ...]]:
-    text, told = script_of(program, installation, Path(file).stem)
-    return SourceFile(file, text), tuple(
-        replace(note, message=f"{file}: {note.message}") for note in (*notes, *told)
+    program: UrProgram,
+    installation: Installation | None,
+    file: str,
+    data: bytes,
+    notes: tuple[Note, ...],
+) -> tuple[TreeFile, tuple[Note, ...]]:
+    script = script_of(program, installation, Path(file).stem)
+    source = TreeFile(
+        file,
+        script.text,
+        packed=data,
+        program=program,
+        installation=installation,
+        literals=script.literals,
+    )
+    return source, tuple(
+        replace(note, message=f"{file}: {note.message}") for note in (*notes, *script.notes)
     )
 
 

@@ -22,10 +22,16 @@ VARIABLE = '<Waypoint type="Variable" name="Variable"><variable name="{}"/></Way
 
 
 def script(build: Build, *steps: str, **how: object) -> list[str]:
-    """Statements of the body, without markers, data of waypoints and indents."""
+    """Statements of the body, without markers, data of waypoints and indents.
+
+    What a ``Move`` states for all of its waypoints stands in the place of its variables.
+    """
     source, _ = source_of_text(build.program(*steps, **how), "job.urp")  # type: ignore[arg-type]
-    lines = [line.strip() for line in source.text.split("\n")[2:-2]]
-    return [one for one in lines if not re.match(r"\$ |global \w+_[pq]=|set_tcp", one)]
+    shared = dict(re.findall(r"global (Move\w_\d+_[avr])=(.*)", source.text))
+    text = re.sub(r"\bMove\w_\d+_[avr]\b", lambda found: shared[found[0]], source.text)
+    lines = [line.strip() for line in text.split("\n")[2:-2]]
+    said = r"\$ |global \w+_[pq]=|set_tcp|global [\d.]+="
+    return [one for one in lines if not re.match(said, one)]
 
 
 def told(build: Build, *steps: str) -> list[str]:

@@ -271,15 +271,6 @@ def test_what_unpacks_without_end_is_refused(build: Build, tmp_path: Path) -> No
         read_file(path)
 
 
-def test_nothing_is_written_into_a_tree(build: Build, tmp_path: Path) -> None:
-    build.packed(tmp_path / "default.installation", build.installation())
-    path = build.packed(tmp_path / "job.urp", build.program(build.move(build.fixed("A", A))))
-    program = flyby.read(path, robot="ur/ur5e")
-    vendor = program.setup.vendor  # type: ignore[union-attr]
-    with pytest.raises(InputError, match=r"\.script that PolyScope saves beside it"):
-        vendor.patch(program, program.setup.robot)  # type: ignore[union-attr]
-
-
 def test_faults_name_the_node(build: Build, tmp_path: Path) -> None:
     bad = build.node("Folder", build.assignment("x", "f()g()"), name="Setup")
     with pytest.raises(SourceError, match="Robot Program > Setup > x") as caught:
