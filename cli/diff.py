@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     from ..core.difference.texts import FileDifference
     from ..tasks.diff.comparing import RoutineDifference, StateDifference
 
-_OF_GIT = 7
-"""Arguments that git gives to an external diff: name, then file, hash and mode of both sides."""
+_OF_GIT = (7, 9)
+"""Arguments that git gives to an external diff: name, then file, hash and mode of both sides; the
+new name and what git says of it, of a file that was renamed."""
 _NOTHING = "/dev/null"
 """What git names in the place of a file that is not there."""
 
@@ -52,7 +53,7 @@ def diff(
     if len(paths) == 1:
         _list_moves(Path(paths[0]), source)
         return
-    if len(paths) == _OF_GIT:
+    if len(paths) in _OF_GIT:
         _for_git(paths, source)
         return
     if len(paths) != 2:
@@ -74,7 +75,7 @@ def diff(
 def _for_git(paths: Sequence[str], source: SourceOptions) -> None:
     """Both states of a file as git hands them over; git takes any other status for a failure."""
     name, old, new = paths[0], paths[1], paths[4]
-    print_rich(f"diff of {name}")
+    print_rich(f"diff of {' → '.join([name, *paths[7:8]])}")
     if _NOTHING in (old, new):
         print_rich("added" if old == _NOTHING else "removed")
         return
@@ -86,10 +87,12 @@ def _for_git(paths: Sequence[str], source: SourceOptions) -> None:
 
 def _list_moves(path: Path, source: SourceOptions) -> None:
     """The moves of a program, a line each, without places in the text."""
+    from ..core.difference.data import target_text
     from ..core.difference.moves import move_text
 
     for move in read_with(path, source).moves:
-        print_rich(move_text(move))
+        at = f", at {target_text(move.target)}" if move.target.name and not move.open else ""
+        print_rich(f"{move_text(move)}{at}")
 
 
 # tables

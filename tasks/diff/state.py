@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import gzip
+import io
+import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -22,6 +25,7 @@ if TYPE_CHECKING:
     from ...core.program.program import Program
     from ..results.runs import Run
 
+_GZIP = b"\x1f\x8b"
 MAIN = "main routine"
 """What a routine is called that nobody names."""
 
@@ -111,18 +115,28 @@ def _of_backup(path: Path, backup: Backup, options: SourceOptions) -> StationSta
     if options.task is not None:
         moving = [task for task in moving if task.name.casefold() == options.task.casefold()]
     for task in moving:
-        names = [e.name for e in task.entries if e.moves != 0 and not e.parameters]
-        for name in [options.entry] if options.entry is not None else names:
-            routine = _driven(partial(_read, backup, task, options, name))
-            routines[f"{task.name}/{name}"] = routine
         for file in task.files:
             texts[file] = _text(backup.root / file)
+        for name in _names(task, options):
+            routine = _driven(partial(_read, backup, task, options, name))
+            routines[f"{task.name}/{name}"] = routine
+            texts |= _texts(routine.program, backup.root)
     return StationState(path, routines, backup, texts)
+
+
+def _names(task: Task, options: SourceOptions) -> list[str]:
+    """The routines of a task that are driven; its main one where it lists none."""
+    if options.entry is not None:
+        return [options.entry]
+    if not task.entries:
+        return [] if task.main is None else [MAIN]
+    return [e.name for e in task.entries if e.moves != 0 and not e.parameters]
 
 
 def _read(backup: Backup, task: Task, options: SourceOptions, name: str) -> Program:
     setup = setup_in(backup, task, options)
-    found = read_task(backup, task, setup, name, answers_of(options), (), None)
+    entry = None if name == MAIN else name
+    found = read_task(backup, task, setup, entry, answers_of(options), (), None)
     return replace(found, setup=setup)
 
 
@@ -161,9 +175,14 @@ def _texts(program: Program | None, folder: Path) -> dict[str, str]:
 
 
 def _text(path: Path) -> str:
-    from ...core.source.text.files import read_source
+    from ...core.files.reading import read_bytes
+    from ...core.source.text.files import LARGEST_FILE, source_of
 
     try:
-        return read_source(path).text
-    except FlybyError:
+        data = read_bytes(path, LARGEST_FILE)
+        if data.startswith(_GZIP):
+            with gzip.open(io.BytesIO(data)) as file:
+                data = file.read(LARGEST_FILE)
+        return source_of(data, str(path)).text
+    except (FlybyError, OSError, EOFError, zlib.error):
         return ""

@@ -57,7 +57,7 @@ def test_errors_have_a_status_of_their_own(flyby: Flyby, both: tuple[Path, Path]
 
 def test_one_path_is_listed_a_move_a_line(flyby: Flyby, both: tuple[Path, Path]) -> None:
     lines = flyby("diff", both[0], *ROBOT).stdout.splitlines()
-    assert lines[0] == "MoveJ p1, v1000, fine, tool0, wobj0"
+    assert lines[0].startswith("MoveJ p1, v1000, fine, tool0, wobj0, at ")
     assert len(lines) == 3
 
 
@@ -84,3 +84,7 @@ def test_git_calls_it(both: tuple[Path, Path], tmp_path: Path) -> None:
     shown = git("-c", f"diff.rapid.textconv={command}", "diff")
     assert "-MoveL 1300.00, 200.00, 900.00" in shown
     assert ", z50, tool0" in shown
+    (folder / "job.mod").write_bytes(both[0].read_bytes().replace(b"z10", b"z50"))
+    git("mv", "job.mod", "other.mod")
+    renamed = git("-c", f"diff.rapid.command={command}", "diff", "-M", "HEAD")
+    assert "diff of job.mod → other.mod" in renamed and "z50 (50 mm)" in renamed

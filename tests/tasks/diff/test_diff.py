@@ -11,8 +11,14 @@ from flyby.core.difference.differences import Differing
 from flyby.core.errors import InputError
 
 from ...vendors.abb.backup.station import MAIN, USER, Station, multimove, one_robot
+from ...vendors.ur.conftest import Build
 
 ROBOT = "abb/irb6640-180-255"
+
+
+@pytest.fixture
+def build() -> Build:
+    return Build()
 
 
 def station(folder: Path, main: str = MAIN, **more: object) -> Path:
@@ -80,6 +86,23 @@ def test_programs_of_a_named_robot(tmp_path: Path) -> None:
     found = flyby.diff(old, new, robot=ROBOT)
     moves = {(d.kind, d.before[:5], d.after[:5]) for d in found.differences}
     assert moves == {("removed", "MoveL", ""), ("added", "", "MoveJ")}
+
+
+def test_folders_of_program_trees_are_driven_and_compared(build: Build, tmp_path: Path) -> None:
+    for name, radius in (("a", "0.01"), ("b", "0.03")):
+        steps = [
+            build.fixed("A", (0.1, -1.4, 1.6, -1.8, -1.5, 0.2)),
+            build.fixed("B", (0.3, -1.2, 1.5, -1.9, -1.6, 0.1), f'blendRadius="{radius}"'),
+            build.fixed("C", (0.5, -1.3, 1.6, -1.9, -1.5, 0.4)),
+        ]
+        build.packed(tmp_path / name / "default.installation", build.installation())
+        text = build.program(build.move(*steps, kind="MoveL", speed=0.3))
+        build.packed(tmp_path / name / "job.urp", text)
+    found = flyby.diff(tmp_path / "a", tmp_path / "b")
+    (routine,) = found.routines
+    assert routine.times[0] > routine.times[1] > 0.5 and routine.distance > 1e-3
+    assert [d.subject for d in found.differences] == [Differing.ZONE]
+    assert [(file.name, file.added) for file in found.files] == [("job.urp", 1)]
 
 
 def test_what_cannot_be_read_is_refused(tmp_path: Path) -> None:
