@@ -10,14 +10,14 @@ from pathlib import Path, PurePosixPath
 from ....core.errors import FlybyError, InputError, Note
 from ....core.files.reading import read_bytes
 from ....core.source.text.files import LARGEST_FILE
+from ..urp.file_names import INSTALLATION, POLYSCOPE_X, PROGRAM, SCRIPT
 from ..urp.installation import Installation, read_installation
 from ..urp.polyscope_x import content_of, installation_in, script_in
 from ..urp.program import UrProgram, urp_of
-from ..urp.source import INSTALLATION, POLYSCOPE_X, SCRIPT, installation_places
+from ..urp.source import installation_places
 from ..urp.xml_file import is_xml, parsed, unpacked
+from .marks import MARKS
 
-PROGRAM = ".urp"
-MARKS = (PROGRAM, INSTALLATION, POLYSCOPE_X)
 PASSED_OVER = "passed over: "
 MOST_FILES = 20_000
 """Programs and installations that are looked at; a folder of a robot has some hundreds."""
@@ -56,16 +56,6 @@ class Contents:
     programs: list[Found] = field(default_factory=list)
     installations: dict[str, Installation] = field(default_factory=dict)
     notes: list[Note] = field(default_factory=list)
-
-
-def root_in(names: Sequence[str]) -> str | None:
-    """The outermost folder with a program or an installation; a script alone marks nothing."""
-    marking = [PurePosixPath(name) for name in names if _suffix(name) in MARKS]
-    if not marking:
-        return None
-    folders = [path.parent for path in marking]
-    folder = min(folders, key=lambda one: len(one.parts))
-    return "" if folder == PurePosixPath(".") else folder.as_posix()
 
 
 def read_contents(root: Path, names: Sequence[str]) -> Contents:

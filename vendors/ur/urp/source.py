@@ -18,6 +18,7 @@ from ....core.files.reading import read_bytes
 from ....core.program.program import Program
 from ....core.source.text.files import LARGEST_FILE, MOST_LINES, SourceFile, decode, read_source
 from .emission import node_at
+from .file_names import INSTALLATION, POLYSCOPE_X, SCRIPT
 from .installation import Installation, read_installation
 from .polyscope_x import content_of, script_in
 from .program import ROOT, UrProgram, script_of, urp_of
@@ -25,10 +26,8 @@ from .script_beside import moved_waypoints
 from .tree_file import PackedScript, PolyScopeXFile, TreeFile
 from .xml_file import is_xml, parsed, unpacked
 
-INSTALLATION, SCRIPT = ".installation", ".script"
 _NAMED = 4
 """Waypoints that a note names at most."""
-POLYSCOPE_X = ".urpx"
 _TREE = re.compile(rf"\ufeff?\s*(<\?xml[^>]*>)?\s*<{ROOT}\b")
 """How the text of a tree begins."""
 

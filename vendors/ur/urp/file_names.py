@@ -1,0 +1,6 @@
+"""What the files of PolyScope end with."""
+
+PROGRAM = ".urp"
+INSTALLATION = ".installation"
+SCRIPT = ".script"
+POLYSCOPE_X = ".urpx"
