@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from flyby.tasks.free_motion import free_motion
     from flyby.tasks.identify import identify
     from flyby.tasks.optimize import optimize
+    from flyby.tasks.pages.show import report, show
     from flyby.tasks.paint import paint
     from flyby.tasks.pareto import pareto
     from flyby.tasks.read import read
@@ -52,8 +53,10 @@ __all__ = [
     "patch",
     "read",
     "record",
+    "report",
     "robot",
     "robots",
+    "show",
     "station",
     "translate",
     "tune",
@@ -67,8 +70,10 @@ _ELSEWHERE = {
     "diff": "diff.diff",
     "open_backup": "backup.opening",
     "patch": "write",
+    "report": "pages.show",
     "robot": "catalogue",
     "robots": "catalogue",
+    "show": "pages.show",
     "station": "station.station",
 }
 """Files of `flyby.tasks` that are not called as what they hold."""

@@ -14,10 +14,11 @@ from ..core.program.entry_point import ALL
 from ..core.source.write.options import OpaqueStyle
 from ..tasks.ask import ask_with
 from ..tasks.emulate import EmulateOptions, emulate_with
-from ..tasks.files.outputs import check_outputs, picture_kind, write_all
+from ..tasks.files.outputs import check_outputs, page_name, picture_kind, write_all
+from ..tasks.pages.of_results import page_bytes
 from ..tasks.read import SourceOptions, read_with
 from .output.console import fail, print_json, print_rich, progress
-from .parameters import AsJson, Force, ProgramFile, with_options
+from .parameters import AsJson, Force, PageFile, ProgramFile, with_options
 
 if TYPE_CHECKING:
     from ..tasks.results.runs import Run
@@ -30,6 +31,7 @@ class _Files:
     csv: Path | None
     npz: Path | None
     plot: Path | None
+    report: Path | None
     write: Path | None
 
     def by_option(self) -> dict[str, Path | None]:
@@ -47,6 +49,7 @@ def emulate(
     plot: Annotated[
         Path | None, typer.Option(help="Draw path and motion: PNG, PDF or SVG.")
     ] = None,
+    report: PageFile = None,
     write: Annotated[
         Path | None,
         typer.Option(
@@ -68,11 +71,13 @@ def emulate(
 
     Moves that cannot be driven are faults; the robot goes on behind them, and the exit status is 1.
     """
-    files = _Files(csv, npz, plot, write)
+    files = _Files(csv, npz, plot, report, write)
     if opaque is not None and write is None:
         raise OptionError(f"--opaque {opaque} is of the program that --write writes: name its file")
     if plot is not None:
         picture_kind(plot, "--plot")
+    if report is not None:
+        page_name(report, "--report")
     outputs = files.by_option()
     if write is not None and write.is_dir():
         del outputs["--write"]
@@ -154,6 +159,8 @@ def _write_files(
         made |= sources
     if files.plot is not None:
         made[files.plot] = run.picture(picture_kind(files.plot, "--plot"))
+    if files.report is not None:
+        made[files.report] = page_bytes(run)
     write_all(", ".join(option for option, path in files.by_option().items() if path), made)
     return list(made)
 

@@ -19,6 +19,7 @@ from .output.console import fail, warn
 
 COMMANDS = {
     "emulate": "emulate",
+    "view": "view",
     "ask": "emulate",
     **{
         name: name

@@ -101,4 +101,11 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print the report as JSON."
 Force = Annotated[bool, typer.Option("--force", help="Replace output files.")]
 Out = Annotated[Path | None, typer.Option("--out", help="Folder to write the files to.")]
 InPlace = Annotated[bool, typer.Option("--in-place", help="Change the program's own files.")]
+PageFile = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Write a page to look at in a browser (HTML): cell, program and plots on one clock.",
+    ),
+]
 Plot = Annotated[Path | None, typer.Option("--plot", help="Draw it: PNG, PDF or SVG.")]

@@ -16,6 +16,7 @@ from ..core.robot.kinematics.chain_kernels import poses
 from ..core.robot.model import Robot
 from ..core.robot.shape import Box, Capsule, Cylinder, Shape, Sphere
 from ..core.spatial.pose import Pose
+from .thinning import clustered
 
 MOST = 4000
 """Triangles of a mesh above which points near to each other are drawn as one."""
@@ -99,30 +100,7 @@ def _primitive(shape: Shape) -> Any:
 
 
 def _thinned(vertices: FloatArray, faces: NDArray[np.int64]) -> FloatArray:
-    """Triangles (F, 3, 3); of a large mesh those that are left when it is drawn on a grid.
-
-    Points of one cube count as one if they face to the same side, so that thin walls stay walls.
-    """
-    if len(faces) <= MOST:
-        return np.asarray(vertices[faces])
-    edge = float(np.ptp(vertices, axis=0).max()) / CELLS
-    places = np.round(vertices / edge).astype(np.int64)
-    sides = (_facing(vertices, faces) > 0.0).astype(np.int64)
-    keys = np.hstack([places, sides])
-    _, owner, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
-    merged = np.stack(
-        [np.bincount(owner, vertices[:, k], len(count)) / count for k in range(3)], axis=1
-    )
-    corners = np.sort(owner[faces], axis=1)
-    kept = (corners[:, 0] < corners[:, 1]) & (corners[:, 1] < corners[:, 2])
-    return np.asarray(merged[owner[faces][kept]])
-
-
-def _facing(vertices: FloatArray, faces: NDArray[np.int64]) -> FloatArray:
-    """Where the surface at each point faces (V, 3): the sum of its triangles' normals."""
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    normals = np.cross(b - a, c - a)
-    facing = np.zeros_like(vertices)
-    for k in range(3):
-        np.add.at(facing, faces[:, k], normals)
-    return facing
+    """Triangles (F, 3, 3); of a large mesh those that are left when it is drawn on a grid."""
+    if len(faces) > MOST:
+        vertices, faces = clustered(vertices, faces, CELLS)
+    return np.asarray(vertices[faces])

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,6 +76,29 @@ class MoveClearance:
     own: Approach | None
 
 
+class NearestToCell(NamedTuple):
+    """What is nearest at M samples.
+
+    Args:
+        distance: (M,) m; infinite where all is farther than was looked.
+        first, second: (M, 3) m in the world, the nearest points; not numbers where there are none.
+        pairs: names of the two bodies; None where there are none.
+    """
+
+    distance: FloatArray
+    first: FloatArray
+    second: FloatArray
+    pairs: list[tuple[str, str] | None]
+
+    @classmethod
+    def none(cls, count: int) -> NearestToCell:
+        """Nothing near at so many samples."""
+        far = np.full(count, math.inf)
+        return cls(
+            far, np.full((count, 3), math.nan), np.full((count, 3), math.nan), [None] * count
+        )
+
+
 class ClearanceMeter:
     """Looks at runs of one program in its cell.
 
@@ -123,6 +147,35 @@ class ClearanceMeter:
                 told.append(None if met is None else Approach(*met, first + move))
                 limits[side] = min(limits[side], math.inf if met is None else met[0])
             found.append(MoveClearance(first + move, *told))
+        return found
+
+    def along(self, q: FloatArray, moves: Sequence[int], within: float) -> NearestToCell:
+        """What of the cell is nearest to the arm and what it carries, sample by sample.
+
+        Args:
+            q: (M, N) rad or m.
+            moves: (M,), index in the program of the move that each sample is of.
+            within: m; what is farther is left out.
+
+        Raises:
+            InputError: a mesh cannot be used.
+        """
+        found = NearestToCell.none(len(q))
+        owners = np.asarray(moves, dtype=np.int64)
+        for move in dict.fromkeys(owners.tolist()):
+            scene = self._scene(move)
+            if scene is None:
+                continue
+            rows = np.flatnonzero(owners == move)
+            looked = ~_own_pairs(scene) & ~self._resting(scene, move, q[rows])
+            pairs = np.flatnonzero(looked)
+            for row in rows.tolist():
+                met = scene.nearest(q[row : row + 1], pairs, within)
+                if met is not None:
+                    witness = scene.witness(q[row], met[2])
+                    found.distance[row] = met[0]
+                    found.first[row], found.second[row] = witness.point_a, witness.point_b
+                    found.pairs[row] = scene.pair_names(met[2])
         return found
 
     def _nearest(

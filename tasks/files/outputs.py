@@ -11,6 +11,8 @@ from pathlib import Path
 from ...core.door import switched
 from ...core.errors import InputError, OptionError
 
+PAGES = (".html", ".htm")
+"""Suffixes of pages."""
 PICTURES = (".png", ".pdf", ".svg")
 """Suffixes of pictures that can be drawn."""
 _log = logging.getLogger("flyby")
@@ -67,6 +69,16 @@ def picture_kind(file: str | Path, option: str) -> str:
     if suffix not in PICTURES:
         raise OptionError(f"{option} {file}: the name must end in {', '.join(PICTURES)}")
     return suffix[1:]
+
+
+def page_name(file: str | Path, option: str) -> None:
+    """Refuse the name of a page that no browser would open as one.
+
+    Raises:
+        InputError: naming the option and the file.
+    """
+    if Path(file).suffix.lower() not in PAGES:
+        raise OptionError(f"{option} {file}: the name must end in {' or '.join(PAGES)}")
 
 
 def check_folder(option: str, folder: Path | None) -> None:

@@ -102,6 +102,12 @@ class Run(DrivenProgram):
 
         return draw(self, self.robot, kind)
 
+    def show(self) -> None:
+        """Show the run in a browser, or in a notebook's frame; see `flyby.show`."""
+        from ..pages.show import show
+
+        show(self)
+
     def _repr_html_(self) -> str:
         curves = [
             PictureCurve("path of the TCP", part.run.trajectory.position) for part in self.parts

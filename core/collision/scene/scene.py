@@ -305,6 +305,11 @@ class CollisionScene:
                 return Contact.of(*self.pair_names(pair), self._witness(a, b, places))
         return None
 
+    def witness(self, q: ArrayLike, pair: int) -> Witness:
+        """Distance and nearest points of the bodies in row ``pair`` of `pairs` at q (N,)."""
+        R, p = self._place(self._rows(np.asarray(q, dtype=float)[None]))
+        return self._witness(*self._pairs[pair], BodyPoses(R[0], p[0]))
+
     def _witness(self, a: int, b: int, places: BodyPoses) -> Witness:
         witness = self._distances.distance(a, b, places, math.inf)
         assert witness is not None, "only distances of infinity and more are left out"

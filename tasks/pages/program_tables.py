@@ -1,0 +1,157 @@
+"""Tables of a driven program on its page: moves, faults, notes, where the time goes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ...core.program.program import Program
+from ...drawing.page.content import PageCell, PageColumn, PageMove, PageRow, PageShare, PageTable
+from ..results.report import MoveReport, Report, zone_text
+from ..results.shares import shares
+from .sources import SourceList
+
+MOVES = (
+    PageColumn("#"),
+    PageColumn("move"),
+    PageColumn("target"),
+    PageColumn("line"),
+    PageColumn("from", "s", 3),
+    PageColumn("time", "s", 3, bar=True),
+    PageColumn("wait", "s", 3),
+    PageColumn("length", "mm", 1),
+    PageColumn("top speed", "mm/s"),
+    PageColumn("programmed", "mm/s"),
+    PageColumn("zone"),
+    PageColumn("limited by"),
+)
+_NOTES = (PageColumn("line"), PageColumn("move"), PageColumn("what"))
+_FAULTS = (PageColumn("line"), PageColumn("move"), PageColumn("cause"), PageColumn("what"))
+_CAUSES = (
+    PageColumn("what limits"),
+    PageColumn("time", "s", 3, bar=True),
+    PageColumn("share", "%", 1),
+)
+
+
+def page_shares(program: Program, report: Report) -> list[PageShare]:
+    """What the whole time goes into."""
+    spent = shares(program, report)
+    if spent.passes:
+        parts = {"motion": spent.motion, "waits": spent.waiting, "devices": spent.devices}
+    else:
+        parts = {
+            "motion": report.moving,
+            "settling": report.settling,
+            "waits": spent.waiting,
+            "devices": spent.devices,
+        }
+    return [PageShare(name, seconds) for name, seconds in parts.items() if seconds > 0.0]
+
+
+def page_moves(
+    program: Program, report: Report, sources: SourceList, track: int, tools: Sequence[str]
+) -> list[PageMove]:
+    """The moves as the page names them."""
+    made = []
+    for move, own in zip(report.moves, program.moves, strict=True):
+        source, line = sources.place(track, move.span)
+        begin, end = span_of(move)
+        tool = tools.index(own.tool.name) if own.tool.name in tools else 0
+        label = f"{move.kind} {move.target or ''}".strip()
+        made.append(PageMove(move.number, label, source, line, tool, 0, begin, end))
+    return made
+
+
+def span_of(move: MoveReport) -> tuple[float | None, float | None]:
+    """When a move begins and ends, its wait included; Nones where it is not driven."""
+    if not move.driven:
+        return None, None
+    return move.begin, move.begin + move.time + move.settling + move.wait
+
+
+def moves_table(report: Report, sources: SourceList, track: int, title: str = "Moves") -> PageTable:
+    """A row a move."""
+    rows = []
+    for move in report.moves:
+        source, line = sources.place(track, move.span)
+        target = move.target or (
+            "joint values"
+            if move.position is None
+            else ", ".join(f"{1e3 * value:.1f}" for value in move.position)
+        )
+        head = (float(move.number), move.kind, target, float(line) if line else None)
+        level = "error" if move.fault is not None else ""
+        cells: tuple[PageCell, ...]
+        if move.driven:
+            limit = move.limits[0] if move.limits else None
+            cells = (
+                *head,
+                move.begin,
+                move.time + move.settling,
+                move.wait or None,
+                1e3 * move.length,
+                1e3 * move.top_speed,
+                None if move.programmed_speed is None else 1e3 * move.programmed_speed,
+                zone_text(move.zone),
+                "" if limit is None else f"{limit.name} ({100 * limit.share:.0f} %)",
+            )
+        else:
+            why = "not driven" if move.fault is None else f"fault: {move.fault.cause}"
+            cells = (*head, None, None, None, None, None, None, "", why)
+        t = move.begin if move.driven else None
+        rows.append(PageRow(cells, level, track, t, move.number - 1, source, line))
+    return PageTable(title, MOVES, rows)
+
+
+def causes_table(report: Report, track: int) -> PageTable:
+    """How long each limit holds the robot back, over all moves."""
+    spent: dict[str, float] = {}
+    worst: dict[str, tuple[float, float]] = {}
+    for move in report.moves:
+        for limit in move.limits:
+            seconds = limit.share * move.time
+            spent[limit.name] = spent.get(limit.name, 0.0) + seconds
+            worst[limit.name] = max(worst.get(limit.name, (0.0, 0.0)), (seconds, move.begin))
+    for name, seconds in (("settling", report.settling), ("wait", report.waiting)):
+        if seconds > 0.0:
+            spent[name] = spent.get(name, 0.0) + seconds
+    total = sum(spent.values()) or 1.0
+    rows = [
+        PageRow(
+            (name, seconds, 100.0 * seconds / total),
+            track=track,
+            t=worst[name][1] if name in worst else None,
+        )
+        for name, seconds in sorted(spent.items(), key=lambda item: -item[1])
+    ]
+    return PageTable("Time by cause", _CAUSES, rows)
+
+
+def faults_table(report: Report, sources: SourceList, track: int) -> PageTable | None:
+    """A row a fault; None without any."""
+    rows = []
+    for fault in report.faults:
+        source, line = sources.place(track, fault.span)
+        cells = (
+            float(line) if line else None,
+            float(fault.move + 1),
+            str(fault.cause),
+            fault.message,
+        )
+        rows.append(PageRow(cells, "error", track, None, fault.move, source, line))
+    return PageTable("Faults", _FAULTS, rows) if rows else None
+
+
+def notes_table(report: Report, sources: SourceList, track: int) -> PageTable | None:
+    """A row a note; None without any."""
+    rows = []
+    for note in report.notes:
+        source, line = sources.place(track, note.span)
+        number = None if note.move is None else float(note.move + 1)
+        t = None
+        if note.move is not None and note.move < len(report.moves):
+            move = report.moves[note.move]
+            t = move.begin if move.driven else None
+        cells = (float(line) if line else None, number, note.message)
+        rows.append(PageRow(cells, "warning", track, t, note.move, source, line))
+    return PageTable("Notes", _NOTES, rows) if rows else None

@@ -1,0 +1,222 @@
+"""The page of one driven program, and the parts that pages of several share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING
+
+from ...core.errors import FlybyError
+from ...core.program.tool import Tool, WorkObject
+from ...drawing.page.arms import Nodes, page_arm
+from ...drawing.page.content import (
+    Page,
+    PageArm,
+    PageClearance,
+    PageProof,
+    PageSource,
+    PageTable,
+    PageTrack,
+)
+from ...drawing.page.curves import CHARTS
+from ...drawing.page.nearness import page_clearance
+from ...drawing.page.parts import with_parts
+from ...drawing.page.tracks import (
+    driven_curves,
+    frame_node,
+    page_limits,
+    page_lines,
+    page_motion,
+    page_waypoints,
+    tools_and_frames,
+)
+from ..setup import Setup, start_of
+from .happenings import page_flags
+from .program_tables import (
+    causes_table,
+    faults_table,
+    moves_table,
+    notes_table,
+    page_moves,
+    page_shares,
+)
+from .sources import SourceList
+
+if TYPE_CHECKING:
+    from ...core.cell.cell import Cell
+    from ...core.handling.handling import Handling
+    from ..results.runs import Run
+
+
+@dataclass
+class PageDraft:
+    """The robots and tracks of a page, as they are put together.
+
+    Args:
+        arms, tracks: so far.
+        sources: so far.
+    """
+
+    arms: list[PageArm] = field(default_factory=list)
+    tracks: list[PageTrack] = field(default_factory=list)
+    sources: SourceList = field(default_factory=SourceList)
+
+    def drive(self, runs: Sequence[Run], cell: Cell | None, names: Sequence[str] = ("",)) -> None:
+        """Add runs of one robot in one cell, each as a track.
+
+        Args:
+            runs: of one robot.
+            cell: what stands around; None for nothing.
+            names: of the tracks; all but the last are drawn as ghosts.
+
+        Raises:
+            InputError: a mesh cannot be used.
+        """
+        robot = runs[0].robot
+        tools: dict[Tool, None] = {}
+        frames: dict[WorkObject, None] = {}
+        for run in runs:
+            used = tools_and_frames(run)
+            tools |= dict.fromkeys(used[0])
+            frames |= dict.fromkeys(used[1])
+        arm = page_arm(robot, cell, tools, frames)
+        self.arms.append(arm)
+        for k, (run, name) in enumerate(zip(runs, names, strict=True)):
+            self._track(run, cell, name, ghost=k < len(runs) - 1)
+
+    def _track(self, run: Run, cell: Cell | None, name: str, *, ghost: bool) -> None:
+        index, arm_index = len(self.tracks), len(self.arms) - 1
+        arm, robot, report = self.arms[arm_index], run.robot, run.report
+        nodes, trajectory = Nodes.of(robot), run.trajectory
+        self.sources.add(run.program, index, [move.span for move in report.moves])
+        motion, channels = page_motion(trajectory, robot, driven_curves(run, robot))
+        tools = [tool.name for tool in arm.tools]
+        moves = [
+            replace(made, node=frame_node(nodes, move.work_object))
+            for made, move in zip(
+                page_moves(run.program, report, self.sources, index, tools),
+                run.program.moves,
+                strict=True,
+            )
+        ]
+        handling = handling_in(run, cell)
+        arm, parts = with_parts(arm, nodes, robot, handling, cell)
+        self.arms[arm_index] = arm
+        self.tracks.append(
+            PageTrack(
+                name,
+                arm_index,
+                run.duration,
+                motion,
+                moves,
+                channels,
+                page_limits(run, robot),
+                page_lines(run, nodes),
+                page_waypoints(run, nodes),
+                page_flags(run.program, report, trajectory, self.sources, index),
+                _clearance(run, cell, handling),
+                parts,
+                ghost=ghost,
+            )
+        )
+
+    def prove(self, track: int, proof: PageProof | None) -> None:
+        """Lay a proof on a track."""
+        self.tracks[track] = replace(self.tracks[track], proof=proof)
+
+    def files(self) -> list[PageSource]:
+        """The source files."""
+        return self.sources.made
+
+
+def handling_in(run: Run, cell: Cell | None) -> Handling | None:
+    """What a run does to the parts of its cell; None where there are none."""
+    if cell is None or not cell.parts:
+        return None
+    from ...core.handling.handling import handling_of
+
+    return handling_of(run.program, cell, start_of(run.program))
+
+
+def _clearance(run: Run, cell: Cell | None, handling: Handling | None) -> PageClearance | None:
+    if cell is None:
+        return None
+    from ...core.collision.clearance import ClearanceMeter
+
+    try:
+        meter = ClearanceMeter(cell, run.program, handling)
+        return page_clearance(meter, run.trajectory, cell.clearance)
+    except FlybyError:
+        return None  # The report says why clearances are not known.
+
+
+def cell_of(run: Run) -> Cell | None:
+    """The cell that a program was read for; None where no file says what stands around."""
+    setup = run.program.setup
+    return setup.cell if isinstance(setup, Setup) else None
+
+
+def made_by() -> str:
+    """Name and version of this program."""
+    try:
+        return f"flyby {version('flyby')}"
+    except PackageNotFoundError:
+        return "flyby"
+
+
+def run_page(run: Run, kind: str = "emulate", tables: Sequence[PageTable] = ()) -> Page:
+    """The page of a driven program.
+
+    Args:
+        run: as `flyby.emulate` gives it.
+        kind: what was done.
+        tables: that stand before those of the run.
+
+    Raises:
+        InputError: a mesh cannot be used.
+    """
+    draft = PageDraft()
+    draft.drive([run], cell_of(run))
+    report = run.report
+    own = [
+        causes_table(report, 0),
+        moves_table(report, draft.sources, 0),
+        faults_table(report, draft.sources, 0),
+        notes_table(report, draft.sources, 0),
+    ]
+    return Page(
+        f"{run.program.name} on {run.robot.name}",
+        kind,
+        facts_of(run),
+        page_shares(run.program, report),
+        draft.arms,
+        draft.tracks,
+        draft.files(),
+        [*tables, *(table for table in own if table is not None)],
+        CHARTS,
+        notes=[str(fault) for fault in run.faults[:3]],
+        made_by=made_by(),
+    )
+
+
+def facts_of(run: Run) -> dict[str, str]:
+    """Figures at the top of the page."""
+    report = run.report
+    facts = {}
+    if report.faults:
+        facts["driven"] = f"{report.driven_time:.3f} s"
+        facts["faults"] = str(len(report.faults))
+    else:
+        facts["cycle time"] = f"{report.driven_time:.3f} s"
+    if report.time_range is not None and report.time_range[0] != report.time_range[1]:
+        least, most = report.time_range
+        facts["with assumed figures"] = f"{least:.2f} to {most:.2f} s"
+    facts["moves"] = str(len(report.moves))
+    facts["path"] = f"{report.length:.3f} m"
+    facts["top speed"] = f"{1e3 * report.top_speed:.0f} mm/s"
+    if report.to_cell is not None:
+        facts["clearance to the cell"] = (
+            "touches" if report.to_cell.overlaps else f"{1e3 * report.to_cell.distance:.1f} mm"
+        )
+    return facts

@@ -1,0 +1,240 @@
+// The path of a track in space: programmed and driven, zones, stops, what happens on the way.
+
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  Group,
+  InstancedMesh,
+  Line,
+  LineBasicMaterial,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  Points,
+  PointsMaterial,
+  SphereGeometry,
+  Vector2,
+} from "three";
+import { Line2 } from "three/examples/jsm/lines/Line2.js";
+import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
+import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
+import { kindOf, rgb, viridis } from "./colours.js";
+
+export const COLOURINGS = {
+  speed: { name: "TCP speed", chart: "speed", unit: "mm/s" },
+  push: { name: "TCP acceleration", chart: "push", unit: "m/s²" },
+  limit: { name: "what limits" },
+  clearance: { name: "clearance", chart: "clearance", unit: "mm" },
+  power: { name: "mechanical power", chart: "energy", unit: "kW" },
+  plain: { name: "plain" },
+};
+const PROGRAMMED = { light: 0x8a8f94, dark: 0x7d858c };
+const GHOST = { light: "#2f6fb3", dark: "#7db7f0" };
+const FLAGS = { wait: 0xd55e00, device: 0xe69f00, statement: 0x0072b2, event: 0x009e73 };
+
+export class PathView {
+  constructor(view, track, arm) {
+    Object.assign(this, { view, track, arm });
+    this.ghost = arm.ghost;
+    this.groups = { driven: new Group(), programmed: new Group(), zones: new Group(), stops: new Group(), flags: new Group() };
+    this.driven();
+    if (!this.ghost) {
+      this.programmed();
+      this.zones();
+      this.flags();
+    }
+    this.marker();
+    if (view.trace !== null) this.traceNode(view.trace);
+  }
+
+  carrier(node) {
+    return this.arm.nodes[node];
+  }
+
+  /** Put an object on a node, in a group that is switched as a whole. */
+  put(group, node, object) {
+    this.carrier(node).add(object);
+    (this.groups[group].userData.members ??= []).push(object);
+  }
+
+  apply(show) {
+    const seen = { driven: true, programmed: show.programmed, zones: show.zones, stops: true, flags: show.flags };
+    for (const [name, group] of Object.entries(this.groups)) {
+      for (const object of group.userData.members ?? []) object.visible = seen[name];
+    }
+  }
+
+  driven() {
+    const { times, local, nodes } = this.track.path();
+    this.lines = [];
+    let from = 0;
+    for (let k = 1; k <= times.length; k += 1) {
+      const gap = k < times.length && times[k] === times[k - 1];
+      if (k < times.length && nodes[k] === nodes[from] && !gap) continue;
+      if (k - from > 1) {
+        const material = new LineMaterial({ linewidth: this.ghost ? 1.6 : 3, vertexColors: true, worldUnits: false });
+        material.resolution = new Vector2(this.view.host.clientWidth || 1, this.view.host.clientHeight || 1);
+        if (this.ghost) Object.assign(material, { transparent: true, opacity: 0.65 });
+        const line = new Line2(new LineGeometry(), material);
+        line.geometry.setPositions(local.subarray(3 * from, 3 * k));
+        line.frustumCulled = false;
+        this.lines.push({ line, from, to: k });
+        this.put("driven", nodes[from], line);
+      }
+      from = k;
+    }
+    this.colour();
+  }
+
+  /** Colour of each point of the path, and what the colours stand for. */
+  colours() {
+    const { times } = this.track.path();
+    const by = COLOURINGS[this.view.colourBy] ?? COLOURINGS.plain;
+    if (this.ghost) {
+      const colour = rgb(GHOST[this.view.theme]);
+      return { colours: Array.from(times, () => colour) };
+    }
+    if (this.view.colourBy === "limit") {
+      const names = this.track.data.limits?.names ?? [];
+      return { colours: Array.from(times, (t) => rgb(kindOf(names[this.track.limitAt(t)]).colour)) };
+    }
+    const channel = by.chart && this.track.channel(by.chart);
+    if (!channel) return { colours: Array.from(times, () => rgb(this.view.theme === "dark" ? "#7db7f0" : "#0b5cad")) };
+    let values = Array.from(times, (t) => this.track.value(channel, t));
+    if (this.view.colourBy === "power") {
+      values = values.map((v, k) => (k && times[k] > times[k - 1] ? (v - values[k - 1]) / (times[k] - times[k - 1]) : 0));
+    }
+    const finite = values.filter(Number.isFinite);
+    const low = this.view.colourBy === "clearance" ? Math.min(...finite, 0) : 0;
+    const high = finite.reduce((most, v) => Math.max(most, v), low + 1e-9);
+    // Small clearances are what counts: bright.
+    const turned = this.view.colourBy === "clearance";
+    const colours = values.map((v) => {
+      if (!Number.isFinite(v)) return [0.6, 0.6, 0.6];
+      const share = (v - low) / (high - low);
+      return viridis(turned ? 1 - share : share);
+    });
+    return { colours, low, high, unit: by.unit, turned };
+  }
+
+  colour() {
+    const { colours, ...scale } = this.colours();
+    this.scale = scale;
+    for (const { line, from, to } of this.lines) {
+      line.geometry.setColors(colours.slice(from, to).flat());
+    }
+  }
+
+  programmed() {
+    const material = new LineBasicMaterial({ color: PROGRAMMED[this.view.theme] });
+    for (const { node, points } of this.track.data.programmed ?? []) {
+      const count = points[0].length;
+      const xyz = new Float32Array(3 * count);
+      for (let k = 0; k < count; k += 1) for (let i = 0; i < 3; i += 1) xyz[3 * k + i] = points[i][k];
+      const geometry = new BufferGeometry();
+      geometry.setAttribute("position", new BufferAttribute(xyz, 3));
+      this.put("programmed", node ?? 0, new Line(geometry, material));
+    }
+  }
+
+  zones() {
+    const waypoints = this.track.data.waypoints;
+    if (!waypoints) return;
+    const byNode = new Map();
+    waypoints.nodes.forEach((node, k) => byNode.set(node, [...(byNode.get(node) ?? []), k]));
+    for (const [node, rows] of byNode) {
+      const passed = rows.filter((k) => waypoints.radius[k] > 0);
+      const material = new MeshBasicMaterial({ color: 0xe69f00, transparent: true, opacity: 0.2, depthWrite: false });
+      const balls = new InstancedMesh(new SphereGeometry(1, 20, 14), material, passed.length);
+      balls.renderOrder = 4;
+      passed.forEach((k, i) => {
+        const r = waypoints.radius[k];
+        const m = new Matrix4().makeScale(r, r, r);
+        m.setPosition(...waypoints.points.map((column) => column[k]));
+        balls.setMatrixAt(i, m);
+      });
+      balls.frustumCulled = false;
+      this.put("zones", node, balls);
+      const stops = rows.filter((k) => waypoints.radius[k] === 0);
+      this.put("stops", node, this.dots(waypoints.points, stops, this.view.theme === "dark" ? 0xf2f2f2 : 0x22272b, 6));
+      this.put("stops", node, this.dots(waypoints.points, passed, 0xb87400, 4));
+    }
+  }
+
+  dots(points, rows, colour, size) {
+    const xyz = new Float32Array(rows.flatMap((k) => points.map((column) => column[k])));
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(xyz, 3));
+    const dots = new Points(geometry, new PointsMaterial({ color: colour, size, sizeAttenuation: false, depthTest: false }));
+    dots.renderOrder = 6;
+    dots.frustumCulled = false;
+    return dots;
+  }
+
+  /** Waits, outputs and events as dots beside the path. */
+  flags() {
+    const { flags } = this.track;
+    if (!flags.length) return;
+    const xyz = new Float32Array(flags.flatMap((flag) => this.track.tcp(flag.t)));
+    const colours = new Float32Array(flags.flatMap((flag) => new Color(FLAGS[flag.kind] ?? 0x888888).toArray()));
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(xyz, 3));
+    geometry.setAttribute("color", new BufferAttribute(colours, 3));
+    const dots = new Points(geometry, new PointsMaterial({ vertexColors: true, size: 9, sizeAttenuation: false, depthTest: false }));
+    dots.renderOrder = 7;
+    dots.frustumCulled = false;
+    this.put("flags", 0, dots);
+  }
+
+  marker() {
+    const colour = this.ghost ? GHOST[this.view.theme] : "#d0342c";
+    this.tip = new Mesh(new SphereGeometry(1, 12, 8), new MeshBasicMaterial({ color: colour, depthTest: false }));
+    this.tip.renderOrder = 8;
+    this.view.root.add(this.tip);
+  }
+
+  pose(time) {
+    const at = this.track.tcp(time);
+    this.tip.position.set(...at);
+    const away = this.view.camera.position.distanceTo(this.tip.position);
+    this.tip.scale.setScalar(0.006 * away);
+  }
+
+  traceNode(node) {
+    this.traced?.removeFromParent();
+    this.traced = null;
+    if (node === null || node < 0) return;
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(this.track.trace(node), 3));
+    const colour = this.ghost ? GHOST[this.view.theme] : 0xcc79a7;
+    this.traced = new Line(geometry, new LineBasicMaterial({ color: colour }));
+    this.traced.frustumCulled = false;
+    this.view.root.add(this.traced);
+  }
+
+  resize(width, height) {
+    for (const { line } of this.lines) line.material.resolution.set(width, height);
+  }
+
+  /** The time at which the path passes nearest to a place on the screen; null if none is near. */
+  pick(x, y, reach = 10) {
+    const { times, local, nodes } = this.track.path();
+    const matrices = this.arm.nodes.map((node) => node.matrix.elements);
+    let best = null;
+    for (let k = 0; k < times.length; k += 1) {
+      const m = matrices[nodes[k]];
+      const [a, b, c] = [local[3 * k], local[3 * k + 1], local[3 * k + 2]];
+      const point = [
+        m[0] * a + m[4] * b + m[8] * c + m[12],
+        m[1] * a + m[5] * b + m[9] * c + m[13],
+        m[2] * a + m[6] * b + m[10] * c + m[14],
+      ];
+      const at = this.view.onScreen(point);
+      if (!at) continue;
+      const off = Math.hypot(at[0] - x, at[1] - y);
+      if (off < reach && (!best || off < best.off)) best = { off, t: times[k] };
+    }
+    return best?.t ?? null;
+  }
+}

@@ -1,0 +1,362 @@
+// Curves over the one clock, and the band that says what limits the robot when.
+
+import uPlot from "uplot";
+import { KINDS, NAMED, REST, kindOf } from "./colours.js";
+import { h, number } from "./dom.js";
+
+const LEFT = 54;
+const RIGHT = 14;
+const GAP = 1e-9;
+
+export class PlotPane {
+  constructor(session, host) {
+    Object.assign(this, { session, host });
+    this.charts = (session.page.charts ?? []).filter((chart) =>
+      session.tracks.some((track) => track.channels.some((channel) => channel.chart === chart.key)),
+    );
+    this.colours = { text: "#444", line: "#ddd" };
+    this.bandHost = h("div", { class: "band" });
+    this.band = h("canvas", { "aria-label": "what limits the robot over time" });
+    this.legend = h("div", { class: "legend" });
+    this.bandHost.append(this.band);
+    this.plots = [];
+    host.append(h("div", { class: "bandrow" }, this.legend, this.bandHost));
+    if (this.charts.length) {
+      this.slots = [this.slot(0), this.slot(Math.min(2, this.charts.length - 1))];
+      if (this.charts.length < 2) this.slots.pop().root.remove();
+    } else this.slots = [];
+    this.band.addEventListener("click", (event) => session.seek(this.timeAt(event.offsetX)));
+    this.band.addEventListener("mousemove", (event) => this.tell(event));
+    session.on("time", () => this.cursor());
+    session.on("track", () => this.rebuild());
+    session.on("view", () => this.range());
+    new ResizeObserver(() => this.resize()).observe(host);
+    this.rebuild();
+  }
+
+  slot(k) {
+    const choose = h("select", { "aria-label": "which plot", onchange: () => this.draw(slot) });
+    this.charts.forEach((chart, i) => choose.append(h("option", { value: i }, chart.title)));
+    choose.value = String(k);
+    const unit = h("span", { class: "quiet" });
+    const read = h("span", { class: "read" });
+    const plot = h("div", { class: "plot" });
+    const root = h("div", { class: "slot" }, h("div", { class: "bar" }, choose, unit, read), plot);
+    this.host.append(root);
+    const slot = { choose, unit, read, plot, root, hidden: new Set() };
+    return slot;
+  }
+
+  choose(key, slot = 1) {
+    const k = this.charts.findIndex((chart) => chart.key === key);
+    if (k < 0 || !this.slots[slot]) return;
+    this.slots[slot].choose.value = String(k);
+    this.draw(this.slots[slot]);
+  }
+
+  setTheme() {
+    const style = getComputedStyle(document.documentElement);
+    this.colours = { text: style.getPropertyValue("--quiet").trim(), line: style.getPropertyValue("--rule").trim() };
+    this.rebuild();
+  }
+
+  rebuild() {
+    for (const slot of this.slots) this.draw(slot);
+    this.drawBand();
+  }
+
+  /** Curves of a chart: the active track's, and of its ghosts those of the whole arm. */
+  curves(chart) {
+    const found = [];
+    for (const track of this.session.shown()) {
+      const own = track === this.session.track;
+      const channels = track.channels.filter((channel) => channel.chart === chart.key);
+      channels.forEach((channel, k) => {
+        const joint = channel.axis ?? null;
+        if (!own && (channel.stepped || channel.axis === undefined === false)) return;
+        found.push({ track, channel, own, name: own ? channel.name : `${channel.name}, ${track.name}`, colour: colourOf(channel, joint, k, own) });
+      });
+    }
+    return found;
+  }
+
+  draw(slot) {
+    slot.made?.destroy();
+    slot.made = null;
+    const chart = this.charts[+slot.choose.value];
+    if (!chart || !this.session.track) return;
+    slot.unit.textContent = chart.unit;
+    const curves = this.curves(chart);
+    slot.curves = curves;
+    const tables = curves.map(({ track, channel }) => [this.clockTimes(track), Array.from(channel.values, (v) => (Number.isFinite(v) ? v : null))]);
+    const data = uPlot.join(tables.map(([x, y]) => [x, y]), tables.map(() => [2]));
+    const limit = chart.span;
+    const series = curves.map(({ channel, colour, own, name }) => ({
+      label: name,
+      stroke: colour,
+      width: own ? 1.4 : 1,
+      dash: channel.stepped ? [5, 3] : own ? undefined : [2, 3],
+      points: { show: false },
+      spanGaps: true,
+      paths: channel.stepped ? uPlot.paths.stepped({ align: 1 }) : undefined,
+      show: !slot.hidden.has(name),
+    }));
+    const options = {
+      width: Math.max(slot.plot.clientWidth, 50),
+      height: Math.max(slot.plot.clientHeight, 40),
+      padding: [6, RIGHT, 0, 0],
+      legend: { show: false },
+      cursor: { y: false, drag: { x: true, y: false, setScale: false }, points: { show: false }, sync: { key: "clock" } },
+      scales: {
+        x: { time: false, range: () => this.session.view ?? [0, Math.max(this.session.duration, 1e-3)] },
+        y: { range: (u, low, high) => ranged(low, high, limit) },
+      },
+      axes: [this.axis({ size: slot === this.slots.at(-1) ? 22 : 4, values: (u, at) => at.map((v) => (slot === this.slots.at(-1) ? `${+v.toFixed(3)} s` : "")) }), this.axis({ size: LEFT, space: 24 })],
+      series: [{}, ...series],
+      hooks: {
+        draw: [(u) => this.overlay(u, limit)],
+        setSelect: [(u) => this.zoomed(u)],
+        setCursor: [(u) => this.read(slot, u)],
+      },
+    };
+    slot.made = new uPlot(options, data, slot.plot);
+    slot.made.over.addEventListener("click", () => {
+      const { left } = slot.made.cursor;
+      if (left >= 0 && !slot.dragged) this.session.seek(slot.made.posToVal(left, "x"));
+      slot.dragged = false;
+    });
+    slot.made.over.addEventListener("dblclick", () => this.session.zoom(null));
+    this.read(slot, slot.made);
+  }
+
+  axis(more) {
+    const grid = { stroke: this.colours.line, width: 1 };
+    return { stroke: this.colours.text, grid, ticks: { ...grid, size: 4 }, font: "11px system-ui, sans-serif", ...more };
+  }
+
+  /** Times of a track's knots on the clock: never falling, which plots ask for. */
+  clockTimes(track) {
+    let last = -1;
+    const { session } = this;
+    const mapped = session.sync === "waypoints" && track !== session.track && session.page.together;
+    const own = mapped ? session.page.together[session.active] : null;
+    const other = mapped ? session.page.together[track.index] : null;
+    return Array.from(track.t, (t) => {
+      const at = mapped ? interpolated(other, own, t) : t;
+      last = at <= last ? last + GAP : at;
+      return last;
+    });
+  }
+
+  overlay(u, limit) {
+    const { ctx, bbox } = u;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    if (limit) {
+      ctx.strokeStyle = "#b3261e";
+      ctx.setLineDash([6, 4]);
+      ctx.lineWidth = 1;
+      for (const value of limit) {
+        const y = u.valToPos(value, "y", true);
+        ctx.beginPath();
+        ctx.moveTo(bbox.left, y);
+        ctx.lineTo(bbox.left + bbox.width, y);
+        ctx.stroke();
+      }
+    }
+    const x = u.valToPos(this.session.t, "x", true);
+    ctx.setLineDash([]);
+    ctx.strokeStyle = this.colours.text;
+    ctx.lineWidth = 1.5 * devicePixelRatio;
+    ctx.beginPath();
+    ctx.moveTo(x, bbox.top);
+    ctx.lineTo(x, bbox.top + bbox.height);
+    ctx.stroke();
+    ctx.restore();
+  }
+
+  zoomed(u) {
+    const { left, width } = u.select;
+    if (width < 6) return;
+    for (const slot of this.slots) if (slot.made === u) slot.dragged = true;
+    const range = [u.posToVal(left, "x"), u.posToVal(left + width, "x")];
+    u.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
+    this.session.zoom([Math.max(range[0], 0), Math.min(range[1], this.session.duration)]);
+  }
+
+  /** Values under the pointer, or at the playhead. */
+  read(slot, u) {
+    const hover = u.cursor.left >= 0 && u.over.matches(":hover");
+    const t = hover ? u.posToVal(u.cursor.left, "x") : this.session.t;
+    const chart = this.charts[+slot.choose.value];
+    const parts = slot.curves.map(({ track, channel, colour, name }) => {
+      const value = track.value(channel, this.session.timeOf(track, t));
+      const label = h("button", { class: slot.hidden.has(name) ? "key off" : "key", title: "hide or show" }, h("i", {}), `${name} `, h("b", {}, number(value, chart.unit.startsWith("%") ? 0 : null)));
+      label.firstChild.style.background = colour;
+      label.addEventListener("click", () => {
+        if (!slot.hidden.delete(name)) slot.hidden.add(name);
+        this.draw(slot);
+      });
+      return label;
+    });
+    slot.read.replaceChildren(...parts);
+  }
+
+  cursor() {
+    for (const slot of this.slots) {
+      slot.made?.redraw(false, false);
+      if (slot.made && !slot.made.over.matches(":hover")) this.read(slot, slot.made);
+    }
+    this.drawBand();
+  }
+
+  range() {
+    for (const slot of this.slots) slot.made?.redraw(false, true);
+    for (const slot of this.slots) slot.made?.setScale("x", { min: this.span()[0], max: this.span()[1] });
+    this.drawBand();
+  }
+
+  span() {
+    return this.session.view ?? [0, Math.max(this.session.duration, 1e-3)];
+  }
+
+  resize() {
+    for (const slot of this.slots) {
+      slot.made?.setSize({ width: Math.max(slot.plot.clientWidth, 50), height: Math.max(slot.plot.clientHeight, 40) });
+    }
+    this.drawBand();
+  }
+
+  // The band
+
+  timeAt(x) {
+    const [from, to] = this.span();
+    const width = this.band.clientWidth - LEFT - RIGHT;
+    return Math.min(Math.max(from + ((x - LEFT) / width) * (to - from), 0), this.session.duration);
+  }
+
+  placeOf(t) {
+    const [from, to] = this.span();
+    return LEFT + ((t - from) / (to - from)) * (this.band.clientWidth - LEFT - RIGHT);
+  }
+
+  drawBand() {
+    const { track } = this.session;
+    const width = this.bandHost.clientWidth;
+    const height = this.bandHost.clientHeight;
+    if (!track || !width || !height) return;
+    const scale = devicePixelRatio;
+    if (this.band.width !== width * scale || this.band.height !== height * scale) {
+      this.band.width = width * scale;
+      this.band.height = height * scale;
+      this.band.style.width = `${width}px`;
+      this.band.style.height = `${height}px`;
+    }
+    const ctx = this.band.getContext("2d");
+    ctx.setTransform(scale, 0, 0, scale, 0, 0);
+    ctx.clearRect(0, 0, width, height);
+    const top = 12;
+    const bottom = height - 2;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(LEFT, 0, width - LEFT - RIGHT, height);
+    ctx.clip();
+    ctx.fillStyle = REST.colour;
+    ctx.fillRect(this.placeOf(0), top, this.placeOf(track.duration) - this.placeOf(0), bottom - top);
+    const used = new Map([[REST.key, 0]]);
+    const limits = track.data.limits;
+    let moving = 0;
+    for (let k = 0; k < (limits?.begin.length ?? 0); k += 1) {
+      const kind = kindOf(limits.names[limits.which[k]]);
+      const [a, b] = [limits.begin[k], limits.end[k]];
+      used.set(kind.key, (used.get(kind.key) ?? 0) + b - a);
+      moving += b - a;
+      ctx.fillStyle = kind.colour;
+      ctx.fillRect(this.placeOf(a), top, Math.max(this.placeOf(b) - this.placeOf(a), 0.5), bottom - top);
+    }
+    used.set(REST.key, Math.max(track.duration - moving, 0));
+    this.moveTicks(ctx, track, top, bottom);
+    ctx.fillStyle = this.colours.text;
+    const x = this.placeOf(this.session.timeOf(track));
+    ctx.fillRect(x - 1, 0, 2, height);
+    ctx.restore();
+    this.fillLegend(used, track);
+  }
+
+  moveTicks(ctx, track, top, bottom) {
+    ctx.fillStyle = this.colours.text;
+    ctx.font = "10px system-ui, sans-serif";
+    ctx.textBaseline = "top";
+    let free = -100;
+    for (const move of track.moves) {
+      if (move.begin === undefined) continue;
+      const x = this.placeOf(move.begin);
+      ctx.fillRect(x, top - 2, 1, bottom - top + 4);
+      const text = move.line ? String(move.line) : String(move.number);
+      const end = this.placeOf(move.end);
+      const size = ctx.measureText(text).width;
+      if (x > free && end - x > size + 3) {
+        ctx.fillText(text, x + 2, 0);
+        free = x + size + 6;
+      }
+    }
+    for (const flag of track.flags) {
+      ctx.fillStyle = "#0072b2";
+      if (flag.kind !== "wait" && flag.kind !== "device") ctx.fillRect(this.placeOf(flag.t) - 1, bottom - 4, 2, 4);
+    }
+  }
+
+  fillLegend(used, track) {
+    const key = `${track.index}`;
+    if (this.legendOf === key) return;
+    this.legendOf = key;
+    const total = track.duration || 1;
+    const kinds = [...KINDS, REST].filter((kind) => (used.get(kind.key) ?? 0) > 5e-4);
+    if (!track.data.limits) {
+      this.legend.replaceChildren();
+      return;
+    }
+    this.legend.replaceChildren(
+      h("span", { class: "quiet" }, "limited by"),
+      ...kinds.map((kind) => {
+        const item = h("span", { class: "key" }, h("i", {}), `${kind.name} `, h("b", {}, `${((100 * used.get(kind.key)) / total).toFixed(0)} %`));
+        item.firstChild.style.background = kind.colour;
+        return item;
+      }),
+    );
+  }
+
+  tell(event) {
+    const { track } = this.session;
+    if (!track) return;
+    const t = this.timeAt(event.offsetX);
+    const move = track.moves[track.moveAt(t)];
+    const name = track.data.limits?.names[track.limitAt(t)] ?? "standing still";
+    const what = move ? `move ${move.number}${move.line ? `, line ${move.line}` : ""}: ` : "";
+    this.band.title = `${t.toFixed(3)} s, ${what}${name}`;
+  }
+}
+
+function colourOf(channel, joint, k, own) {
+  if (channel.stepped) return "#8a8f94";
+  if (joint !== null) return NAMED[joint % NAMED.length];
+  return own ? NAMED[k % NAMED.length] : "#2f6fb3";
+}
+
+function ranged(low, high, limit) {
+  if (low === null || high === null) return [0, 1];
+  const near = limit && (high > 0.55 * limit[1] || low < 0.55 * limit[0]);
+  const least = near ? Math.min(limit[0] * 1.08, low) : Math.min(0, 1.1 * low);
+  const most = near ? Math.max(limit[1] * 1.08, high) : Math.max(0, 1.1 * high);
+  return most > least ? [least, most] : [least - 1, least + 1];
+}
+
+function interpolated(from, to, value) {
+  let k = 0;
+  while (k + 2 < from.length && from[k + 1] <= value) k += 1;
+  const span = from[k + 1] - from[k];
+  const share = span > 0 ? Math.min(Math.max((value - from[k]) / span, 0), 1) : 0;
+  return to[k] + share * (to[k + 1] - to[k]);
+}

@@ -1,0 +1,324 @@
+// The cell in space: arms that move, what stands around, and a camera that people can hold.
+
+import {
+  AmbientLight,
+  AxesHelper,
+  Box3,
+  BufferAttribute,
+  BufferGeometry,
+  DirectionalLight,
+  GridHelper,
+  Group,
+  HemisphereLight,
+  Line,
+  LineBasicMaterial,
+  Matrix4,
+  PerspectiveCamera,
+  Scene,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { columnMajor } from "./kinematics.js";
+import { PathView } from "./path.js";
+import { bodyObject } from "./solids.js";
+
+export const VIEWS = {
+  oblique: [1, -1.25, 0.8],
+  front: [1, 0, 0.12],
+  side: [0, -1, 0.12],
+  top: [0, -0.001, 1],
+};
+const LOOKS = 8; // places of the arm that a view holds
+const BACKGROUND = { light: 0xf6f7f8, dark: 0x15181b };
+
+/** One arm of one track. */
+class ArmView {
+  constructor(track, { ghost, theme, around }) {
+    this.track = track;
+    this.ghost = ghost;
+    this.group = new Group();
+    this.nodes = track.arm.nodes.map(() => {
+      const node = new Group();
+      node.matrixAutoUpdate = false;
+      this.group.add(node);
+      return node;
+    });
+    this.tools = [];
+    let number = 0;
+    let last = "";
+    track.arm.bodies.forEach((body) => {
+      if (body.role === "part") return;
+      const still = body.role === "obstacle" || body.role === "floor";
+      if (still && !around) return;
+      if (body.name !== last) number += 1;
+      last = body.name;
+      const object = bodyObject(body, { ghost: ghost && !still, theme, number });
+      this.nodes[body.node].add(object);
+      if (body.tool) this.tools.push([body.tool, object]);
+    });
+    this.parts = track.parts.map((part) => {
+      const object = bodyObject(
+        { ...track.arm.bodies[part.shape], name: part.name },
+        { ghost, theme, number: 0 },
+      );
+      this.group.add(object);
+      return { ...part, object };
+    });
+  }
+
+  /** Put everything where it is at a time of the track. */
+  pose(time) {
+    const poses = this.track.poses(time);
+    poses.forEach((m, k) => {
+      this.nodes[k].matrix.fromArray(m);
+      this.nodes[k].matrixWorldNeedsUpdate = true;
+    });
+    const tool = this.track.toolAt(time).name;
+    for (const [name, object] of this.tools) object.visible = name === tool;
+    const move = this.track.moveAt(time);
+    for (const part of this.parts) {
+      const place = part.places.filter((one) => one.move <= move).at(-1) ?? part.places[0];
+      part.object.visible = !place.gone;
+      part.object.matrix
+        .fromArray(poses[place.node])
+        .multiply(new Matrix4().fromArray(columnMajor(place.place)));
+      part.object.matrixWorldNeedsUpdate = true;
+    }
+  }
+}
+
+export class SceneView {
+  constructor(session, host) {
+    Object.assign(this, { session, host });
+    this.theme = "light";
+    this.follow = false;
+    this.show = { zones: true, programmed: true, frames: true, flags: true, labels: true, robot: true, obstacles: true };
+    this.colourBy = "speed";
+    this.trace = null;
+    this.drawn = 0;
+    this.renderer = new WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    host.append(this.renderer.domElement);
+    this.scene = new Scene();
+    this.camera = new PerspectiveCamera(38, 1, 0.01, 200);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.enableDamping = false;
+    this.controls.zoomToCursor = true;
+    this.controls.addEventListener("change", () => this.touch());
+    this.lights();
+    new ResizeObserver(() => this.resize()).observe(host);
+    this.rebuild();
+    this.resize();
+    this.look("oblique");
+    session.on("time", () => this.touch());
+    session.on("track", () => {
+      this.rebuild();
+      this.touch();
+    });
+  }
+
+  lights() {
+    this.scene.add(new AmbientLight(0xffffff, 0.55), new HemisphereLight(0xffffff, 0x9a958c, 1.3));
+    const key = new DirectionalLight(0xffffff, 1.5);
+    key.position.set(2, -3, 5);
+    this.scene.add(key);
+  }
+
+  rebuild() {
+    this.root?.removeFromParent();
+    dispose(this.root);
+    this.root = new Group();
+    this.scene.add(this.root);
+    const { session, theme } = this;
+    const shown = session.shown();
+    const around = new Set();
+    this.arms = shown.map((track) => {
+      const ghost = track !== session.track && track.data.arm === session.track.data.arm;
+      const first = !around.has(track.data.arm ?? 0);
+      around.add(track.data.arm ?? 0);
+      return new ArmView(track, { ghost, theme, around: first });
+    });
+    for (const arm of this.arms) this.root.add(arm.group);
+    this.paths = shown.map((track) => new PathView(this, track, this.arms[shown.indexOf(track)]));
+    this.frames = this.frameObjects();
+    this.gap = gapLine();
+    this.root.add(this.gap);
+    this.scene.background?.dispose?.();
+    this.renderer.setClearColor(BACKGROUND[theme]);
+    this.grid();
+    this.applyShow();
+    this.pose();
+  }
+
+  frameObjects() {
+    if (!this.arms.length) return [];
+    const { arm } = this.arms[0].track;
+    return arm.frames.map((frame) => {
+      const axes = new AxesHelper(0.15);
+      axes.matrixAutoUpdate = false;
+      axes.matrix = new Matrix4().fromArray(columnMajor(frame.place));
+      this.arms[0].nodes[frame.node].add(axes);
+      return { name: frame.name, object: axes };
+    });
+  }
+
+  grid() {
+    const box = this.bounds();
+    const size = Math.ceil(Math.max(box.max.x - box.min.x, box.max.y - box.min.y, 1) * 1.6);
+    const [major, minor] = this.theme === "dark" ? [0x3a4046, 0x272b30] : [0xc9cdd1, 0xe2e4e7];
+    const grid = new GridHelper(2 * size, 4 * size, major, minor);
+    grid.rotateX(Math.PI / 2);
+    grid.position.set(Math.round((box.min.x + box.max.x) / 2), Math.round((box.min.y + box.max.y) / 2), Math.min(0, box.min.z) - 0.002);
+    this.root.add(grid);
+  }
+
+  /** What the camera should hold: arms as they stand, and where their tools go. */
+  bounds() {
+    const box = new Box3();
+    for (const arm of this.arms) {
+      for (let k = 0; k <= LOOKS; k += 1) {
+        arm.pose((k / LOOKS) * arm.track.duration);
+        arm.group.updateMatrixWorld(true);
+        arm.group.traverse((object) => {
+          const role = object.userData.body?.role;
+          if (role === "link" || role === "tool") box.expandByObject(object);
+        });
+      }
+      const { world } = arm.track.path();
+      for (let k = 0; k < world.length; k += 3) box.expandByPoint(new Vector3(world[k], world[k + 1], world[k + 2]));
+    }
+    this.pose();
+    if (box.isEmpty()) box.set(new Vector3(-1, -1, 0), new Vector3(1, 1, 1));
+    return box;
+  }
+
+  look(view) {
+    const box = this.bounds();
+    const centre = box.getCenter(new Vector3());
+    const radius = 0.5 * box.getSize(new Vector3()).length();
+    const aspect = Math.min(this.camera.aspect, 1.35);
+    const away = (1.02 * radius) / Math.sin((Math.PI / 360) * this.camera.fov) / Math.max(0.75, aspect);
+    this.camera.position.copy(centre).addScaledVector(new Vector3(...VIEWS[view]).normalize(), away);
+    this.controls.target.copy(centre);
+    this.camera.near = away / 200;
+    this.camera.far = away * 20;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.touch();
+  }
+
+  setTheme(theme) {
+    this.theme = theme;
+    this.rebuild();
+    this.touch();
+  }
+
+  set(option, value) {
+    this.show[option] = value;
+    this.applyShow();
+    this.touch();
+  }
+
+  applyShow() {
+    for (const path of this.paths) path.apply(this.show);
+    for (const { object } of this.frames) object.visible = this.show.frames;
+    for (const arm of this.arms) {
+      arm.group.traverse((object) => {
+        const role = object.userData.body?.role;
+        if (role === "obstacle" || role === "floor") object.parent.visible = this.show.obstacles;
+        if (role === "link") object.parent.visible = this.show.robot;
+      });
+    }
+  }
+
+  recolour(by) {
+    this.colourBy = by;
+    for (const path of this.paths) path.colour();
+    this.touch();
+  }
+
+  /** Trace a point of a node; null for none. */
+  traceNode(node) {
+    this.trace = node;
+    for (const path of this.paths) path.traceNode(node);
+    this.touch();
+  }
+
+  pose() {
+    for (const arm of this.arms) arm.pose(this.session.timeOf(arm.track));
+    for (const path of this.paths) path.pose(this.session.timeOf(path.track));
+    const { track } = this.session;
+    const near = track?.clearanceAt(this.session.timeOf(track));
+    this.gap.visible = Boolean(near) && this.show.obstacles;
+    if (near) {
+      const points = this.gap.geometry.attributes.position;
+      points.setXYZ(0, ...near.first);
+      points.setXYZ(1, ...near.second);
+      points.needsUpdate = true;
+      this.gap.material.color.set(near.distance < near.wanted || near.distance <= 0 ? 0xd55e00 : 0x009e73);
+    }
+    if (this.follow && track) {
+      const at = new Vector3(...track.tcp(this.session.timeOf(track)));
+      const step = at.clone().sub(this.controls.target);
+      this.controls.target.copy(at);
+      this.camera.position.add(step);
+      this.camera.lookAt(at);
+    }
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.host;
+    if (!width || !height) return;
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    for (const path of this.paths) path.resize(width, height);
+    this.touch();
+  }
+
+  touch() {
+    this.dirty = true;
+  }
+
+  /** Draw if anything has changed. */
+  render() {
+    if (!this.dirty) return false;
+    this.dirty = false;
+    this.pose();
+    this.renderer.render(this.scene, this.camera);
+    this.drawn += 1;
+    this.onrender?.();
+    return true;
+  }
+
+  picture() {
+    this.touch();
+    this.render();
+    return this.renderer.domElement.toDataURL("image/png");
+  }
+
+  /** Pixels from the left and from above of a point in the world; null behind the camera. */
+  onScreen(point) {
+    const at = new Vector3(...point).project(this.camera);
+    if (at.z > 1) return null;
+    return [((at.x + 1) / 2) * this.host.clientWidth, ((1 - at.y) / 2) * this.host.clientHeight];
+  }
+}
+
+function gapLine() {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(6), 3));
+  const line = new Line(geometry, new LineBasicMaterial({ color: 0x009e73, depthTest: false }));
+  line.renderOrder = 10;
+  line.frustumCulled = false;
+  return line;
+}
+
+function dispose(root) {
+  root?.traverse((object) => {
+    object.geometry?.dispose();
+    object.material?.dispose?.();
+  });
+}

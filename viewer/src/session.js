@@ -1,0 +1,132 @@
+// What is shown now: the one clock, which track is the solid one, and who wants to know.
+
+import { before, Track } from "./track.js";
+
+export class Session extends EventTarget {
+  constructor(page) {
+    super();
+    this.page = page;
+    this.arms = page.arms ?? [];
+    this.tracks = (page.tracks ?? []).map((data, k) => new Track(data, this.arms[data.arm ?? 0], k));
+    const solid = this.tracks.filter((track) => !track.ghost);
+    this.active = (solid.at(-1) ?? this.tracks.at(-1))?.index ?? -1;
+    this.sync = "clock";
+    this.t = 0;
+    this.playing = false;
+    this.speed = 1;
+    this.loop = true;
+    this.view = null; // s, from when to when plots show
+  }
+
+  get track() {
+    return this.tracks[this.active];
+  }
+
+  /** Tracks in the scene: the active one, ghosts beside it, other robots. */
+  shown() {
+    if (!this.track) return [];
+    const ghosts = this.tracks.filter((track) => track.ghost && track !== this.track);
+    const beside = this.track.ghost ? [this.tracks.filter((track) => !track.ghost).at(-1)] : ghosts;
+    const others = this.tracks.filter(
+      (track) => !track.ghost && track.data.arm !== this.track.data.arm && track !== this.track,
+    );
+    return [this.track, ...beside.filter(Boolean), ...others];
+  }
+
+  get duration() {
+    if (!this.track) return 0;
+    if (this.sync === "waypoints") return this.track.duration;
+    return Math.max(...this.shown().map((track) => track.duration));
+  }
+
+  /** Time of a track when the clock shows t. */
+  timeOf(track, t = this.t) {
+    if (this.sync === "waypoints" && this.page.together && track !== this.track) {
+      const own = this.page.together[this.active];
+      const other = this.page.together[track.index];
+      const k = Math.min(before(own, t), own.length - 2);
+      if (k < 0) return Math.min(t, track.duration);
+      const span = own[k + 1] - own[k];
+      const share = span > 0 ? Math.min(Math.max((t - own[k]) / span, 0), 1) : 0;
+      return other[k] + share * (other[k + 1] - other[k]);
+    }
+    return Math.min(t, track.duration);
+  }
+
+  emit(name) {
+    this.dispatchEvent(new Event(name));
+  }
+
+  on(names, call) {
+    for (const name of names.split(" ")) this.addEventListener(name, call);
+  }
+
+  seek(t) {
+    this.t = Math.min(Math.max(t, 0), this.duration);
+    this.emit("time");
+  }
+
+  play(playing = !this.playing) {
+    if (playing && this.t >= this.duration - 1e-6) this.t = 0;
+    this.playing = playing;
+    this.emit("playing");
+  }
+
+  /** Let time pass: s by the wall. */
+  pass(seconds) {
+    if (!this.playing) return;
+    let t = this.t + seconds * this.speed;
+    if (t >= this.duration) {
+      if (this.loop) t %= Math.max(this.duration, 1e-6);
+      else {
+        t = this.duration;
+        this.play(false);
+      }
+    }
+    this.seek(t);
+  }
+
+  choose(index) {
+    if (index === this.active || !this.tracks[index]) return;
+    const share = this.duration ? this.t / this.duration : 0;
+    this.active = index;
+    this.view = null;
+    this.emit("track");
+    this.seek(share * this.duration);
+  }
+
+  synchronise(how) {
+    this.sync = how;
+    this.emit("track");
+    this.seek(this.t);
+  }
+
+  zoom(range) {
+    this.view = range;
+    this.emit("view");
+  }
+
+  /** Go to where something happens: a time of a track, or a line of the source. */
+  go({ track = this.active, t = null, source = -1, line = 0 }) {
+    if (track !== this.active && this.tracks[track]) this.choose(track);
+    if (t !== null && t !== undefined) this.seek(t);
+    else if (line > 0) this.goLine(source, line);
+    if (line > 0) {
+      this.line = { source, line };
+      this.emit("line");
+    }
+  }
+
+  /** The next time that a line is driven, from now on, round again at the end. */
+  goLine(source, line) {
+    const found = this.track?.moves.filter(
+      (move) => move.line === line && (move.source ?? -1) === source && move.begin !== undefined,
+    );
+    const flags = this.track?.flags.filter((flag) => flag.line === line && (flag.source ?? -1) === source);
+    const times = [...(found ?? []).map((move) => move.begin), ...(flags ?? []).map((flag) => flag.t)];
+    times.sort((a, b) => a - b);
+    if (!times.length) return false;
+    this.seek(times.find((time) => time > this.t + 1e-3) ?? times[0]);
+    return true;
+  }
+}

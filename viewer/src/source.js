@@ -1,0 +1,151 @@
+// The user's own text beside the scene: the driven line is marked, a click goes to its time.
+
+import { h, seconds } from "./dom.js";
+
+const BLOCK = 200; // lines that the browser lays out together
+
+export class SourcePane {
+  constructor(session, host) {
+    Object.assign(this, { session, host });
+    this.sources = session.page.sources ?? [];
+    this.chosen = 0;
+    this.files = h("select", { "aria-label": "source file", onchange: () => this.open(+this.files.value) });
+    this.note = h("span", { class: "quiet" });
+    this.text = h("div", { class: "code", tabindex: "0", role: "listbox", "aria-label": "source text" });
+    this.text.addEventListener("click", (event) => this.clicked(event));
+    host.append(h("div", { class: "bar" }, this.files, this.note), this.text);
+    session.on("track", () => this.fill());
+    session.on("time", () => this.mark());
+    session.on("line", () => this.follow(this.session.line));
+    this.fill();
+  }
+
+  /** The files of the active track. */
+  fill() {
+    const { active } = this.session;
+    this.shown = this.sources
+      .map((source, index) => ({ ...source, index }))
+      .filter((source) => (source.track ?? 0) === active);
+    if (!this.shown.length) this.shown = this.sources.map((source, index) => ({ ...source, index }));
+    this.files.replaceChildren(...this.shown.map((s, k) => h("option", { value: k }, s.name)));
+    this.files.hidden = this.shown.length < 2;
+    this.open(0);
+    this.mark();
+  }
+
+  open(k) {
+    this.chosen = k;
+    this.files.value = String(k);
+    const source = this.shown[k];
+    this.marked = null;
+    this.lines = [];
+    if (!source) {
+      this.text.replaceChildren(h("p", { class: "quiet" }, "No source text: the program was built in Python, or this is a log."));
+      this.note.textContent = "";
+      return;
+    }
+    this.note.textContent = this.shown.length < 2 ? source.name : "";
+    const spent = this.spent(source.index);
+    const most = Math.max(0, ...[...spent.values()].map((one) => one.time));
+    const rows = source.text.split("\n");
+    const blocks = [];
+    for (let first = 0; first < rows.length; first += BLOCK) {
+      const block = h("div", { class: "block" });
+      block.style.containIntrinsicSize = `auto ${Math.min(BLOCK, rows.length - first) * 17}px`;
+      rows.slice(first, first + BLOCK).forEach((row, k) => {
+        const line = first + k + 1;
+        const element = this.line(row, line, spent.get(line), most);
+        this.lines[line] = element;
+        block.append(element);
+      });
+      blocks.push(block);
+    }
+    this.text.replaceChildren(...blocks);
+  }
+
+  /** Time and number of passes of each line of a file. */
+  spent(index) {
+    const found = new Map();
+    for (const move of this.session.track?.moves ?? []) {
+      if ((move.source ?? -1) !== index || !move.line) continue;
+      const one = found.get(move.line) ?? { time: 0, passes: 0, fault: false };
+      one.passes += 1;
+      if (move.end !== undefined) one.time += move.end - move.begin;
+      found.set(move.line, one);
+    }
+    return found;
+  }
+
+  line(text, number, spent, most) {
+    const row = h("div", { class: spent ? "line drives" : "line", "data-line": number });
+    const heat = h("span", { class: "heat" });
+    if (spent && most > 0) {
+      const bar = h("i");
+      bar.style.width = `${Math.max(4, (100 * spent.time) / most)}%`;
+      heat.append(bar);
+      const times = spent.passes > 1 ? `, driven ${spent.passes} times` : "";
+      row.title = `${seconds(spent.time)}${times}`;
+    }
+    const cost = spent ? `${spent.passes > 1 ? `${spent.passes} × ` : ""}${(spent.time / spent.passes).toFixed(2)}` : "";
+    row.append(
+      h("span", { class: "gutter" }, h("span", { class: "number" }, String(number)), h("span", { class: "cost" }, cost), heat),
+      h("span", { class: "words" }, text || " "),
+    );
+    return row;
+  }
+
+  clicked(event) {
+    const row = event.target.closest(".line");
+    if (!row || String(window.getSelection())) return;
+    const line = +row.dataset.line;
+    this.session.goLine(this.shown[this.chosen].index, line);
+    this.select(line);
+  }
+
+  select(line) {
+    this.picked?.classList.remove("picked");
+    this.picked = this.lines[line];
+    this.picked?.classList.add("picked");
+  }
+
+  /** Show a place that was asked for elsewhere. */
+  follow({ source, line }) {
+    const k = this.shown.findIndex((one) => one.index === source);
+    if (k < 0) return;
+    if (k !== this.chosen) this.open(k);
+    this.select(line);
+    this.lines[line]?.scrollIntoView({ block: "nearest" });
+  }
+
+  /** Mark the line that is driven now. */
+  mark() {
+    const { session } = this;
+    const { track } = session;
+    if (!track) return;
+    const move = track.moves[track.moveAt(session.timeOf(track))];
+    const key = move?.line ? `${move.source ?? -1}:${move.line}` : "";
+    if (key === this.marked) return;
+    this.marked = key;
+    this.now?.classList.remove("now");
+    this.now = null;
+    if (!move?.line) return;
+    const k = this.shown.findIndex((one) => one.index === (move.source ?? -1));
+    if (k < 0) return;
+    if (k !== this.chosen) {
+      this.open(k);
+      this.marked = key;
+    }
+    this.now = this.lines[move.line];
+    this.now?.classList.add("now");
+    this.scroll(this.now);
+  }
+
+  scroll(row) {
+    if (!row) return;
+    const { top, bottom } = row.getBoundingClientRect();
+    const room = this.text.getBoundingClientRect();
+    if (top < room.top + 20 || bottom > room.bottom - 20) {
+      this.text.scrollTop += (top + bottom) / 2 - (room.top + room.bottom) / 2;
+    }
+  }
+}
