@@ -175,12 +175,12 @@ def _sources(path: Path, run: Run, opaque: OpaqueStyle | None) -> dict[Path, byt
 
 
 def _tell(run: Run, *, as_json: bool) -> None:
-    from .output.report_text import asked_json, print_notes, print_report, report_json
+    from .output.report_text import print_notes, print_report, run_json
 
     if not as_json:
-        print_report(run.report, run.program)
+        print_report(run)
         return
-    print_json(report_json(run.report) | asked_json(run.program, run.report))
+    print_json(run_json(run))
     print_notes(run.report)
 
 

@@ -4,34 +4,43 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...core.display import counted
 from ...core.driving.driven_program import Fault
-from ...core.errors import Note
+from ...core.errors import Note, Span
 from ...core.program.program import Program
 from ...core.program.question import Question
 from ...core.source.execution.answers_text import grouped
-from ...tasks.files.source_places import fault_json, note_json, place_json
+from ...tasks.files.source_places import (
+    fault_json,
+    note_json,
+    place_json,
+    short_place,
+)
+from ...tasks.results.causes import COLUMNS as CAUSE_COLUMNS
+from ...tasks.results.causes import TimeCause, cause_row
+from ...tasks.results.lines import COLUMNS as LINE_COLUMNS
+from ...tasks.results.lines import LineReport, line_row
 from ...tasks.results.report import COLUMNS, MoveReport, Report, move_row, seconds
 from ...tasks.results.shares import shares
 from .console import complain_of_fault, print_rich, print_table, warn
 
 if TYPE_CHECKING:
     from ...core.collision.clearance import Approach
+    from ...tasks.results.runs import Run
 
 _FIGURES = {"velocity": "speeds", "acceleration": "accelerations"}
+MOST_LINES = 10
+"""Lines that have a row of their own; the rest of them is summed up."""
 MOST_ALIKE = 3
 """Notes that say the same of several places, before the rest of them is only counted."""
 
 
-def print_report(report: Report, program: Program) -> None:
-    """Print tables on stdout, warnings on stderr.
-
-    Args:
-        report: of a run.
-        program: that was driven.
-    """
+def print_report(run: Run) -> None:
+    """Print tables on stdout, warnings on stderr."""
+    report, program = run.report, run.program
     print_table(COLUMNS, _rows(report))
     told = f"cycle time {report.driven_time:.3f} s"
     if report.faults:
@@ -46,7 +55,37 @@ def print_report(report: Report, program: Program) -> None:
     spent = shares(program, report)
     if spent.total and (spent.passes or spent.devices):
         print_rich(str(spent))
+    _print_losses(run)
     print_notes(report, program.questions)
+
+
+def _print_losses(run: Run) -> None:
+    """Print where the time goes: by source line, where that says more than the moves, and by
+    cause."""
+    report, lines = run.report, run.lines
+    main = run.program.reading.main if run.program.reading is not None else ""
+
+    def place(span: Span | None) -> str:
+        return short_place(Path(main), span)
+
+    whole = report.driven_time
+    if len(lines) < sum(move.driven for move in report.moves) or len(lines) > MOST_LINES:
+        longest = sorted(lines, key=lambda line: -line.total)
+        rows = [line_row(line, place(line.span), whole) for line in longest[:MOST_LINES]]
+        if rest := longest[MOST_LINES:]:
+            rows.append(_further(rest, whole))
+        print_table(LINE_COLUMNS, rows)
+    if run.causes:
+        print_table(CAUSE_COLUMNS, [cause_row(c, place(c.span), whole) for c in run.causes])
+
+
+def _further(lines: Sequence[LineReport], whole: float) -> tuple[str, ...]:
+    """The row of all lines that have none of their own."""
+    total = sum(line.total for line in lines)
+    times = sum(len(line.moves) for line in lines)
+    share = f"{100 * total / whole:.0f}" if whole else ""
+    what = counted(lines, "further line")
+    return ("", what, "", f"×{times}", "", "", f"{total:.3f}", share, "")
 
 
 def clearance_lines(report: Report, program: Program) -> list[str]:
@@ -152,6 +191,38 @@ def _approach_json(met: Approach | None) -> dict[str, Any] | None:
     if met is None:
         return None
     return {"distance_m": met.distance, "pair": list(met.pair), "move": met.move + 1}
+
+
+def run_json(run: Run) -> dict[str, Any]:
+    """All that is said of a run, with JSON's types."""
+    lines = [_line_json(line) for line in run.lines]
+    causes = [_cause_json(cause) for cause in run.causes]
+    losses = {"lines": lines, "causes": causes}
+    return report_json(run.report) | losses | asked_json(run.program, run.report)
+
+
+def _line_json(line: LineReport) -> dict[str, Any]:
+    return {
+        **place_json(line.span),
+        "kind": line.kind,
+        "target": line.target,
+        "moves": list(line.moves),
+        "total_s": line.total,
+        "duration_s": line.time,
+        "wait_s": line.wait,
+        "settling_s": line.settling,
+        "limits": [{"name": limit.name, "share": limit.share} for limit in line.limits],
+    }
+
+
+def _cause_json(cause: TimeCause) -> dict[str, Any]:
+    return {
+        "cause": cause.name,
+        "time_s": cause.time,
+        "gain_s": cause.gain,
+        "moves": list(cause.moves),
+        **place_json(cause.span),
+    }
 
 
 def asked_json(program: Program, report: Report) -> dict[str, Any]:

@@ -130,7 +130,7 @@ class MoveReport:
                 f"limited by {self.limited_by}",
             )
         )
-        return in_line(f"Move {self.number}: {self.kind} to {_target(self)}, {', '.join(told)}")
+        return in_line(f"Move {self.number}: {self.kind} to {target_text(self)}, {', '.join(told)}")
 
     @property
     def limited_by(self) -> str | None:
@@ -351,7 +351,7 @@ def seconds(rest: float) -> str:
 def move_row(move: MoveReport) -> tuple[str, ...]:
     """The cells of a move, in the units of the shop floor."""
     line = "" if move.span is None else str(move.span.line)
-    head = (str(move.number), move.kind, _target(move), line)
+    head = (str(move.number), move.kind, target_text(move), line)
     if not move.driven:
         return (*head, *[""] * (len(COLUMNS) - len(head) - 1), _not_driven(move))
     return (
@@ -367,7 +367,8 @@ def move_row(move: MoveReport) -> tuple[str, ...]:
     )
 
 
-def _target(move: MoveReport) -> str:
+def target_text(move: MoveReport) -> str:
+    """Where a move goes: the name of its target, or its place in mm."""
     if move.target is not None:
         return move.target
     if move.position is None:

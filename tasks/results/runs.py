@@ -14,6 +14,8 @@ from ...core.motion.path.path import Path
 from ...core.motion.timing.timing import Timing
 from ...core.notebook import PictureCurve, page, picture
 from ...core.robot.model import Robot
+from .causes import PASSED, TimeCause, causes_of
+from .lines import LineReport, lines_of
 from .report import MoveTable, Report, make_report
 
 if TYPE_CHECKING:
@@ -91,6 +93,22 @@ class Run(DrivenProgram):
     def moves(self) -> MoveTable:
         """One entry for each move of the program: time, length, speed, what limits it."""
         return self.report.moves
+
+    @property
+    def lines(self) -> tuple[LineReport, ...]:
+        """What each line of the source takes, however often it runs."""
+        return lines_of(self.moves)
+
+    @cached_property
+    def causes(self) -> tuple[TimeCause, ...]:
+        """What the time is lost to, and what each cause would give back if it fell away."""
+        from ...core.motion.emulator.controller import Controller
+        from ...problems.improve.zones.sizes import pattern_for
+        from ..setup import setup_of_program
+
+        setup = setup_of_program(self.program)
+        zone = pattern_for(setup.vendor.speaks).resized(PASSED)
+        return causes_of(Controller(setup.vendor, self.robot), self, self.report, zone)
 
     def picture(self, kind: str = "svg") -> bytes:
         """Path and motion drawn, as a file.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ...core.program.move import Opaque, Wait
@@ -45,20 +46,27 @@ class CycleShares:
         return f"one pass of the loop at line {self.line}{which}: {self.total:.3f} s; {told}"
 
 
+def standing(program: Program) -> Iterator[tuple[Wait, int]]:
+    """The waits of a program, each with how many moves come before it."""
+    done = 0
+    for statement in program.statements:
+        if isinstance(statement, Wait):
+            yield statement, done
+        elif not isinstance(statement, Opaque):
+            done += 1
+
+
 def shares(program: Program, report: Report) -> CycleShares:
     """What the time of a run goes into."""
     cycle = program.cycle
     begin, end = (0, len(report.moves)) if cycle is None else (cycle.begin, cycle.end)
     # What stands behind the last move of a pass stands before the first one of the next, too.
     last = end - 1 if cycle is not None and cycle.passes > 1 else end
-    waiting, devices, done = 0.0, 0.0, 0
-    for statement in program.statements:
-        if isinstance(statement, Wait):
-            if begin <= done <= last:
-                waiting += 0.0 if statement.device else statement.duration
-                devices += statement.duration if statement.device else 0.0
-        elif not isinstance(statement, Opaque):
-            done += 1
+    waiting, devices = 0.0, 0.0
+    for wait, done in standing(program):
+        if begin <= done <= last:
+            waiting += 0.0 if wait.device else wait.duration
+            devices += wait.duration if wait.device else 0.0
     motion = sum(move.time + move.settling for move in report.moves[begin:end])
     passes, line = (0, 0) if cycle is None else (cycle.passes, cycle.span.line)
     return CycleShares(motion, waiting, devices, passes, line)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from ...program.speed import Speed
 from ..timing.between_samples import BETWEEN, row_between
 from ..timing.least_zone_times import LEAST_TIME
 from ..timing.limits import CENTRIPETAL, PathLimits
@@ -13,14 +14,21 @@ from ..timing.superposed_legs import ZONE
 from ..timing.timed_zones import TIMED
 from .run import Run
 
-STOP, CORNER = "stop", "corner"
+STOP, CORNER, CENTRIPETAL_NAME = "stop", "corner", "centripetal acceleration"
+PROGRAMMED_TIME = "programmed time"
 PROGRAMMED = {
     "tcp": "programmed TCP speed",
     "reorientation": "programmed reorientation speed",
     "joint": "programmed joint speed",
     "external_linear": "programmed external speed",
     "external_angular": "programmed external speed",
+    "joint_acceleration": "programmed joint acceleration",
+    "tcp_acceleration": "programmed TCP acceleration",
+    "reorientation_acceleration": "programmed reorientation acceleration",
 }
+"""Names of the limits that a program states, by the fields of its speeds."""
+_FRACTIONS = {"joint_fraction": "joint", "joint_acceleration_fraction": "joint_acceleration"}
+"""Of the robot's own limits: below 1 it is the program that states them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +39,8 @@ class LimitShare:
     share: float
 
 
-def limit_shares(run: Run, axis_names: Sequence[str]) -> list[tuple[LimitShare, ...]]:
-    """For each segment of a run's path what limits it, the longest first."""
+def limit_seconds(run: Run, axis_names: Sequence[str]) -> list[dict[str, float]]:
+    """For each segment of a run's path the s for which each limit binds."""
     names = interval_limits(run, axis_names)
     timing = run.timing
     spent: list[dict[str, float]] = [{} for _ in run.path.route.moves]
@@ -40,7 +48,12 @@ def limit_shares(run: Run, axis_names: Sequence[str]) -> list[tuple[LimitShare, 
     for segment, name, duration in zip(timing.interval_segments, names, durations, strict=True):
         owner = spent[int(segment)]
         owner[name] = owner.get(name, 0.0) + float(duration)
-    return [_shares(owner) for owner in spent]
+    return spent
+
+
+def limit_shares(run: Run, axis_names: Sequence[str]) -> list[tuple[LimitShare, ...]]:
+    """For each segment of a run's path what limits it, the longest first."""
+    return [shares_of(spent) for spent in limit_seconds(run, axis_names)]
 
 
 def interval_limits(run: Run, axis_names: Sequence[str]) -> list[str]:
@@ -52,7 +65,7 @@ def interval_limits(run: Run, axis_names: Sequence[str]) -> list[str]:
     for k in range(len(names) - 1, -1, -1):
         code = int(stamp.limit[k])
         if code >= 0:
-            names[k] = rows[stamp.half_plane(code).row]
+            names[k] = _acceleration(run, k, rows, stamp.half_plane(code).row)
         elif code == NEXT and k + 1 < len(names):
             names[k] = names[k + 1]
         elif code in (CEILING, NEXT):
@@ -76,20 +89,43 @@ def _velocity(run: Run, knot: int, axis_names: Sequence[str]) -> str:
     if row in (ZONE, LEAST_TIME, TIMED):
         return CORNER
     if row == CENTRIPETAL:
-        return "centripetal acceleration"
+        return CENTRIPETAL_NAME
     if row < 0:
         return STOP
     if row >= BETWEEN:
         row = row_between(row)
-    if run.program.moves[run.path.route.moves[owner]].speed.duration is not None:
-        return "programmed time"
-    source = run.timing.limits.velocity_source[owner][row]
-    if source is not None and source[0] in PROGRAMMED:
-        return PROGRAMMED[source[0]]
+    speed = run.program.moves[run.path.route.moves[owner]].speed
+    if speed.duration is not None:
+        return PROGRAMMED_TIME
+    stated = _stated(speed, run.timing.limits.velocity_source[owner][row])
+    if stated is not None:
+        return stated
     return f"{axis_names[row]} velocity" if row < len(axis_names) else "TCP speed"
 
 
-def _shares(spent: dict[str, float]) -> tuple[LimitShare, ...]:
+def _acceleration(run: Run, interval: int, rows: Sequence[str], row: int) -> str:
+    """The limit of acceleration or torque that binds in an interval."""
+    limited = run.timing.path_limits.limited
+    owner = int(run.timing.interval_segments[interval])
+    speed = run.program.moves[run.path.route.moves[owner]].speed
+    source: tuple[str, float] | None = ("joint_acceleration_fraction", 1.0)  # of torques, too
+    if row < len(limited):
+        source = run.timing.limits.acceleration_source[owner][int(limited[row])]
+    return _stated(speed, source) or rows[row]
+
+
+def _stated(speed: Speed, source: tuple[str, float] | None) -> str | None:
+    """Name of a limit that the program states; None for one of the robot's own."""
+    if source is None:
+        return None
+    field = source[0]
+    if field in _FRACTIONS:
+        return PROGRAMMED[_FRACTIONS[field]] if getattr(speed, field) < 1.0 else None
+    return PROGRAMMED.get(field)
+
+
+def shares_of(spent: Mapping[str, float]) -> tuple[LimitShare, ...]:
+    """Limits by the time for which they bind, the longest first; none where no time is spent."""
     total = sum(spent.values())
     if total <= 0.0:
         return ()

@@ -30,7 +30,7 @@ from ..path.route import RouteFinder
 from ..timing.arc_length import ArcLength
 from ..timing.energy import Energy, energy, loads_of
 from ..timing.limits import SegmentLimits
-from ..timing.programmed_durations import hold_durations, stamp_ramped
+from ..timing.programmed_durations import stamp_programmed
 from ..timing.rests import InPosition
 from ..timing.start_ramp import StartRamp
 from ..timing.timing import Settling, Timing, along_path, stamp_path
@@ -220,27 +220,38 @@ class Controller:
         Raises:
             MotionError: the limits do not let it move.
         """
-        moves = self._moves(program, path)
-        limits = SegmentLimits.of(
-            self.robot, self.model, [move.speed for move in moves], path.segments
-        )
-        timed = [k for k, move in enumerate(moves) if move.speed.duration is not None]
-        settling = self._settling(program, path)
+        speeds = [move.speed for move in self._moves(program, path)]
+        limits = SegmentLimits.of(self.robot, self.model, speeds, path.segments)
         try:
             along = along_path(path, self.robot.limits.acceleration)
-            shares = self._shares(along)
-            if not timed:
-                return stamp_path(path, along, limits, shares, settling)
-            wanted = np.array([moves[k].speed.duration for k in timed], dtype=float)
-            ramp = self.model.duration.ramp
-            if ramp is None:
-                timing = stamp_path(path, along, limits, shares, settling)
-            else:
-                wanted_at = dict(zip(timed, wanted, strict=True))
-                timing = stamp_ramped(path, along, limits, shares, settling, wanted_at, ramp)
-            return hold_durations(timing, timed, wanted, settling)
+            return self.stamp_within(program, path, along, limits, self._shares(along))
         except MotionError as error:
             raise _located(error, program) from error
+
+    def stamp_within(
+        self,
+        program: Program,
+        path: Path,
+        along: ArcLength,
+        limits: SegmentLimits,
+        shares: Shares | None,
+    ) -> Timing:
+        """When the robot is where on a path, within other limits than its own.
+
+        Args:
+            program: whose path it is; times that it programs are held.
+            path: the geometry.
+            along: its samples, over the parameter that is stamped.
+            limits: of its segments.
+            shares: (S, L), what share of its torque's limit each joint takes; None if none is
+                limited.
+
+        Raises:
+            MotionError: the limits do not let it move.
+        """
+        durations = [move.speed.duration for move in self._moves(program, path)]
+        settling, ramp = self.settling(program, path), self.model.duration.ramp
+        return stamp_programmed(path, along, limits, shares, settling, durations, ramp)
 
     def stamp_slower(self, program: Program, timing: Timing, share: float) -> Timing:
         """The timing of the same path at a share of its speeds; accelerations are as they were.
@@ -252,7 +263,7 @@ class Controller:
         """
         segments = range(len(timing.path.route.moves))
         limits = timing.limits.with_velocities_scaled(segments, share)
-        settling = self._settling(program, timing.path)
+        settling = self.settling(program, timing.path)
         known = timing.path_limits
         return stamp_path(timing.path, timing.along, limits, known.shares, settling, known)
 
@@ -294,7 +305,8 @@ class Controller:
         """Length in s of what one smoothed sample depends on."""
         return self.smoothing(program, path).window
 
-    def _settling(self, program: Program, path: Path) -> Settling:
+    def settling(self, program: Program, path: Path) -> Settling:
+        """How long a stamped path rests for what follows it in time."""
         window = self.smoothing_window(program, path)
         gentlest = min(move.speed.jerk_fraction for move in self._moves(program, path))
         ramp = self.model.ramp_at(gentlest)

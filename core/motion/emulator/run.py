@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ...arrays import FloatArray
 from ...display import counted, in_line
 from ...errors import Note
 from ...program.program import Program
@@ -38,9 +39,16 @@ class Run:
         )
 
     @property
+    def start(self) -> JointTarget:
+        """Where the robot stands at first."""
+        return self._standing(self.path.route.ends.q[0, 0])
+
+    @property
     def end(self) -> JointTarget:
         """Where the robot stands at last."""
-        q = self.path.route.ends.q[-1, 1]
+        return self._standing(self.path.route.ends.q[-1, 1])
+
+    def _standing(self, q: FloatArray) -> JointTarget:
         arm = self.path.route.robot.arm_size
         return JointTarget(tuple(map(float, q[:arm])), tuple(map(float, q[arm:])))
 

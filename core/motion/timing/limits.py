@@ -53,6 +53,8 @@ class SegmentLimits:
         turning: (M,), what share of its turn a segment's limits of turning count; see `swivel`.
         velocity_source, acceleration_source: (M, N + 2), name of the speed's number behind each
             and its derivative; used in reverse.
+        zones_bind: whether zones have speeds of their own beside these: of legs that overlap,
+            of the least time that a zone takes, of blends in time.
     """
 
     velocity: FloatArray
@@ -62,6 +64,7 @@ class SegmentLimits:
     turning: FloatArray
     velocity_source: tuple[tuple[tuple[str, float] | None, ...], ...]
     acceleration_source: tuple[tuple[tuple[str, float] | None, ...], ...]
+    zones_bind: bool = True
 
     @classmethod
     def of(
@@ -281,9 +284,10 @@ def path_limits(
     ceiling[stops] = 0.0
     binding[stops] = -1
     lower_between(states, spacing, indices, velocity, ceiling, binding)
-    lower_ceilings(states, spacing, indices, acceleration, zones, ceiling, binding)
-    stretches.lower(spacing, ceiling, binding)
-    timed.lower(ceiling, binding)
+    if limits.zones_bind:
+        lower_ceilings(states, spacing, indices, acceleration, zones, ceiling, binding)
+        stretches.lower(spacing, ceiling, binding)
+        timed.lower(ceiling, binding)
     if known is None:
         np.negative(rows.upper, out=rows.lower)
     if known is None and shares is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +20,36 @@ _DURATION_MET = 1e-6
 _RAMPED_ROUNDS = 4
 _MOST_OFF = 0.05
 """Share of a time by which it is aimed beside it: more is no matter of samples."""
+
+
+def stamp_programmed(
+    path: Path,
+    along: ArcLength,
+    limits: SegmentLimits,
+    shares: Shares | None,
+    settling: Settling,
+    durations: Sequence[float | None],
+    ramp: float | None,
+) -> Timing:
+    """The fastest timing of a path within its limits, in which timed segments take their times.
+
+    Args:
+        path, along, limits, shares, settling: see `stamp_path`.
+        durations: (M,) s, what each segment is programmed to take; None for as fast as it may.
+        ramp: share of such a time over which a segment accelerates and brakes; None for as fast
+            as it may.
+
+    Raises:
+        MotionError: the limits leave a move no speed.
+    """
+    times = {k: duration for k, duration in enumerate(durations) if duration is not None}
+    if not times or ramp is None:
+        timing = stamp_path(path, along, limits, shares, settling)
+    else:
+        timing = stamp_ramped(path, along, limits, shares, settling, times, ramp)
+    if not times:
+        return timing
+    return hold_durations(timing, list(times), np.array(list(times.values())), settling)
 
 
 def stamp_ramped(

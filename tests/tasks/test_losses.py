@@ -1,0 +1,67 @@
+"""Where the time of a run goes, by source line and by cause."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import flyby
+
+ROOT = Path(__file__).parents[2]
+LOOP = """MODULE Loop
+  CONST robtarget p1:=[[1500,0,900],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+  PROC main()
+    MoveJ p1, v500, fine, tool0;
+    FOR i FROM 1 TO 12 DO
+      MoveL Offs(p1,100,0,0), v50, fine, tool0;
+      WaitTime 0.5;
+      MoveL p1, v500, fine, tool0;
+    ENDFOR
+  ENDPROC
+ENDMODULE
+"""
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> flyby.Run:
+    path = tmp_path_factory.mktemp("loop") / "loop.mod"
+    path.write_text(LOOP)
+    return flyby.emulate(flyby.read(path, robot="abb/irb6640-180-255"))
+
+
+def test_a_line_in_a_loop_is_one_row_with_its_total(run: flyby.Run) -> None:
+    lines = {line.span.line: line for line in run.lines if line.span is not None}
+    assert sorted(lines) == [6, 8]
+    slow = lines[6]
+    assert len(slow.moves) == 12 and slow.target != "several"
+    assert slow.wait == pytest.approx(6.0)
+    assert slow.time == pytest.approx(sum(run.moves[n - 1].time for n in slow.moves))
+    assert sum(line.total for line in run.lines) == pytest.approx(run.duration)
+    assert slow.limits[0].name == "programmed TCP speed"
+
+
+def test_causes_sum_up_to_the_time_and_say_what_they_give_back(run: flyby.Run) -> None:
+    causes = {cause.name: cause for cause in run.causes}
+    assert sum(cause.time or 0.0 for cause in run.causes) == pytest.approx(run.duration, rel=0.03)
+    assert causes["waits of the program"].gain == pytest.approx(6.0)
+    speed = causes["programmed TCP speed"]
+    assert speed.gain is not None and speed.gain > 15.0
+    assert speed.span is not None and speed.span.line == 6
+    stops = causes["stops, if passed in zones of 10 mm"]
+    # Those before a wait stay.
+    assert stops.gain is not None and 0.0 < stops.gain < run.duration
+    assert not set(stops.moves) & {n for line in run.lines for n in line.moves if line.wait}
+    gains = [cause.gain or 0.0 for cause in run.causes]
+    assert gains == sorted(gains, reverse=True)
+
+
+def test_devices_are_no_waits_of_the_program(tmp_path: Path) -> None:
+    path = tmp_path / "loop.mod"
+    path.write_text(LOOP.replace("WaitTime 0.5", "WaitDI diDone, 1"))
+    answers = tmp_path / "answers.toml"
+    answers.write_text("[durations]\ndiDone = 0.25\n")
+    program = flyby.read(path, robot="abb/irb6640-180-255", answers=answers)
+    causes = {cause.name: cause.time for cause in flyby.emulate(program).causes}
+    assert "waits of the program" not in causes
+    assert causes["devices"] == pytest.approx(3.0)
