@@ -121,7 +121,8 @@ class Joint:
 
     def coupling(self) -> str | None:
         """What rods or gears make of the joint, in words; None if it turns by its own value."""
-        terms, behind = [self.name], []
+        terms: list[str] = [self.name]
+        behind: list[str] = []
         for follower in self.followers:
             along = sum(a * b for a, b in zip(self.axis, follower.axis, strict=True))
             if not behind and abs(abs(along) - 1.0) < _ALONG and follower.placement == IDENTITY:

@@ -208,12 +208,11 @@ def _bodies(
     cell: Cell, run: Run, obstacles: Sequence[str]
 ) -> tuple[list[OwnBody], NDArray[np.bool_]]:
     """All bodies that the robot has with any tool, and which are there on which move (M, B)."""
-    tree = frame_tree(cell.robot)
     found: dict[str, OwnBody] = {}
     there: dict[str, set[str]] = {}
     for tool in dict.fromkeys(move.tool for move in run.program.moves):
         for body in bodies_of(cell, tool).bodies:
-            moves = bool(tree.moves[body.frame].any())
+            moves = body.frame != WORLD
             if body.kind is BodyKind.OBSTACLE and not moves and body.thing not in obstacles:
                 continue
             found.setdefault(body.name, OwnBody(body, moves))
