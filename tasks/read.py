@@ -138,10 +138,10 @@ def _surrounding(source: str | Path) -> Note | None:
 def from_ready_posture(
     read: Callable[[JointTarget | None], Program], start: JointTarget | None, robot: Robot
 ) -> Program:
-    """A program that may ask where the robot stands before its first move.
+    """A program that may ask where the robot stands before its first move, or go to one place only.
 
-    Where nobody says, and what it asks keeps it from being driven, it is taken to begin in the
-    robot's ready posture, with a note.
+    Where nobody says where the robot stands, and that keeps the program from being driven, it is
+    taken to begin in the robot's ready posture, with a note.
 
     Args:
         read: reads it from a start.
@@ -161,7 +161,8 @@ def from_ready_posture(
         raise
     except FlybyError as error:
         failed = error
-    if without is not None and not any(move.open for move in without.moves):
+    still = without is not None and _one_place(without)
+    if without is not None and not still and not _open(without):
         return without
     from ..core.program.target import JointTarget
     from ..core.robot.ready_posture import ready_posture
@@ -172,18 +173,31 @@ def from_ready_posture(
         at = JointTarget(posture[: robot.arm_size], posture[robot.arm_size :])
         with suppress(FlybyError):
             program = read(at)
-    if program is None or (without is not None and _open(program) >= _open(without)):
+    if program is None or (without is not None and not still and _open(program) >= _open(without)):
         if without is None:
             assert failed is not None
             raise failed
         return without
     axes = [*robot.joints, *(axis.joint for axis in robot.external_axes)]
     shown = ", ".join(joint.shown(value) for joint, value in zip(axes, posture or (), strict=True))
+    why = (
+        "every move goes to one and the same place"
+        if still
+        else "the program asks where the robot stands before its first move"
+    )
     note = Note(
-        "the program asks where the robot stands before its first move: it is taken to stand at "
-        f"{shown}; {spelt('start')} says where it does"
+        f"{why}: the robot is taken to stand at {shown} before; {spelt('start')} says where it does"
     )
     return replace(program, notes=(note, *program.notes))
+
+
+def _one_place(program: Program) -> bool:
+    """Whether all moves go to one place, so that a robot that stands there does not move."""
+    from ..core.program.move import MoveC
+
+    if any(move.open or isinstance(move, MoveC) for move in program.moves):
+        return False
+    return len({(m.target, m.tool.tcp, m.work_object.pose) for m in program.moves}) == 1
 
 
 def _open(program: Program) -> int:

@@ -18,8 +18,13 @@ class Configuration(Protocol):
     """
 
     @property
-    def exact(self) -> bool:
-        """Whether only a solution with mismatch 0 will do; else the least mismatch is taken."""
+    def hint(self) -> bool:
+        """Whether it only says where to look first: the nearest solution is taken, however far."""
+        ...
+
+    def admits(self, label: Configuration) -> bool:
+        """Whether the controller drives to a solution of this label: to that of least mismatch,
+        where it may choose."""
         ...
 
     def mismatch(self, label: Configuration) -> float:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from ..display import counted, in_line
-from ..errors import Note
+from ..errors import FlybyError, Note
+from ..program.question import QuestionKind
 from .execution.answers import Answers
 from .execution.limits import EndlessError, Executed, ExecutionLimits
 from .text.files import SourceFile, stray_return
@@ -21,6 +23,9 @@ if TYPE_CHECKING:
 
 Files = Mapping[str, SourceFile]
 """Source files by name."""
+
+_TRIED = 12
+"""Conditions, and branches of each, that are tried for one whose moves are known."""
 
 
 @dataclass(frozen=True)
@@ -116,10 +121,54 @@ def read_with(
         options: how.
         read: a vendor's function from files to a program.
     """
-    program = _to_an_end(files, main, options, read)
+    program = _to_known_places(files, main, options, read)
     stray = filter(None, map(stray_return, files.values()))
     reading = Reading(dict(files), main, options, read)
     return replace(program, notes=(*program.notes, *stray), reading=reading)
+
+
+def _to_known_places(
+    files: Files,
+    main: str,
+    options: ReadOptions,
+    read: Callable[[Files, str, ReadOptions], Program],
+) -> Program:
+    """Read; where moves to what nobody knows leave nothing to drive, another branch is taken, if
+    one leads to what is known: of a program that a computer sends commands to, one that needs no
+    numbers of it.
+
+    Raises:
+        SourceError: it cannot be read.
+    """
+    program = _to_an_end(files, main, options, read)
+    if not options.answers.goes_on or not program.moves or _is_driven(program, options.start):
+        return program
+    branches = [q for q in program.questions if q.kind is QuestionKind.BRANCH and not q.answered]
+    for branch in reversed(branches[-_TRIED:]):
+        for number in range(1, _TRIED + 1):
+            answers = options.answers.with_branch(branch.key, number)
+            try:
+                other = _to_an_end(files, main, replace(options, answers=answers), read)
+            except FlybyError:
+                break  # there are no more branches, or nothing can be made of this one
+            if number != branch.taken and _is_driven(other, options.start):
+                message = (
+                    f"branch {branch.taken} drives to what nobody knows: branch {number}, whose "
+                    "moves are known, is taken instead"
+                )
+                return replace(other, notes=(Note(message, span=branch.span), *other.notes))
+    return program
+
+
+def _is_driven(program: Program, start: JointTarget | None) -> bool:
+    """Whether all moves are known, or one leads from a place that is known to another one."""
+    moves = program.moves
+    if not any(move.open for move in moves):
+        return bool(moves)
+    places = [start, *(None if move.open else move.target for move in moves)]
+    if start is None and not moves[0].open:
+        places[0] = moves[0].target  # the robot is taken to stand there
+    return any(a is not None and b is not None and a != b for a, b in pairwise(places))
 
 
 def _to_an_end(

@@ -50,8 +50,8 @@ class Dialect:
 LANGUAGES = {
     "abb": Dialect(
         "m.mod",
-        "MODULE m\nVAR num n:=0; VAR num k; VAR bool go:=TRUE;\n"
-        "PROC main()\nBODY\nENDPROC\nENDMODULE\n",
+        "MODULE m\nPROC main()\nVAR num n:=0; VAR num k; VAR bool go:=TRUE;\n"
+        "BODY\nENDPROC\nENDMODULE\n",
         f"MoveAbsJ [[#,0,0,0,0,0],[{EXTERNAL}]],v100,fine,tool0;",
         ("di1=1", "di2=1"),
     ),

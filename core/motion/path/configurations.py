@@ -13,7 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import FloatArray
-from ...errors import FaultCause, InputError, MotionError
+from ...display import counted
+from ...errors import FaultCause, InputError, MotionError, Note
 from ...program.move import Move
 from ...program.target import Configuration, JointTarget, PoseTarget
 from ...robot.assembly import assemble
@@ -51,6 +52,7 @@ class ConfigurationFinder:
     Attributes:
         departures: index of each move that is driven with another configuration than programmed,
             and what there is to say.
+        tolerated: the same for those whose configuration the controller takes all the same.
         solved: indices of the axes that inverse kinematics solves for along moves of the TCP;
             six if the arm can follow them.
         prescribed: indices of the others: external axes, and the redundant one of seven.
@@ -60,6 +62,7 @@ class ConfigurationFinder:
         self._robot = robot
         self._nearest = nearest
         self.departures: dict[int, str] = {}
+        self.tolerated: dict[int, str] = {}
         self._label = label
         redundant = [_REDUNDANT] if robot.arm_size == 7 else []
         arm = range(robot.arm_size)
@@ -137,9 +140,8 @@ class ConfigurationFinder:
         options = self._options(plain, index, rest, all_turns=True)
         wanted = target.configuration
         if wanted is not None:
-            labels = [self._label(self._robot, q) for q in options]
-            fits = [name is None or wanted.mismatch(name) <= _MATCH for name in labels]
-            options = options[fits]
+            misses = self._misses(wanted, options)
+            options = options[misses <= misses.min() + _MATCH]
         order = np.argsort(np.abs(options - first).sum(axis=1))
         apart = np.abs(options[order] - first).max(axis=1) > _SAME
         return np.concatenate([first[None], options[order][apart]])
@@ -232,12 +234,13 @@ class ConfigurationFinder:
         labels = [self._label(self._robot, q) for q in options]
         if self.redundant and all(name is None for name in labels):
             return np.asarray(options[np.argmin(distance)])
-        misses = [math.inf if name is None else wanted.mismatch(name) for name in labels]
+        admitted = [name is not None and wanted.admits(name) for name in labels]
+        misses = np.where(admitted, self._misses(wanted, options), math.inf)
         best = min(range(len(options)), key=lambda k: (misses[k], distance[k]))
-        if wanted.exact and misses[best] > _MATCH and self._nearest:
+        if not any(admitted) and self._nearest:
             best = int(np.argmin(distance))
             self.departures[index] = f"contradicts the pose: driven to with {labels[best]}"
-        elif wanted.exact and misses[best] > _MATCH:
+        elif not any(admitted):
             known = ", ".join(sorted({str(name) for name in labels}))
             raise located(
                 move,
@@ -245,7 +248,14 @@ class ConfigurationFinder:
                 f"configuration {wanted} contradicts the pose; the robot reaches it with {known}",
                 FaultCause.CONFIGURATION,
             )
+        elif misses[best] > _MATCH and not wanted.hint:
+            self.tolerated[index] = f"{wanted} is driven to with {labels[best]}"
         return np.asarray(options[best])
+
+    def _misses(self, wanted: Configuration, options: FloatArray) -> FloatArray:
+        """Mismatches (K,) of configurations (K, N); infinite where the vendor has no label."""
+        labels = [self._label(self._robot, q) for q in options]
+        return np.array([math.inf if name is None else wanted.mismatch(name) for name in labels])
 
     def check_arrival(self, move: Move, index: int, arrived: FloatArray) -> None:
         """Hold the end of a move of the TCP against its programmed configuration.
@@ -254,13 +264,18 @@ class ConfigurationFinder:
             MotionError: the arm arrives with another one.
         """
         wanted = move.target.configuration if isinstance(move.target, PoseTarget) else None
-        if wanted is None or not wanted.exact:
+        if wanted is None:
             return
         label = self._label(self._robot, arrived)
-        if label is not None and wanted.mismatch(label) > _MATCH:
-            if self._nearest:
-                self.departures[index] = f"contradicts the path: the arm arrives with {label}"
-                return
+        if label is None or wanted.hint:
+            return
+        if wanted.mismatch(label) <= _MATCH:
+            return
+        if wanted.admits(label):
+            self.tolerated[index] = f"{wanted} is driven to with {label}"
+        elif self._nearest:
+            self.departures[index] = f"contradicts the path: the arm arrives with {label}"
+        else:
             raise located(
                 move,
                 index,
@@ -268,6 +283,15 @@ class ConfigurationFinder:
                 "use a joint move, or programme the configuration it arrives with",
                 FaultCause.CONFIGURATION,
             )
+
+    def tolerance_notes(self) -> list[Note]:
+        """One note on configurations that are not quite those of their poses."""
+        if not self.tolerated:
+            return []
+        first, what = next(iter(self.tolerated.items()))
+        others = len(self.tolerated) - 1
+        more = f"; so it is with {counted(others, 'other move')}" if others else ""
+        return [Note(f"configuration {what}, the nearest that controllers take{more}", first)]
 
     def why_unreachable(self, move: Move, near: FloatArray) -> UnreachableError | None:
         """What keeps a move's target out of reach; None if nothing does."""

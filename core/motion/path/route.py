@@ -149,6 +149,7 @@ class RouteFinder:
                 before = move
         notes: list[Note] = []
         self._targets.departures.clear()
+        self._targets.tolerated.clear()
         q = self._start(program, start, notes)
         legs = _Legs(0 if notes else None)
         for stage in self._stages(moves, skipped):
@@ -188,8 +189,10 @@ class RouteFinder:
             near: of the solutions the nearest to it is taken; None for any.
 
         Raises:
-            MotionError: it cannot stand there.
+            MotionError: it cannot stand there, or nobody knows where that is.
         """
+        if move.open:
+            raise located(move, 0, move.open, FaultCause.OPEN)
         finder = self._targets
         q = finder.rest() if near is None else finder.joints(near, finder.rest())
         if not isinstance(move.target, JointTarget):
@@ -405,6 +408,7 @@ class RouteFinder:
             target = program.moves[move].target
             assert isinstance(target, PoseTarget)
             notes.append(Note(f"configuration {target.configuration} {said}", move))
+        notes += self._targets.tolerance_notes()
         which = np.flatnonzero(keep)
         speeds = [program.moves[legs.moves[k]].speed for k in which]
         changes = [a != b for a, b in pairwise(speeds)]

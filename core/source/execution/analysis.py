@@ -155,6 +155,27 @@ class Analysis(Generic[Block]):
                 return names
             names = more
 
+    def guards_of_motion(self, block: Block) -> frozenset[str]:
+        """Names of the data that decide whether a block, or what it calls, moves the robot: those
+        that conditions read on which a motion depends, and those that these are made of."""
+
+        def find() -> frozenset[str]:
+            names = NOTHING
+            inside = [*self._reached(block, _NONE_LEFT_OUT)]
+            for step in inside:
+                if any(self.moves(inner) for inner in step.inner):
+                    asked = (self._reached(body, _NONE_LEFT_OUT) for body in step.calls)
+                    own = (one.reads | one.made_of for steps in asked for one in steps)
+                    names = names.union(step.reads, *own)
+            while True:
+                made = (step.made_of for step in inside if not names.isdisjoint(step.writes))
+                more = names.union(*made)
+                if more == names:
+                    return names
+                names = more
+
+        return self._once("guards", block, NOTHING, find)
+
     def marks(self, block: Block) -> frozenset[str]:
         """The labels in a block, those in its inner blocks included."""
 

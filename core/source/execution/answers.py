@@ -109,6 +109,10 @@ class Answers:
         """The same, with the passes of one more loop."""
         return replace(self, passes={**self.passes, _place(place): count})
 
+    def with_branch(self, place: str, number: int) -> Answers:
+        """The same, with the branch of one more condition."""
+        return replace(self, branches={**self.branches, _place(place): number})
+
     def at(self, table: str, place: str) -> int | None:
         """The branch or the passes at a place, ``file:line``, by the file's path or name alone."""
         entries = self.branches if table == "branches" else self.passes

@@ -93,6 +93,7 @@ class Passes(Generic[Block]):
         begun: for each pass, how many moves had been read before it.
         left_to_others: whether outputs that its condition reads have just been left to others: it
             is to be asked again.
+        polled: whether what its motion depends on has been left to others.
     """
 
     loop: Loop[Block]
@@ -112,6 +113,7 @@ class Passes(Generic[Block]):
     still: Snapshot | None = None
     begun: list[int] = field(default_factory=list)
     left_to_others: bool = False
+    polled: bool = False
 
     def __post_init__(self) -> None:
         self.mark = self.start.asked
@@ -248,6 +250,8 @@ class Endings(Generic[Block]):
         moving = self._analysis.moves(loop.body)
         moved = self._has_moved(passes)
         answer = host.course.answered_passes(loop.span)
+        if moving and not moved and answer is None and self._polls(passes):
+            return False
         if loop.endless and not self._has_way_out(loop):
             waiting = moving and not moved and answer is None
             if not (waiting and self._may_come_to_move(passes)):
@@ -286,6 +290,33 @@ class Endings(Generic[Block]):
         self._satisfy(loop, moving, run)
         return True
 
+    def _polls(self, passes: Passes[Block]) -> bool:
+        """Whether a loop that does not come to move the robot by itself waits for others to tell it
+        what to do; from now on they may have."""
+        if passes.polled or self._may_come_to_move(passes) or self._gets_on(passes):
+            return False
+        return self._leave_motion_to_others(passes)
+
+    def _leave_motion_to_others(self, passes: Passes[Block]) -> bool:
+        """Whether others may write what a loop's motion depends on, which is unknown afterwards."""
+        host, loop = self._host, passes.loop
+        if passes.polled or not self._analysis.moves(loop.body):
+            return False
+        passes.polled = True
+        left = host.leave_to_others(self._analysis.guards_of_motion(loop.body), loop.span)
+        if not left:
+            return False
+        host.note_once(
+            f"polls {loop.span.file}:{loop.span.start}",
+            f"the loop ({loop.words}) moves the robot only if others (another task, a computer, an "
+            f"operator) write {', '.join(left)}: what they write is not known",
+            loop.span,
+        )
+        passes.count = 0
+        passes.begun.clear()
+        host.meter.row = passes.start.statements
+        return True
+
     def enters(self, loop: Loop[Block]) -> bool:
         """Whether a loop whose condition lets it go on is entered: the user may say that not."""
         if loop.endless or self._host.course.answered_passes(loop.span) != 0:
@@ -311,6 +342,8 @@ class Endings(Generic[Block]):
         if self._has_moved(passes):
             return False
         if loop.span not in self._long and meter.row - passes.start.statements < meter.patience:
+            return False
+        if self._leave_motion_to_others(passes):
             return False
         if loop.span not in self._long:
             self._long.add(loop.span)

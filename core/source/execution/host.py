@@ -67,6 +67,19 @@ class Host(Protocol):
         """
         ...
 
+    def leave_to_others(self, names: frozenset[str], span: Span) -> list[str]:
+        """Make data unknown that something beside the program's course may write: another task, a
+        computer, an operator.
+
+        Args:
+            names: of data, found from where the program stands.
+            span: of the loop that reads them.
+
+        Returns:
+            Names of those that are unknown now and were not before, as declared.
+        """
+        ...
+
     def pause(self, text: str, span: Span) -> None:
         """The robot stands for as long as the user says that a loop that waits takes.
 

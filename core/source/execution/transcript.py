@@ -176,7 +176,8 @@ class Transcript:
         """
         goals = [s.target for s in self._statements if not isinstance(s, Wait | Opaque)]
         strict = not self._course.answers.goes_on
-        if strict and self.left_out and all(goal == goals[0] for goal in goals):
+        one_place = all(goal == goals[0] for goal in goals)
+        if self.left_out and (not goals or (strict and one_place)):
             raise self.left_out[0]
 
     def pause(self, text: str, span: Span, listed: bool = True) -> None:

@@ -155,6 +155,10 @@ class _Interpreter:
         """See `core.source.execution.flow.Host`."""
         return Snapshot(self._values.registers, names)
 
+    def leave_to_others(self, names: frozenset[str], span: Span) -> list[str]:
+        """None: what registers hold that others write is not known anyhow."""
+        return []
+
     def pause(self, text: str, span: Span) -> None:
         """See `core.source.execution.flow.Host`."""
         self._out.pause(text, span)

@@ -192,3 +192,20 @@ def test_a_program_of_faults_only_names_them(abb) -> None:
     with pytest.raises(MotionError, match="goes nowhere"):
         still = Program((MoveJ(abb.start, SPEED, FINE),), start=abb.start)
         drive(abb.controller(), still)
+
+
+def test_a_neighbouring_quadrant_is_driven_to_with_a_note(abb) -> None:
+    controller = abb.controller()
+    plain = Program((MoveJ(abb.target((1, 0, 0)), SPEED), MoveL(abb.target((1, 1, 0)), SPEED)))
+    plain = replace(plain, start=abb.start)
+    run = controller.run(plain)
+    found = find_vendor("abb").label(abb.robot, run.path.q[-1])
+    assert isinstance(found, AbbConfiguration)
+    label = replace(found, cf6=found.cf6 + 1, edges=(False,) * 3, undecided=0)
+    moves = [
+        replace(move, target=replace(move.target, configuration=label)) for move in plain.moves
+    ]
+    tolerated = controller.run(replace(plain, statements=tuple(moves)))
+    np.testing.assert_array_equal(tolerated.path.q, run.path.q)
+    told = [note for note in tolerated.notes if "the nearest that controllers take" in note.message]
+    assert [note.move for note in told] == [0] and "1 other move" in told[0].message

@@ -73,7 +73,7 @@ def test_a_label_matches_itself(q: tuple[float, ...]) -> None:
     found = label_of(IRB6640, *q)
     assert found.mismatch(found) == 0
     assert isinstance(found, Configuration)
-    assert found.exact
+    assert found.admits(found)
 
 
 @given(st.integers(-3, 3), st.floats(-0.05, 0.05))
@@ -109,3 +109,13 @@ def test_what_cannot_be_compared_or_is_no_cfx_is_refused() -> None:
         AbbConfiguration(0, 0, 0, 0).mismatch(UrConfiguration((0.0,)))
     with pytest.raises(InputError, match="from 0 to 7"):
         AbbConfiguration(0, 0, 0, 8)
+
+
+@given(st.integers(-3, 3), st.floats(0.1, 89.9), st.integers(0, 7))
+def test_a_neighbouring_quadrant_is_admitted_and_no_other_posture(
+    quarter: int, inside: float, cfx: int
+) -> None:
+    found = label_of(IRB6640, 10, 0, 0, 90 * quarter + inside, 30, 10)
+    admitted = [k for k in range(-6, 7) if AbbConfiguration(0, k, 0, 0).admits(found)]
+    assert admitted == list(range(quarter - 1, quarter + 2))
+    assert AbbConfiguration(0, quarter, 0, cfx).admits(found) is (cfx == 0)

@@ -209,7 +209,7 @@ def test_program_displacement():
         ("MoveL p,v100\\V:=0,z10,tool0;", "\\V must be above zero, not 0 mm/s"),
         ("MoveL p,v100\\T:=-1,z10,tool0;", "\\T must be above zero, not -1 s"),
         ("MoveL p,v100,z10\\Z:=-1,tool0;", "zero or more"),
-        (f"MoveL [[0,0,0],[1,0,0,0.1],[0,0,0,0],{UNUSED}],v100,z10,tool0;", "length 1"),
+        (f"MoveL [[0,0,0],[1,0,0,0.5],[0,0,0,0],{UNUSED}],v100,z10,tool0;", "length 1"),
         (f"MoveL [[0,0,0],[0,0,0,0],[0,0,0,0],{UNUSED}],v100,z10,tool0;", "length 1"),
         (f"MoveL [[0,0,0],[1,0,0,0],[0,0,0,9],{UNUSED}],v100,z10,tool0;", "cfx"),
         (f"MoveL [[0,0,0],[1,0,0,0],[0,0.5,0,0],{UNUSED}],v100,z10,tool0;", "whole numbers"),

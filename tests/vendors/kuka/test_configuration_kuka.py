@@ -76,7 +76,7 @@ def test_parts_that_are_not_stated_match_anything() -> None:
     assert KukaConfiguration(2, None).mismatch(found) == 1
     assert KukaConfiguration(None, 0).mismatch(found) == 2
     assert isinstance(found, Configuration)
-    assert found.exact
+    assert found.admits(found)
 
 
 def test_axes_at_zero_fit_either_sign() -> None:
@@ -99,3 +99,9 @@ def test_values_out_of_range_are_refused(status: int, turn: int) -> None:
 def test_another_vendors_label_is_refused() -> None:
     with pytest.raises(InputError, match="cannot be compared"):
         KukaConfiguration(0, 0).mismatch(UrConfiguration((0.0,)))
+
+
+def test_another_turn_is_admitted_and_no_other_status() -> None:
+    found = label_of(KR30, 10, -90, 90, 10, 30, 10)
+    assert KukaConfiguration(found.status, 0b111111).admits(found)
+    assert not KukaConfiguration((found.status or 0) ^ 4, found.turn).admits(found)

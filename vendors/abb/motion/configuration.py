@@ -63,9 +63,22 @@ class AbbConfiguration:
         return tuple(map(float, (self.cf1, self.cf4, self.cf6, self.cfx)))
 
     @property
-    def exact(self) -> bool:
-        """True: the controller goes to this solution or reports an error."""
-        return True
+    def hint(self) -> bool:
+        """False: it names a solution."""
+        return False
+
+    def admits(self, label: Configuration) -> bool:
+        """Whether cfx is the label's, and each quadrant the label's or a neighbour of it.
+
+        So RobotStudio's API says which solutions comply with a target ("ConfigurationMode"), and
+        so pallets are driven whose places were computed from one taught on the other side of axis
+        1's zero. Solutions of one cfx lie whole turns apart, so that one at most is admitted.
+
+        Raises:
+            InputError: the label is another vendor's.
+        """
+        turns, bits = self._differences(label)
+        return bits == 0 and max(turns) <= 1
 
     def mismatch(self, label: Configuration) -> float:
         """Quadrants between the axes, plus the bits in which cfx differs; 0 for a match.
@@ -73,12 +86,17 @@ class AbbConfiguration:
         Raises:
             InputError: the label is another vendor's.
         """
+        turns, bits = self._differences(label)
+        return float(sum(turns) + bits)
+
+    def _differences(self, label: Configuration) -> tuple[list[int], int]:
+        """Quadrants between axes 1, 4 and 6; number of bits in which cfx differs."""
         if not isinstance(label, AbbConfiguration):
             raise InputError(f"an ABB configuration cannot be compared with {label}")
         pairs = zip(self._quadrants(), label._quadrants(), strict=True)
-        turns = sum(min(abs(a - b) for a in mine for b in its) for mine, its in pairs)
+        turns = [min(abs(a - b) for a in mine for b in its) for mine, its in pairs]
         decided = ~(self.undecided | label.undecided)
-        return float(turns + ((self.cfx ^ label.cfx) & decided).bit_count())
+        return turns, ((self.cfx ^ label.cfx) & decided).bit_count()
 
     def _quadrants(self) -> list[tuple[int, ...]]:
         """For axes 1, 4 and 6 the quadrants that fit."""

@@ -17,6 +17,7 @@ from ....core.spatial.pose import Pose
 from ....core.spatial.rotation import quaternion_from_matrix
 from ..syntax.tree import Call, Expression, Invoke
 from ..values.arguments import check_count
+from ..values.errors import NUMBERS, OUT_OF_REACH, ProgramError
 from ..values.function_calls import Evaluates, Special
 from ..values.located import Located
 from ..values.records import Record, pose_record, tool_record, work_object_record
@@ -34,7 +35,7 @@ from ..values.types import (
 )
 from .position import Position
 from .settings import SettingsInForce
-from .targets import Converter
+from .targets import Converter, points_nowhere
 
 FULL_OVERRIDE = 100.0
 
@@ -113,11 +114,15 @@ class RobotFunctions:
         return self._converted(evaluator, call, scope, JOINTTARGET, ask)
 
     def _backward(self, evaluator: Evaluates, call: Call, scope: Scope) -> Value:
-        """``CalcJointT(robtarget, Tool [\\WObj])``"""
+        """``CalcJointT(robtarget, Tool [\\WObj])``: a pose out of reach is the program's error."""
 
         def ask(value: Value, tool: Tool, frame: WorkObject) -> Record | None:
             target = self.convert.pose_target(value, None, True, call.span)
-            return self._asked(call, lambda: self.position.jointtarget_at(target, tool, frame))
+            try:
+                return self.position.jointtarget_at(target, tool, frame)
+            except FlybyError as error:
+                number = NUMBERS[OUT_OF_REACH]
+                raise ProgramError(f"{call.text}: {error}", call.span, number) from None
 
         return self._converted(evaluator, call, scope, ROBTARGET, ask)
 
@@ -134,7 +139,8 @@ class RobotFunctions:
         value = evaluator.evaluate(given, scope)
         tool = self._tool(evaluator, tool_given, scope)
         frame = self._frame(evaluator, self._option(call, "wobj"), scope, WORLD)
-        if find_unknown(value) is not None:
+        unset = type_ is ROBTARGET and points_nowhere(value)
+        if find_unknown(value) is not None or unset:
             return self._unknown(evaluator, call, "of values that are not known")
         self._check(evaluator, value, type_, call)
         record = ask(value, tool, frame)

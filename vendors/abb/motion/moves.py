@@ -43,7 +43,7 @@ from ..values.types import (
 )
 from .position import Position
 from .settings import SettingsInForce
-from .targets import Converter, named_by_number, undeclared
+from .targets import Converter, named_by_number, points_nowhere, undeclared
 
 _COMMON_OPTIONS = ("conc", "v", "t", "z", "inpos", "wobj", "tload", "corr", "id")
 
@@ -198,6 +198,15 @@ class _MoveReader:
                 raise NotDriven(f"{use} depends on {unknown.reason}{answerable(unknown)}")
             value = evaluator.assumed(found.value, type_, use, expression.span)
             found = replace(found, value=value, cell=None)
+        if type_ is ROBTARGET and found.source is None and points_nowhere(found.value):
+            answer = evaluator.answers.ask(expression.span, type_, kind=QuestionKind.DATUM)
+            if answer is not None:
+                return Located(answer, None, None, type=type_)
+            text = evaluator.text(expression.span)
+            raise NotDriven(
+                f"{use} is made of numbers that nothing at hand sets (its orientation is "
+                f"[0,0,0,0]): they come at run time{answerable(Unknown('', expression.span, text))}"
+            )
         evaluator.check_located(found, type_, use, expression.span)
         return found
 

@@ -52,8 +52,10 @@ from .settings import SettingsInForce
 if TYPE_CHECKING:
     from ....core.robot.model import Robot
 
-NORM_TOLERANCE = 1e-3
+NORM_TOLERANCE = 0.05
 """A quaternion whose length is off by more is a mistake, no rounding."""
+ROUNDED = 1e-3
+"""What three written decimals leave of it: more is worth a correction."""
 EXACT = 1e-6
 """What a `Pose` takes as it stands, and `records` does: reading and writing keep the digits."""
 ROUNDING = 2e-5
@@ -99,6 +101,8 @@ class Converter:
         first, count = next(iter(self._quaternions)), len(self._quaternions)
         what = "a quaternion is" if count == 1 else f"{count} quaternions are"
         message = f"{what} not of unit length (by {worst:.1g} at most): normalised"
+        if worst > ROUNDED:
+            message += "; a controller may refuse them: write them with five digits, or NOrient"
         return (Note(message, span=first),)
 
     # ------------------------------------------------------- tools, frames, loads
@@ -448,6 +452,11 @@ def undeclared(kind: str, name: Name, type_: Type, scope: Scope) -> str:
 
 _DIGITS = re.compile(r"[0-9]+")
 _BY_NUMBER = re.compile(r"(?P<kind>[vz])(?P<number>[0-9]{1,4})")
+
+
+def points_nowhere(target: Value) -> bool:
+    """Whether a robtarget has an orientation of zeros, as its numbers were never set."""
+    return isinstance(target, tuple) and len(target) == 4 and target[1] == (0.0, 0.0, 0.0, 0.0)
 
 
 def named_by_number(name: str, type_: Type) -> Record | None:

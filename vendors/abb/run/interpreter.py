@@ -153,6 +153,17 @@ class Interpreter:
             found = [cell for s in scopes for cell in s.cells.values() if not cell.constant]
         return Snapshot(found)
 
+    def leave_to_others(self, names: frozenset[str], span: Span) -> list[str]:
+        """See `core.source.execution.host.Host`: data of modules, not those of routines."""
+        shared = [cell for scope in self.data.scopes() for cell in scope.cells.values()]
+        modules = {id(cell) for cell in shared}
+        found = [(name, self._frames[-1].scope.find(name)) for name in sorted(names)]
+        cells = [c for _, c in found if c is not None and id(c) in modules and not c.constant]
+        return [
+            *(cell.name for cell in cells if self.evaluator.leave_to_others(cell, span)),
+            *(n for n, c in found if c is None and self.evaluator.forget_elsewhere(n)),
+        ]
+
     def pause(self, text: str, span: Span) -> None:
         """The robot stands at a loop that waits."""
         self.out.pause(text, span)

@@ -13,6 +13,7 @@ OUT_OF_BOUNDS = "err_outofbnd"
 NOT_PRESENT = "err_notpres"
 NO_ROUTINE = "err_refunkprc"
 WRONG_ARGUMENT = "err_argvalerr"
+OUT_OF_REACH = "err_roblimit"
 TOO_LONG = "err_strtoolng"
 TOO_MANY_RETRIES = "err_excrtymax"
 
@@ -20,8 +21,9 @@ LONG_JUMP = "long_jmp_all_err"
 """Stands for every error in the list of an ERROR handler."""
 
 _NAMES = f"""{DIVISION_BY_ZERO} {OUT_OF_BOUNDS} {NOT_PRESENT} {NO_ROUTINE} {WRONG_ARGUMENT}
-    {TOO_LONG} {TOO_MANY_RETRIES} {LONG_JUMP} err_acc_too_low err_activ_prof err_addr_inuse
-    err_aliasio_def err_aliasio_type err_alrdycnt err_alrdy_moving err_ao_lim err_argdupcnd
+    {OUT_OF_REACH} {TOO_LONG} {TOO_MANY_RETRIES} {LONG_JUMP} err_acc_too_low
+    err_activ_prof err_addr_inuse err_aliasio_def err_aliasio_type err_alrdycnt err_alrdy_moving
+    err_ao_lim err_argdupcnd
     err_argname err_argnotper err_argnotvar err_array_size err_axis_act err_axis_ind
     err_axis_moving err_axis_par err_busstate err_bwdlimit err_calc_divzero err_calc_neg
     err_calc_overflow err_callio_inter err_callproc err_cam_busy err_cam_com_timeout
@@ -44,7 +46,7 @@ _NAMES = f"""{DIVISION_BY_ZERO} {OUT_OF_BOUNDS} {NOT_PRESENT} {NO_ROUTINE} {WRON
     err_pid_movestop err_pid_raise_pp err_ppa_timeout err_prgmemfull err_procsignal_off
     err_progstop err_ranybin_chk err_ranybin_eof err_rcvdata err_refunkdat err_refunkfun
     err_refunktrp err_rmq_dim err_rmq_full err_rmq_invalid err_rmq_invmsg err_rmq_msgsize
-    err_rmq_name err_rmq_nomsg err_rmq_timeout err_rmq_value err_roblimit err_sc_write
+    err_rmq_name err_rmq_nomsg err_rmq_timeout err_rmq_value err_sc_write
     err_sgun_estop err_sgun_motoff err_sgun_negval err_sgun_notact err_sgun_notinit
     err_sgun_notopen err_sgun_notsync err_sig_name err_sigsupsearch err_sig_not_valid
     err_sock_addr_invalid err_sock_addr_inuse err_sock_closed err_sock_is_bound

@@ -40,6 +40,7 @@ from .types import (
     SPEEDDATA,
     Foreign,
     RecordType,
+    Scalar,
     Type,
     Unknown,
     Value,
@@ -170,6 +171,10 @@ class Evaluator:
         """
         check_known(value, use, span)
         check_type(value, type_, use, span)
+
+    def text(self, span: Span) -> str:
+        """What stands in the program."""
+        return self._text_of(span)
 
     def check_located(self, found: Located, type_: Type, use: str, span: Span) -> None:
         """`check`, once for each value of a datum: moves read few data many times."""
@@ -369,6 +374,22 @@ class Evaluator:
             self._shared_elsewhere.add(name.name)
         elif not cell.constant:
             cell.writer, cell.awaited = writer, False
+
+    def leave_to_others(self, cell: Variable, span: Span) -> bool:
+        """Whether a number, flag or text that was known is so no more, as others may write it."""
+        if not isinstance(cell.type, Scalar) or cell.dimensions or cell.predefined is not None:
+            return False
+        value = self.settle(cell)
+        if isinstance(value, Unknown):
+            return False
+        reason = f"the value of {cell.name}, which others write"
+        cell.value = Unknown(reason, span, nominal=value)
+        cell.source = None
+        return True
+
+    def forget_elsewhere(self, name: str) -> bool:
+        """Whether a datum of a module that is not at hand had a value, which it has no more."""
+        return self._elsewhere.pop(name, None) is not None
 
     # ------------------------------------------------------------------- names
 

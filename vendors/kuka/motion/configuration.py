@@ -61,9 +61,20 @@ class KukaConfiguration:
         return ", ".join(f"{name} {value}" for name, value in stated if value is not None)
 
     @property
-    def exact(self) -> bool:
-        """True: the controller goes to this solution or reports an error."""
-        return True
+    def hint(self) -> bool:
+        """False: it names a solution."""
+        return False
+
+    def admits(self, label: Configuration) -> bool:
+        """Whether S is the label's, where both are stated.
+
+        T tells turns of an axis apart that its range holds; where it holds one only, as those of
+        axes 1, 2, 3 and 5 do, there is no other turn to go to.
+
+        Raises:
+            InputError: the label is another vendor's.
+        """
+        return self._differences(label)[0] == 0
 
     def mismatch(self, label: Configuration) -> float:
         """The number of bits in which S and T differ where both are stated; 0 for a match.
@@ -71,12 +82,17 @@ class KukaConfiguration:
         Raises:
             InputError: the label is another vendor's.
         """
+        return float(sum(self._differences(label)))
+
+    def _differences(self, label: Configuration) -> tuple[int, int]:
+        """The bits in which S, and those in which T differ."""
         if not isinstance(label, KukaConfiguration):
             raise InputError(f"a KUKA configuration cannot be compared with {label}")
         status = 0b111 & ~(self.undecided_status | label.undecided_status)
         turn = 0b111111 & ~(self.undecided_turn | label.undecided_turn)
-        return float(
-            _differing(self.status, label.status, status) + _differing(self.turn, label.turn, turn)
+        return (
+            _differing(self.status, label.status, status),
+            _differing(self.turn, label.turn, turn),
         )
 
 

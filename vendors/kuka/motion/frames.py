@@ -87,7 +87,7 @@ class Placements:
                 f"{name} {unknown.reason}",
                 f"{name.upper()} depends on {unknown.reason}, which the text does not say: "
                 f"{'what it was before' if taken else 'a frame of zeros'} is taken; name the file "
-                "that says it, or answer it in a file of answers",
+                f"that says it, or {unknown.answerable}",
                 span,
             )
             value = value if taken else null_frame()

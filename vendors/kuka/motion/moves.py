@@ -321,7 +321,7 @@ class MotionReader:
             return value if isinstance(taken, Unknown) else taken
         self.transcript.notes.count(
             f"{what} depends on {unknown.reason}, which the text does not say: what it was before, "
-            "or 0, is taken for it; answer it in a file of answers",
+            f"or 0, is taken for it; {unknown.answerable}",
             span,
         )
         return unplaced(taken)

@@ -114,19 +114,25 @@ class Calls:
         cell = self._data.find(datum.name, scope)
         if cell is None or cell.constant or cell.signal is not None:
             return
-        if any(isinstance(step, str) for step in datum.path):
-            return
-        about = About(datum.span, brought_by(call.name), *EXPECTED.get(cell.type, ("",)))
-        answer = self._course.value(datum.text, about)
+        expected = () if datum.path else EXPECTED.get(cell.type, ("",))
+        about = About(datum.span, brought_by(call.name), *expected)
+        text = self._data.text(datum.span) if datum.path else datum.text
+        answer = self._course.value(text, about)
         if answer is not None:
             value = self._evaluator.names.answered(answer)
             self._evaluator.assign(datum, value, scope, call.span)
             return
-        unknown = Unknown(f"what {call.text} gave {datum.text}", call.span)
-        before = self._evaluator.names.settled(cell)
-        if before is not None and not datum.path:
+        unknown = Unknown(f"what {call.text} gave {text}", call.span, key=text)
+        before: Value | None = None
+        with suppress(SourceError):
+            whole = self._evaluator.names.settled(cell)
+            before = self._evaluator.evaluate(datum, scope) if datum.path else whole
+        if before is not None and not isinstance(before, Unknown):
             unknown = replace(unknown, held=supposed(before))
-        if not isinstance(cell.value, Array | Struct):
+        unset = isinstance(cell.value, Struct) and not cell.value.fields
+        if unset and not datum.path:
+            cell.value = replace(unknown, held=None)
+        elif not isinstance(cell.value, Array | Struct):
             cell.value = unknown
         elif datum.path:
             with suppress(SourceError):

@@ -16,7 +16,9 @@ from ..motion.position import Position
 from ..values.changes import Snapshot
 from ..values.data import Data
 from ..values.elements import Names
+from ..values.predefined import MOTION, NEVER_KNOWN
 from ..values.scope import Scope
+from ..values.values import Choice, Unknown
 from .exits import Finished
 
 
@@ -81,6 +83,22 @@ class KrlHost:
             with suppress(SourceError):
                 self._names.settled(cell)
         return Snapshot(cells)
+
+    def leave_to_others(self, names: frozenset[str], span: Span) -> list[str]:
+        """See `core.source.execution.host.Host`: all but a routine's own data."""
+        own = self._scopes[-1].cells
+        left: list[str] = []
+        for name in sorted(names - own.keys() - MOTION - NEVER_KNOWN):
+            cell = self._data.find(name, self._scopes[-1])
+            if cell is None or cell.constant or cell.signal is not None or cell.shipped:
+                continue
+            with suppress(SourceError):
+                value = self._names.settled(cell)
+                if isinstance(value, bool | int | float | str | Choice):
+                    reason = f"the value of {cell.name}, which others write"
+                    cell.value = Unknown(reason, span, held=value)
+                    left.append(cell.name)
+        return left
 
     def note_once(self, kind: str, message: str, span: Span) -> None:
         """A note, unless one of its kind was taken before."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 from ....core.errors import SourceError, Span
@@ -15,6 +16,9 @@ from .values import Array, Pending, Struct, Unknown, Value, copied, shown
 
 _CODES = 256
 """Of characters."""
+_POSE, _ARM = ("x", "y", "z", "a", "b", "c"), ("a1", "a2", "a3", "a4", "a5", "a6")
+_WHOLE = {"frame": _POSE, "pos": _POSE, "e6pos": _POSE, "axis": _ARM, "e6axis": _ARM}
+"""What a position has at least."""
 
 
 class Assignment:
@@ -53,7 +57,9 @@ class Assignment:
         if not path:
             self._assign_whole(cell, value, label, span)
             return cell
-        if cell.value is None or isinstance(cell.value, Unknown | Pending):
+        if isinstance(cell.value, Unknown) and cell.type in _WHOLE and isinstance(path[0], str):
+            cell.value = _opened(cell.value, cell.type)
+        elif cell.value is None or isinstance(cell.value, Unknown | Pending):
             cell.value = _empty(path[0], cell.type)
         self._assign_part(cell, path, value, label, target, span)
         return cell
@@ -151,6 +157,13 @@ class Assignment:
             raise SourceError(f"index {index + 1} of {target.text} is no place in it", target.span)
         padded = text.ljust(index)
         cell.value = padded[:index] + value[:1] + padded[index + 1 :]
+
+
+def _opened(unknown: Unknown, type_name: str) -> Struct:
+    """A position of which a component is written, and of the others nobody knows what they are."""
+    held = unknown.held.fields if isinstance(unknown.held, Struct) else {}
+    names = _WHOLE[type_name]
+    return Struct(type_name, {name: replace(unknown, held=held.get(name)) for name in names})
 
 
 def _empty(step: str | tuple[int, ...], type_name: str) -> Value:

@@ -133,8 +133,8 @@ class Names:
                 return value
             if position is not None:
                 return self._of_position(node, scope, position)
-            reason = f"the value of {spelled(node.text, path)}, which nothing sets"
-            return Unknown(reason, node.span)
+            text = spelled(node.text, path)
+            return Unknown(f"the value of {text}, which nothing sets", node.span, key=text)
         return value
 
     def _of_position(self, node: Name, scope: Scope, kind: str) -> Value:
@@ -148,7 +148,8 @@ class Names:
                 return value
             part = self.part(value, step, node, Variable(node.text))
             if part is None:
-                return Unknown(f"the value of {spelled(node.text, path)}", node.span)
+                text = spelled(node.text, path)
+                return Unknown(f"the value of {text}", node.span, key=text)
             value = part
         return value
 
@@ -175,7 +176,9 @@ class Names:
             value = self._answer(node, (), QuestionKind.SIGNAL, "int" if wide else "bool")
         if value is None:
             value = self._whole(first, last, scope, self._bit(first))
-        return Unknown(f"the value of {node.text}", node.span) if value is None else value
+        if value is None:
+            return Unknown(f"the value of {node.text}", node.span, key=node.text)
+        return value
 
     def _bit(self, first: Name) -> Callable[[str], Value | None]:
         """What the user answers to one of the inputs or outputs of a signal."""
@@ -358,7 +361,8 @@ class Names:
             return answer
         if why is None:
             why = "" if self.data.is_system(node.name) else " (declared in no file at hand)"
-        return Unknown(f"the value of {spelled(node.text, path)}{why}", node.span)
+        text = spelled(node.text, path)
+        return Unknown(f"the value of {text}{why}", node.span, key=text)
 
 
 def supposed_part(value: Unknown, step: str | tuple[int, ...]) -> Unknown:

@@ -220,10 +220,11 @@ class Evaluator:
     def unknown_function(self, call: tree.Call, scope: Scope) -> Value:
         """What a function gives that is not at hand: an answer, or a value that is not known."""
         about = About(call.span, brought_by(call.name))
-        answer = self.course.value(self.data.text(call.span), about)
+        text = self.data.text(call.span)
+        answer = self.course.value(text, about)
         if answer is not None:
             return self.names.answered(answer)
-        return Unknown(f"the value of {call.text}()", call.span)
+        return Unknown(f"the value of {call.text}()", call.span, key=text)
 
     def undeclared(self, node: tree.Name, scope: Scope, kind: str) -> LeftOpenError:
         """The error that a datum is declared nowhere."""

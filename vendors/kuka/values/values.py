@@ -12,7 +12,9 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from ....core.door import spelt
 from ....core.errors import LeftOpenError, Span
+from ....core.files.toml_text import key_text
 from ....core.program.tool import Load, Tool, WorkObject
 from ....core.source.text.files import SourceText
 from ..syntax.tree import Expression
@@ -169,12 +171,21 @@ class Unknown:
             that it was asked in.
         held: what motion takes it for: the value before others wrote it, or what was computed
             with zero in its place; None if there is no such value.
+        key: under which the user may answer it.
     """
 
     reason: str
     span: Span
     here: tuple[int, Placement | None] | None = None
     held: Value | None = None
+    key: str = ""
+
+    @property
+    def answerable(self) -> str:
+        """How the user may answer it, to stand at the end of a message."""
+        if not self.key:
+            return f"answer it in a file ({spelt('answers')}; `flyby ask` writes one)"
+        return f"answer it in a file ({spelt('answers')}): [values] {key_text(self.key)} = …"
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,7 +232,7 @@ def left_open(what: str, unknown: Unknown, span: Span) -> LeftOpenError:
     where = f" (read at line {unknown.span.line})" if unknown.span.line != span.line else ""
     return LeftOpenError(
         f"{what} depends on {unknown.reason}{where}, which the text does not say: name the file "
-        "that says it, or answer it in a file of answers",
+        f"that says it, or {unknown.answerable}",
         span,
     )
 

@@ -34,9 +34,13 @@ class UrConfiguration:
         return f"[{', '.join(f'{math.degrees(value):.2f}°' for value in self.joints)}]"
 
     @property
-    def exact(self) -> bool:
-        """False: the nearest solution is taken, however far."""
-        return False
+    def hint(self) -> bool:
+        """True: the nearest solution is taken, however far."""
+        return True
+
+    def admits(self, label: Configuration) -> bool:
+        """True: any will do."""
+        return True
 
     def mismatch(self, label: Configuration) -> float:
         """Distance of the joint values, rad (Euclidean).

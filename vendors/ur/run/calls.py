@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from ....core.errors import InputError, LeftOpenError, SourceError
+from ....core.errors import InputError, SourceError
 from ....core.program.move import Wait
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.limits import Meter
@@ -20,7 +20,7 @@ from ..values.arguments import bind
 from ..values.evaluator import evaluate, locate, plain
 from ..values.function_calls import compute, list_method, struct
 from ..values.functions import COMPUTED
-from ..values.instructions import ADD_ONS, MOVES, STREAMS, Kept, asks, kept, known_names
+from ..values.instructions import ADD_ONS, MOVES, STREAMS, Kept, asks, kept, known_names, streamed
 from ..values.lists import METHODS
 from ..values.located import NOTHING, Located
 from ..values.outputs import READING, WRITING, held, write
@@ -228,13 +228,7 @@ def _other(run: CallsRun, node: Call, scope: Scope) -> Value:
         if entry is ADD_ONS:
             run.outputs.forget()
         if entry is STREAMS:
-            run.out.left_out.append(
-                LeftOpenError(
-                    f"{name} drives the robot by what is only known at run time, and there is "
-                    "nothing else to emulate: write the motion as movej, movel or movep",
-                    run.texts.span_of(node),
-                )
-            )
+            run.out.left_out.append(streamed(name, span))
         return run.keep(node, entry, name)
     told = run.course.value(text)
     run.outputs.forget()

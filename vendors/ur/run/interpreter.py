@@ -144,6 +144,10 @@ class Interpreter:
         watched = written if names is None else names
         return Snapshot(watched, self.frames[-1].scope if self.frames else self.root)
 
+    def leave_to_others(self, names: frozenset[str], span: Span) -> list[str]:
+        """See `core.source.execution.host.Host`: a script's data are written by nobody else."""
+        return []
+
     def pause(self, text: str, span: Span) -> None:
         """The robot stands at a loop that waits."""
         self.out.pause(text, span)

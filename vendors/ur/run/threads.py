@@ -16,9 +16,10 @@ from ....core.errors import SourceError, Span
 from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.transcript import Transcript
+from ..syntax.traversal import all_calls
 from ..syntax.tree import Block, Call, StartThread, ThreadEnd
 from ..values.evaluator import Evaluation, evaluate
-from ..values.instructions import Kept
+from ..values.instructions import STREAMS, Kept, kept, streamed
 from ..values.scope import Function, Scope, Variable
 from ..values.values import ThreadHandle, Unknown, Value
 from .analysis import ScriptTree
@@ -122,6 +123,10 @@ def start(run: ThreadsRun, node: StartThread, scope: Scope) -> Value:
         _carry_out(run, function, node, scope, thread)
     else:
         run.keep(node, _STARTED, name)
+        called = (called for body in bodies for called in sorted(all_calls(body)))
+        stream = next((called for called in called if kept(called) is STREAMS), None)
+        if stream is not None:
+            run.out.left_out.append(streamed(stream, run.texts.span_of(node)))
         thread.written = _mark(run.tree, function)
         outputs = (run.analysis.outputs_written(body) or () for body in bodies)
         thread.outputs = frozenset().union(*outputs)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ....core.errors import LeftOpenError, Span
 from ....core.source.text.lexer import words
 
 
@@ -135,3 +136,16 @@ def asks(name: str) -> bool:
 def known_names() -> set[str]:
     """All names in these tables."""
     return set(QUERIES) | {name for entry in KEPT for name in entry.names}
+
+
+def streamed(name: str, span: Span) -> LeftOpenError:
+    """The error that a program drives by a stream alone.
+
+    Args:
+        name: of the function that takes it.
+    """
+    return LeftOpenError(
+        f"{name} drives the robot in steps of a control loop, which are not emulated, and there is "
+        "nothing else to drive: write the motion as movej, movel or movep",
+        span,
+    )

@@ -158,6 +158,9 @@ class Run:
         self.said: list[str] = []
         self._lines: dict[int, int] = {}
 
+    def leave_to_others(self, names: frozenset[str], span: Span) -> list[str]:
+        return []
+
     def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Held:
         return Held(self, names)
 
