@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+from ..door import spelt
 from ..errors import FaultCause, MotionError
 from ..motion.emulator.controller import Controller
 from ..motion.emulator.run import Run
 from ..program.program import Program
+from ..program.question import QuestionKind
 from ..program.target import JointTarget
 from .driven_program import DrivenPart, DrivenProgram, Fault, refusal
 
+_OF_PLACES = (
+    FaultCause.REACH,
+    FaultCause.LIMIT,
+    FaultCause.SINGULARITY,
+    FaultCause.CONFIGURATION,
+)
+"""Faults of where the flange is sent, which the tool and the work object decide."""
 _AHEAD = 16
 """Moves looked at behind a fault at first: twice as many each time that none is found, so that
 looking takes no more than a few times what driving does, however many faults there are."""
@@ -152,4 +161,27 @@ class _Drive:
 
     def _fault(self, move: int, error: MotionError) -> None:
         span = error.span or self._program.moves[move].statement
-        self._faults.append(Fault(move, error.cause, error.message, span))
+        message = error.message + self._of_what_is_assumed(move, error.cause)
+        self._faults.append(Fault(move, error.cause, message, span))
+
+    def _of_what_is_assumed(self, move: int, cause: FaultCause) -> str:
+        """That a move's tool or work object are not known, which may be why it cannot be driven."""
+        if cause not in _OF_PLACES:
+            return ""
+        used = self._program.moves[move]
+        names = [n.casefold() for n in (used.tool.name, used.work_object.name)]
+        asked = [
+            question.key
+            for question in self._program.questions
+            if question.kind is QuestionKind.DATUM
+            and not question.answered
+            and question.key.casefold() in names
+        ]
+        if not asked:
+            return ""
+        be = "is" if len(asked) == 1 else "are"
+        return (
+            f"; {' and '.join(asked)} {be} not known, and may well be why: say what "
+            f"{'it is' if be == 'is' else 'they are'} in a file ({spelt('answers')}; `flyby ask` "
+            "writes one)"
+        )

@@ -17,7 +17,7 @@ class ExecutionLimits:
 
     Args:
         statements: executed in a row without a move among them.
-        moves: executed in all.
+        moves: executed that had been before: a long program without a loop is none without an end.
         repeats: of one and the same move.
         calls: routines that have called each other.
     """
@@ -84,10 +84,10 @@ class Meter:
         """
         self.moves += 1
         self.row = 0
-        if self.moves > self._limits.moves:
-            raise _endless(f"{self._limits.moves} moves are executed", span)
         place = (span.file, span.line, span.column)
         repeats = self._repeats[place] = self._repeats.get(place, 0) + 1
+        if self.moves - len(self._repeats) > self._limits.moves:
+            raise _endless(f"{self._limits.moves} moves are executed again", span)
         if repeats > self._limits.repeats:
             raise _endless(f"this move is executed {self._limits.repeats} times", span)
 

@@ -195,6 +195,8 @@ class _MoveReader:
                 answer = evaluator.answers.ask(expression.span, type_, kind=QuestionKind.DATUM)
                 if answer is not None:
                     return Located(answer, None, None, type=type_)
+                if isinstance(expression, Name):
+                    unknown = replace(unknown, key=evaluator.text(expression.span))
                 raise NotDriven(f"{use} depends on {unknown.reason}{answerable(unknown)}")
             value = evaluator.assumed(found.value, type_, use, expression.span)
             found = replace(found, value=value, cell=None)

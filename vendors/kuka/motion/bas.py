@@ -186,7 +186,7 @@ class Basis:
             return null_frame()
         value = self.config.item(table, index)
         if value is None:
-            return null_frame(f"{table.upper()}[{index}]", shipped=True)
+            return self.config.unset_frame(f"{table.upper()}[{index}]")
         return value.copy() if isinstance(value, Struct) else value
 
     def load(self, index: int) -> Value:

@@ -9,9 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
+from ....core.door import spelt
 from ....core.errors import InputError, SourceError, Span
+from ....core.files.toml_text import key_text
+from ....core.program.question import QuestionKind
 from ....core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
+from ....core.source.execution.answers import About, Course
 from ....core.spatial.pose import IDENTITY, Pose
+from ..values.elements import EXPECTED
 from ..values.frames import null_frame, number_or_zero, pose_of
 from ..values.scope import Variable
 from ..values.types import FRAME_FIELDS
@@ -27,10 +32,15 @@ _UNSET = {
 
 
 class Placements:
-    """Makes them of the system variables in force."""
+    """Makes them of the system variables in force.
 
-    def __init__(self, system: Mapping[str, Variable], note: Note) -> None:
+    Args:
+        course: is asked for frames that no file says.
+    """
+
+    def __init__(self, system: Mapping[str, Variable], course: Course, note: Note) -> None:
         self._system = system
+        self._course = course
         self._note = note
         self._made: Placement | None = None
 
@@ -100,9 +110,11 @@ class Placements:
         missing = [f.upper() for f in FRAME_FIELDS if f not in value.fields]
         what = value.label or name.upper()
         if value.shipped:
+            self._course.value(what, About(span, QuestionKind.DATUM, *EXPECTED["frame"]))
             self._note(
                 what,
-                f"{what} is in no $config.dat at hand: a frame of zeros is assumed",
+                f"{what} is in no $config.dat at hand: a frame of zeros is assumed; answer it "
+                f"({spelt('answers')}): [values] {key_text(what)} = …",
                 span,
             )
         elif missing and not value.moved_by:

@@ -103,7 +103,7 @@ class Interpreter:
         self._advance = AdvanceRun()
         self._keeping = keeping = Keeping(transcript, self._advance)
         position = Position(robot, options.start)
-        self._placements = placements = Placements(data.system, notes.once)
+        self._placements = placements = Placements(data.system, course, notes.once)
         own_position = OwnPosition(position, placements, lambda: transcript.move_index)
         self._evaluator = evaluator = Evaluator(
             data, course, self._function, own_position, self._advance

@@ -14,12 +14,16 @@ from .cursor import Cursor
 from .lexer import CLOSED, MOTION_WORDS
 
 _MOTION = re.compile(
-    r"""(?: (?P<arc> S?CIRC ) [ \t]+ (?P<via> \w+ ) | (?P<word> S?PTP | S?LIN ) ) [ \t]+
-    (?P<point> \w+ ) (?P<cont> [ \t]+ CONT )? [ \t]+ Vel [ \t]* = [ \t]* (?P<speed> [.\d]+ )
+    r"""(?P<seam> ARC_? (?: ON | SWI | OFF ) [ \t]+ \w+ [ \t]+ )?
+    (?: (?P<arc> S?CIRC ) [ \t]+ (?P<via> \w+ ) | (?P<word> S?PTP | S?LIN ) ) [ \t]+
+    (?P<point> \w+ ) (?P<cont> [ \t]+ CONT )?
+    (?(seam) (?: .*? \b Vel [ \t]* = [ \t]* (?P<welding> [.\d]+ ) )?
+      | [ \t]+ Vel [ \t]* = [ \t]* (?P<speed> [.\d]+ ) )
     .*? (?: \bTool \[ [ \t]* (?P<tool> \d+ ) .*? )?
     (?: \bBase \[ [ \t]* (?P<base> \d+ ) .*? )? $""",
     re.IGNORECASE | re.VERBOSE,
 )
+_SEAM = re.compile(r"ARC_?(?:ON|SWI|OFF)\b", re.IGNORECASE)
 _WAIT = re.compile(r"WAIT[ \t]+Time[ \t]*=[ \t]*(?P<time>[.\d]+)", re.IGNORECASE)
 
 
@@ -35,7 +39,8 @@ def parse_closed(cursor: Cursor) -> tree.Statement:
     if wait is not None:
         span = cursor.source.span(start, start + len(text))
         return tree.WaitSec(span, _number(cursor, start, wait, "time"))
-    if re.match(MOTION_WORDS, text, re.IGNORECASE | re.VERBOSE) is None:
+    moves = re.match(MOTION_WORDS, text, re.IGNORECASE | re.VERBOSE) or _SEAM.match(text)
+    if moves is None:
         return tree.Keyword(cursor.source.span(start, start + len(text.rstrip())), CLOSED)
     found = _MOTION.match(text.rstrip())
     if found is None:
@@ -57,7 +62,11 @@ def _motion(cursor: Cursor, start: int, found: re.Match[str]) -> tree.MotionInst
         call = tree.Call(span, function, function.upper(), (_number(cursor, start, found, group),))
         return tree.Assign(span, tree.Name(span, name, name.upper(), path), call)
 
-    settings = [setting(*(("$vel_axis", "svel_joint") if joint else ("$vel", "svel_cp")), "speed")]
+    speed = "welding" if found["seam"] else "speed"
+    settings = []
+    if found[speed]:
+        name = ("$vel_axis", "svel_joint") if joint else ("$vel", "svel_cp")
+        settings.append(setting(*name, speed))
     settings += [setting(f"${kind}", f"s{kind}", kind) for kind in ("tool", "base") if found[kind]]
     points = [found["via"]] if found["via"] else []
     return tree.MotionInstruction(

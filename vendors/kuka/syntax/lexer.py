@@ -44,6 +44,9 @@ MOTION_WORDS = r"(?: S?PTP | S?LIN | S?CIRC )"
 _CLOSED = rf"""
     (?: {MOTION_WORDS} [ \t]++ [^;={{\r\n]{{0,80}}? (?<![$\w.]) Vel [ \t]*+ = [ \t]*+ [.\d]
         [^\r\n;]*+
+      | ARC_? (?: ON | SWI | OFF ) [ \t]++ \w++ [ \t]++ {MOTION_WORDS} [ \t]++ [^\r\n;]*+
+      | WAIT [ \t]++ FOR [ \t(]++ [^;\r\n]*?
+        \b (?: IN | OUT | FLAG | CYCFLAG | TIMER ) [ \t]++ \d++ [ \t]*+ ' [^\r\n;]*+
       | (?: OUT | SYN | PULSE | SET | CHK | WAIT ) [ \t]++ (?: [^;=(\r\n]{{0,80}}? (?<![$\w.]) )?
         (?: State | Time ) [ \t]*+ = [^\r\n;]*+ )"""
 """A line as the teach pendant shows a fold that is closed, see `closed_folds`."""

@@ -29,6 +29,10 @@ class ConfigData:
         node = Name(Span("", 1, 1, 0, 0), name.lower(), name)
         return self._names.value(node, Scope("", self._scopes[-1].module))
 
+    def unset_frame(self, label: str) -> Value:
+        """See `Names.unset_frame`."""
+        return self._names.unset_frame(label)
+
     def item(self, table: str, index: int) -> Value | None:
         """An item of an array; None where nothing is set."""
         cell = self._data.find(table, Scope("", self._scopes[-1].module))

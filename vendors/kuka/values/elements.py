@@ -70,6 +70,12 @@ _STRUCTURE = re.compile(rf"\{{\s*[A-Za-z]\w*\s+{_NUMBER}(?:\s*,\s*[A-Za-z]\w*\s+
 """``{X 700,Y 0,Z 500}``"""
 
 
+def _told(axes: Value) -> str:
+    """The axis values of the arm, as KRL writes them."""
+    fields = axes.fields if isinstance(axes, Struct) else {}
+    return ", ".join(f"{name} {fields[name.lower()]:g}" for name in _AXES if name.lower() in fields)
+
+
 def kind_of(name: str) -> QuestionKind:
     """What a system variable tells, by its name in lower case."""
     if re.fullmatch(r"\$(rob_)?timer(_\w+)?|\$date|\$sen_\w+|\$torque\w*|\$curr_\w+", name):
@@ -135,7 +141,21 @@ class Names:
                 return self._of_position(node, scope, position)
             text = spelled(node.text, path)
             return Unknown(f"the value of {text}, which nothing sets", node.span, key=text)
+        if cell.shipped and cell.type == "e6axis" and not path:
+            return self._home(node, cell, value)
         return value
+
+    def _home(self, node: Name, cell: Variable, shipped: Value) -> Value:
+        """A home that no file at hand says: the user's answer, or KUKA's own, with a note."""
+        answer = self._answer(node, (), QuestionKind.DATUM, cell.type)
+        if answer is not None:
+            return self.converted(answer, cell.type, cell.name, False, node.span)
+        self.data.note(
+            "assigned",
+            f"{cell.name} is in no file at hand: KUKA's own is taken ({_told(shipped)})",
+            node.span,
+        )
+        return shipped
 
     def _of_position(self, node: Name, scope: Scope, kind: str) -> Value:
         path = self.path(node, scope)
@@ -246,7 +266,7 @@ class Names:
         if not isinstance(value, Array):
             raise SourceError(f"{node.text} is {shown(value)} and no array", node.span)
         if node.name in FRAMES and value.sizes[0] is not None and step[0] > value.sizes[0]:
-            return null_frame(spelled(node.text, (step,)), shipped=True)
+            return self.unset_frame(spelled(node.text, (step,)))
         self.check_index(value, step, node)
         return self.item(value, step, cell)
 
@@ -258,8 +278,17 @@ class Names:
             item = array.items[index] = self._initial(item, array.type, label, cell.shipped)
         elif item is None and cell.shipped and array.type == "frame":
             label = f"{cell.name}[{','.join(map(str, index))}]"
-            item = array.items[index] = null_frame(label, shipped=True)
+            item = array.items[index] = self.unset_frame(label)
         return item
+
+    def unset_frame(self, label: str) -> Struct:
+        """An item of ``TOOL_DATA`` or ``BASE_DATA`` that no file sets: the user's answer, or
+        zeros."""
+        told = self.course.value(label)
+        answer = None if told is None else self.answered(told)
+        if not isinstance(answer, Struct):
+            return null_frame(label, shipped=True)
+        return Struct("frame", {**null_frame().fields, **answer.fields}, label)
 
     def check_index(self, array: Array, index: tuple[int, ...], node: Name) -> None:
         for i, size in zip(index, array.sizes, strict=False):

@@ -117,6 +117,9 @@ def _first(defines: Sequence[Define], stem: str, run: Interpreter) -> Define:
         for define in first:
             if define.name == name:
                 return define
+    driving = [d for d in first if run.analysis.moves(d.body)]
+    if len(driving) == 1:
+        return driving[0]
     span = run.texts.span(*defines[0].head)
     known = listed(_points(run, [tuple(defines)]))
     if not first:

@@ -40,6 +40,10 @@ def parse(texts: Texts, which: int) -> Block:
     return tuple(statements)
 
 
+_PYTHON = ("for", "import", "from", "try", "class", "print", "lambda")
+"""Words that begin statements of Python."""
+
+
 def _block(cursor: Cursor, ends: frozenset[str], opening: str) -> Block:
     """Statements up to one of the keywords ``ends``, or the end of the file if it is among them,
     which is left to be read."""
@@ -63,6 +67,11 @@ def _statement(cursor: Cursor) -> Statement:
         cursor.index += 1
         statement = behind(cursor, start, word)
     if cursor.kind not in _AFTER:
+        begins = cursor.source.cut(start, cursor.start).strip()
+        if begins in _PYTHON:
+            raise cursor.source.error(
+                f"URScript has no '{begins}' as Python has: no controller takes this file", start
+            )
         raise cursor.unexpected("the end of the line, after a statement,")
     return statement
 
