@@ -162,6 +162,7 @@ def _robot_json(robot: Robot, vendor: Vendor) -> dict[str, Any]:
                 "acceleration": joint.acceleration,
                 "effort": joint.effort,
                 "coupling": joint.coupling(),
+                "held": joint.held,
             }
             for joint in robot.joints
         ],
@@ -169,6 +170,7 @@ def _robot_json(robot: Robot, vendor: Vendor) -> dict[str, Any]:
         "origins": dict(robot.origins),
         "spread": dict(robot.spread),
         "doubts": list(robot.doubts),
+        "coupled_ranges": [coupled.shown() for coupled in robot.coupled_ranges],
         "may_touch": [
             {"links": [p.first, p.second], "file": p.file, "reason": p.reason}
             for p in robot.may_touch
@@ -183,13 +185,16 @@ def _print_robot(robot: Robot, vendor: Vendor) -> None:
     from ..core.robot.joint import COLUMNS
 
     payload = "payload not known" if robot.payload is None else f"payload {robot.payload:g} kg"
-    print_rich(f"{robot.name}: {counted(robot.joints, 'joint')}, {payload}")
+    driven = [joint for joint in robot.joints if not joint.held]
+    print_rich(f"{robot.name}: {counted(driven, 'joint')}, {payload}")
     reason = _reason(robot, vendor)
     if reason is not None:
         print_rich(f"Emulation only: {reason}")
     print_table(COLUMNS, [joint.cells() for joint in robot.joints])
-    for coupled in filter(None, (joint.coupling() for joint in robot.joints)):
-        print_rich(f"Coupled by rods or gears: {coupled}")
+    for turns in filter(None, (joint.coupling() for joint in robot.joints)):
+        print_rich(f"Coupled by rods or gears: {turns}")
+    for coupled in robot.coupled_ranges:
+        print_rich(f"Coupled: {coupled.shown()}")
     print_table((("figures", "left"), ("origin", "left")), list(robot.origins.items()))
     for note in robot_notes(robot):
         print_rich(f"In collisions: {note}")

@@ -49,7 +49,7 @@ def robot_triangles(cell: Cell, tool: str, q: FloatArray) -> FloatArray:
     robot = cell.robot
     base, flange = robot.base_stages(), robot.flange_stages()
     parts = [
-        _placed(Geometry(s.shape, s.placement), [*base, *robot.arm_stages(s.link)], q[None])[0]
+        _placed(Geometry(s.shape, s.placement), [*base, *robot.link_stages(s.link)], q[None])[0]
         for s in robot.shapes
     ]
     held = tool in cell.tool_geometries and cell.tools[tool].robot_held
@@ -61,7 +61,7 @@ def robot_triangles(cell: Cell, tool: str, q: FloatArray) -> FloatArray:
 def skeleton(robot: Robot, tip: Pose, q: FloatArray) -> FloatArray:
     """Base, joints' origins, flange and the tool's tip (M, n + 3, 3) m at q (M, N)."""
     base, flange = robot.base_stages(), robot.flange_stages()
-    ends = [[*base, *robot.arm_stages(k)] for k in range(robot.arm_size + 1)]
+    ends = [base, *([*base, *robot.arm_stages(index)] for index in robot.along)]
     ends += [flange, [*flange, tip]]
     q = np.ascontiguousarray(q)
     return np.stack([poses(assemble(stages), q)[1] for stages in ends], axis=1)

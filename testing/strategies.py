@@ -48,7 +48,23 @@ def configurations(robot: Robot, margin: float = 0.05) -> st.SearchStrategy[Floa
     gap = margin * (limits.upper - limits.lower)
     ranges = zip(limits.lower + gap, limits.upper - gap, strict=True)
     axes = [st.floats(low, high, allow_subnormal=False) for low, high in ranges]
-    return st.tuples(*axes).map(np.array)
+    drawn = st.tuples(*axes).map(lambda values: allowed(robot, np.array(values)))
+    if not robot.coupled_ranges:
+        return drawn
+    return drawn.filter(lambda q: bool(((limits.lower <= q) & (q <= limits.upper)).all()))
+
+
+def allowed(robot: Robot, q: FloatArray) -> FloatArray:
+    """The configuration (N,) with the joints that have no motor at zero, and the last joint of each
+    coupled range so that it holds."""
+    found = q.copy()
+    found[[j for j, joint in enumerate(robot.joints) if joint.held]] = 0.0
+    for coupled in robot.coupled_ranges:
+        row = coupled.row(robot.axis_names)
+        value = float(row @ found)
+        last = robot.axis_names.index(coupled.terms[-1][0])
+        found[last] += (np.clip(value, coupled.lower, coupled.upper) - value) / row[last]
+    return found
 
 
 def regular_configurations(robot: Robot, margin: float = 0.05) -> st.SearchStrategy[FloatArray]:
@@ -236,7 +252,7 @@ def lines_near_singularities(draw: st.DrawFn, robot: Robot) -> Program:
     def near(base: FloatArray) -> FloatArray:
         moved = base + np.array([draw(st.floats(-0.3, 0.3)) for _ in base])
         moved[axis] = middle + draw(st.floats(0.02, 0.4)) * draw(st.sampled_from([-1, 1]))
-        return np.asarray(np.clip(moved, lower, upper))
+        return allowed(robot, np.clip(moved, lower, upper))
 
     start = near(q)
     end, last = near(start), near(start)
@@ -332,7 +348,9 @@ def _near(draw: st.DrawFn, robot: Robot, q: FloatArray) -> FloatArray | None:
     steps = st.lists(_STEPS, min_size=robot.size, max_size=robot.size)
     start = np.array(robot.flange_pose(q).position)
     for _ in range(_TRIES):
-        end: FloatArray = np.clip(q + draw(steps), robot.limits.lower, robot.limits.upper)
+        end = allowed(robot, np.clip(q + draw(steps), robot.limits.lower, robot.limits.upper))
+        if (end > robot.limits.upper).any() or (end < robot.limits.lower).any():
+            continue
         apart = np.linalg.norm(np.array(robot.flange_pose(end).position) - start)
         if apart > 1e-2 and is_regular(robot, end) and is_regular(robot, 0.5 * (q + end)):
             return end

@@ -48,9 +48,11 @@ def _shapes(file: TomlTable, robot: Robot) -> tuple[tuple[LinkShape, ...], list[
 
 def _at_zero(robot: Robot) -> list[Pose]:
     """The frames of base and links in the base's, all joints at zero."""
-    frames = [IDENTITY]
-    for joint in robot.joints:
-        frames.append(frames[-1] @ joint.step)
+    frames = [IDENTITY] * (robot.arm_size + 1)
+    below = 0
+    for index in robot.along:
+        frames[index + 1] = frames[below] @ robot.joints[index].step
+        below = index + 1
     return frames
 
 

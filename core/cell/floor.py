@@ -77,7 +77,7 @@ def _level(robot: Robot) -> list[str]:
     """Joints behind which a link only turns about the plane's normal: it cannot come nearer."""
     found: list[str] = []
     frame = Pose()
-    for joint in robot.joints:
+    for joint in (robot.joints[index] for index in robot.along):
         axis = (frame @ joint.placement).matrix()[:3, :3] @ joint.axis
         level = joint.kind is JointKind.REVOLUTE and abs(axis[2]) > 1.0 - _PARALLEL
         if not level or joint.followers:

@@ -98,8 +98,21 @@ def _joint_limit(subject: ProgramSubject) -> Iterator[Hit]:
             )
             continue
         values = (*move.target.joints, *move.target.external)
+        names = [joint.name for joint in robot.joints]
+        for coupled in robot.coupled_ranges:
+            value = float(coupled.row(names) @ np.array(move.target.joints))
+            if not coupled.lower - _SLACK <= value <= coupled.upper + _SLACK:
+                yield Hit(coupled.excess(value), "keep the joints inside this range", i)
         for joint, value in zip(joints, values, strict=False):
-            if not joint.lower - _SLACK <= value <= joint.upper + _SLACK:
+            if joint.lower - _SLACK <= value <= joint.upper + _SLACK:
+                continue
+            if joint.held:
+                yield Hit(
+                    f"{joint.name} at {joint.shown(value)} has no motor on {robot.name}",
+                    "programme it at 0",
+                    i,
+                )
+            else:
                 yield Hit(
                     f"{joint.name} at {joint.shown(value)} is outside its range of "
                     f"{joint.shown(joint.lower)} to {joint.shown(joint.upper)}",

@@ -30,6 +30,9 @@ An origin starts with one of published, identified, measured, computed, assumed,
     acceleration_rad_s2 = 4.98           # or none, and at the top of the file:
     effort_nm = 1000                     # optional
 
+    held = true                          # optional, in the place of limits: there is no motor, the
+                                         # joint stands at zero (joints 4 and 5 of a palletiser)
+
     [[joint.follower]]                   # optional: a turn right behind that joint, by the value of
     driver = "J2"                        # another one; rods or gears make it
     axis = [0, -1, 0]                    # the opposite axis turns it against its driver
@@ -42,6 +45,8 @@ An origin starts with one of published, identified, measured, computed, assumed,
     acceleration = 1.9                   # either way; also velocity
 
     doubts = ["…"]                       # optional: what speaks against single figures
+    order = ["A1", "A2", "A3", "A5", "A4", "A6"]   # optional: the joints from base to flange, where
+                                         # the controller counts them otherwise
 
     [flange]                             # in the frame behind the last joint
     xyz_mm = [200, 0, 0]
@@ -54,6 +59,13 @@ Instead of placements and axes, the geometry may be given in standard Denavit–
 row a joint and the last one to the flange: T = Rz(q + theta) Tz(d) Tx(a) Rx(alpha).
 
     dh = [{ d_mm = 162.5, a_mm = 0, alpha_deg = 90 }, …]
+
+    [[coupled_range]]                    # optional: a range of several joints' values together
+    joints = ["J3", "J2"]
+    factors = [1, -1]                    # of these values in their sum
+    lower_deg = -80
+    upper_deg = 70
+    reason = "the rod meets the upper arm"
 
     [[link]]                             # none, or one behind each joint, in their order
     mass_kg = 3.761
@@ -89,7 +101,7 @@ from ..files.tables import ANGLE, LENGTH, TomlTable
 from ..spatial.pose import IDENTITY, Pose
 from ..spatial.rotation import matrix_from_rotation_vector
 from .inertia import Inertia
-from .joint import Follower, Joint, JointKind
+from .joint import CoupledRange, Follower, Joint, JointKind, held_joint
 from .model import Robot
 from .pose_table import pose_at, read_pose
 from .shape import LinkShape, TouchingLinks
@@ -145,6 +157,7 @@ def _robot(table: TomlTable) -> Robot:
         _joint(row, placement, table.has("dh"), seconds)
         for row, placement in zip(rows, placements, strict=True)
     )
+    order = table.texts("order") if table.has("order") else ()
     links = tuple(
         _inertia(row).placed(frame)
         for row, frame in zip(_link_rows(table, len(rows)), frames, strict=False)
@@ -167,6 +180,8 @@ def _robot(table: TomlTable) -> Robot:
         spread=_spread(table.table("spread")),
         doubts=(*(table.texts("doubts") if table.has("doubts") else ()), *odd),
         may_touch=tuple(_touching(row, len(joints)) for row in table.listed_tables("may_touch")),
+        order=order,
+        coupled_ranges=tuple(map(_coupled, table.listed_tables("coupled_range"))),
     )
 
 
@@ -194,6 +209,12 @@ def _origins(table: TomlTable, needed: list[str]) -> Mapping[str, str]:
 def _joint(row: TomlTable, placement: Pose, dh: bool, acceleration_time: float | None) -> Joint:
     kind = JointKind(row.choice("kind", list(JointKind), JointKind.REVOLUTE))
     units = UNITS[kind]
+    x, y, z = (0.0, 0.0, 1.0) if dh else row.numbers("axis", 3)
+    followers = tuple(_follower(entry) for entry in row.listed_tables("follower"))
+    if row.flag("held", False):
+        joint = held_joint(row.text("name"), placement, (x, y, z), followers)
+        row.finish()
+        return joint
     if dh and kind is JointKind.PRISMATIC:
         raise row.error("kind", "joints of a dh table are revolute; give placements and axes")
     speeds = {f"{unit}_s": factor for unit, factor in units.items()}
@@ -209,7 +230,6 @@ def _joint(row: TomlTable, placement: Pose, dh: bool, acceleration_time: float |
                 "is missing; give it, or [assumed] acceleration_time_s for all joints",
             )
         acceleration = velocity / acceleration_time
-    x, y, z = (0.0, 0.0, 1.0) if dh else row.numbers("axis", 3)
     joint = Joint(
         name=row.text("name"),
         placement=placement,
@@ -220,10 +240,19 @@ def _joint(row: TomlTable, placement: Pose, dh: bool, acceleration_time: float |
         acceleration=acceleration,
         effort=row.number("effort_nm") if row.has("effort_nm") else None,
         kind=kind,
-        followers=tuple(_follower(entry) for entry in row.listed_tables("follower")),
+        followers=followers,
     )
     row.finish()
     return joint
+
+
+def _coupled(row: TomlTable) -> CoupledRange:
+    names = row.texts("joints")
+    terms = tuple(zip(names, row.numbers("factors", len(names)), strict=True))
+    ends = (row.quantity("lower", ANGLE), row.quantity("upper", ANGLE))
+    coupled = CoupledRange(terms, *ends, row.text("reason"))
+    row.finish()
+    return coupled
 
 
 def _follower(row: TomlTable) -> Follower:

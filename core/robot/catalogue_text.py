@@ -33,6 +33,7 @@ def robot_text(robot: Robot) -> str:
     head: dict[str, Any] = {"name": robot.name}
     head |= {} if robot.payload is None else {"payload_kg": robot.payload}
     head |= {"doubts": list(robot.doubts)} if robot.doubts else {}
+    head |= {"order": list(robot.order)} if robot.order else {}
     lines = list(_pairs(head))
     origins = {**dict.fromkeys(_stated(robot), _UNSAID), **robot.origins}
     lines += _table("[origin]", origins)
@@ -42,6 +43,11 @@ def robot_text(robot: Robot) -> str:
         lines += _table("[[joint]]", _joint(joint))
         for follower in joint.followers:
             lines += _table("[[joint.follower]]", _follower(follower))
+    for coupled in robot.coupled_ranges:
+        names, factors = zip(*coupled.terms, strict=True)
+        told: dict[str, Any] = {"joints": list(names), "factors": list(factors)}
+        told |= {"lower_rad": coupled.lower, "upper_rad": coupled.upper, "reason": coupled.reason}
+        lines += _table("[[coupled_range]]", told)
     if robot.flange != IDENTITY:
         lines += _table("[flange]", pose_entries(robot.flange))
     for body in robot.links:
@@ -90,6 +96,8 @@ def _joint(joint: Joint) -> dict[str, Any]:
     if joint.kind is not JointKind.REVOLUTE:
         entries["kind"] = joint.kind.value
     entries |= pose_entries(joint.placement)
+    if joint.held:
+        return {**entries, "axis": list(joint.axis), "held": True}
     entries |= {
         "axis": list(joint.axis),
         f"lower_{unit}": joint.lower,

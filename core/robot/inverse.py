@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..arrays import FloatArray
 from ..errors import FaultCause, MotionError
-from .joint import Joint, JointKind
+from .joint import CoupledRange, Joint, JointKind, beyond_coupled
 from .kinematics.arm_geometry import EXACT, Family, Recognised
 from .kinematics.chain import Chain
 from .kinematics.closed_form import SLACK
@@ -44,10 +44,12 @@ class UnreachableError(MotionError):
     Args:
         message: by how much it is missed, and what to do.
         distance: m by which the wrist is out of reach; 0 if only limits are in the way.
+        tilted: whether a joint that has no motor would have to turn.
     """
 
-    def __init__(self, message: str, distance: float = 0.0) -> None:
-        super().__init__(message, cause=FaultCause.LIMIT if distance == 0.0 else FaultCause.REACH)
+    def __init__(self, message: str, distance: float = 0.0, tilted: bool = False) -> None:
+        limited = distance == 0.0 and not tilted
+        super().__init__(message, cause=FaultCause.LIMIT if limited else FaultCause.REACH)
         self.distance = distance
 
 
@@ -121,6 +123,7 @@ def solve(
     chain: Chain,
     joints: Sequence[Joint],
     ranges: Ranges,
+    coupled: Sequence[CoupledRange],
     known: Recognised | None,
     R: FloatArray,
     p: FloatArray,
@@ -131,6 +134,7 @@ def solve(
         chain: from the base to the flange, over the n joints.
         joints: the arm's joints.
         ranges: theirs.
+        coupled: ranges of sums of their values.
         known: the closed form that fits the chain; None to search numerically, where not every
             solution need be found, and of an arm with more than six joints only samples can be.
         R, p: (3, 3), (3,) m, the pose.
@@ -146,12 +150,20 @@ def solve(
         raise UnreachableError(_out_of_reach(known, least), least)
     settled, inside = _settled(ranges, np.array([candidate.q for candidate in candidates]))
     solutions: list[InverseSolution] = []
+    names = [joint.name for joint in joints]
+    beyond = beyond_coupled(coupled, names, settled) > LIMIT_SLACK
+    broken = beyond & inside[:, None]
+    inside &= ~beyond.any(axis=1)
     for candidate, q, fits in zip(candidates, settled, inside, strict=True):
         if not fits or (candidate.doubtful and any(_same(candidate, q, s) for s in solutions)):
             continue
         solutions.append(InverseSolution(q, candidate.branch, candidate.singular))
     if not solutions:
-        raise UnreachableError(_beyond_limits(joints, candidates))
+        if broken.any():
+            at, which = np.argwhere(broken)[0]
+            said = coupled[which].excess(float(coupled[which].row(names) @ settled[at]))
+            raise UnreachableError(said, tilted=coupled[which].fixed)
+        raise _beyond_limits(joints, candidates)
     return tuple(solutions)
 
 
@@ -236,15 +248,28 @@ def _out_of_reach(known: Recognised | None, least: float) -> str:
     )
 
 
-def _beyond_limits(joints: Sequence[Joint], candidates: list[UnboundedSolution]) -> str:
-    """A sentence on the solution that breaks its worst limit by least."""
+def _beyond_limits(
+    joints: Sequence[Joint], candidates: list[UnboundedSolution]
+) -> UnreachableError:
+    """What is wrong with the solution that breaks its worst limit by least."""
     worst = [_worst(joints, candidate.q) for candidate in candidates]
-    excess, joint, value = min(worst, key=lambda found: found[0])
+    nearest = min(range(len(worst)), key=lambda k: worst[k][0])
+    excess, joint, value = worst[nearest]
+    if joint.held:
+        still = [k for k, one in enumerate(joints) if one.held]
+        apart = np.abs(np.remainder(candidates[nearest].q[still] + math.pi, FULL_TURN) - math.pi)
+        missed, names = math.degrees(math.hypot(*apart)), [joints[k].name for k in still]
+        return UnreachableError(
+            f"this arm cannot turn its flange so: the pose is {missed:.4g}° away from what it can "
+            f"take, as there is no motor for {' and '.join(names)}; turn the target, its frame or "
+            "the tool back",
+            tilted=True,
+        )
     if joint.kind is JointKind.REVOLUTE:
         unit, scale = "°", 180 / math.pi
     else:
         unit, scale = " m", 1.0
-    return (
+    return UnreachableError(
         f"every solution breaks a joint limit; the nearest needs {joint.name} at "
         f"{value * scale:.4g}{unit}, {excess * scale:.4g}{unit} beyond its range of "
         f"{joint.lower * scale:.4g}{unit} to {joint.upper * scale:.4g}{unit}"

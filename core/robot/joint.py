@@ -26,6 +26,8 @@ COLUMNS = (
 """Of a table of joints."""
 
 
+HELD_WITHIN = 2e-4
+"""rad by which a joint without a motor may miss zero: quaternions of four digits do by 1e-4."""
 _ALONG = 1e-9
 
 
@@ -83,6 +85,7 @@ class Joint:
         kind: revolute or prismatic.
         followers: turns by other joints' values, one behind the other; the frame behind the joint
             is that behind the last of them.
+        held: whether the arm has no motor for it: it stands at zero (see `held_joint`).
 
     Raises:
         InputError: a number is not finite, the range is empty, or the axis is no unit vector.
@@ -98,6 +101,7 @@ class Joint:
     effort: float | None = None
     kind: JointKind = JointKind.REVOLUTE
     followers: tuple[Follower, ...] = ()
+    held: bool = False
 
     def __post_init__(self) -> None:
         if abs(math.hypot(*self.axis) - 1.0) > 1e-6:
@@ -121,10 +125,14 @@ class Joint:
 
     def coupling(self) -> str | None:
         """What rods or gears make of the joint, in words; None if it turns by its own value."""
+        if self.held:
+            signs = ("-" if self._along(f) < 0 else "" for f in self.followers)
+            turns = " ".join(f"{s}{f.driver}" for s, f in zip(signs, self.followers, strict=True))
+            return f"what is behind {self.name} turns by {turns}" if turns else None
         terms: list[str] = [self.name]
         behind: list[str] = []
         for follower in self.followers:
-            along = sum(a * b for a, b in zip(self.axis, follower.axis, strict=True))
+            along = self._along(follower)
             if not behind and abs(abs(along) - 1.0) < _ALONG and follower.placement == IDENTITY:
                 terms.append(f"{'-' if along < 0 else '+'} {follower.driver}")
             else:
@@ -133,8 +141,14 @@ class Joint:
         said += [f"a turn behind {self.name} follows {driver}" for driver in behind]
         return ", ".join(said) or None
 
+    def _along(self, follower: Follower) -> float:
+        """Cosine between a follower's axis and the joint's."""
+        return sum(a * b for a, b in zip(self.axis, follower.axis, strict=True))
+
     def cells(self) -> tuple[str, ...]:
         """Name and limits in degrees or mm, as `COLUMNS` names them."""
+        if self.held:
+            return self.name, "held at 0", "", "", "", ""
         turning = self.kind is JointKind.REVOLUTE
         unit, scale, force = ("°", math.pi / 180, "N m") if turning else ("mm", 1e-3, "N")
         figures = (self.lower, self.upper, self.velocity, self.acceleration)
@@ -146,6 +160,89 @@ class Joint:
         if self.kind is JointKind.PRISMATIC:
             return f"{1e3 * value:.6g} mm"
         return f"{math.degrees(value):.6g}°"
+
+
+def held_joint(
+    name: str, placement: Pose, axis: Vector3, followers: tuple[Follower, ...] = ()
+) -> Joint:
+    """A joint that the arm has no motor for.
+
+    Poses ask six values, and programs state as many; an arm with fewer motors holds the others at
+    zero, within what rounded orientations of programs miss.
+    """
+    limits = (-HELD_WITHIN, HELD_WITHIN, 1.0, 100.0)
+    return Joint(name, placement, axis, *limits, followers=followers, held=True)
+
+
+@dataclass(frozen=True, slots=True)
+class CoupledRange:
+    """A range of a sum of turning joints' values, beside the ranges of each.
+
+    Args:
+        terms: joints and what their values are multiplied with.
+        lower, upper: rad.
+        reason: what keeps it, in words.
+
+    Raises:
+        InputError: the range is empty, or no joint is named.
+    """
+
+    terms: tuple[tuple[str, float], ...]
+    lower: float
+    upper: float
+    reason: str
+
+    def __post_init__(self) -> None:
+        if not self.terms or not -math.inf < self.lower < self.upper < math.inf:
+            raise InputError(
+                f"the range of {self.sum} from {self.lower:g} to {self.upper:g} rad is none"
+            )
+
+    @property
+    def sum(self) -> str:
+        """The joints as a sum: ``J3 - J2``."""
+        told = ""
+        for name, factor in self.terms:
+            size = "" if abs(factor) == 1.0 else f"{abs(factor):g} "
+            sign = "-" if factor < 0.0 else "+"
+            told += f" {sign} {size}{name}" if told else f"{sign.strip('+')}{size}{name}"
+        return told
+
+    def row(self, names: Sequence[str]) -> FloatArray:
+        """(N,), the factors of axes of these names."""
+        factors = dict(self.terms)
+        return np.array([factors.get(name, 0.0) for name in names])
+
+    @property
+    def fixed(self) -> bool:
+        """Whether it leaves one value, but for rounding."""
+        return self.upper - self.lower < 4.0 * HELD_WITHIN
+
+    def shown(self) -> str:
+        """The range in degrees, with its reason."""
+        ends = [math.degrees(end) for end in (self.lower, self.upper)]
+        if self.fixed:
+            return f"{self.sum} is {0.5 * sum(ends):.4g}°: {self.reason}"
+        return f"{self.sum} lies between {ends[0]:.4g}° and {ends[1]:.4g}°: {self.reason}"
+
+    def excess(self, value: float) -> str:
+        """What is wrong with a value (rad) of the sum."""
+        ends = [math.degrees(end) for end in (self.lower, self.upper)]
+        allowed = f"not {0.5 * sum(ends):.4g}°"
+        if not self.fixed:
+            allowed = f"beyond its range of {ends[0]:.4g}° to {ends[1]:.4g}°"
+        return f"{self.sum} would be {math.degrees(value):.4g}°, {allowed}: {self.reason}"
+
+
+def beyond_coupled(
+    ranges: Sequence[CoupledRange], names: Sequence[str], q: FloatArray
+) -> FloatArray:
+    """(..., C) rad by which values (..., N) of axes of these names are beyond each of C ranges."""
+    beyond = np.zeros((*q.shape[:-1], len(ranges)))
+    for k, one in enumerate(ranges):
+        sums = q @ one.row(names)
+        beyond[..., k] = np.maximum(one.lower - sums, sums - one.upper)
+    return beyond
 
 
 class ExternalRole(StrEnum):

@@ -19,7 +19,16 @@ from .assembly import Stage, Turn, assemble
 from .dynamics import Dynamics, JointTree, TreeNode
 from .inertia import Inertia
 from .inverse import InverseSolution, Ranges, equivalent_turns, solve
-from .joint import COLUMNS, ExternalAxis, ExternalRole, Joint, JointKind, JointLimits
+from .joint import (
+    COLUMNS,
+    CoupledRange,
+    ExternalAxis,
+    ExternalRole,
+    Joint,
+    JointKind,
+    JointLimits,
+    beyond_coupled,
+)
 from .kinematics.arm_geometry import Recognised, recognise
 from .kinematics.chain import Chain
 from .kinematics.chain_derivatives import hessians
@@ -39,8 +48,8 @@ class Robot:
 
     Args:
         name: ``vendor/model``.
-        joints: the arm's joints; each placement is in the frame behind the joint before, the
-            first one in the base's frame.
+        joints: the arm's joints as the controller counts them; each placement is in the frame
+            behind the joint before, the first one in the base's frame.
         base: the base's frame in the world, or in the frame behind the track that carries it.
         flange: the flange's frame in the frame behind the last joint.
         links: the bodies behind each joint, in that joint's frame; empty if not known.
@@ -52,6 +61,8 @@ class Robot:
         spread: by what factor, either way, a group of assumed numbers may be off; one or more.
         doubts: what speaks against single numbers.
         may_touch: pairs of the arm's own links that may touch.
+        order: names of the joints from base to flange, if not those of ``joints``.
+        coupled_ranges: ranges of sums of joints' values.
 
     Raises:
         InputError: two axes share a name, the links are not one a joint, a shape or a pair that
@@ -71,6 +82,8 @@ class Robot:
     spread: Mapping[str, float] = field(default_factory=dict, hash=False)
     doubts: tuple[str, ...] = ()
     may_touch: tuple[TouchingLinks, ...] = ()
+    order: tuple[str, ...] = ()
+    coupled_ranges: tuple[CoupledRange, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "origins", MappingProxyType(dict(self.origins)))
@@ -86,7 +99,7 @@ class Robot:
                 f"robot {self.name} has {self.arm_size} joints but inertias of "
                 f"{len(self.links)} links; give one behind each joint, or none"
             )
-        self._check_followers()
+        self._check_joints()
         for shape in self.shapes:
             if not 0 <= shape.link <= self.arm_size:
                 raise InputError(f"robot {self.name}: a shape belongs to link {shape.link}")
@@ -100,8 +113,18 @@ class Robot:
             self.frame_stages(axis.name)
         self._carrying_track()
 
-    def _check_followers(self) -> None:
+    def _check_joints(self) -> None:
+        if self.order and sorted(self.order) != sorted(joint.name for joint in self.joints):
+            raise InputError(
+                f"robot {self.name}: the order {', '.join(self.order)} is none of its joints"
+            )
         turning = [joint.name for joint in self.joints if joint.kind is JointKind.REVOLUTE]
+        summed = [name for coupled in self.coupled_ranges for name, _ in coupled.terms]
+        if not set(summed) <= set(turning):
+            raise InputError(
+                f"robot {self.name}: a range couples {', '.join(summed)}, but the arm's turning "
+                f"joints are {', '.join(turning)}"
+            )
         for joint in self.joints:
             for follower in joint.followers:
                 if follower.driver not in turning:
@@ -115,6 +138,11 @@ class Robot:
     def has_followers(self) -> bool:
         """Whether rods or gears turn one of the arm's joints with another."""
         return any(joint.followers for joint in self.joints)
+
+    @property
+    def has_held(self) -> bool:
+        """Whether the arm has no motor for some of its joints."""
+        return any(joint.held for joint in self.joints)
 
     def __repr__(self) -> str:
         carries = "payload not known" if self.payload is None else f"payload {self.payload:g} kg"
@@ -132,13 +160,24 @@ class Robot:
         """Base, joints and flange (n + 2, 3) m in the world, all axes as near to zero as can be."""
         q = np.clip(np.zeros((1, self.size)), self.limits.lower, self.limits.upper)
         base = self.base_stages()
-        ends = [[*base, *self.arm_stages(k)] for k in range(self.arm_size + 1)]
+        ends = [base, *([*base, *self.arm_stages(index)] for index in self.along)]
         return np.concatenate([poses(assemble(s), q)[1] for s in [*ends, self.flange_stages()]])
 
     @property
     def arm_size(self) -> int:
         """n, the number of the arm's own joints."""
         return len(self.joints)
+
+    @cached_property
+    def along(self) -> tuple[int, ...]:
+        """Indices of the arm's joints from base to flange."""
+        names = [joint.name for joint in self.joints]
+        return tuple(map(names.index, self.order)) or tuple(range(len(names)))
+
+    @property
+    def flange_link(self) -> int:
+        """The link that carries the flange: behind joint k is link k, counted from one."""
+        return self.along[-1] + 1
 
     @property
     def size(self) -> int:
@@ -161,6 +200,11 @@ class Robot:
     def limits(self) -> JointLimits:
         """JointLimits of all N values."""
         return JointLimits.of([*self.joints, *(axis.joint for axis in self.external_axes)])
+
+    def beyond_coupled(self, q: FloatArray) -> FloatArray:
+        """(..., C) rad by which configurations (..., N) are beyond each coupled range; not above
+        zero within."""
+        return beyond_coupled(self.coupled_ranges, self.axis_names, q)
 
     def external_axis(self, name: str) -> ExternalAxis:
         """The external axis of that name.
@@ -222,19 +266,23 @@ class Robot:
         """The stages from the world to the flange."""
         return [*self.base_stages(), *self.arm_stages(), self.flange]
 
-    def arm_stages(self, count: int | None = None) -> list[Turn]:
-        """The stages from the base's frame to that behind the first ``count`` joints (None: all).
+    def arm_stages(self, last: int | None = None) -> list[Turn]:
+        """The stages from the base's frame to that behind the joint of index ``last`` (None: all).
 
         What follows a joint is a stage of its own, with the index of the joint that drives it.
         """
-        stages: list[Turn] = []
-        for index, joint in enumerate(self.joints[:count]):
-            stages += [(joint, index), *self._followers(joint)]
-        return stages
+        end = None if last is None else self.along.index(last) + 1
+        return [stage for index in self.along[:end] for stage in self.joint_stages(index)]
 
-    def _followers(self, joint: Joint) -> list[Turn]:
-        """What follows a joint, with the index of what drives it."""
-        return [(one, self.axis_names.index(one.driver)) for one in joint.followers]
+    def joint_stages(self, index: int) -> list[Turn]:
+        """A joint and what follows it, each with the index of its value."""
+        joint = self.joints[index]
+        followers = ((one, self.axis_names.index(one.driver)) for one in joint.followers)
+        return [(joint, index), *followers]
+
+    def link_stages(self, link: int) -> list[Turn]:
+        """The stages from the base's frame to that of a link (0: the base)."""
+        return self.arm_stages(link - 1) if link else []
 
     @cached_property
     def chain(self) -> Chain:
@@ -312,7 +360,15 @@ class Robot:
         base_R, base_p = poses(self.base_chain, np.array([[0.0] * self.arm_size + list(external)]))
         R = base_R[0].T @ matrix[:3, :3]
         p = base_R[0].T @ (matrix[:3, 3] - base_p[0])
-        return solve(self.arm_chain, self.joints, self._ranges, self.recognised, R, p)
+        return solve(
+            self.arm_chain,
+            self.joints,
+            self._ranges,
+            self.coupled_ranges,
+            self.recognised,
+            R,
+            p,
+        )
 
     def turns(self, q: ArrayLike) -> FloatArray:
         """Arm configurations (T, n) within limits, whole turns away from q (n,), nearest first."""
@@ -354,12 +410,13 @@ class Robot:
         for axis in self.external_axes:
             plant(axis)
         parent, step = places[self._carrying_track()], self.base
-        for index, (joint, body) in enumerate(zip(self.joints, self.links, strict=True)):
-            if index == self.arm_size - 1:
+        for index in self.along:
+            body = self.links[index]
+            if index == self.along[-1]:
                 body = body + load.placed(self.flange)
-            turns: list[Turn] = [(joint, index), *self._followers(joint)]
-            for turn, driver in turns:
-                carried = body if turn is turns[-1][0] else Inertia(0.0)
+            *between, last = self.joint_stages(index)
+            for turn, driver in [*between, last]:
+                carried = body if turn is last[0] else Inertia(0.0)
                 nodes.append(TreeNode(turn, parent, step, driver, carried))
                 parent, step = len(nodes) - 1, IDENTITY
         return JointTree(self.name, tuple(nodes), self.gravity)

@@ -34,21 +34,29 @@ class Posture(NamedTuple):
 
 
 def posture(robot: Robot, q: ArrayLike) -> Posture | None:
-    """The posture of a robot at a configuration (N,); None if its arm has no spherical wrist."""
+    """The posture of a robot at a configuration (N,); None of an arm with six motors whose last
+    three axes do not meet."""
     known = robot.recognised
-    if known is None or known.family is not Family.SPHERICAL_WRIST:
+    if known is None:
         return None
-    arm = known.geometry
-    angles = known.angles(np.asarray(q, dtype=float)[:6])
-    _, q2, q3, _, q5 = (float(value) for value in angles[:5])
+    arm, own = known.geometry, np.asarray(q, dtype=float)[:6]
+    _, q2, q3, q4 = (float(value) for value in known.angles(own)[:4])
     # The plane that axes 2 and 3 are normal to, x real, z imaginary; a turn about y takes z to x.
     shoulder, elbow, wrist = (complex(x, z) for x, z in (arm.shoulder, arm.elbow, arm.wrist))
     lower = (elbow - shoulder) * cmath.exp(-1j * q2)
-    fore = (wrist - elbow) * cmath.exp(-1j * (q2 + arm.signs[2] * q3))
+    turned = q2 + arm.signs[2] * q3
+    fore = (wrist - elbow) * cmath.exp(-1j * turned)
+    hand = 0j
+    if known.family is Family.PARALLEL_AXES:
+        if not robot.has_held:
+            return None
+        # A palletiser's axis 6 stands off the joint that keeps the flange level.
+        x, _, z = -arm.centre_to_fourth
+        hand = complex(x, z) * cmath.exp(-1j * (turned + arm.signs[3] * q4))
     front = math.copysign(1.0, wrist.real)
     up = math.copysign(1.0, arm.frame[2, 2])
     return Posture(
-        shoulder=front * (shoulder + lower + fore).real,
+        shoulder=front * (shoulder + lower + fore + hand).real,
         elbow=-front * up * (lower.conjugate() * fore).imag / abs(lower),
-        wrist=math.remainder(q5, math.tau),
+        wrist=math.remainder(float(own[4]), math.tau),
     )

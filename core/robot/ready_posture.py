@@ -36,7 +36,7 @@ def ready_posture(robot: Robot) -> tuple[float, ...] | None:
     """
     size, limits = robot.arm_size, robot.limits
     external = np.clip(0.0, limits.lower[size:], limits.upper[size:])
-    length = sum(math.hypot(*joint.step.position) for joint in robot.joints[1:])
+    length = sum(math.hypot(*robot.joints[k].step.position) for k in robot.along[1:])
     R, p = poses(robot.base_chain, np.concatenate([np.zeros(size), external])[None])
     for above in _ABOVE:
         for ahead in _AHEAD:

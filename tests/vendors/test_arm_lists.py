@@ -14,6 +14,7 @@ import flyby
 from flyby.core.errors import InputError
 from flyby.core.registry import find_robot, installed
 from flyby.core.robot.catalogue import SPREAD, TRUST
+from flyby.testing.strategies import allowed
 
 VENDORS = Path(flyby.__file__).parent / "vendors"
 ROWS = [
@@ -38,7 +39,9 @@ def test_each_arm_stands_where_it_should(vendor) -> None:
         robot = find_robot(row["name"])
         at = robot.flange_pose(np.array(row["check"]["q_rad"])).position
         np.testing.assert_allclose(1e3 * np.array(at), row["check"]["flange_mm"], atol=0.005)
-        q = rng.uniform(robot.limits.lower, robot.limits.upper)
+        q = allowed(robot, rng.uniform(robot.limits.lower, robot.limits.upper))
+        while np.any(np.abs(q - np.clip(q, robot.limits.lower, robot.limits.upper)) > 0.0):
+            q = allowed(robot, rng.uniform(robot.limits.lower, robot.limits.upper))
         pose = robot.flange_pose(q)
         found = [solution.q for solution in robot.inverse(pose)]
         apart = [np.abs(np.remainder(x - q + np.pi, 2 * np.pi) - np.pi).max() for x in found]

@@ -61,7 +61,7 @@ def _axes(robot: Robot, tool: Geometry, q: FloatArray) -> Iterable[tuple[float, 
     """The radius and the points (P, 3) of each shape's axis over all configurations."""
     stages = robot.flange_stages()
     base = robot.base_stages()
-    shapes = [([*base, *robot.arm_stages(s.link)], s.shape, s.placement) for s in robot.shapes]
+    shapes = [([*base, *robot.link_stages(s.link)], s.shape, s.placement) for s in robot.shapes]
     for carried, shape, placement in [*shapes, (stages, tool.shape, tool.placement)]:
         if not isinstance(shape, Sphere | Capsule | Cylinder):
             raise InputError(f"a swept arm is made of spheres, capsules and cylinders, not {shape}")

@@ -67,7 +67,7 @@ class MovingPoint:
 
 def _chain(robot: Robot, link: int, point: FloatArray, frame: Pose | None) -> Chain:
     x, y, z = (float(v) for v in point)
-    arm: list[Stage] = [*robot.arm_stages(link)]
+    arm: list[Stage] = [*robot.link_stages(min(link, robot.arm_size))]
     if link > robot.arm_size:
         arm.append(robot.flange)
     first: list[Stage] = [] if frame is None else [frame.inverse()]

@@ -85,7 +85,10 @@ def exclusion_reason(cell: Cell, first: Body, second: Body) -> str | None:
 
 def _adjacent(robot: Robot, first: Body, second: Body) -> bool:
     links = _links(robot, first, second)
-    return links is not None and links[1] - links[0] == 1
+    if links is None:
+        return False
+    places = [0, *(robot.along.index(index) + 1 for index in range(robot.arm_size))]
+    return abs(places[links[1]] - places[links[0]]) == 1
 
 
 def _told_by_robot(robot: Robot, first: Body, second: Body) -> str | None:

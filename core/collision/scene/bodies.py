@@ -158,7 +158,7 @@ def _present_tools(cell: Cell, mounted: Tool) -> list[str]:
 def _tool_place(cell: Cell, name: str) -> tuple[int, Pose]:
     geometry = cell.tool_geometries[name]
     if cell.tools[name].robot_held:
-        return cell.robot.arm_size, cell.robot.flange @ geometry.placement
+        return cell.robot.flange_link, cell.robot.flange @ geometry.placement
     return WORLD, geometry.placement
 
 

@@ -134,9 +134,9 @@ def _turns(robot: Robot) -> Iterator[_Turn]:
     yield from _walk(robot.base_stages(), BasePlace(WORLD, IDENTITY))
     below, step = base_place(robot)
     between = robot.size + 1
-    for link in range(1, robot.arm_size + 1):
-        stages = robot.arm_stages(link)[len(robot.arm_stages(link - 1)) :]
-        frames = [*range(between, between + len(stages) - 1), link]
+    for index in robot.along:
+        stages = robot.joint_stages(index)
+        frames = [*range(between, between + len(stages) - 1), index + 1]
         between += len(stages) - 1
         for stage, frame in zip(stages, frames, strict=True):
             yield _Turn(below, step, stage[0], frame, stage[1])

@@ -57,7 +57,7 @@ def part_bodies(robot: Robot, parts: Arrangement, solids: Mapping[str, list[Soli
         name, kind = placed.part.name, BodyKind.HELD if placed.held else BodyKind.PART
         frame, placement = WORLD, placed.pose
         if placed.held:
-            frame, placement = robot.arm_size, robot.flange @ placed.pose
+            frame, placement = robot.flange_link, robot.flange @ placed.pose
         elif placed.carrier is not None:
             frame = frame_of_axis(robot, placed.carrier)
         found += pieces_of(placed.name, name, kind, frame, placement, solids[name])

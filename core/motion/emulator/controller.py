@@ -37,17 +37,15 @@ from ..timing.timing import Settling, Timing, along_path, stamp_path
 from ..timing.torque import torque_shares
 from ..timing.torque_rows import Shares
 from .limit_violations import excesses, torque_excesses, torques_taken
+from .ranges import check_path, check_standing
 from .run import Run
 
 _SKIPS = 10_000
-_LIMIT_SLACK = 1e-6
-"""rad or m by which a path may pass a joint limit: rounding of programmed values."""
 _STARTS = 64
 """Configurations tried of a first target: a six-axis arm has eight solutions, and turns of them."""
 _TRIED_MOVES = 20_000
 """Moves planned to find a start, about: some seconds."""
 _DEPENDS_ON_START = (FaultCause.LIMIT, FaultCause.SINGULARITY, FaultCause.CONFIGURATION)
-_OTHER_TARGET = "choose another configuration or move the target"
 _DEGREES = 180 / np.pi
 
 
@@ -185,7 +183,7 @@ class Controller:
             MotionError: it cannot stand there.
         """
         at = self._routes.standing_at(move, near)
-        self._check_start(np.array([*at.joints, *at.external]), _OTHER_TARGET)
+        check_standing(self.robot, np.array([*at.joints, *at.external]))
         return at
 
     def _plan(self, program: Program, start: JointTarget | None) -> Path:
@@ -210,7 +208,10 @@ class Controller:
                 continue
             except MotionError as error:
                 raise _located(error, program) from error
-            self._check_limits(program, path, start)
+            try:
+                check_path(self.robot, path, (start or program.start) is not None)
+            except MotionError as error:
+                raise _located(error, program) from None
             return replace(path, notes=(*notes, *path.notes))
         raise MotionError("the blends of this program overlap beyond remedy")
 
@@ -337,41 +338,6 @@ class Controller:
                     rotation, position[rows] = poses(chain, np.ascontiguousarray(q[rows]))
                     quaternion[rows] = quaternion_from_matrix(rotation)
         return position, quaternion
-
-    def _check_limits(self, program: Program, path: Path, stated: JointTarget | None) -> None:
-        """Refuse a path that passes a joint limit, at the first place where it does."""
-        limits = self.robot.limits
-        told = stated or program.start
-        remedy = _OTHER_TARGET if told is None else "start within the limits"
-        self._check_start(path.route.ends.q[0, 0], remedy, "the start: ")
-        beyond = np.maximum(limits.lower - path.q, path.q - limits.upper)
-        samples = np.flatnonzero(beyond.max(axis=1) > _LIMIT_SLACK)
-        if not len(samples):
-            return
-        moves = path.sample_moves()
-        move = int(moves[samples[0]])
-        samples = samples[moves[samples] == move]
-        row, axis = np.unravel_index(np.argmax(beyond[samples]), beyond[samples].shape)
-        excess = self._excess(int(axis), path.q[samples[row]])
-        raise _located(MotionError(excess, move, cause=FaultCause.LIMIT), program)
-
-    def _check_start(self, q: FloatArray, remedy: str, what: str = "") -> None:
-        """Refuse a robot (N,) that stands beyond its limits."""
-        limits = self.robot.limits
-        beyond = np.maximum(limits.lower - q, q - limits.upper)
-        if beyond.max() > _LIMIT_SLACK:
-            excess = self._excess(int(np.argmax(beyond)), q, remedy)
-            raise MotionError(what + excess, cause=FaultCause.LIMIT)
-
-    def _excess(self, axis: int, q: FloatArray, remedy: str = _OTHER_TARGET) -> str:
-        limits = self.robot.limits
-        joints = [*self.robot.joints, *(external.joint for external in self.robot.external_axes)]
-        unit, factor = ("mm", 1e3) if joints[axis].kind is JointKind.PRISMATIC else ("°", _DEGREES)
-        bound = limits.lower[axis] if q[axis] < limits.lower[axis] else limits.upper[axis]
-        return (
-            f"joint {self.robot.axis_names[axis]} would stand at {factor * q[axis]:.2f} {unit}, "
-            f"beyond its limit of {factor * bound:.2f} {unit}; {remedy}"
-        )
 
     def _excess_notes(self, program: Program, timing: Timing, trajectory: Trajectory) -> list[Note]:
         """Moves on which the motion as stamped passes what is programmed or the robot's limits."""

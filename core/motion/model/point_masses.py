@@ -107,8 +107,8 @@ def _weights(
     for joint, weights in masses:
         if joint > robot.arm_size:
             raise InputError(f"{key}: {robot.name} has {robot.arm_size} joints, no joint {joint}")
-        before = assemble([*robot.base_stages(), *robot.arm_stages(joint - 1)])
-        weight[before.joint.size] += filled(weights, size)
+        upto = assemble([*robot.base_stages(), *robot.arm_stages(joint - 1)])
+        weight[upto.joint.size - len(robot.joint_stages(joint - 1))] += filled(weights, size)
     at = np.flatnonzero(weight.any(axis=1))
     return at, weight[at]
 

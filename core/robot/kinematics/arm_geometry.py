@@ -99,7 +99,7 @@ def recognise(chain: Chain) -> Recognised | None:
     if chain.prismatic.any():
         return None
     chain, coupling = _uncoupled(chain)
-    if coupling.shape != (6, 6) or (np.diag(coupling) != 1.0).any() or np.triu(coupling, 1).any():
+    if coupling.shape != (6, 6) or abs(round(float(np.linalg.det(coupling)))) != 1:
         return None
     lines = _lines(chain)
     for family in Family:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ....core.errors import InputError, MotionError
+from ..planning.ends import check_coupled
 from .motion.scheme import SchemeKind
 from .search.surroundings import Surroundings
 from .task.limits import MotionLimits
@@ -24,10 +25,12 @@ def check_task(
     """Refuse what no motion can do.
 
     Raises:
-        InputError: a station is out of a joint's range or a given velocity beyond its limit, or
-            torque limits cannot hold the arm where it has to rest.
+        InputError: the arm has ranges of several joints together, a station is out of a joint's
+            range or a given velocity beyond its limit, or torque limits cannot hold the arm where
+            it has to rest.
         MotionError: the robot collides at a station.
     """
+    check_coupled(task.robot)
     _check_bounded(task, limits, scheme)
     names = _station_names(task)
     for name, q in zip(names, task.stations, strict=True):

@@ -34,6 +34,19 @@ class PathEnd:
     configurations: tuple[FloatArray, ...]
 
 
+def check_coupled(robot: Robot) -> None:
+    """Refuse an arm with ranges of several joints together, which no search holds.
+
+    Raises:
+        InputError: it has one.
+    """
+    for coupled in robot.coupled_ranges:
+        raise InputError(
+            f"motions of {robot.name} are not searched freely: {coupled.shown()}, which the search "
+            "does not hold"
+        )
+
+
 def external_values(robot: Robot, start: Target, goal: Target) -> tuple[float, ...]:
     """What the external axes stand at all along; those that neither end states, at zero.
 

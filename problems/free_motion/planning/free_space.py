@@ -97,10 +97,12 @@ def _levers(scene: CollisionScene) -> FloatArray:
         box = extent(body.solid)
         centre = body.placement.matrix()[:3] @ [*box.centre, 1.0]
         reach = float(np.linalg.norm(centre)) + box.radius
-        for j in range(body.frame - 1, -1, -1):
-            joint = robot.joints[j]
+        own = np.zeros(size)
+        for joint, j in reversed(robot.link_stages(body.frame)):
             slides = joint.kind is JointKind.PRISMATIC
-            levers[j] = max(levers[j], 1.0 if slides else reach)
+            own[j] += 1.0 if slides else reach
             reach += float(np.linalg.norm(joint.placement.position))
-            reach += max(abs(joint.lower), abs(joint.upper)) if slides else 0.0
+            if slides:
+                reach += max(abs(robot.joints[j].lower), abs(robot.joints[j].upper))
+        levers = np.maximum(levers, own)
     return levers

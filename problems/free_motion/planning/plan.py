@@ -18,7 +18,7 @@ from ....core.program.target import JointTarget, Target
 from ....core.program.tool import FLANGE, WORLD, Tool, WorkObject
 from ....core.program.zone import FINE, Zone
 from ....core.registry import installed
-from .ends import external_values, free_end
+from .ends import check_coupled, external_values, free_end
 from .free_space import FreeSpace
 from .search import quickest_path
 
@@ -100,7 +100,8 @@ def plan_path(
         scenes: of the cell, if they are at hand already: `scenes_of`.
 
     Raises:
-        InputError: OMPL is not installed, or start or goal do not fit the robot.
+        InputError: OMPL is not installed, start or goal do not fit the robot, or the arm has ranges
+            of several joints together.
         MotionError: start or goal collide or cannot be reached, no path was found in time, or
             zones take it too near to something.
     """
@@ -108,6 +109,7 @@ def plan_path(
     clearance = cell.clearance if options.clearance is None else options.clearance
     controller = controller or Controller(cell.find_vendor(installed()), cell.robot)
     scenes = scenes or scenes_of(cell)
+    check_coupled(cell.robot)
     external = external_values(cell.robot, start, goal)
     space = FreeSpace(scenes(tool), clearance + options.margin, external)
     ends = [

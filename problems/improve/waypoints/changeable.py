@@ -134,7 +134,7 @@ def _why_oriented(move: Move, i: int, robot: Robot, task: WaypointTask) -> str |
     target = move.target
     if task.turn_at(i) != 0.0 or not isinstance(target, JointTarget):
         return None
-    axes = task.free_axes(robot.arm_size)
+    axes = task.free_axes(robot)
     if not stays_oriented(target, robot.arm_chain, axes):
         return None
     return "the joints that may change cannot move it without turning the tool: allow a tilt"

@@ -12,6 +12,7 @@ from ....core.errors import InputError
 from ....core.motion.geometry.pieces import Sampling
 from ....core.program.target import JointTarget
 from ....core.program.zone import Radius
+from ....core.robot.model import Robot
 from ..rounding import Rounding
 from ..zones.sizes import GRADED
 from .point_limits import FREE, Fixed, Free, PointBox, PointCone, PointLimit
@@ -97,9 +98,10 @@ class WaypointTask:
             if value is not None and not 0.0 <= value < math.inf:
                 raise InputError(f"WaypointTask.{name} is zero or more metres, not {value}")
 
-    def free_axes(self, arm_size: int) -> list[int]:
-        """Joints that joint targets may change, of an arm with so many."""
-        return [a for a in range(arm_size) if self.axes is None or a in self.axes]
+    def free_axes(self, robot: Robot) -> list[int]:
+        """Joints of an arm that joint targets may change."""
+        free = [a for a, joint in enumerate(robot.joints) if not joint.held]
+        return [a for a in free if self.axes is None or a in self.axes]
 
     def turn_at(self, move: int) -> float | None:
         """rad by which the tool may turn at the end of a move; None where no number bounds it."""

@@ -145,7 +145,7 @@ def _joint_point(
     limits: Sequence[PointLimit],
     turn: float,
 ) -> JointPoint:
-    axes = task.free_axes(robot.arm_size)
+    axes = task.free_axes(robot)
     now = np.array(target.joints)[axes]
     lower = robot.limits.lower[axes] + _LIMIT_MARGIN
     upper = robot.limits.upper[axes] - _LIMIT_MARGIN

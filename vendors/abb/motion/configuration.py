@@ -105,7 +105,10 @@ class AbbConfiguration:
 
 
 def label(robot: Robot, q: NDArray[np.float64]) -> AbbConfiguration | None:
-    """The label of joint values (N,) rad; None for an arm without a spherical wrist."""
+    """The label of joint values (N,) rad; None for an arm of six motors without a spherical wrist.
+
+    Arms with fewer motors have one posture: cfx is not looked at, cf4 is 0 or -1.
+    """
     at = posture(robot, q)
     if at is None:
         return None
@@ -123,5 +126,5 @@ def label(robot: Robot, q: NDArray[np.float64]) -> AbbConfiguration | None:
         cf6,
         cfx=sum(bit for value, _, bit in bits if value < 0),
         edges=(edges[0], edges[1], edges[2]),
-        undecided=sum(bit for value, edge, bit in bits if abs(value) <= edge),
+        undecided=7 if robot.has_held else sum(b for value, edge, b in bits if abs(value) <= edge),
     )

@@ -27,6 +27,8 @@ POSE_NUMBERS = (*FRAME_FIELDS, "s", "t", *EXTERNAL_FIELDS)
 AXIS_NUMBERS = (*AXIS_FIELDS, *EXTERNAL_FIELDS)
 """The same of axis values."""
 _EXTERNAL_NAMES = frozenset(EXTERNAL_FIELDS)
+_ROUNDED = 0.1
+"""deg by which a program may round an axis that the controller sets, without a note."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +61,8 @@ class Targets:
         self, robot: Robot | None, position: Position, note: Callable[[str, str, Span], None]
     ) -> None:
         self._axes = None if robot is None else robot.external_axes
+        coupled = () if robot is None else robot.coupled_ranges
+        self._kept = [one for one in coupled if one.fixed]
         self._position = position
         self._note = note
 
@@ -96,6 +100,7 @@ class Targets:
         """
         present = partial(self._position.axes, span)
         numbers, filled = _numbers(value.fields, AXIS_FIELDS, present, span)
+        self._keep(numbers, span)
         external, outside, kept = self._external(value.fields, span)
         try:
             target = JointTarget(tuple(map(math.radians, numbers.values())), external, value.label)
@@ -104,6 +109,21 @@ class Targets:
         sources = Sources.of([value.fields.get(name) for name in AXIS_NUMBERS])
         complete = Struct("e6axis", {**numbers, **outside})
         return ReadTarget(target, complete, sources, filled or kept, _predefined(value))
+
+    def _keep(self, numbers: dict[str, float], span: Span) -> None:
+        """Set the axis by which the controller keeps a sum, as palletisers' A5."""
+        for kept in self._kept:
+            *others, (name, factor) = kept.terms
+            rest = sum(size * numbers[other.lower()] for other, size in others)
+            level = (math.degrees(0.5 * (kept.lower + kept.upper)) - rest) / factor
+            asked = numbers[name.lower()]
+            within = math.degrees(0.5 * (kept.upper - kept.lower)) / abs(factor)
+            if abs(asked - level) <= within:
+                continue
+            numbers[name.lower()] = level
+            if abs(asked - level) > _ROUNDED:
+                text = f"{name} goes to {level:g}°, not {asked:g}°: {kept.reason} ($PAL_MODE)"
+                self._note("kept", text, span)
 
     def _configuration(
         self, fields: Mapping[str, Value], complete: Struct, span: Span

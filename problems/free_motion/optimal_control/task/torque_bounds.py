@@ -100,8 +100,8 @@ class BendBounds:
 def _bodies(robot: Robot, load: Inertia | None) -> list[Inertia]:
     """Those behind each stage of the arm; what followers stand between has none."""
     bodies: list[Inertia] = []
-    for joint, body in zip(robot.joints, robot.links, strict=False):
-        bodies += [*(Inertia(0.0) for _ in joint.followers), body]
+    for index in robot.along if robot.links else ():
+        bodies += [*(Inertia(0.0) for _ in robot.joints[index].followers), robot.links[index]]
     if bodies and load is not None:
         bodies[-1] = bodies[-1] + load.placed(robot.flange)
     return bodies
