@@ -63,7 +63,9 @@ def allowed(robot: Robot, q: FloatArray) -> FloatArray:
         row = coupled.row(robot.axis_names)
         value = float(row @ found)
         last = robot.axis_names.index(coupled.terms[-1][0])
-        found[last] += (np.clip(value, coupled.lower, coupled.upper) - value) / row[last]
+        middle = 0.5 * (coupled.lower + coupled.upper)
+        wanted = middle if coupled.fixed else np.clip(value, coupled.lower, coupled.upper)
+        found[last] += (wanted - value) / row[last]
     return found
 
 

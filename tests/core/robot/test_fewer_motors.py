@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import FaultCause, InputError
@@ -35,6 +35,7 @@ def test_the_flange_stays_level(data, robot) -> None:
 
 
 @given(st.data(), ARMS)
+@settings(max_examples=15)
 def test_closed_form_and_numerical_search_agree(data, robot) -> None:
     q = data.draw(configurations(robot, margin=0.1))
     pose = robot.flange_pose(q).matrix()

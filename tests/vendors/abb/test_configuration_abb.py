@@ -100,8 +100,15 @@ def test_an_undecided_axis_5_fits_either_sign() -> None:
     ]
 
 
-def test_an_arm_without_a_spherical_wrist_has_no_label() -> None:
-    assert label(find_vendor("ur").robot("ur5e"), np.zeros(6)) is None
+def test_without_a_spherical_wrist_quadrants_alone_count() -> None:
+    """No source says what cfx counts on a CRB 15000: any fits."""
+    gofa = find_vendor("abb").robot("crb15000-5-095")
+    found = label(gofa, np.radians([10.0, 20.0, -30.0, -100.0, 40.0, 95.0]))
+    assert found is not None and (found.cf1, found.cf4, found.cf6) == (0, -2, 1)
+    assert all(AbbConfiguration(0, -2, 1, cfx).mismatch(found) == 0 for cfx in range(8))
+    assert AbbConfiguration(0, -2, 0, 0).mismatch(found) > 0
+    seven = find_vendor("kuka").robot("iiwa14-r820")
+    assert label(seven, np.zeros(7)) is None
 
 
 def test_what_cannot_be_compared_or_is_no_cfx_is_refused() -> None:

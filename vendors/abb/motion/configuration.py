@@ -22,6 +22,8 @@ EDGE_DISTANCE = 1e-3
 """m, the same for the wrist's centre beside axis 1 and beside the lower arm."""
 
 _QUADRANT = math.pi / 2
+_ALL = 7
+"""The bits of cfx."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,26 +107,29 @@ class AbbConfiguration:
 
 
 def label(robot: Robot, q: NDArray[np.float64]) -> AbbConfiguration | None:
-    """The label of joint values (N,) rad; None for an arm of six motors without a spherical wrist.
+    """The label of joint values (N,) rad; None for an arm of another number of axes than six.
 
-    Arms with fewer motors have one posture: cfx is not looked at, cf4 is 0 or -1.
+    cfx is not looked at where the arm has fewer motors, and then one posture, or no spherical wrist
+    (CRB 15000, IRB 5500), where no source says what it counts.
     """
-    at = posture(robot, q)
-    if at is None:
+    if robot.arm_size != 6:
         return None
     quarters = [float(q[axis]) / _QUADRANT for axis in (0, 3, 5)]
     cf1, cf4, cf6 = (math.floor(quarter + EDGE_ANGLE / _QUADRANT) for quarter in quarters)
     edges = [abs(v - round(v)) * _QUADRANT <= EDGE_ANGLE for v in quarters]
-    bits = (
-        (at.shoulder, EDGE_DISTANCE, 4),
-        (at.elbow, EDGE_DISTANCE, 2),
-        (at.wrist, EDGE_ANGLE, 1),
-    )
+    at = posture(robot, q)
+    bits: tuple[tuple[float, float, int], ...] = ()
+    if at is not None and not robot.has_held:
+        bits = (
+            (at.shoulder, EDGE_DISTANCE, 4),
+            (at.elbow, EDGE_DISTANCE, 2),
+            (at.wrist, EDGE_ANGLE, 1),
+        )
     return AbbConfiguration(
         cf1,
         cf4,
         cf6,
         cfx=sum(bit for value, _, bit in bits if value < 0),
         edges=(edges[0], edges[1], edges[2]),
-        undecided=7 if robot.has_held else sum(b for value, edge, b in bits if abs(value) <= edge),
+        undecided=sum(bit for value, edge, bit in bits if abs(value) <= edge) if bits else _ALL,
     )

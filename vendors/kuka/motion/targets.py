@@ -27,6 +27,8 @@ POSE_NUMBERS = (*FRAME_FIELDS, "s", "t", *EXTERNAL_FIELDS)
 AXIS_NUMBERS = (*AXIS_FIELDS, *EXTERNAL_FIELDS)
 """The same of axis values."""
 _EXTERNAL_NAMES = frozenset(EXTERNAL_FIELDS)
+_ROUNDED_TEXT = 1e-5
+"""deg, of numbers in texts."""
 _ROUNDED = 0.1
 """deg by which a program may round an axis that the controller sets, without a note."""
 
@@ -118,7 +120,7 @@ class Targets:
             level = (math.degrees(0.5 * (kept.lower + kept.upper)) - rest) / factor
             asked = numbers[name.lower()]
             within = math.degrees(0.5 * (kept.upper - kept.lower)) / abs(factor)
-            if abs(asked - level) <= within:
+            if abs(asked - level) <= within + _ROUNDED_TEXT:
                 continue
             numbers[name.lower()] = level
             if abs(asked - level) > _ROUNDED:

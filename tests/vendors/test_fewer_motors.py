@@ -106,3 +106,13 @@ def test_zones_are_proven_and_written(tmp_path) -> None:
     found = flyby.zones(flyby.read(path, robot="IRB 660-180/3.15"))
     assert found.after.time < found.before.time
     assert found.certificate is not None and found.certificate.proven
+
+
+def test_targets_of_arms_without_a_spherical_wrist_are_driven(tmp_path) -> None:
+    """Of a CRB 15000's configuration the quadrants of axes 1, 4 and 6 count."""
+    text = RAPID.replace("[0,0,20,0,0,0]", "[0,0,0,0,30,0]").split("    FOR")[0]
+    text += (
+        "    MoveJ [[500,200,500],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v500,fine,tool0;\n"
+    )
+    run = driven(tmp_path, f"{text}  ENDPROC\nENDMODULE\n", ".mod", "CRB 15000-5/0.95")
+    assert run.faultless, run.faults
