@@ -11,15 +11,31 @@ _NEAR = 0.051
 """m by which reaches may differ that names round: an IRB 120-3/0.6 reaches 0.58 m."""
 _LONGEST = 6.0
 """m, above which a number of a name is no reach."""
-_MOUNTED = re.compile(r"\b(c[245]|sr|flr|clg|wll|floor|ceiling|wall|abb|kuka|ur(?=/)|fanuc)\b")
-"""Words of controllers and makers that are no part of a model's name."""
+_BESIDE = re.compile(
+    r"\b(c[245](sr)?|sr|flr|clg|wll|floor|ceiling|wall|type [a-h]\d?|abb|kuka|fanuc|ur(?=/)"
+    r"|universal|robots?|cb\d?|krc ?\d|irc ?\d|omnicore|agilus|quantec|cybertech|fortec|iontec)\b"
+)
+"""Words of controllers, mountings, makers and families that are no part of a model's name."""
+_FAMILIES = {"gofa": "crb 15000", "yumi": "irb 14000"}
+"""What makers call a family, and the model it is."""
 _WORD = re.compile(r"\d+(?:\.\d+)?[a-z]*|[a-z]+")
+_VARIANT = re.compile(r"(?:_+g)?_+0\d$")
+"""Of the libraries of simulators: ``IRB120_3_58_01``, ``IRB4600_40_255_G_01``."""
 
 
 def words_of(name: str) -> tuple[str, ...]:
     """What a name consists of: ``IRB 120T-3/0.58`` is irb, 120t, 3 and 0.58."""
-    spaced = re.sub(r"(?<=\d)r(?=\d{3,4})", " r ", name.lower().replace(",", "."))
-    return tuple(_WORD.findall(_MOUNTED.sub(" ", re.sub(r"[#_/\-]", " ", spaced))))
+    said = _VARIANT.sub("", name.strip().lower().replace(",", "."))
+    said = _BESIDE.sub(" ", re.sub(r"[#_/\-]", " ", said))
+    for family, model in _FAMILIES.items():
+        said = said.replace(family, " " if model.split()[1] in said else model)
+    said = re.sub(r"(?<=\d)r(?=\d{3,4})", " r ", said)
+    said = re.sub(r"\b(r ?\d{3,4})(?=[a-z]+)", r"\1 ", said)
+    said = re.sub(r"(?<=\d)(kg|mm?)\b", " ", said)
+    said = re.sub(r"\bur (?=\d)", "ur", said)
+    said = re.sub(r"\b(ur\d+) e\b", r"\1e", said)
+    words = _WORD.findall(said)
+    return tuple(word for k, word in enumerate(words) if k == 0 or word != words[k - 1])
 
 
 def matching(name: str, arms: Iterable[Listed]) -> list[Listed]:
@@ -30,7 +46,8 @@ def matching(name: str, arms: Iterable[Listed]) -> list[Listed]:
     asked = words_of(name)
     if not asked:
         return []
-    ranked = [(rank, arm) for arm in arms if (rank := _rank(asked, arm)) is not None]
+    written = _bare(name)
+    ranked = [(rank, arm) for arm in arms if (rank := _rank(written, asked, arm)) is not None]
     best = min((rank for rank, _ in ranked), default=None)
     return [arm for rank, arm in ranked if rank == best]
 
@@ -38,8 +55,12 @@ def matching(name: str, arms: Iterable[Listed]) -> list[Listed]:
 _CALLED, _BEGINS, _HOLDS = range(3)
 
 
-def _rank(asked: tuple[str, ...], arm: Listed) -> int | None:
-    if asked == words_of(arm.name.partition("/")[2]):
+def _bare(name: str) -> str:
+    return re.sub(r"[^a-z0-9]", "", name.lower())
+
+
+def _rank(written: str, asked: tuple[str, ...], arm: Listed) -> int | None:
+    if asked == words_of(arm.name.partition("/")[2]) or written in map(_bare, arm.aliases):
         return _CALLED
     found = []
     for model in (arm.model, *arm.aliases):
@@ -62,7 +83,9 @@ def _same(asked: str, said: str) -> bool:
         a, b = float(asked), float(said)
     except ValueError:
         return False
-    lengths = "." in asked and "." in said and max(a, b) < _LONGEST
+    if "." in said and "." not in asked:
+        a /= 100.0  # libraries of simulators have reaches in cm
+    lengths = "." in said and max(a, b) < _LONGEST
     return a == b or (lengths and abs(a - b) < _NEAR)
 
 

@@ -82,6 +82,22 @@ CALLED = {
     "KR 120 R2700-2": "kuka/kr120-r2700-2",
     "UR 5e": "ur/ur5e",
     "ur5e": "ur/ur5e",
+    "IRB_120_3kg_0.58m": "abb/irb120-3-058",
+    "IRB120_3_58_01": "abb/irb120-3-058",
+    "irb1200_7_70": "abb/irb1200-7-070",
+    "IRB4600_40_255_G_01": "abb/irb4600-40-255",
+    "IRB 4600-20/2.50 Type C": "abb/irb4600-20-250",
+    "IRB 2400-16/1.55 IRC5": "abb/irb2400-16-155",
+    "GoFa 5": "abb/crb15000-5-095",
+    "CRB 15000 GoFa 10 OmniCore": "abb/crb15000-10-152",
+    "#KR6R900_2 C4SR FLR": "kuka/kr6-r900-2",
+    "KR210R2700PRIME": "kuka/kr210-r2700-prime",
+    "#KR180R3200PA C4 FLR": "kuka/kr180-r3200-pa",
+    "KR CYBERTECH KR 8 R2010": "kuka/kr8-r2010",
+    "KR C4 KR 30-3": "kuka/kr30-3",
+    "Universal Robots UR 10 e": "ur/ur10e",
+    "UR-16e": "ur/ur16e",
+    "UR5 CB3": "ur/ur5",
 }
 
 
