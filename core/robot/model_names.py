@@ -60,7 +60,11 @@ def _bare(name: str) -> str:
 
 
 def _rank(written: str, asked: tuple[str, ...], arm: Listed) -> int | None:
-    if asked == words_of(arm.name.partition("/")[2]) or written in map(_bare, arm.aliases):
+    if asked == words_of(arm.name.partition("/")[2]):
+        return _CALLED
+    # What is said of the controller tells arms apart whose words are the same.
+    whole = written != "".join(asked).replace(".", "")
+    if whole and any(_bare(alias).startswith(written) for alias in arm.aliases):
         return _CALLED
     found = []
     for model in (arm.model, *arm.aliases):
