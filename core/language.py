@@ -103,12 +103,23 @@ class BackupOpener(Protocol):
         """
         ...
 
+    def programs_in(self, names: Sequence[str]) -> str | None:
+        """Where programs begin that no backup marks, but that stand for one by themselves.
+
+        Args:
+            names: as `root_in` takes them.
+
+        Returns:
+            The folder; None where the vendor's programs do not.
+        """
+        ...
+
     def open(self, source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
         """The backup in a folder.
 
         Args:
             source: what the user named.
-            root: the folder that `root_in` told, on disk.
+            root: the folder that `root_in` or `programs_in` told, on disk.
             find_robot: an arm by a name as people or controllers write it; raises `InputError`
                 where there is none, or several may be meant.
 

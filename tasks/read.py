@@ -230,7 +230,7 @@ def _holds_program(path: Path) -> bool:
 
 
 def _read_backup(backup: Backup, options: SourceOptions) -> Program:
-    task = task_of(backup, options.task)
+    task = task_of(backup, options.task, options.entry)
     setup = setup_in(backup, task, options)
     start = joint_target(options.start, spelt("start"), setup.robot)
     answers = answers_of(options)

@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 
 MOST_FILES = 100_000
 """Below one folder. A station has some thousands; what has more is a disk."""
+_NAMED = 4
+"""Programs that a note names at most."""
+_TEXTS = frozenset({".txt"})
+"""What programs may end with, and nearly all files that do so are none."""
 _NOT_ENTERED = frozenset({".git", ".svn", ".hg", "__pycache__", "node_modules", ".venv"})
 
 
@@ -62,9 +66,10 @@ def find_backup(path: str | Path, registry: Registry) -> Backup | None:
         names = names_below(folder)
     else:
         folder, names = source.parent, [source.name]
-    found = _nearest(source, _found(names, registry))
+    found = _nearest(source, _found(names, registry)) or _programs_alone(names, registry)
     if found is None:
         return None
+    notes = (*notes, *_outside(source, found, names, registry))
     backup = found.opener.open(source, folder / found.root, registry.find_robot)
     return replace(backup, notes=(*notes, *backup.notes), unpacked=unpacked)
 
@@ -89,6 +94,55 @@ def _found(names: Sequence[str], registry: Registry) -> Iterator[_Found]:
             yield _Found(vendor.name, opener, root)
             inside = f"{root}/" if root else ""
             left = [name for name in left if not name.startswith(inside)]
+
+
+def _programs_alone(names: Sequence[str], registry: Registry) -> _Found | None:
+    """Programs of one vendor that no backup marks; a single file is read by itself."""
+    programs = _programs(names, registry)
+    if len(names) == 1:
+        return None
+    for vendor in registry.vendors.values():
+        if vendor.backups is None or not all(vendor.name in of for of in programs.values()):
+            continue
+        opener = vendor.backups()
+        root = opener.programs_in(names) if programs else None
+        if root is not None:
+            return _Found(vendor.name, opener, root)
+    return None
+
+
+def _programs(names: Sequence[str], registry: Registry) -> dict[str, set[str]]:
+    """Vendors whose programs files may be, of those that may be one."""
+    of = {
+        name: {
+            v.name
+            for v in registry.vendors.values()
+            if PurePosixPath(name).suffix.casefold() in v.suffixes
+        }
+        for name in names
+    }
+    return {name: vendors for name, vendors in of.items() if vendors}
+
+
+def _outside(
+    source: Path, found: _Found, names: Sequence[str], registry: Registry
+) -> Iterator[Note]:
+    """Programs that stand beside a backup, and are no part of it."""
+    if not found.root:
+        return
+    others = [
+        name
+        for name, vendors in _programs(names, registry).items()
+        if found.vendor in vendors
+        and not name.startswith(f"{found.root}/")
+        and PurePosixPath(name).suffix.casefold() not in _TEXTS
+    ]
+    if others:
+        more = f" and {len(others) - _NAMED} more" if len(others) > _NAMED else ""
+        yield Note(
+            f"{source}: the backup in {found.root} is taken; left out is what stands outside it: "
+            f"{', '.join(others[:_NAMED])}{more}"
+        )
 
 
 def _nearest(source: Path, found: Iterator[_Found]) -> _Found | None:

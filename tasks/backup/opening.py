@@ -39,11 +39,14 @@ def open_backup(path: str | Path) -> Backup:
     return found
 
 
-def task_of(backup: Backup, name: str | None) -> Task:
-    """The task of a name, or the only one that moves a robot.
+def task_of(backup: Backup, name: str | None, entry: str | None = None) -> Task:
+    """The task of a name, or the only one that moves a robot, or that has a routine.
+
+    Args:
+        entry: the routine that is asked for.
 
     Raises:
-        OptionError: none or several move one.
+        OptionError: none or several do.
         UnknownNameError: there is no such task.
     """
     if name is not None:
@@ -52,14 +55,21 @@ def task_of(backup: Backup, name: str | None) -> Task:
                 return task
         raise UnknownNameError(f"task of {backup.source}", name, [t.name for t in backup.tasks])
     moving = [task for task in backup.tasks if task.robot is not None]
-    if len(moving) == 1:
-        return moving[0]
+    asked, _ = entry_call(None if entry == ALL else entry)
+    having = [task for task in moving if asked is not None and _has(task, asked)]
+    for found in (moving, having):
+        if len(found) == 1:
+            return found[0]
     if not moving:
         raise InputError(f"{backup.source}: no task of it moves a robot{_noted(backup)}")
     names = ", ".join(task.name for task in moving)
     raise OptionError(
         f"{backup.source}: which task? Several move a robot: {names}; choose with {spelt('task')}"
     )
+
+
+def _has(task: Task, routine: str) -> bool:
+    return any(one.name.casefold() == routine.casefold() for one in task.entries)
 
 
 def setup_in(backup: Backup, task: Task, options: RobotOptions) -> Setup:

@@ -30,6 +30,9 @@ class Marked:
         best = min(roots, key=lambda root: len(root.parts), default=None)
         return None if best is None else "" if best == PurePosixPath() else best.as_posix()
 
+    def programs_in(self, names: Sequence[str]) -> str | None:
+        return None
+
     def open(self, source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
         assert (root / self.mark).is_file()
         return Backup(source, root, self.vendor, "controller", "1", (), ())
@@ -125,3 +128,11 @@ def test_links_and_version_control_are_passed_over(tmp_path: Path) -> None:
 def test_depth_does_not_matter(tmp_path_factory: pytest.TempPathFactory, inside: str) -> None:
     folder = _made(tmp_path_factory.mktemp("deep"), f"{inside}/mark.txt".lstrip("/"))
     assert opened(folder).root == folder / inside
+
+
+def test_programs_outside_a_backup_are_named(tmp_path: Path) -> None:
+    _made(tmp_path, "deep/in/mark.txt", "deep/in/own.mod", "stray/other.mod", "README.md")
+    (note,) = opened(tmp_path).notes
+    assert "the backup in deep/in is taken" in note.message
+    assert note.message.endswith("outside it: stray/other.mod")
+    assert opened(tmp_path / "deep").notes == ()

@@ -20,6 +20,10 @@ class Opener:
         """See `marks.root_in`."""
         return root_in(names)
 
+    def programs_in(self, names: Sequence[str]) -> str | None:
+        """None: single programs are read by themselves."""
+        return None
+
     def open(self, source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
         """The backup in a folder; see `BackupOpener.open`."""
         from .opening import opened

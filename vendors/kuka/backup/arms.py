@@ -20,6 +20,7 @@ from .marks import MACHINE, MODEL
 
 FindRobot = Callable[[str], Robot]
 _ELSEWHERE = f"add KRC/R1/Mada/{MACHINE} of the controller"
+"""What to do where the part of the archive that describes the robot is not there."""
 _SIGN = re.compile(r"[^0-9A-Z]+")
 
 
@@ -74,6 +75,8 @@ def robots_of(
     unit = called or "R1"
     if lists.machine is None:
         return (_by_name(unit, written, names, find),)
+    if not lists.machine.has("$AXIS_DIR", 1) and not lists.machine.has("$LENGTH_A"):
+        return (_by_name(unit, written, names, find),)  # what is there is not the robot's part
     roots = {one.kind: one.root for one in machines.values() if one.kind != ROBOT}
     try:
         robot = described(lists.machine, model, names, roots, find)
@@ -94,7 +97,7 @@ def tables_in(lists: Lists) -> dict[str, str]:
 def _by_name(unit: str, written: str, names: list[str], find: FindRobot) -> BackupRobot:
     """A robot of which only the name is known, or not even that."""
     if not names:
-        return BackupRobot(unit, "", None, (f"nothing says which robot it is; {_ELSEWHERE}",))
+        return BackupRobot(unit, "", None, (f"nothing says which robot it is: {_ELSEWHERE}",))
     try:
         robot = name_alone(names, find)
     except InputError as error:

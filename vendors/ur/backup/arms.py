@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from ....core.backup.backup import BackupRobot
+from ....core.door import given
 from ....core.errors import FlybyError, InputError
 from ....core.robot.model import Robot
 from ....core.spatial.pose import Pose
@@ -133,7 +134,7 @@ def _written(robot: Robot | None, serial: str) -> str:
 
 def _unknown(stated: Stated, series: str | None) -> str:
     if stated.table is None and series is None:
-        return "nothing says which arm it is"
+        return f"nothing says which arm it is: name one, {given('robot', 'NAME')}"
     if stated.table is None:
         return f"its serial number is one of a {str(series).upper()}, which is not known"
     also = f"; its serial number is one of a {series.upper()}" if series else ""

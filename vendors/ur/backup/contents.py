@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
 from ....core.errors import FlybyError, InputError, Note
 from ....core.files.reading import read_bytes
-from ....core.source.text.files import LARGEST_FILE
+from ....core.source.text.files import LARGEST_FILE, decode
+from ..urp.expressions import function_name
 from ..urp.file_names import INSTALLATION, POLYSCOPE_X, PROGRAM, SCRIPT
 from ..urp.installation import Installation, read_installation
+from ..urp.nodes import left_out, runs
 from ..urp.polyscope_x import content_of, installation_in, script_in
-from ..urp.program import UrProgram, urp_of
+from ..urp.program import UrProgram, is_of_old_polyscope, urp_of
 from ..urp.source import installation_places
-from ..urp.xml_file import is_xml, parsed, unpacked
+from ..urp.xml_file import Element, is_xml, parsed, unpacked
 from .marks import MARKS
 
 PASSED_OVER = "passed over: "
+_MOVING = "Waypoint", "CircleMove", "MoveDirection", "SafeHome"
+_MOVE = re.compile(r"^[ \t]*(?:move[jlpc]|optimovej|optimovel)[ \t]*\(", re.MULTILINE)
+_FUNCTION = re.compile(r"^[ \t]*def[ \t]+(\w+)[ \t]*\([ \t]*\)", re.MULTILINE)
 MOST_FILES = 20_000
 """Programs and installations that are looked at; a folder of a robot has some hundreds."""
 
@@ -31,14 +37,16 @@ class Found:
         name: its file, below the root.
         tree: None if it is a script.
         installation: name of the one that it uses; None if that is not at hand.
+        moves: statements that move the robot; None where nobody can count them.
+        entry: the function that it is; None if that is not known.
         script: the one that PolyScope has saved beside it; None if there is none.
-        moves: whether it moves the robot.
     """
 
     name: str
     tree: UrProgram | None
     installation: str | None
-    moves: bool
+    moves: int | None
+    entry: str | None
     script: str | None = None
 
 
@@ -63,27 +71,27 @@ def read_contents(root: Path, names: Sequence[str]) -> Contents:
 
     Args:
         root: the folder.
-        names: of files below it.
+        names: of files below it; scripts count where no tree is among them.
     """
     contents = Contents(root)
     for name in names:
         if _suffix(name) == INSTALLATION:
             _guarded(contents, name, _add_installation)
-    for name in names:
-        if _suffix(name) in (PROGRAM, POLYSCOPE_X):
-            _guarded(contents, name, _add_program)
+    trees = [name for name in names if _suffix(name) in (PROGRAM, POLYSCOPE_X)]
+    for name in trees or [name for name in names if _suffix(name) == SCRIPT]:
+        _guarded(contents, name, _add_program)
     return contents
 
 
 def marked_below(root: Path) -> list[str]:
-    """Programs and installations below a folder, links passed over.
+    """Programs, scripts and installations below a folder, links passed over.
 
     Raises:
         InputError: there are more than any robot has.
     """
     found: list[str] = []
     for name in _walked(root):
-        if _suffix(name) in MARKS:
+        if _suffix(name) in (*MARKS, SCRIPT):
             found.append(name)
             if len(found) > MOST_FILES:
                 raise InputError(f"{root}: more than {MOST_FILES:,} programs are below it")
@@ -120,18 +128,37 @@ def _add_program(contents: Contents, name: str) -> None:
     plain = unpacked(read_bytes(path, LARGEST_FILE), str(path))
     if _suffix(name) == POLYSCOPE_X:
         content = content_of(plain, str(path))
-        moves = "move" in script_in(content, str(path))
+        text = script_in(content, str(path))
         contents.installations[name] = installation_in(content)
-        contents.programs.append(Found(name, None, name, moves))
+        _add_script(contents, name, text, name)
         return
     if not is_xml(plain):
-        contents.programs.append(Found(name, None, None, b"move" in plain))
+        _add_script(contents, name, decode(plain, str(path))[0])
         return
-    tree = urp_of(parsed(plain, str(path)), str(path))
     script = path.with_suffix(SCRIPT)
     beside = PurePosixPath(name).with_suffix(SCRIPT).as_posix() if script.is_file() else None
+    root = parsed(plain, str(path))
+    if beside is not None and is_of_old_polyscope(root):
+        told = f"{name}: is of before PolyScope 3.0: {script.name} beside it is read in its place"
+        contents.notes.append(Note(told))
+        _add_program(contents, beside)
+        return
+    tree = urp_of(root, str(path))
     installation = _installation(contents, path, tree)
-    contents.programs.append(Found(name, tree, installation, _moves(tree), beside))
+    entry = function_name(path.stem)
+    lacks = left_out(root)
+    if lacks:
+        told = ", ".join(f"{kind} ({count})" for kind, count in lacks.items())
+        contents.notes.append(Note(f"{name}: nodes of which nothing is carried out: {told}"))
+    contents.programs.append(Found(name, tree, installation, _moves(tree), entry, beside))
+
+
+def _add_script(contents: Contents, name: str, text: str, installation: str | None = None) -> None:
+    functions = _FUNCTION.findall(text)
+    own = [one for one in (function_name(Path(name).stem), "main") if one in functions]
+    entry = next(iter(own or functions[:1] if own or len(functions) == 1 else ()), None)
+    moves = len(_MOVE.findall(text))
+    contents.programs.append(Found(name, None, installation, moves, entry))
 
 
 def _installation(contents: Contents, path: Path, tree: UrProgram) -> str | None:
@@ -152,7 +179,16 @@ def _key(path: Path) -> str:
     return os.path.abspath(path).casefold()
 
 
-def _moves(tree: UrProgram) -> bool:
-    """Whether a node moves the robot, or a script in the tree may."""
-    nodes = tree.root.iter("Move", "SafeHome", "Script", "CallSubProgram")
-    return any(next(node.iterancestors("SuppressedNode"), None) is None for node in nodes)
+def _moves(tree: UrProgram) -> int | None:
+    """How many nodes move the robot; None if only scripts or other programs may."""
+    count = sum(1 for node in tree.root.iter(*_MOVING) if runs(node) and _in_program(node))
+    if count:
+        return count
+    others = any(map(runs, tree.root.iter("Script", "CallSubProgram")))
+    return None if others else 0
+
+
+def _in_program(node: Element) -> bool:
+    """Whether an element is a node, and not a point of one."""
+    above = node.getparent()
+    return above is not None and above.tag == "children"

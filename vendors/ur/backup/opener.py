@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .marks import root_in
+from .marks import root_in, scripts_in
 
 if TYPE_CHECKING:
     from ....core.backup.backup import Backup
@@ -19,6 +19,10 @@ class Opener:
     def root_in(self, names: Sequence[str]) -> str | None:
         """See `marks.root_in`."""
         return root_in(names)
+
+    def programs_in(self, names: Sequence[str]) -> str | None:
+        """See `marks.scripts_in`."""
+        return scripts_in(names)
 
     def open(self, source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
         """The backup in a folder, or one file; see `BackupOpener.open`."""

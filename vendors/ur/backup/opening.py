@@ -11,8 +11,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 
-from ....core.backup.backup import Backup, BackupRobot, Task
+from ....core.backup.backup import Backup, BackupEntry, BackupRobot, Task
 from ....core.errors import InputError, Note
+from ....core.files.archive import is_archive
 from ....core.robot.model import Robot
 from ....core.spatial.pose import IDENTITY
 from ..urp.installation import Installation, JointLimits
@@ -20,7 +21,6 @@ from ..urp.kinematics import DhTable
 from .arms import Stated, Types, backup_robot
 from .contents import PASSED_OVER, Contents, Found, marked_below, read_contents
 from .declared import frames_of, homes_of, signals_of, tools_of
-from .marks import root_in
 
 VENDOR = "ur"
 _NAMED = 6
@@ -29,7 +29,7 @@ _NAMED = 6
 
 def opened(source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
     """The backup in a folder, or one file; see `BackupOpener.open`."""
-    alone = source.is_file() and root_in([source.name]) is not None
+    alone = source.is_file() and not is_archive(source)
     contents = read_contents(root, [source.name] if alone else marked_below(root))
     if not contents.programs and not contents.installations:
         told = str(contents.notes[0]) if contents.notes else "it holds no program"
@@ -142,8 +142,15 @@ def _tasks(contents: Contents, indices: Sequence[int]) -> tuple[Task, ...]:
         path = PurePosixPath(found.name)
         name = path.stem if stems[path.stem.casefold()] == 1 else found.name
         files = dict.fromkeys(filter(None, (found.name, found.installation, found.script)))
-        tasks.append(Task(name, index if found.moves else None, tuple(files), found.name))
+        robot = None if found.moves == 0 else index
+        tasks.append(Task(name, robot, tuple(files), found.name, entries=_entries(found)))
     return tuple(tasks)
+
+
+def _entries(found: Found) -> tuple[BackupEntry, ...]:
+    if found.entry is None:
+        return ()
+    return (BackupEntry(found.entry, found.name, moves=found.moves),)
 
 
 def _version(contents: Contents, declared: Installation) -> str:
@@ -171,7 +178,7 @@ def _told(contents: Contents, main: str | None) -> list[Note]:
         for one in contents.programs
         if one.tree is not None and one.installation is None and one.tree.installation
     }
-    if missing and len(contents.programs) > 1:  # of one program its reading says so
+    if missing:
         notes.append(
             Note(
                 f"not at hand: {_listed([f'{name}.installation' for name in sorted(missing)])}; "

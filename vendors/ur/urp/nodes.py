@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 
 from . import actions
@@ -13,6 +14,14 @@ from .xml_file import Element, child, number, resolved
 
 _SILENT = frozenset({"Placeholder", "InitVariablesNode", "SuppressedNode", "children"})
 """What has no statements; what was suppressed does not run."""
+_KNOWN = _SILENT | {
+    *("Move", "SafeHome", "Folder", "Loop", "If", "Switch", "Set", "Wait", "Popup", "Assignment"),
+    *("Script", "Comment", "Timer", "Halt", "CallSubProgram", "SubProgram", "Thread", "Force"),
+    *("Waypoint", "CircleMove", "MainProgram", "SpecialSequence"),
+}
+"""Nodes that are carried out, or have nothing to carry out."""
+_PARTS_OF_NODES = ("Case", "Until", "Direction")
+"""What the tags of nodes hold that belong to another one."""
 _BRANCHES = ("ElseIf", "Else")
 _LOOP_FLAGS = frozenset({"type", "checkContinuously", "reference"})
 _DEEPEST = 100
@@ -216,6 +225,32 @@ class Tree:
             out.note(
                 "an event interrupts the program when its condition comes true: not carried out"
             )
+
+
+def left_out(root: Element) -> Counter[str]:
+    """How many nodes of each kind a program has of which nothing is carried out.
+
+    URCaps are named; what was suppressed does not count.
+    """
+    return Counter(_kind(node) for node in root.iter("*") if _lacks(node) and runs(node))
+
+
+def runs(node: Element) -> bool:
+    """Whether an element is in none that is suppressed, or of which nothing is carried out."""
+    return not any(one.tag == "SuppressedNode" or _lacks(one) for one in node.iterancestors())
+
+
+def _lacks(node: Element) -> bool:
+    above = node.getparent()
+    if above is None or above.tag != "children" or node.tag in _KNOWN:
+        return False
+    return not any(part in node.tag for part in _PARTS_OF_NODES)
+
+
+def _kind(node: Element) -> str:
+    if node.tag != "Contributed":
+        return str(node.tag)
+    return f"URCap {node.get('strategyURCapName') or node.get('strategyProgramNodeType') or ''}"
 
 
 def _not_known(node: Element) -> str:

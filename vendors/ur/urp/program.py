@@ -48,13 +48,18 @@ class UrProgram:
     root: Element
 
 
+def is_of_old_polyscope(root: Element) -> bool:
+    """Whether a file is a program of before PolyScope 3, by its root element."""
+    return str(root.tag).startswith("gui.program")
+
+
 def urp_of(root: Element, file: str) -> UrProgram:
     """A program by its root element.
 
     Raises:
         InputError: it is none, or one of before PolyScope 3, which cannot be read.
     """
-    if root.tag.startswith("gui.program"):
+    if is_of_old_polyscope(root):
         raise InputError(
             f"{file}: is a program of PolyScope before 3.0, whose tree is not read: PolyScope "
             "saves the same program as .script beside it; read that"

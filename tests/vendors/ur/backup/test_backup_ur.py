@@ -202,7 +202,9 @@ def test_without_kinematics_the_serial_number_decides(build: Build, tmp_path: Pa
     assert known.robot is not None and known.robot.name == "ur/ur3e"
     text = build.program(move(build), rows=zeros, serial="")
     known = opened(build.packed(tmp_path / "none.urp", text)).robots[0]
-    assert known.robot is None and known.lacks == ("nothing says which arm it is",)
+    assert known.robot is None and known.lacks == (
+        "nothing says which arm it is: name one, robot=NAME",
+    )
 
 
 def test_programs_of_two_arms_are_two_robots(build: Build, tmp_path: Path) -> None:
@@ -307,6 +309,49 @@ def test_programs_of_polyscope_x(tmp_path: Path) -> None:
         path.write_text(text)
         with pytest.raises(FlybyError):
             opened(path)
+
+
+def test_programs_are_entries_with_their_number_of_moves(build: Build, tmp_path: Path) -> None:
+    hidden = build.node("SuppressedNode", build.move(build.fixed("C", A)))
+    unknown = build.node("Pallet", build.move(build.fixed("D", A)), name="Pallet_1")
+    cap = build.node("Contributed", strategyURCapName="Gripper", strategyProgramNodeType="Grip")
+    build.packed(tmp_path / "pick 1.urp", build.program(move(build), hidden, unknown, cap))
+    build.packed(tmp_path / "place.urp", build.program(move(build), build.script("sync()")))
+    build.packed(tmp_path / "io.urp", build.program(build.script("sync()")))
+    backup = opened(tmp_path)
+    counted = {entry.name: entry.moves for task in backup.tasks for entry in task.entries}
+    assert counted == {"io": None, "pick_1": 2, "place": 2}
+    told = "pick 1.urp: nodes of which nothing is carried out: Pallet (1), URCap Gripper (1)"
+    assert told in [note.message for note in backup.notes]
+    # The entry tells which of several programs is meant.
+    assert len(flyby.read(tmp_path, entry="pick_1").moves) == 2
+
+
+def test_a_folder_of_scripts_is_one_of_programs(tmp_path: Path) -> None:
+    lines = "  movej([0, -1, 1, 0, 1, 0])\n  movel(p[-0.4, -0.2, 0.3, 0, 3.1, 0])\n"
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.script").write_text(f"def {name}():\n{lines}end\n")
+    (tmp_path / "README.md").write_text("x")
+    backup = opened(tmp_path)
+    assert [task.name for task in backup.tasks] == ["a", "b"]
+    assert [entry.moves for task in backup.tasks for entry in task.entries] == [2, 2]
+    assert len(flyby.read(tmp_path, robot="ur/ur5e", task="b").moves) == 2
+    # Beside programs of another vendor scripts mark nothing.
+    (tmp_path / "main.mod").write_text("MODULE m\nENDMODULE\n")
+    with pytest.raises(InputError, match="no backup is in this folder"):
+        opened(tmp_path)
+
+
+def test_programs_of_before_polyscope_3_are_read_by_the_script_beside(
+    build: Build, tmp_path: Path
+) -> None:
+    old = build.packed(tmp_path / "old.urp", "<gui.program.ProgramRootNode/>")
+    with pytest.raises(InputError, match=r"before 3\.0"):
+        opened(tmp_path)
+    (tmp_path / "old.script").write_text("def old():\n  movej([0, -1, 1, 0, 1, 0])\nend\n")
+    backup = opened(tmp_path)
+    assert [task.main for task in backup.tasks] == ["old.script"]
+    assert any(f"{old.name}: is of before PolyScope 3.0" in n.message for n in backup.notes)
 
 
 @settings(max_examples=40, deadline=None)
