@@ -11,6 +11,7 @@ from pathlib import Path, PurePosixPath
 from ....core.errors import FlybyError, InputError, Note
 from ....core.files.reading import read_bytes
 from ....core.source.text.files import LARGEST_FILE, decode
+from ..urp.code_files import COPY
 from ..urp.expressions import function_name
 from ..urp.file_names import INSTALLATION, POLYSCOPE_X, PROGRAM, SCRIPT
 from ..urp.installation import Installation, read_installation
@@ -182,6 +183,8 @@ def _key(path: Path) -> str:
 def _moves(tree: UrProgram) -> int | None:
     """How many nodes move the robot; None if only scripts or other programs may."""
     count = sum(1 for node in tree.root.iter(*_MOVING) if runs(node) and _in_program(node))
+    copies = filter(runs, tree.root.iter(COPY))
+    count += sum(len(_MOVE.findall(str(copy.text or ""))) for copy in copies)
     if count:
         return count
     others = any(map(runs, tree.root.iter("Script", "CallSubProgram")))

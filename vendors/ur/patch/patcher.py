@@ -49,9 +49,13 @@ def patch(program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
     before = reading.again({})
     wanted = with_taught_joints(wanted, before, trees, robot)
     files = _patched(wanted, chosen)
+    changed = trees_of(files).values()
+    code = {file.name: file for tree in changed for file in tree.code_changed(trees[tree.name])}
     main = files.get(reading.main)
     script = main.beside if isinstance(main, TreeFile) else None
-    return files if script is None else {**files, **_carried(script, before, wanted, chosen)}
+    if script is None or script.name in code:
+        return {**files, **code}
+    return {**files, **code, **_carried(script, before, wanted, chosen)}
 
 
 def _patched(program: Program, options: PatcherOptions) -> Files:

@@ -155,9 +155,8 @@ def script(out: Emission, node: Element) -> None:
     file, cached = child(node, "file"), child(node, "cachedContents")
     name = str((file.text if file is not None else "") or "").strip().replace("\\", "/")
     with out.node(f"Script: {name.rpartition('/')[2] or 'file'}"):
-        text = None if cached is None else cached.text
-        if text and text.strip():
-            out.write(text.rstrip())
+        if cached is not None and cached.text and cached.text.strip():
+            out.code(cached)
         else:
             out.note(
                 f"the text of the script file {name or '(none)'} is not in the program: "

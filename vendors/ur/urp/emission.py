@@ -10,7 +10,7 @@ from functools import lru_cache
 from ....core.source.text.files import lines_of
 from .expressions import expression_text, identifier
 from .installation import Installation, Payload
-from .literals import Attribute, Literals, Position
+from .literals import Attribute, CodeLine, Literals, Position
 from .xml_file import Element, number
 
 GENERATED = "# Generated from the program tree of PolyScope; the tree itself is not changed.\n"
@@ -88,6 +88,12 @@ class Emission:
         """Lines at the present depth."""
         indent = "  " * self._depth
         self.lines += [f"{indent}{line}".rstrip() for line in lines_of(text)]
+
+    def code(self, element: Element) -> None:
+        """The code that an element holds, line by line."""
+        for index, line in enumerate(lines_of(element.text.rstrip())):
+            code = line.rstrip()
+            self.write(self.literals.token(code, CodeLine(element, index)) if code else "")
 
     def expression(self, element: Element | None) -> str:
         """An expression's text."""

@@ -62,7 +62,20 @@ class Position:
     elements: list[Element]
 
 
-Place = Attribute | Ending | Position
+@dataclass(frozen=True)
+class CodeLine:
+    """A line of code of a script file, whose text the program holds.
+
+    Args:
+        element: that holds it.
+        line: its number, from 0.
+    """
+
+    element: Element
+    line: int
+
+
+Place = Attribute | Ending | Position | CodeLine
 
 
 @dataclass(frozen=True)

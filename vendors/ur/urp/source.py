@@ -17,6 +17,7 @@ from ....core.errors import FlybyError, InputError, LeftOpenError, Note, ParseEr
 from ....core.files.reading import read_bytes
 from ....core.program.program import Program
 from ....core.source.text.files import LARGEST_FILE, MOST_LINES, SourceFile, decode, read_source
+from .code_files import code_files
 from .emission import node_at
 from .file_names import INSTALLATION, POLYSCOPE_X, SCRIPT
 from .installation import Installation, read_installation
@@ -58,6 +59,7 @@ def source_of(path: Path, beside: Sequence[Path] | None) -> tuple[SourceFile, tu
     program = urp_of(parsed(plain, str(path)), str(path))
     installation, notes = installation_beside(path, program, beside)
     source, told = _script(program, installation, str(path), data, notes)
+    source = replace(source, code=code_files(program.root, path))
     script = _script_beside(path, beside)
     if script is None:
         return source, told

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import groupby
 from pathlib import Path
@@ -23,10 +23,11 @@ from ....core.spatial.pose import Pose
 from ..syntax.lexer import number_value
 from ..values.poses import quaternion_of, rotation_vector_of
 from ..values.rotations import nearest_rotation_vector
+from .code_files import code_file, stretches
 from .emission import node_at
 from .installation import Installation
 from .kinematics import DhTable
-from .literals import JOINTS, POSE, Attribute, Ending, Literal, Position
+from .literals import JOINTS, POSE, Attribute, CodeLine, Ending, Literal, Position
 from .positions import Stored, stored_joints, stored_poses, table_at, taught_at
 from .program import UrProgram, script_of, urp_of
 from .xml_edits import XmlEdits, packed_like
@@ -99,6 +100,7 @@ class TreeFile(SourceFile):
         installation: the one that it names; None if it is not at hand.
         literals: of the script, with their places in the tree.
         beside: the ``.script`` that PolyScope has saved beside it; None if there is none.
+        code: script files of its nodes that are at hand, by what they are called without folder.
     """
 
     packed: bytes = field(default=b"", repr=False, kw_only=True)
@@ -106,6 +108,9 @@ class TreeFile(SourceFile):
     installation: Installation | None = field(default=None, repr=False, kw_only=True)
     literals: tuple[Literal, ...] = field(default=(), repr=False, compare=False, kw_only=True)
     beside: SourceFile | None = field(default=None, repr=False, compare=False, kw_only=True)
+    code: Mapping[str, SourceFile] = field(
+        default_factory=dict, repr=False, compare=False, kw_only=True
+    )
 
     @property
     def data(self) -> bytes:
@@ -124,6 +129,10 @@ class TreeFile(SourceFile):
         if found is None or start >= found.end or not isinstance(found.place, Position):
             return None
         return found.place
+
+    def code_changed(self, before: TreeFile) -> Iterator[SourceFile]:
+        """The script files of its nodes that are not as they were."""
+        yield from (file for name, file in self.code.items() if file != before.code[name])
 
     def joints_at(
         self, position: Position, pose: Pose, near: Sequence[float]
@@ -155,6 +164,7 @@ class TreeFile(SourceFile):
             packed=packed_like(changed, self.packed),
             program=program,
             literals=script.literals,
+            code={**self.code, **edits.code},
         )
 
     def _literal(self, stretch: Stretch) -> Literal:
@@ -167,14 +177,14 @@ class TreeFile(SourceFile):
         index = bisect_left(self.literals, start, key=lambda one: one.start)
         for literal in self.literals[max(0, index - 1) : index + 2]:
             empty = literal.start == literal.end
-            if literal.start <= start and end <= literal.end and empty == (start == end):
+            alike = empty == (start == end) or isinstance(literal.place, CodeLine)
+            if literal.start <= start and end <= literal.end and alike:
                 return literal
         line = self.text.count("\n", 0, start) + 1
         node = node_at(self.text, line) or "the program's tree"
         raise InputError(
-            f"{self.name}: {node}: nothing can be written there: it stands in an expression, in "
-            "code of a script node (which PolyScope keeps in a file of its own as well), in the "
-            "installation, or belongs to all waypoints of the node; change it on the pendant"
+            f"{self.name}: {node}: nothing can be written there: it stands in an expression or in "
+            "the installation, or belongs to all waypoints of the node; change it on the pendant"
         )
 
 
@@ -186,6 +196,8 @@ class _TreeEdits:
         self._xml = xml
         self._positions: defaultdict[str, dict[str, list[float]]] = defaultdict(dict)
         self._elements: dict[str, list[Element]] = {}
+        self._lines: defaultdict[Element, dict[int, str]] = defaultdict(dict)
+        self.code: dict[str, SourceFile] = {}
         self._own: defaultdict[tuple[Element, str], dict[str, str]] = defaultdict(dict)
 
     def change(self, literal: Literal, stretches: Sequence[Stretch]) -> None:
@@ -204,6 +216,8 @@ class _TreeEdits:
             numbers = [number_value(part) for part in _NUMBER.findall(text.lstrip("p"))]
             self._positions[place.waypoint][place.part] = numbers
             self._elements[place.waypoint] = place.elements
+        elif isinstance(place, CodeLine):
+            self._lines[place.element][place.line] = _text(self._file.text, literal, stretches)
         elif isinstance(place, Ending):
             for name, value in _PUT_IN.findall("".join(text for *_, text in stretches)):
                 if name not in place.attributes:
@@ -223,6 +237,12 @@ class _TreeEdits:
                 self._move(name, element, parts)
         for (element, tag), values in self._own.items():
             self._state(element, tag, values)
+        for element, lines in self._lines.items():
+            file = code_file(element, self._file.code, self._file.name)
+            for start, end, text in stretches(element.text, lines):
+                self._xml.set_stretch(element, start, end, text)
+            changed = file.edited(list(stretches(file.text, lines)))
+            self.code[Path(file.name).name] = changed
         return self._xml.changed
 
     def _set(self, place: Attribute, value: str) -> None:

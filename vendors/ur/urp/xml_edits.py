@@ -11,6 +11,8 @@ import struct
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from html import unescape
+from xml.sax.saxutils import escape
 
 from ....core.errors import InputError
 from .xml_file import GZIP, Element
@@ -20,6 +22,8 @@ _TAG = re.compile(
     re.DOTALL,
 )
 _ATTRIBUTE = re.compile(r"\s([^\s=]+)\s*=\s*(\"[^\"]*\"|'[^']*')")
+_SIGN = re.compile(r"&[^;]*;|\r\n|.", re.DOTALL)
+"""What is read as one character."""
 _BLANK = re.compile(r"\s*")
 _FLAGS = struct.Struct("<2sBBIBB")
 _HAS_CHECKSUM, _HAS_EXTRA, _HAS_NAME, _HAS_COMMENT = 2, 4, 8, 16
@@ -110,6 +114,26 @@ class XmlEdits:
         inside = self._text[start.attributes : last].rstrip()
         self._put_in(start.attributes + len(inside), f' {attribute}="{value}"')
 
+    def set_stretch(self, element: Element, start: int, end: int, value: str) -> None:
+        """Give a stretch of the text of an element, of any signs, another value.
+
+        Args:
+            start, end: characters of the text as it is read.
+
+        Raises:
+            InputError: the text is written in a way that cannot be changed.
+        """
+        first = self._starts[element].end
+        raw = self._text[first : self._text.index("<", first)].encode("latin-1")
+        try:
+            signs = _SIGN.findall(raw.decode())
+        except UnicodeDecodeError:
+            signs = []
+        if "".join(map(_read, signs)) != element.text:
+            raise InputError(f"{self.name}: code in it is written in a way that cannot be changed")
+        place = [first + len("".join(signs[:count]).encode()) for count in (start, end)]
+        self._made[place[0], place[1]] = escape(value).encode().decode("latin-1")
+
     def put_first(self, element: Element, text: str) -> None:
         """Put a child before those that an element has."""
         start = self._starts[element]
@@ -133,6 +157,12 @@ class XmlEdits:
 
     def _put_in(self, at: int, text: str) -> None:
         self._made[at, at] = self._made.get((at, at), "") + text
+
+
+def _read(sign: str) -> str:
+    if sign.startswith("&"):
+        return unescape(sign)
+    return "\n" if sign.startswith("\r") else sign
 
 
 def _plain_name(element: Element) -> str:

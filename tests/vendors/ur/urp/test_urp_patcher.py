@@ -216,10 +216,44 @@ def test_a_pose_that_joints_do_not_reach_is_refused(build: Build, tmp_path: Path
         patched(program, {0: shifted(2.0)})
 
 
-def test_code_in_script_nodes_is_refused_with_the_reason(build: Build, tmp_path: Path) -> None:
-    code = f"movel(p{list(TCP)}, a=1.2, v=0.25)\nmovel(p[0.4, 0, 0.3, 0, 3.1, 0], a=1, v=0.2)"
-    program = opened(build, tmp_path, build.script(code))
-    with pytest.raises(InputError, match=r"Script: part\.script.*a file of its own as well"):
+CODE = (
+    "def part():\r\n  # größer & <schneller>\r\n"
+    "  movel(p[-0.4, -0.2, 0.3, 0, 3.1, 0], a=1.2, v=0.25)\r\n\r\n"
+    "  movel(p[-0.4, 0, 0.3, 0, 3.1, 0], a=1, v=0.2, r=0.01)\r\nend\r\npart()\r\n"
+)
+
+
+def test_code_of_a_script_file_is_changed_there_and_in_the_program(
+    build: Build, tmp_path: Path
+) -> None:
+    """PolyScope reads the file again; the copy in the program says the same."""
+    (tmp_path / "part.script").write_bytes(CODE.encode())
+    program = opened(build, tmp_path, build.script(CODE))
+    before = (tmp_path / "job.urp").read_bytes()
+    files, wanted = patched(program, {0: zone(0.02), 1: speed(tcp=0.1)})
+    named = {Path(file.name).name: file for file in files.values()}
+    expected = CODE.replace("v=0.25)", "v=0.25, r=0.02)").replace("v=0.2,", "v=0.1,")
+    assert set(named) == {"job.urp", "part.script"}
+    assert named["part.script"].data == expected.encode()
+    old, new = (gzip.decompress(data).decode() for data in (before, named["job.urp"].data))
+    assert new == old.replace("v=0.25)", "v=0.25, r=0.02)").replace("v=0.2,", "v=0.1,")
+    same(read_again(files, tmp_path), wanted)
+
+
+def test_code_whose_file_is_not_at_hand_or_another_is_refused(build: Build, tmp_path: Path) -> None:
+    program = opened(build, tmp_path, build.script(CODE))
+    with pytest.raises(InputError, match=r"put the file beside the program"):
+        patched(program, {1: speed(tcp=0.1)})
+    (tmp_path / "part.script").write_text(CODE.replace("0.25", "0.3"))
+    with pytest.raises(InputError, match=r"part\.script beside it is not as the copy"):
+        patched(read_file(tmp_path / "job.urp"), {1: speed(tcp=0.1)})
+
+
+def test_what_stands_in_an_expression_is_refused(build: Build, tmp_path: Path) -> None:
+    line = build.expression("movel(p[-0.4, -0.2, 0.3, 0, 3.1, 0], a=1.2, v=0.25)")
+    steps = [f'<Script type="Line">{line}</Script>'] * 2
+    program = opened(build, tmp_path, build.move(build.fixed("A", A)), *steps)
+    with pytest.raises(InputError, match=r"Script: nothing can be written there"):
         patched(program, {1: speed(tcp=0.1)})
 
 
