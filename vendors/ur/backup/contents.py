@@ -11,7 +11,7 @@ from pathlib import Path, PurePosixPath
 from ....core.errors import FlybyError, InputError, Note
 from ....core.files.reading import read_bytes
 from ....core.source.text.files import LARGEST_FILE, decode
-from ..urp.code_files import COPY
+from ..urp.changes.code_files import COPY
 from ..urp.expressions import function_name
 from ..urp.file_names import INSTALLATION, POLYSCOPE_X, PROGRAM, SCRIPT
 from ..urp.installation import Installation, read_installation

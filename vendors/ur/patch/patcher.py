@@ -29,7 +29,7 @@ from ....core.source.patch.uses import Use
 from ....core.source.reading import Files, read_with
 from ....core.source.text.files import SourceFile
 from ....core.source.write.options import PatcherOptions
-from ..urp.tree_file import TreeFile
+from ..urp.changes.tree_file import TreeFile
 from .inplace import Argument, ScriptLiterals, arguments
 from .places import PUT_IN, MoveCall, MoveCalls
 from .trees import trees_of, with_taught_joints

@@ -19,8 +19,8 @@ from ....core.robot.model import Robot
 from ....core.source.patch.edits import alike
 from ....core.source.reading import Files
 from ..motion.configuration import UrConfiguration
+from ..urp.changes.tree_file import TreeFile
 from ..urp.literals import Position
-from ..urp.tree_file import TreeFile
 
 
 def trees_of(files: Files) -> dict[str, TreeFile]:

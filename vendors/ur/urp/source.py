@@ -17,14 +17,14 @@ from ....core.errors import FlybyError, InputError, LeftOpenError, Note, ParseEr
 from ....core.files.reading import read_bytes
 from ....core.program.program import Program
 from ....core.source.text.files import LARGEST_FILE, MOST_LINES, SourceFile, decode, read_source
-from .code_files import code_files
+from .changes.code_files import code_files
+from .changes.tree_file import PackedScript, PolyScopeXFile, TreeFile
 from .emission import node_at
 from .file_names import INSTALLATION, POLYSCOPE_X, SCRIPT
 from .installation import Installation, read_installation
 from .polyscope_x import content_of, script_in
 from .program import ROOT, UrProgram, script_of, urp_of
 from .script_beside import moved_waypoints
-from .tree_file import PackedScript, PolyScopeXFile, TreeFile
 from .xml_file import is_xml, parsed, unpacked
 
 _NAMED = 4

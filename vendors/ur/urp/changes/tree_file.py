@@ -16,22 +16,22 @@ from itertools import groupby
 from pathlib import Path
 from typing import Self
 
-from ....core.errors import InputError
-from ....core.source.patch.edits import alike
-from ....core.source.text.files import SourceFile
-from ....core.spatial.pose import Pose
-from ..syntax.lexer import number_value
-from ..values.poses import quaternion_of, rotation_vector_of
-from ..values.rotations import nearest_rotation_vector
+from .....core.errors import InputError
+from .....core.source.patch.edits import alike
+from .....core.source.text.files import SourceFile
+from .....core.spatial.pose import Pose
+from ...syntax.lexer import number_value
+from ...values.poses import quaternion_of, rotation_vector_of
+from ...values.rotations import nearest_rotation_vector
+from ..emission import node_at
+from ..installation import Installation
+from ..kinematics import DhTable
+from ..literals import JOINTS, POSE, Attribute, CodeLine, Ending, Literal, Position
+from ..positions import Stored, stored_joints, stored_poses, table_at, taught_at
+from ..program import UrProgram, script_of, urp_of
+from ..xml_file import Element, child, parsed, unpacked
 from .code_files import code_file, stretches
-from .emission import node_at
-from .installation import Installation
-from .kinematics import DhTable
-from .literals import JOINTS, POSE, Attribute, CodeLine, Ending, Literal, Position
-from .positions import Stored, stored_joints, stored_poses, table_at, taught_at
-from .program import UrProgram, script_of, urp_of
 from .xml_edits import XmlEdits, packed_like
-from .xml_file import Element, child, parsed, unpacked
 
 Stretch = tuple[int, int, str]
 _PUT_IN = re.compile(r", (\w+)=([^,]+)")

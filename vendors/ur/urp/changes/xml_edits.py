@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 from html import unescape
 from xml.sax.saxutils import escape
 
-from ....core.errors import InputError
-from .xml_file import GZIP, Element
+from .....core.errors import InputError
+from ..xml_file import GZIP, Element
 
 _TAG = re.compile(
     r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<(/?)([^\s/>!?]+)((?:[^<>\"']|\"[^\"]*\"|'[^']*')*)>",

@@ -11,9 +11,9 @@ from contextlib import suppress
 from itertools import takewhile
 from pathlib import Path
 
-from ....core.errors import FlybyError, InputError
-from ....core.source.text.files import SourceFile, lines_of, read_source
-from .xml_file import Element, child
+from .....core.errors import FlybyError, InputError
+from .....core.source.text.files import SourceFile, lines_of, read_source
+from ..xml_file import Element, child
 
 COPY = "cachedContents"
 

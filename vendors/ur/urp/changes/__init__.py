@@ -1,0 +1,1 @@
+"""Changed numbers of a generated script → the files of PolyScope."""
